@@ -30,6 +30,7 @@ __all__ = [
     "Live3",
     "LiveArrays2",
     "LiveArrays3",
+    "LiveSegments2",
     "LiveState2",
     "LiveState3",
     "Location2",
@@ -1094,6 +1095,40 @@ class Live2:
     def changes(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]: ...
     def state(self) -> LiveState2: ...
     def restore(self, state: LiveState2) -> None: ...
+    def split_crossings(self, split: bool) -> None: ...
+    def constraints(self) -> list[bool]: ...
+    def insert_segments(self, ends: NDArray[np.int64], workers: int) -> NDArray[np.int64]: ...
+    def remove_segments(self, handles: NDArray[np.int64], workers: int) -> None: ...
+    def adopt_segments(
+        self,
+        known: tuple[NDArray[np.int64], NDArray[np.int64]],
+        total: int,
+        crossings: tuple[NDArray[np.int64], NDArray[np.float64]],
+        workers: int,
+    ) -> None: ...
+    def segments(self) -> LiveSegments2: ...
+    def segment_faults(self, handles: NDArray[np.int64]) -> list[NDArray[np.int64]]: ...
+    def held(self, handles: NDArray[np.int64]) -> NDArray[np.int64]: ...
+
+@final
+class LiveSegments2:
+    """The segments of a triangulation."""
+
+    @property
+    def handles(self) -> NDArray[np.int64]:
+        """The handles of segments, ascending, (s,)."""
+    @property
+    def ends(self) -> NDArray[np.int64]:
+        """The handles of their ends, (s, 2)."""
+    @property
+    def crossings(self) -> NDArray[np.int64]:
+        """Two segments, and the handle of the vertex where they cross, (c, 3)."""
+    @property
+    def added(self) -> NDArray[np.int64]:
+        """The handles of vertices that only crossings need, (v,)."""
+    @property
+    def total(self) -> int:
+        """The next handle of a segment."""
 
 @final
 class LiveArrays2:
@@ -1111,6 +1146,9 @@ class LiveArrays2:
     @property
     def neighbors(self) -> NDArray[np.int32]:
         """The triangle opposite each vertex, -1 outside, (m, 3)."""
+    @property
+    def constrained(self) -> NDArray[np.bool_] | None:
+        """Whether the edge opposite each vertex is part of a segment, (m, 3); None without segments."""
     @property
     def duplicates(self) -> NDArray[np.int32]:
         """Rows that repeat earlier rows, and the first of these, (k, 2)."""

@@ -86,6 +86,7 @@ CORE: dict[str, set[str]] = {
     "graphs": {"order", "points", "parallel", "delone_predicates"} | GROUND,
     "hull": {"order", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "live": {
+        "constrained",
         "delaunay2",
         "delaunay3",
         "locate",

@@ -57,6 +57,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<live::Live2>()?;
     m.add_class::<live::LiveState2>()?;
     m.add_class::<live::LiveArrays2>()?;
+    m.add_class::<live::LiveSegments2>()?;
     m.add_class::<live3::Live3>()?;
     m.add_class::<live3::LiveState3>()?;
     m.add_class::<live3::LiveArrays3>()?;

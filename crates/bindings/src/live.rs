@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, TryLockError};
 
-use delone::{Error, Result};
+use delone::{Error, Point2, Result};
 use delone_core::live::plane::{Plane, State};
 use delone_core::watch::Watch;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
@@ -37,8 +37,25 @@ pub struct LiveArrays2 {
     pub simplices: Table<i32>,
     /// The triangle opposite each vertex, -1 outside, (m, 3).
     pub neighbors: Table<i32>,
+    /// Whether the edge opposite each vertex is part of a segment, (m, 3); None without segments.
+    pub constrained: Option<Table<bool>>,
     /// Rows that repeat earlier rows, and the first of these, (k, 2).
     pub duplicates: Table<i32>,
+}
+
+/// The segments of a triangulation.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct LiveSegments2 {
+    /// The handles of segments, ascending, (s,).
+    pub handles: Column<i64>,
+    /// The handles of their ends, (s, 2).
+    pub ends: Table<i64>,
+    /// Two segments, and the handle of the vertex where they cross, (c, 3).
+    pub crossings: Table<i64>,
+    /// The handles of vertices that only crossings need, (v,).
+    pub added: Column<i64>,
+    /// The next handle of a segment.
+    pub total: usize,
 }
 
 impl Live2 {
@@ -84,6 +101,15 @@ pub fn checked_handles(given: &[i64], count: usize, total: usize) -> Result<Vec<
         return Err(Error::Shape(message.into()));
     }
     Ok(given.iter().map(|&h| h as u32).collect())
+}
+
+/// Which handles are not there, and which are named twice.
+fn faults_of(handles: &[i64], is_there: impl Fn(i64) -> bool) -> [Vec<i64>; 2] {
+    let gone = handles.iter().copied().filter(|&h| !is_there(h)).collect();
+    let mut sorted = handles.to_vec();
+    sorted.sort_unstable();
+    let pairs = sorted.windows(2).filter(|w| w[0] == w[1]);
+    [gone, pairs.map(|w| w[0]).collect()]
 }
 
 /// The error of a triangulation in which a panic left something behind.
@@ -162,11 +188,7 @@ impl Live2 {
     fn faults(&self, py: Python<'_>, handles: Handles<'_>) -> PyResult<[Column<i64>; 2]> {
         let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
         let [gone, twice] = self.with(py, handles.len(), |plane, _| {
-            let gone = handles.iter().copied().filter(|&h| !plane.has(h)).collect();
-            let mut sorted = handles.to_vec();
-            sorted.sort_unstable();
-            let pairs = sorted.windows(2).filter(|w| w[0] == w[1]);
-            Ok([gone, pairs.map(|w| w[0]).collect()])
+            Ok(faults_of(handles, |h| plane.has(h)))
         })?;
         Ok([column(py, gone), column(py, twice)])
     }
@@ -185,8 +207,131 @@ impl Live2 {
             points: table(py, made.points)?,
             simplices: table(py, made.arrays.simplices)?,
             neighbors: table(py, made.arrays.neighbors)?,
+            constrained: match made.constrained.is_empty() {
+                true => None,
+                false => Some(table(py, made.constrained)?),
+            },
             duplicates: number_rows(py, &made.duplicates)?,
         })
+    }
+
+    /// Chooses whether crossings of segments are split.
+    fn split_crossings(&self, py: Python<'_>, split: bool) -> PyResult<()> {
+        self.with(py, 0, |plane, _| {
+            plane.split_crossings(split);
+            Ok(())
+        })
+    }
+
+    /// Whether there are segments, and whether crossings are split.
+    fn constraints(&self, py: Python<'_>) -> PyResult<[bool; 2]> {
+        self.with(py, 0, |plane, _| {
+            Ok([plane.has_segments(), plane.splits_crossings()])
+        })
+    }
+
+    /// Inserts segments between points and returns their handles.
+    fn insert_segments(
+        &self,
+        py: Python<'_>,
+        ends: PyReadonlyArray2<'_, i64>,
+        workers: usize,
+    ) -> PyResult<Column<i64>> {
+        let ends: &[[i64; 2]] = rows(&ends, "ends").map_err(|e| raise(py, &e))?;
+        let made = self.with(py, usize::MAX, |plane, watch| {
+            plane.insert_segments(ends, workers, watch)
+        })?;
+        Ok(column(py, (made.start as i64..made.end as i64).collect()))
+    }
+
+    /// Removes segments.
+    fn remove_segments(
+        &self,
+        py: Python<'_>,
+        handles: Handles<'_>,
+        workers: usize,
+    ) -> PyResult<()> {
+        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+        self.with(py, usize::MAX, |plane, watch| {
+            plane.remove_segments(handles, workers, watch)
+        })
+    }
+
+    /// Inserts segments with known handles, ascending, before the handle `total`; crossings at known
+    /// places get their handles again.
+    fn adopt_segments(
+        &self,
+        py: Python<'_>,
+        known: (Handles<'_>, PyReadonlyArray2<'_, i64>),
+        total: usize,
+        crossings: (Handles<'_>, Points<'_>),
+        workers: usize,
+    ) -> PyResult<()> {
+        let ((handles, ends), (added, places)) = (known, crossings);
+        let ends: &[[i64; 2]] = rows(&ends, "ends").map_err(|e| raise(py, &e))?;
+        let places: &[Point2] = rows(&places, "places").map_err(|e| raise(py, &e))?;
+        let given = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+        let added = flat(&added, "added").map_err(|e| raise(py, &e))?;
+        let numbers = checked_handles(given, ends.len(), total).map_err(|e| raise(py, &e))?;
+        self.with(py, usize::MAX, |plane, watch| {
+            let added = checked_handles(added, places.len(), plane.total());
+            let added = added.map_err(|_| {
+                delone_core::error::Error::Shape("handles of crossings are wrong".into())
+            })?;
+            if let Some(&row) = ends.as_flattened().iter().find(|&&row| !plane.has(row)) {
+                let message = format!("row {row} is not there");
+                return Err(delone_core::error::Error::Shape(message));
+            }
+            let ends = ends.iter().map(|pair| pair.map(|row| row as u32));
+            let known: Vec<_> = numbers.into_iter().zip(ends).collect();
+            let places: Vec<_> = added.into_iter().zip(places.iter().copied()).collect();
+            plane.adopt_segments(&known, total, &places, workers, watch)
+        })
+    }
+
+    /// The segments and their crossings.
+    fn segments(&self, py: Python<'_>) -> PyResult<LiveSegments2> {
+        let (handles, ends, crossings, added, total) = self.with(py, usize::MAX, |plane, _| {
+            let (handles, ends) = plane.segments()?;
+            let crossings = plane.crossings().iter().map(|c| c.map(i64::from));
+            let added = plane.crossing_rows().iter().copied().map(i64::from);
+            let crossings: Vec<_> = crossings.collect();
+            let added: Vec<_> = added.collect();
+            Ok((handles, ends, crossings, added, plane.segments_total()))
+        })?;
+        Ok(LiveSegments2 {
+            handles: column(py, handles),
+            ends: table(py, ends)?,
+            crossings: table(py, crossings)?,
+            added: column(py, added),
+            total,
+        })
+    }
+
+    /// Which of these handles of segments are not there, or are named earlier.
+    fn segment_faults(&self, py: Python<'_>, handles: Handles<'_>) -> PyResult<[Column<i64>; 2]> {
+        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+        let [gone, twice] = self.with(py, handles.len(), |plane, _| {
+            Ok(faults_of(handles, |h| plane.has_segment(h)))
+        })?;
+        Ok([column(py, gone), column(py, twice)])
+    }
+
+    /// Which of these handles of points are ends of segments, each with one, or crossings, with -1.
+    fn held(&self, py: Python<'_>, handles: Handles<'_>) -> PyResult<Table<i64>> {
+        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+        let held = self.with(py, handles.len(), |plane, _| {
+            let there = handles.iter().filter(|&&h| plane.has(h));
+            let held = there.filter_map(|&h| match plane.is_crossing(h as u32) {
+                true => Some([h, -1]),
+                false => plane
+                    .segments_at(h as u32)
+                    .next()
+                    .map(|s| [h, i64::from(s)]),
+            });
+            Ok(held.collect::<Vec<_>>())
+        })?;
+        table(py, held)
     }
 
     /// The handles of the corners of a triangle that contains each query, -1 outside, and weights.

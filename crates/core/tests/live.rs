@@ -420,3 +420,33 @@ fn queries_find_the_triangle_and_the_nearest_row() {
     }
     assert!((200..300).contains(&inside));
 }
+
+#[test]
+fn marks_and_links_agree_after_edits_of_segments() {
+    let points = scattered(400, 5);
+    let mut live = Plane::new(&points, 1, &idle()).unwrap();
+    live.split_crossings(true);
+    for i in 0..60i64 {
+        live.insert_segments(&[[i, 7 * i % 90 + 100]], 1, &idle())
+            .unwrap();
+        live.check().unwrap();
+    }
+    assert!(!live.crossings().is_empty());
+    for i in 0..60i64 {
+        let segments = [(17 * i) % 60];
+        live.remove_segments(&segments, 1, &idle()).unwrap();
+        live.relocate(&[i], &[points[399 - i as usize]], 1, &idle())
+            .unwrap();
+        live.remove(&[300 + i], 1, &idle()).unwrap();
+        live.insert(&[points[200 + i as usize].map(|x| x * 0.5)], 1, &idle())
+            .unwrap();
+        live.check().unwrap();
+    }
+    assert!(!live.has_segments() && live.crossing_rows().is_empty());
+    let exported = live.export(&idle()).unwrap();
+    let fresh = triangulate(&exported.points, Method::Auto, 1, &idle()).unwrap();
+    assert_eq!(
+        exported.arrays.simplices.len(),
+        fresh.arrays.simplices.len()
+    );
+}

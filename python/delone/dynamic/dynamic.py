@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_plain_array, as_points, as_vectors, as_workers
+from delone._arrays import as_choice, as_points, as_vectors, as_workers
 from delone.complex import Complex
+from delone.constrained import ConstrainedDelaunay
 from delone.counting import counted
 from delone.delaunay import Delaunay
 from delone.dynamic.results import Changes, Snapshot
-from delone.errors import DtypeError, HandleError, ShapeError
+from delone.dynamic.segments import FEW, Segmented, adopt, as_handles, given_segments, refuse
+from delone.errors import DtypeError, InputError, ShapeError
 from delone.immutable import own_copy, sealed
 
 if TYPE_CHECKING:
@@ -27,18 +29,22 @@ if TYPE_CHECKING:
 
 __all__ = ["Dynamic"]
 
-# Fewer points are edited with the GIL, so that nobody can change them meanwhile.
-_FEW = 16
 
-
-class Dynamic:
+class Dynamic(Segmented):
     """A 2-D or 3-D Delaunay triangulation whose points are inserted, removed and moved.
 
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or triangulation, optional
         Finite coordinates, as for `Delaunay`, or a triangulation, whose points are taken. By
-        default none. Their handles are 0 to n - 1.
+        default none. Their handles are 0 to n - 1. Of a `ConstrainedDelaunay` the segments are
+        taken as well.
+    segments : array_like of int, shape (s, 2), optional
+        2-D only: edges that the triangulation must contain, as pairs of rows of `points`. Their
+        handles are 0 to s - 1.
+    crossing : {"raise", "split"}, optional
+        Whether crossing segments raise an error, or are split at a new vertex; by default as in
+        `points`, and otherwise ``"raise"``.
     ndim : int, optional
         The number of coordinates, 2 or 3; by default that of `points`, and 2 without points.
     workers : int, optional
@@ -49,6 +55,8 @@ class Dynamic:
     ------
     NonFiniteError, ShapeError, DtypeError
         As for `Delaunay`.
+    CrossingSegmentsError, BudgetExceededError, InputError
+        As for `ConstrainedDelaunay`.
     LimitError
         There are more than 2**28 points, 2**27 in 3-D, or 2**32 - 2 handles have been given.
     MemoryError
@@ -57,6 +65,7 @@ class Dynamic:
     See Also
     --------
     Delaunay : A triangulation that never changes.
+    ConstrainedDelaunay : The same with segments.
 
     Notes
     -----
@@ -71,6 +80,12 @@ class Dynamic:
 
     Points that all lie on one line, or in 3-D in one plane, have no simplex; they stay, and
     simplices come back with the point that makes it possible.
+
+    With segments the simplices are those of a new `ConstrainedDelaunay` of the same points and
+    segments. A segment joins two handles and moves with its ends; a point that is an end cannot be
+    removed. Where segments cross, with ``crossing="split"``, the crossing is a vertex with a handle
+    of its own, which goes with the segments; an edit that touches segments that cross triangulates
+    everything again, others stay local (`insert_segments`).
 
     An edit is all or nothing: on any error, Ctrl-C and refused memory included, nothing has
     changed. Edits from several threads take turns.
@@ -99,7 +114,7 @@ class Dynamic:
     <Delaunay of 4 points: 3 triangles>
     """
 
-    __slots__ = ("__weakref__", "_edit", "_live", "_present", "_workers")
+    __slots__ = ("__weakref__", "_present")
 
     _live: _core.Live2 | _core.Live3
     # An object of its own for each state, and the arrays of the state when they were made.
@@ -110,7 +125,9 @@ class Dynamic:
     def __init__(
         self,
         points: ArrayLike | Complex | None = None,
+        segments: ArrayLike | None = None,
         *,
+        crossing: str | None = None,
         ndim: int | None = None,
         workers: int | None = None,
     ) -> None:
@@ -118,8 +135,18 @@ class Dynamic:
         if points is None:
             points = np.empty((0, dimension or 2))
         given = points.points if isinstance(points, Complex) else points
+        if isinstance(points, ConstrainedDelaunay):
+            given = points.points[: points.npoints - points.nadded]
+            segments = points.input_segments if segments is None else segments
+            crossing = crossing or points._options.crossing
         own = own_copy(given, ndim=dimension)
         core = _live(own.shape[1])(own, None, 0, as_workers(workers))
+        split = as_choice(crossing or "raise", ("raise", "split"), name="crossing") == "split"
+        if isinstance(core, _core.Live2):
+            core.split_crossings(split)
+            given_segments(core, () if segments is None else segments, as_workers(workers))
+        elif segments is not None:
+            raise InputError("segments are for 2-D points; these are 3-D")
         self._begin(core, workers)
 
     def _begin(self, core: _core.Live2 | _core.Live3, workers: int | None) -> None:
@@ -135,14 +162,28 @@ class Dynamic:
         return made
 
     @classmethod
-    def _again(cls, points: Floats, handles: Handles, total: int, workers: int | None) -> Self:
+    def _again(
+        cls,
+        points: Floats,
+        handles: Handles,
+        total: int,
+        workers: int | None,
+        segments: tuple[Any, ...] | None = None,
+    ) -> Self:
         """Return the triangulation of a pickle."""
+        if segments is not None:
+            kept = ~np.isin(handles, segments[4])
+            points, handles = points[kept], handles[kept]
         core = _live(points.shape[1])(points, handles, total, as_workers(workers))
+        if segments is not None and isinstance(core, _core.Live2):
+            adopt(core, segments, as_workers(workers))
         return cls._of(core, workers)
 
     def __reduce__(self) -> tuple[Any, ...]:
         handles, points = self._live.points()
-        return type(self)._again, (points, handles, self._live.counts()[3], self._workers)
+        total = self._live.counts()[3]
+        saved = (points, handles, total, self._workers, self._saved_segments())
+        return type(self)._again, saved
 
     def __copy__(self) -> Self:
         return self._of(self._live.state().open(), self._workers)
@@ -168,6 +209,8 @@ class Dynamic:
         points = counted(npoints, "point")
         if npoints > vertices:
             points += f" ({counted(npoints - vertices, 'duplicate')})"
+        if self._has_segments:
+            points += f" and {counted(len(self.segment_handles), 'segment')}"
         simplices = counted(nsimplex, "triangle" if self.ndim == 2 else "tetrahedron")
         return f"<{type(self).__name__} of {points}: {simplices}>"
 
@@ -215,7 +258,8 @@ class Dynamic:
         Raises
         ------
         HandleError
-            A handle is not there, or is named twice; nothing has changed.
+            A handle is not there, is named twice, or is an end or a crossing of segments; nothing
+            has changed.
         DtypeError
             `handles` are not integers.
 
@@ -227,16 +271,17 @@ class Dynamic:
         >>> live.simplices
         array([[0, 2, 1]], dtype=int32)
         """
-        own = _as_handles(handles)
+        own = as_handles(handles)
         try:
             self._live.remove(own, self._threads(own))
         except ShapeError:
             self._refuse(own)
+            self._refuse_held(own)
             raise
         self._edit = object()
 
     def move(self, handles: ArrayLike, points: ArrayLike) -> None:
-        """Move points, all at once.
+        """Move points, all at once, with their segments.
 
         Parameters
         ----------
@@ -248,7 +293,10 @@ class Dynamic:
         Raises
         ------
         HandleError
-            A handle is not there, or is named twice; nothing has changed.
+            A handle is not there, is named twice, or is a crossing of segments; nothing has
+            changed.
+        CrossingSegmentsError
+            Segments would cross, and `crossing` is ``"raise"``; nothing has changed.
         NonFiniteError, ShapeError, DtypeError
             As for the constructor, or there are not as many points as handles.
 
@@ -260,28 +308,24 @@ class Dynamic:
         >>> live.points[0]
         array([1., 1.])
         """
-        own, places = _as_handles(handles), _own(points, self.ndim)
+        own, places = as_handles(handles), _own(points, self.ndim)
         try:
             self._live.relocate(own, places, self._threads(own))
         except ShapeError:
             self._refuse(own)
+            if len(own) == len(places):
+                self._refuse_held(own)
             raise
         self._edit = object()
 
     def _threads(self, items: Any) -> int:
-        if self._workers is None and (not hasattr(items, "__len__") or len(items) <= _FEW):
+        if self._workers is None and (not hasattr(items, "__len__") or len(items) <= FEW):
             return 1
         return as_workers(self._workers)
 
     def _refuse(self, handles: Handles) -> None:
         gone, twice = self._live.faults(handles)
-        if len(gone):
-            names = ", ".join(map(str, gone[:5].tolist())) + (", ..." if len(gone) > 5 else "")
-            verb = "is" if len(gone) == 1 else "are"
-            noun = "handle" if len(gone) == 1 else "handles"
-            raise HandleError(f"{noun} {names} {verb} not there", handles=gone)
-        if len(twice):
-            raise HandleError(f"handle {twice[0]} is named twice", handles=twice)
+        refuse(gone, twice, "handle")
 
     # States.
 
@@ -366,13 +410,15 @@ class Dynamic:
         gone, new = self._live.changes()
         return Changes(gone, new)
 
-    def freeze(self) -> Delaunay:
+    def freeze(self) -> Delaunay | ConstrainedDelaunay:
         """Return the present triangulation as an object that never changes.
 
         Returns
         -------
-        Delaunay
+        Delaunay or ConstrainedDelaunay
             Equal to ``Delaunay(live.points)`` up to the order of the simplices, in linear time.
+            With segments a `ConstrainedDelaunay` of the points and segments, whose rows are in the
+            order of handles, with crossings at the end; it is triangulated again.
 
         Raises
         ------
@@ -385,6 +431,8 @@ class Dynamic:
         >>> bool(Dynamic([(0, 0), (1, 0), (0, 1)]).freeze().validate())
         True
         """
+        if self._has_segments:
+            return self._frozen_segments()
         made = self._arrays()
         if not len(made.simplices):
             return Delaunay(made.points, workers=self._workers, planar=True)
@@ -661,22 +709,4 @@ def _as_ndim(ndim: int | None) -> int | None:
 def _own(points: ArrayLike, ndim: int) -> Floats:
     """Return points that nobody changes while the core runs."""
     array = as_points(points, ndim=ndim)
-    return array if len(array) <= _FEW else own_copy(points, ndim=ndim)
-
-
-def _as_handles(handles: ArrayLike) -> Handles:
-    """Return handles as a contiguous array."""
-    array = as_plain_array(handles, "handles")
-    if array.size == 0:
-        return np.empty(0, dtype=np.int64)
-    if array.dtype.kind not in "iu":
-        raise DtypeError(f"handles must be integers, got dtype {array.dtype}")
-    if array.ndim != 1:
-        raise ShapeError(f"handles must have shape (k,), got {array.shape}")
-    if array.dtype.kind == "u" and int(array.max()) >= 2**63:
-        raise DtypeError("handles must be below 2**63")
-    return (
-        np.array(array, dtype=np.int64)
-        if len(array) > _FEW
-        else np.ascontiguousarray(array, dtype=np.int64)
-    )
+    return array if len(array) <= FEW else own_copy(points, ndim=ndim)

@@ -27,6 +27,7 @@ use delone_predicates::{Point2, lexicographic, orient2d};
 pub use self::components::components;
 pub use self::polygon::{Filled, Rule, polygon};
 pub use self::ring::simple_ring;
+pub(crate) use self::split::passes;
 pub use self::subsegments::Subsegments;
 
 use self::inserted::Inserted;

@@ -365,7 +365,7 @@ fn in_box(x: Point2, p: Point2, q: Point2) -> bool {
 
 /// Whether the segment `r s` meets the pixel of `p`, the points that round to it: at the abscissa
 /// of p it has an ordinate that rounds to that of p, or vice versa.
-pub(super) fn passes(r: Point2, s: Point2, p: Point2) -> bool {
+pub(crate) fn passes(r: Point2, s: Point2, p: Point2) -> bool {
     if !in_box(p, r, s) || p == r || p == s || far(r, s, p) {
         return false;
     }

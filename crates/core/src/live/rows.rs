@@ -80,6 +80,15 @@ impl Rows {
             .map(|(i, row)| (i, row.vertex))
     }
 
+    /// The rows of the vertex with this head, ascending.
+    pub fn at(&self, head: u32) -> impl Iterator<Item = u32> + '_ {
+        let next = move |&row: &u32| {
+            let after = self.rows[row as usize].after;
+            (after != head).then_some(after)
+        };
+        std::iter::successors((head != NONE).then_some(head), next)
+    }
+
     /// Whether a row is alone at its vertex.
     #[inline]
     pub fn is_single(&self, row: u32) -> bool {

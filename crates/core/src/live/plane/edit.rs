@@ -58,6 +58,10 @@ impl Plane {
         }
         let first = self.rows.total();
         self.rows.reserve(input.len())?;
+        if self.has_segments() {
+            let whole = !self.is_incremental(input.len(), SHARE_INSERTED);
+            return self.insert_among(input, whole, workers, watch);
+        }
         if let [p] = *input {
             return self.insert_one(p.map(|x| x + 0.0), watch);
         }
@@ -114,7 +118,7 @@ impl Plane {
     }
 
     /// Inserts a vertex at `p`, which is in triangle or ghost `t`.
-    fn create(&mut self, p: Point2, t: u32) -> Result<u32> {
+    pub(super) fn create(&mut self, p: Point2, t: u32) -> Result<u32> {
         let v = self.mesh.take_site(p)?;
         if let Err(error) = self.mesh.insert(v, t) {
             self.mesh.free_site(v);
@@ -193,7 +197,7 @@ impl Plane {
     }
 
     /// Appends rows at these vertices; room is reserved.
-    fn attach_all(&mut self, targets: &[u32]) -> Result<()> {
+    pub(super) fn attach_all(&mut self, targets: &[u32]) -> Result<()> {
         for &v in targets {
             let row = self.rows.push()?;
             self.attach(row, v);
@@ -201,12 +205,12 @@ impl Plane {
         Ok(())
     }
 
-    fn attach(&mut self, row: u32, v: u32) {
+    pub(super) fn attach(&mut self, row: u32, v: u32) {
         let head = self.rows.attach(row, v, self.mesh.sites[v as usize].head);
         self.mesh.set_head(v, head);
     }
 
-    fn detach(&mut self, row: u32, v: u32) {
+    pub(super) fn detach(&mut self, row: u32, v: u32) {
         let head = self.rows.detach(row, self.mesh.sites[v as usize].head);
         self.mesh.set_head(v, head);
     }
@@ -260,6 +264,10 @@ impl Plane {
     /// Removes rows. On any error nothing has changed.
     pub fn remove(&mut self, rows: &[i64], workers: usize, watch: &Watch) -> Result<()> {
         let pairs = self.by_vertex(rows, watch)?;
+        if self.has_segments() {
+            let whole = !self.is_incremental(pairs.len(), SHARE_REMOVED);
+            return self.remove_among(&pairs, whole, workers, watch);
+        }
         let mut lost = with_room(pairs.len())?;
         for group in pairs.chunk_by(|a, b| a.0 == b.0) {
             let v = group[0].0;
@@ -357,6 +365,10 @@ impl Plane {
                 let p = input[order[i].1 as usize];
                 moves.push((v, row, p.map(|x| x + 0.0)));
             }
+        }
+        if self.has_segments() {
+            let whole = !self.is_incremental(moves.len(), SHARE_MOVED);
+            return self.relocate_among(&moves, whole, workers, watch);
         }
         let old = match self.is_incremental(moves.len(), SHARE_MOVED) {
             false => return self.rebuild_moved(moves, workers, watch),

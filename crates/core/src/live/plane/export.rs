@@ -22,6 +22,9 @@ pub struct Exported {
     pub rows: Vec<i64>,
     /// Triangles, as positions in `rows`, and their neighbors.
     pub arrays: Arrays<3>,
+    /// For each triangle and corner, whether the edge opposite is part of a segment; nothing if there
+    /// are no segments.
+    pub constrained: Vec<[bool; 3]>,
     /// `[position, first position of the same point]`, ascending.
     pub duplicates: Vec<[u32; 2]>,
 }
@@ -58,6 +61,7 @@ impl Plane {
             points,
             rows,
             arrays: self.arrays(&ranks, watch)?,
+            constrained: self.constrained(watch)?,
             duplicates,
         })
     }
@@ -92,5 +96,21 @@ impl Plane {
         }
         debug_assert!(NONE as usize >= ranks.len());
         Ok(arrays)
+    }
+
+    /// Which edges of the triangles are marked.
+    fn constrained(&self, watch: &Watch) -> Result<Vec<[bool; 3]>> {
+        if !self.mesh.has_segments {
+            return Ok(Vec::new());
+        }
+        let mut marked = with_room(self.triangles())?;
+        let mut pace = Pace::new(watch, LOT);
+        for t in 0..self.mesh.records.len() as u32 {
+            pace.spend(1)?;
+            if self.mesh.is_live(t) && !self.mesh.corners(t).contains(&INFINITE) {
+                marked.push([0, 1, 2].map(|k| self.mesh.mark(8 * t + k) != 0));
+            }
+        }
+        Ok(marked)
     }
 }

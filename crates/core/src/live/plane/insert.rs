@@ -44,7 +44,8 @@ impl Mesh {
             push(&mut self.stack, (beyond, start))?;
         }
         while let Some((across, start)) = self.stack.pop() {
-            if !self.conflicts(triangle(across), p) {
+            let is_hidden = self.has_segments && self.mark(across) != 0;
+            if is_hidden || !self.conflicts(triangle(across), p) {
                 push(&mut self.rim, (across, start))?;
                 continue;
             }
@@ -72,6 +73,10 @@ impl Mesh {
             let ((across, from), to) = (self.rim[i], self.rim[after].1);
             let [left, right] = [8 * self.dead[after] + 2, 8 * self.dead[before] + 1];
             *self.records.get_mut(t as usize) = [v, from, to, 0, across, left, right, 0];
+            if self.has_segments {
+                let mark = self.mark(across);
+                self.set_side(8 * t, mark);
+            }
             self.set_opposite(across, 8 * t);
             self.touch(from, 8 * t + 1);
         }

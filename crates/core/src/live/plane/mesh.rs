@@ -14,7 +14,7 @@ use crate::mesh2::{Code, next, prev, triangle};
 /// The vertex at infinity; its coordinates are NaN.
 pub const INFINITE: u32 = 0;
 
-/// Three vertices counter-clockwise, [`FREE`] or 0, three opposite codes, padding.
+/// Three vertices counter-clockwise, [`FREE`] or 0, three opposite codes, marks of the edges.
 pub type Record = [u32; 8];
 
 /// Marks a record that is no triangle; its first word is the next one.
@@ -55,6 +55,8 @@ pub struct Mesh {
     pub counts: Counts,
     /// The triangle where the next walk starts; always one if there is any.
     pub last: u32,
+    /// Whether there are segments, so that edges may be marked (see `marks`).
+    pub has_segments: bool,
     /// Triangles visited so far.
     pub work: usize,
     /// A tree of starting points for walks, and the work when it is out of date.
@@ -77,6 +79,7 @@ impl Mesh {
             sites,
             counts,
             last,
+            has_segments: false,
             work: 0,
             jump: None,
             strolled: 0,
@@ -243,6 +246,9 @@ impl Mesh {
                 let other = [self.vertex(prev(o)), self.vertex(next(o))];
                 if !self.is_live(triangle(o)) || self.opposite(o) != e || ends != other {
                     return Err(format!("edges {e} and {o} disagree"));
+                }
+                if self.mark(e) != self.mark(o) || (self.mark(e) != 0 && !self.has_segments) {
+                    return Err(format!("the marks of {e} and {o} disagree"));
                 }
             }
         }

@@ -1,14 +1,19 @@
 //! A live Delaunay triangulation in 2-D.
 
 mod build;
+mod constrained;
+mod ears;
 mod edit;
 mod export;
 mod insert;
+mod marks;
 mod mesh;
 mod query;
 mod remove;
+mod segments;
 mod shift;
 mod state;
+mod tangle;
 mod walk;
 
 use delone_predicates::Point2;
@@ -23,6 +28,7 @@ use crate::memory::with_room;
 use crate::points;
 use crate::watch::Watch;
 use mesh::Mesh;
+use segments::Segments;
 
 /// A live Delaunay triangulation of points in 2-D.
 #[derive(Debug)]
@@ -31,6 +37,7 @@ pub struct Plane {
     rows: Rows,
     /// If there is no triangle, the vertices in order along their line.
     line: Vec<u32>,
+    segments: Segments,
     /// The state at the last call of `changes`.
     seen: Option<State>,
 }
@@ -58,6 +65,7 @@ impl Plane {
             mesh,
             rows,
             line,
+            segments: Segments::new(false)?,
             seen: None,
         })
     }

@@ -38,7 +38,8 @@ struct Part {
 }
 
 impl Mesh {
-    /// Removes vertex `v` from the mesh; its site stays. If memory is refused, nothing has changed.
+    /// Removes vertex `v`, where no segment is, from the mesh; its site stays. If memory is refused,
+    /// nothing has changed unless there are segments.
     /// With `always`, high degrees are no reason to refuse.
     pub fn unlink(&mut self, v: u32, always: bool) -> Result<Removed> {
         self.gather(v)?;
@@ -54,9 +55,13 @@ impl Mesh {
         if lost > 0 && k as u32 - 2 == finite && self.is_line() {
             return Ok(Removed::Flat);
         }
-        let mut parts = Vec::new();
-        make_room(&mut parts, if k > 3 { k } else { 0 })?;
-        let gained = self.fill_hole(&mut parts)?;
+        let gained = if self.has_segments {
+            self.fill_with_ears(self.at(v))?
+        } else {
+            let mut parts = Vec::new();
+            make_room(&mut parts, if k > 3 { k } else { 0 })?;
+            self.fill_hole(&mut parts)?
+        };
         for t in [self.dead.pop(), self.dead.pop()].into_iter().flatten() {
             self.free_record(t);
         }

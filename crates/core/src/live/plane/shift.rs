@@ -35,7 +35,7 @@ impl Mesh {
 
     /// Flips edges, starting from those on the stack, until none must be flipped. Where memory for the
     /// stack is refused, all edges are searched instead.
-    fn legalize(&mut self) {
+    pub fn legalize(&mut self) {
         let mut is_missing = false;
         while let Some((e, _)) = self.stack.pop() {
             if self.must_flip(e) {
@@ -58,8 +58,12 @@ impl Mesh {
         }
     }
 
-    /// Whether the perturbed circle of the triangle of `e` contains the corner beyond it.
+    /// Whether the perturbed circle of the triangle of `e`, which is not marked, contains the corner
+    /// beyond it.
     fn must_flip(&self, e: Code) -> bool {
+        if self.mark(e) != 0 {
+            return false;
+        }
         let o = self.opposite(e);
         let [u, v] = [self.vertex(next(e)), self.vertex(prev(e))];
         let [p, q] = [self.vertex(e), self.vertex(o)];
@@ -70,8 +74,8 @@ impl Mesh {
         incircle_canonical(a, b, c, d) == Sign::Positive
     }
 
-    /// Flips the edge `e` (see `mesh2::flip`).
-    fn flip(&mut self, e: Code) -> Code {
+    /// Flips the edge `e` (see `mesh2::flip`), which is not marked.
+    pub fn flip(&mut self, e: Code) -> Code {
         let o = self.opposite(e);
         let (p, q) = (self.vertex(e), self.vertex(o));
         let (beyond_uq, beyond_vp) = (self.opposite(next(o)), self.opposite(next(e)));
@@ -81,6 +85,12 @@ impl Mesh {
         self.link(e, beyond_uq);
         self.link(o, beyond_vp);
         self.link(next(e), next(o));
+        if self.has_segments {
+            let marks = [(e, self.mark(beyond_uq)), (o, self.mark(beyond_vp))];
+            for (e, mark) in marks.into_iter().chain([(next(e), 0), (next(o), 0)]) {
+                self.set_side(e, mark);
+            }
+        }
         for corner in [e, next(e), prev(e), o, next(o), prev(o)] {
             let v = self.vertex(corner);
             self.touch(v, corner);

@@ -4,6 +4,7 @@ use delone_predicates::lexicographic;
 
 use super::Plane;
 use super::mesh::{Counts, FREE, INFINITE, Record, Site};
+use super::segments::SegmentsImage;
 use crate::error::Result;
 use crate::live::chunks::Image;
 use crate::live::rows::{NONE, RowsImage};
@@ -20,6 +21,7 @@ pub struct State {
     records: Image<Record>,
     sites: Image<Site>,
     rows: RowsImage,
+    segments: SegmentsImage,
     counts: Counts,
 }
 
@@ -38,6 +40,7 @@ impl State {
         self.records.own_bytes(&other.records)
             + self.sites.own_bytes(&other.sites)
             + self.rows.own_bytes(&other.rows)
+            + self.segments.own_bytes(&other.segments)
     }
 }
 
@@ -48,13 +51,25 @@ impl Plane {
             records: self.mesh.records.image(watch)?,
             sites: self.mesh.sites.image(watch)?,
             rows: self.rows.image(watch)?,
+            segments: self.segments.image(watch)?,
             counts: self.mesh.counts,
         })
     }
 
-    /// Restores a state, of this triangulation or of any other. Rows that were inserted since are gone,
-    /// and their numbers are not used again.
+    /// Restores a state, of this triangulation or of any other. Rows and segments that were inserted
+    /// since are gone, and their numbers are not used again.
     pub fn restore(&mut self, state: &State, watch: &Watch) -> Result<()> {
+        self.reset(state, self.rows.total(), self.segments.total(), watch)
+    }
+
+    /// Restores a state, with at least these numbers of rows and segments that ever were.
+    pub fn reset(
+        &mut self,
+        state: &State,
+        total: usize,
+        segments: usize,
+        watch: &Watch,
+    ) -> Result<()> {
         let mut line = Vec::new();
         if state.counts.ghosts == 0 {
             let sites = state.sites.to_vec()?;
@@ -72,7 +87,7 @@ impl Plane {
             let at = |v: u32| sites[v as usize].at;
             sort_by(&mut line, watch, |&u, &v| lexicographic(at(u), at(v)))?;
         }
-        let total = self.rows.total();
+        self.segments.make_room(&state.segments, segments)?;
         self.mesh.records.make_room(&state.records)?;
         self.mesh.sites.make_room(&state.sites)?;
         self.rows.make_room(&state.rows)?;
@@ -83,6 +98,8 @@ impl Plane {
         for _ in self.rows.total()..total {
             self.rows.push()?;
         }
+        self.segments.restore(&state.segments, segments)?;
+        self.mesh.has_segments = self.segments.live() > 0;
         self.mesh.counts = state.counts;
         self.line = line;
         self.mesh.jump = None;

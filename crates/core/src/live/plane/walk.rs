@@ -97,7 +97,8 @@ impl Mesh {
         Ok(best.0)
     }
 
-    /// The same by a visibility walk from triangle `from`.
+    /// The same by a visibility walk from triangle `from`. Among segments such a walk may run in a
+    /// circle: there its order of edges changes, and in the end all triangles are searched.
     #[inline]
     fn walk(&mut self, from: u32, q: Point2) -> u32 {
         let beyond = |mesh: &Self, e: u32| {
@@ -120,12 +121,21 @@ impl Mesh {
             }
         }
         let mut steps = 1;
+        let patience = if self.has_segments {
+            4 * self.records.len()
+        } else {
+            usize::MAX
+        };
         let found = loop {
             // The walk came across e; two edges are left to test.
-            let across = if beyond(self, next(e)) {
-                self.opposite(next(e))
-            } else if beyond(self, prev(e)) {
-                self.opposite(prev(e))
+            let [first, second] = match self.has_segments && is_odd(steps) {
+                true => [prev(e), next(e)],
+                false => [next(e), prev(e)],
+            };
+            let across = if beyond(self, first) {
+                self.opposite(first)
+            } else if beyond(self, second) {
+                self.opposite(second)
             } else {
                 break triangle(e);
             };
@@ -134,8 +144,33 @@ impl Mesh {
             }
             e = across;
             steps += 1;
+            if steps > patience {
+                break self.search(q);
+            }
         };
         self.work += steps;
         found
     }
+
+    /// The same by a search of all triangles.
+    fn search(&self, q: Point2) -> u32 {
+        let holds = |&t: &u32| {
+            let edges = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| {
+                let corners = self.corners(t);
+                [corners[i], corners[j]]
+            });
+            let side = |[u, v]: [u32; 2]| orient2d(self.at(u), self.at(v), q);
+            match edges.iter().find(|edge| !edge.contains(&INFINITE)) {
+                Some(&edge) if self.corners(t).contains(&INFINITE) => side(edge) == Sign::Positive,
+                _ => edges.into_iter().all(|edge| side(edge) != Sign::Negative),
+            }
+        };
+        let mut all = (0..self.records.len() as u32).filter(|&t| self.is_live(t));
+        all.find(holds).unwrap_or(self.last)
+    }
+}
+
+/// A bit that looks random.
+fn is_odd(step: usize) -> bool {
+    (step as u32).wrapping_mul(0x9e37_79b9) >> 31 == 1
 }

@@ -1,0 +1,640 @@
+//! Edits of a triangulation with segments: points and segments come, go and move.
+//!
+//! # Why every order of edits ends in the same triangles
+//!
+//! A set of points and segments that cross only at vertices has one constrained triangulation: the one
+//! in which no edge but a marked one must be flipped (see `constrained`). Each edit ends in it:
+//!
+//! - *A point* empties its cavity as without segments, but not past marked edges. On a marked edge it
+//!   splits it: both parts are marked.
+//! - *A vertex* goes that no segment ends at. If segments run straight through it, the two marked edges
+//!   there become one. The hole gets any triangles, and flips do the rest (see `ears`).
+//! - *A segment* becomes a chain of edges from vertex to vertex: edges that cross it are flipped until
+//!   none does, and flips do the rest. When it goes, edges that no other segment runs along are
+//!   unmarked, and flips do the rest.
+//!
+//! # Crossings
+//!
+//! A crossing is rounded, segments bend there, and by their rounding they may meet others. Such
+//! segments are *tangled*. What touches none of them is edited as above. An edit that touches one, or
+//! makes a new crossing, triangulates all points and segments again by `constrained`, so that a
+//! crossing vertex goes with the segments that cross there. To touch means: to have an edge of a tangled
+//! segment at a vertex that is edited, or, for a new point, to lie in the range of rounding of a tangled
+//! segment, or, for a new segment, to have a crossing in its own range of rounding.
+//!
+//! # All or nothing
+//!
+//! An edit starts with a snapshot, which costs what the edit before has changed, and an error restores
+//! it.
+
+use std::ops::Range;
+
+use delone_predicates::{Point2, lexicographic, orient2d};
+
+use super::Plane;
+use super::marks::{Reach, STRAIGHT, TANGLED};
+use super::remove::Removed;
+use super::walk::Place;
+use crate::constrained::passes;
+use crate::error::{Error, Result};
+use crate::memory::{filled, push, with_room};
+use crate::order::{order_of, sort};
+use crate::watch::{IDLE, Pace, Watch};
+
+/// Edits between two checks for interruption.
+const LOT: usize = 1 << 6;
+
+/// How an edit ends that has not failed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// It is done.
+    Done,
+    /// It crosses a segment or touches a tangled one: all is triangulated again.
+    Rebuild,
+}
+
+/// Goes on if the edit is done.
+macro_rules! done {
+    ($outcome:expr) => {
+        if $outcome == Outcome::Rebuild {
+            return Ok(Outcome::Rebuild);
+        }
+    };
+}
+
+/// What an edit leaves: rows, ascending, with their points, and how many rows ever were.
+pub struct Input {
+    /// The points.
+    pub points: Vec<Point2>,
+    /// Their rows, ascending.
+    pub rows: Vec<u32>,
+    /// The number of the next row.
+    pub total: usize,
+}
+
+impl Plane {
+    /// Whether there are segments.
+    pub fn has_segments(&self) -> bool {
+        self.segments.live() > 0
+    }
+
+    /// Chooses whether crossings are split.
+    pub fn split_crossings(&mut self, split: bool) {
+        self.segments.split = split;
+    }
+
+    /// Whether crossings are split.
+    pub fn splits_crossings(&self) -> bool {
+        self.segments.split
+    }
+
+    /// Runs an edit; on any error nothing has changed.
+    fn atomically<T>(
+        &mut self,
+        watch: &Watch,
+        edit: impl FnOnce(&mut Self) -> Result<T>,
+    ) -> Result<T> {
+        let before = self.state(watch)?;
+        let (rows, segments) = (self.rows.total(), self.segments.total());
+        let made = edit(self);
+        if made.is_err() {
+            self.reset(&before, rows, segments, &IDLE)?;
+        }
+        made
+    }
+
+    /// Inserts segments between rows and returns their numbers. On any error nothing has changed.
+    pub fn insert_segments(
+        &mut self,
+        ends: &[[i64; 2]],
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<Range<usize>> {
+        for &row in ends.as_flattened() {
+            self.require_point(row)?;
+        }
+        let first = self.segments.total();
+        self.atomically(watch, |plane| {
+            let mut pace = Pace::new(watch, LOT);
+            let mut outcome = Outcome::Done;
+            for pair in ends {
+                pace.spend(1)?;
+                let segment = plane.segments.insert(pair.map(|row| row as u32))?;
+                plane.mesh.has_segments = true;
+                if outcome == Outcome::Done {
+                    outcome = plane.link_segment(segment)?;
+                }
+            }
+            plane.finish(outcome, None, workers, watch)
+        })?;
+        Ok(first..first + ends.len())
+    }
+
+    /// Removes segments, each named once. On any error nothing has changed.
+    pub fn remove_segments(
+        &mut self,
+        numbers: &[i64],
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<()> {
+        self.atomically(watch, |plane| {
+            let mut pace = Pace::new(watch, LOT);
+            let mut outcome = Outcome::Done;
+            for &number in numbers {
+                pace.spend(1)?;
+                if plane.segments.ends(number).is_none() {
+                    let message = format!("segment {number} is not there");
+                    return Err(Error::Shape(message));
+                }
+                let segment = number as u32;
+                if outcome == Outcome::Done {
+                    outcome = plane.unlink_segment(segment)?;
+                }
+                plane.segments.remove(segment);
+            }
+            plane.finish(outcome, None, workers, watch)
+        })
+    }
+
+    /// Inserts segments with known numbers, ascending, where there have been `total` ever, into a
+    /// triangulation without any; crossings at known places get their rows again.
+    pub fn adopt_segments(
+        &mut self,
+        known: &[(u32, [u32; 2])],
+        total: usize,
+        places: &[(u32, Point2)],
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<()> {
+        for &row in known.iter().flat_map(|(_, ends)| ends) {
+            self.require_point(i64::from(row))?;
+        }
+        let mut old = with_room(places.len())?;
+        old.extend(places.iter().map(|&(row, p)| (p, row)));
+        crate::order::sort_by(&mut old, watch, |a, b| lexicographic(a.0, b.0))?;
+        self.atomically(watch, |plane| {
+            plane.segments.insert_known(known, total)?;
+            let input = plane.present(|_, p| Some(p))?;
+            plane.rebuild_all(input, &old, workers, watch)
+        })
+    }
+
+    /// Inserts points among segments.
+    pub(super) fn insert_among(
+        &mut self,
+        input: &[Point2],
+        whole: bool,
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<Range<usize>> {
+        let first = self.rows.total();
+        self.atomically(watch, |plane| {
+            let mut targets = filled(input.len(), 0u32)?;
+            let mut outcome = if whole {
+                Outcome::Rebuild
+            } else {
+                Outcome::Done
+            };
+            let mut pace = Pace::new(watch, LOT);
+            for i in order_of(input, 1, watch)?.into_iter().flatten() {
+                if outcome == Outcome::Rebuild {
+                    break;
+                }
+                pace.spend(1)?;
+                let p = input[i as usize].map(|x| x + 0.0);
+                match plane.add_vertex(p, watch)? {
+                    Some(v) => targets[i as usize] = v,
+                    None => outcome = Outcome::Rebuild,
+                }
+            }
+            if outcome == Outcome::Done {
+                return plane.attach_all(&targets);
+            }
+            let mut after = plane.present(|_, p| Some(p))?;
+            for (row, p) in (after.total..).zip(input) {
+                push(&mut after.rows, row as u32)?;
+                push(&mut after.points, *p)?;
+            }
+            after.total += input.len();
+            plane.finish(outcome, Some(after), workers, watch)
+        })?;
+        Ok(first..first + input.len())
+    }
+
+    /// Removes rows, each of which is there and named once, with their vertices.
+    pub(super) fn remove_among(
+        &mut self,
+        pairs: &[(u32, u32)],
+        whole: bool,
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<()> {
+        for &(_, row) in pairs {
+            self.require_point(i64::from(row))?;
+            if let Some((segment, _)) = self.segments.at(row).next() {
+                let message = format!("row {row} is an end of segment {segment}");
+                return Err(Error::Shape(message));
+            }
+        }
+        self.atomically(watch, |plane| {
+            let mut pace = Pace::new(watch, LOT);
+            let mut outcome = if whole {
+                Outcome::Rebuild
+            } else {
+                Outcome::Done
+            };
+            for &(v, row) in pairs {
+                if outcome == Outcome::Rebuild {
+                    break;
+                }
+                pace.spend(1)?;
+                if plane.rows.is_single(row) {
+                    outcome = plane.drop_vertex(v)?;
+                    if outcome == Outcome::Done {
+                        plane.detach(row, v);
+                        plane.mesh.free_site(v);
+                    }
+                } else {
+                    plane.detach(row, v);
+                }
+            }
+            if outcome == Outcome::Done {
+                return Ok(());
+            }
+            let mut gone = with_room(pairs.len())?;
+            gone.extend(pairs.iter().map(|pair| pair.1));
+            sort(&mut gone, watch)?;
+            let kept = |row: u32, p| gone.binary_search(&row).is_err().then_some(p);
+            let after = plane.present(kept)?;
+            plane.finish(outcome, Some(after), workers, watch)
+        })
+    }
+
+    /// Moves rows: `moves` has the vertex, the row and the new point of each.
+    pub(super) fn relocate_among(
+        &mut self,
+        moves: &[(u32, u32, Point2)],
+        whole: bool,
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<()> {
+        for &(_, row, _) in moves {
+            self.require_point(i64::from(row))?;
+        }
+        self.atomically(watch, |plane| {
+            let mut places: Vec<(u32, Point2)> = with_room(moves.len())?;
+            places.extend(moves.iter().map(|&(_, row, p)| (row, p)));
+            crate::order::sort_by(&mut places, watch, |a, b| a.0.cmp(&b.0))?;
+            let mut pace = Pace::new(watch, LOT);
+            // All segments that move go first: halfway they may cross others.
+            let mut loose = Vec::new();
+            for &(row, _) in &places {
+                for (segment, _) in plane.segments.at(row) {
+                    push(&mut loose, segment)?;
+                }
+            }
+            sort(&mut loose, watch)?;
+            loose.dedup();
+            let mut outcome = if whole {
+                Outcome::Rebuild
+            } else {
+                Outcome::Done
+            };
+            for &segment in &loose {
+                pace.spend(1)?;
+                if outcome == Outcome::Done {
+                    outcome = plane.unlink_segment(segment)?;
+                }
+                plane.segments.unlist(segment);
+            }
+            for &(_, row, p) in moves {
+                pace.spend(1)?;
+                if outcome == Outcome::Done {
+                    outcome = plane.relocate_vertex(row, p, watch)?;
+                }
+            }
+            for &segment in &loose {
+                pace.spend(1)?;
+                plane.segments.list(segment);
+                if outcome == Outcome::Done {
+                    outcome = plane.link_segment(segment)?;
+                }
+            }
+            if outcome == Outcome::Done {
+                return Ok(());
+            }
+            let place = |row: u32, p| match places.binary_search_by_key(&row, |at| at.0) {
+                Ok(i) => Some(places[i].1),
+                Err(_) => Some(p),
+            };
+            let after = plane.present(place)?;
+            plane.finish(outcome, Some(after), workers, watch)
+        })
+    }
+
+    /// Checks that a row is there, and is no crossing.
+    fn require_point(&self, row: i64) -> Result<()> {
+        if self.rows.vertex(row).is_none() {
+            return Err(Error::Shape(format!("row {row} is not there")));
+        }
+        if self.is_crossing(row as u32) {
+            return Err(Error::Shape(format!("row {row} is a crossing of segments")));
+        }
+        Ok(())
+    }
+
+    /// The numbers of the segments, ascending, and their rows.
+    pub fn segments(&self) -> Result<(Vec<i64>, Vec<[i64; 2]>)> {
+        self.segments.listed()
+    }
+
+    /// The number of the next segment.
+    pub fn segments_total(&self) -> usize {
+        self.segments.total()
+    }
+
+    /// Two segments and the row of the vertex where they cross, for each crossing.
+    pub fn crossings(&self) -> &[[u32; 3]] {
+        &self.segments.tangle.crossings
+    }
+
+    /// The rows of vertices that only crossings need, ascending.
+    pub fn crossing_rows(&self) -> &[u32] {
+        &self.segments.tangle.rows
+    }
+
+    /// The segments that end at a row.
+    pub fn segments_at(&self, row: u32) -> impl Iterator<Item = u32> + '_ {
+        self.segments.at(row).map(|(segment, _)| segment)
+    }
+
+    /// Whether a segment is there.
+    pub fn has_segment(&self, number: i64) -> bool {
+        self.segments.ends(number).is_some()
+    }
+
+    /// Whether a row is a vertex that only crossings need.
+    pub fn is_crossing(&self, row: u32) -> bool {
+        self.segments.tangle.rows.binary_search(&row).is_ok()
+    }
+
+    /// The vertex of a row that is there.
+    pub fn vertex(&self, row: u32) -> u32 {
+        self.rows.vertex(i64::from(row)).unwrap_or_default()
+    }
+
+    /// Inserts a vertex at `p`, or finds it; `None` if all must be triangulated again.
+    fn add_vertex(&mut self, p: Point2, watch: &Watch) -> Result<Option<u32>> {
+        if self.mesh.is_flat() || self.is_near_tangle(p) {
+            return Ok(None);
+        }
+        let t = match self.mesh.place(p, watch)? {
+            Place::At(v) => return Ok(Some(v)),
+            Place::In(t) => t,
+        };
+        let on = (8 * t..8 * t + 3).find(|&e| {
+            let [u, v] = self.mesh.ends(e);
+            self.mesh.mark(e) != 0 && orient2d(self.mesh.at(u), self.mesh.at(v), p).is_zero()
+        });
+        let Some(e) = on else {
+            return self.create(p, t).map(Some);
+        };
+        if self.mesh.mark(e) == TANGLED {
+            return Ok(None);
+        }
+        let [u, w] = self.mesh.ends(e);
+        self.mesh.set_mark(e, 0);
+        let v = self.create(p, t)?;
+        self.mesh.add_mark(u, v, STRAIGHT)?;
+        self.mesh.add_mark(v, w, STRAIGHT)?;
+        Ok(Some(v))
+    }
+
+    /// Whether the rounding of a tangled segment reaches `p`.
+    fn is_near_tangle(&self, p: Point2) -> bool {
+        let at = |row: u32| self.mesh.at(self.vertex(row));
+        let tangled = self.segments.tangle.segments.iter();
+        let ends = tangled.filter_map(|&s| self.segments.ends(i64::from(s)));
+        ends.map(|ends| ends.map(at))
+            .any(|[r, s]| passes(r, s, p) || p == r || p == s)
+    }
+
+    /// Removes a vertex from the mesh that no segment ends at; its site stays.
+    fn drop_vertex(&mut self, v: u32) -> Result<Outcome> {
+        if self.mesh.is_flat() {
+            return Ok(Outcome::Rebuild);
+        }
+        let marked = self.mesh.marked_at(v)?;
+        let joined = match marked[..] {
+            [] => None,
+            [(u, STRAIGHT), (w, STRAIGHT)] => Some((u, w)),
+            _ => return Ok(Outcome::Rebuild),
+        };
+        if let Some((u, w)) = joined {
+            self.mesh.remove_mark(u, v)?;
+            self.mesh.remove_mark(v, w)?;
+        }
+        if self.mesh.unlink(v, false)? != Removed::Done {
+            return Ok(Outcome::Rebuild);
+        }
+        match joined {
+            Some((u, w)) => self.link_vertices(u, w),
+            None => Ok(Outcome::Done),
+        }
+    }
+
+    /// Moves a row whose segments are unlinked.
+    fn relocate_vertex(&mut self, row: u32, p: Point2, watch: &Watch) -> Result<Outcome> {
+        let v = self.vertex(row);
+        if self.mesh.is_flat() || self.is_near_tangle(p) {
+            return Ok(Outcome::Rebuild);
+        }
+        if self.mesh.at(v) == p {
+            return Ok(Outcome::Done);
+        }
+        if self.rows.is_single(row) {
+            if self.mesh.marked_at(v)?.is_empty() && self.mesh.shift(v, p)? {
+                return Ok(Outcome::Done);
+            }
+            done!(self.drop_vertex(v)?);
+            self.detach(row, v);
+            self.mesh.free_site(v);
+        } else {
+            self.detach(row, v);
+        }
+        match self.add_vertex(p, watch)? {
+            Some(target) => {
+                self.attach(row, target);
+                Ok(Outcome::Done)
+            }
+            None => Ok(Outcome::Rebuild),
+        }
+    }
+
+    /// Marks the edges of a segment that is in the list.
+    pub fn link_segment(&mut self, segment: u32) -> Result<Outcome> {
+        let ends = self.segments.ends(i64::from(segment)).unwrap_or_default();
+        let [a, b] = ends.map(|row| self.vertex(row));
+        if a == b || self.mesh.is_flat() {
+            return Ok(Outcome::Done);
+        }
+        let [r, s] = [a, b].map(|v| self.mesh.at(v));
+        let tangle = &self.segments.tangle;
+        let is_rounded = |&row: &u32| passes(r, s, self.mesh.at(self.vertex(row)));
+        let crosses = |&other: &u32| {
+            let ends = self.segments.ends(i64::from(other)).unwrap_or_default();
+            let [p, q] = ends.map(|row| self.mesh.at(self.vertex(row)));
+            are_apart(r, s, p, q) && are_apart(p, q, r, s)
+        };
+        if tangle.rows.iter().any(is_rounded) || tangle.segments.iter().any(crosses) {
+            return Ok(Outcome::Rebuild);
+        }
+        self.link_vertices(a, b)
+    }
+
+    /// Makes the segment between two vertices a chain of marked edges.
+    fn link_vertices(&mut self, mut a: u32, b: u32) -> Result<Outcome> {
+        while a != b {
+            match self.mesh.reach(a, b)? {
+                Reach::Vertex(next) => a = next,
+                Reach::Blocked => return Ok(Outcome::Rebuild),
+            }
+        }
+        Ok(Outcome::Done)
+    }
+
+    /// Removes the marks of a segment that no other one needs.
+    fn unlink_segment(&mut self, segment: u32) -> Result<Outcome> {
+        let ends = self.segments.ends(i64::from(segment)).unwrap_or_default();
+        let [a, b] = ends.map(|row| self.vertex(row));
+        if a == b || self.mesh.is_flat() {
+            return Ok(Outcome::Done);
+        }
+        if self
+            .segments
+            .tangle
+            .segments
+            .binary_search(&segment)
+            .is_ok()
+        {
+            return Ok(Outcome::Rebuild);
+        }
+        let Some(along) = self.line_of(a, b)? else {
+            return Ok(Outcome::Rebuild);
+        };
+        let needed = self.covers(&along, segment)?;
+        for (pair, needed) in along.windows(2).zip(needed) {
+            if needed == 0 {
+                self.mesh.remove_mark(pair[0], pair[1])?;
+            }
+        }
+        Ok(Outcome::Done)
+    }
+
+    /// The vertices of the marked edges along the line of a segment, in order: those of the segment,
+    /// and beyond its ends as far as marked edges go. `None` if a tangled edge is at one of them.
+    fn line_of(&self, a: u32, b: u32) -> Result<Option<Vec<u32>>> {
+        let mut halves = Vec::new();
+        for (from, to) in [(a, b), (b, a)] {
+            // From the one end past the other one.
+            let mut half = with_room(1)?;
+            half.push(from);
+            while let Some(next) = self.marked_beyond(half[half.len() - 1], from, to)? {
+                push(&mut half, next)?;
+            }
+            push(&mut halves, half)?;
+        }
+        let (Some(back), Some(front)) = (halves.pop(), halves.pop()) else {
+            return Ok(None);
+        };
+        // `back` runs from b past a: its part beyond a, reversed, comes first.
+        let Some(i) = back.iter().position(|&v| v == a) else {
+            return Err(Error::Internal("a segment has no edges".into()));
+        };
+        let mut along: Vec<u32> = with_room(back.len() - i + front.len())?;
+        along.extend(back[i + 1..].iter().rev());
+        along.extend(front);
+        for &v in &along {
+            let tangled = |&(_, mark): &(u32, u32)| mark == TANGLED;
+            if self.mesh.marked_at(v)?.iter().any(tangled) {
+                return Ok(None);
+            }
+        }
+        Ok(Some(along))
+    }
+
+    /// The end of the marked edge at `v` that leads on in the direction from `a` to `b`.
+    fn marked_beyond(&self, v: u32, a: u32, b: u32) -> Result<Option<u32>> {
+        let [p, q, from] = [a, b, v].map(|v| self.mesh.at(v));
+        let leads = |&(w, _): &(u32, u32)| {
+            let to = self.mesh.at(w);
+            orient2d(p, q, to).is_zero() && lexicographic(from, to) == lexicographic(p, q)
+        };
+        let marked = self.mesh.marked_at(v)?;
+        Ok(marked.into_iter().find(leads).map(|(w, _)| w))
+    }
+
+    /// For each edge between vertices of a line, the number of segments but `except` that run along it.
+    fn covers(&self, along: &[u32], except: u32) -> Result<Vec<u32>> {
+        let mut places: Vec<(u32, usize)> = with_room(along.len())?;
+        places.extend(along.iter().copied().zip(0..));
+        places.sort_unstable();
+        let place = |v: u32| {
+            let found = places.binary_search_by_key(&v, |at| at.0);
+            found.ok().map(|i| places[i].1)
+        };
+        let mut change = filled(along.len() + 1, 0i64)?;
+        // The segment itself is the only one whose edges may lose their marks.
+        let mut own = [usize::MAX, 0];
+        for (i, &v) in along.iter().enumerate() {
+            let head = self.mesh.sites[v as usize].head;
+            for row in self.rows.at(head) {
+                for (segment, other) in self.segments.at(row) {
+                    let Some(j) = place(self.vertex(other)) else {
+                        continue;
+                    };
+                    if segment == except {
+                        own = [own[0].min(i).min(j), own[1].max(i).max(j)];
+                    } else if i < j {
+                        change[i] += 1;
+                        change[j] -= 1;
+                    }
+                }
+            }
+        }
+        let mut covers = with_room(along.len())?;
+        let mut sum = 0;
+        for (i, change) in change
+            .iter()
+            .take(along.len().saturating_sub(1))
+            .enumerate()
+        {
+            sum += change;
+            let is_own = own[0] <= i && i < own[1];
+            covers.push(if is_own { sum as u32 } else { 1 });
+        }
+        Ok(covers)
+    }
+
+    /// The rows that are there, without crossings, with the points that `place` gives them.
+    pub fn present(&self, place: impl Fn(u32, Point2) -> Option<Point2>) -> Result<Input> {
+        let mut input = Input {
+            points: with_room(self.len())?,
+            rows: with_room(self.len())?,
+            total: self.rows.total(),
+        };
+        for (row, v) in self.rows.iter().filter(|&(row, _)| !self.is_crossing(row)) {
+            if let Some(p) = place(row, self.mesh.at(v)) {
+                input.rows.push(row);
+                input.points.push(p);
+            }
+        }
+        Ok(input)
+    }
+}
+
+/// Whether p and q are strictly on different sides of the line through r and s.
+fn are_apart(r: Point2, s: Point2, p: Point2, q: Point2) -> bool {
+    let [one, other] = [orient2d(r, s, p), orient2d(r, s, q)];
+    one != other && !one.is_zero() && !other.is_zero()
+}

@@ -1,0 +1,274 @@
+//! Segments of a live triangulation: pairs of rows, and for each row the segments that end there.
+//!
+//! A segment has a number that is never used again, as a row has. Its ends are rows and not vertices, so
+//! that they stay where points move, and where one of several equal points goes.
+
+use std::sync::Arc;
+
+use crate::error::{Error, Result};
+use crate::live::chunks::{Chunks, Image};
+use crate::live::rows::NONE;
+use crate::memory::with_room;
+use crate::watch::Watch;
+
+/// A segment. A link is the number of a segment, doubled, plus 1 for its second end.
+#[derive(Debug, Clone, Copy)]
+struct Segment {
+    /// Its rows; [`NONE`] if it is gone.
+    ends: [u32; 2],
+    /// For each end, the next link at the same row.
+    after: [u32; 2],
+    /// For each end, the previous link at the same row.
+    before: [u32; 2],
+}
+
+/// Segments that do not run straight along edges: they cross others, or pass through rounded points.
+#[derive(Debug, Default)]
+pub struct Tangle {
+    /// The numbers of these segments, ascending.
+    pub segments: Vec<u32>,
+    /// The rows of vertices that only crossings need, ascending.
+    pub rows: Vec<u32>,
+    /// Two segments, ascending, and the row of the vertex where they cross.
+    pub crossings: Vec<[u32; 3]>,
+}
+
+/// All segments that ever were.
+#[derive(Debug)]
+pub struct Segments {
+    items: Chunks<Segment>,
+    /// For each row the first link; rows beyond its end have none.
+    first: Chunks<u32>,
+    live: usize,
+    /// Whether crossings are split; otherwise they are an error.
+    pub split: bool,
+    /// What is not straight.
+    pub tangle: Arc<Tangle>,
+}
+
+/// A snapshot of segments.
+#[derive(Debug, Clone)]
+pub struct SegmentsImage {
+    items: Image<Segment>,
+    first: Image<u32>,
+    live: usize,
+    split: bool,
+    tangle: Arc<Tangle>,
+}
+
+impl Segments {
+    /// No segments.
+    pub fn new(split: bool) -> Result<Self> {
+        Ok(Self {
+            items: Chunks::of(Vec::new())?,
+            first: Chunks::of(Vec::new())?,
+            live: 0,
+            split,
+            tangle: Arc::default(),
+        })
+    }
+
+    /// The number of segments that are there.
+    pub fn live(&self) -> usize {
+        self.live
+    }
+
+    /// The number of the next segment.
+    pub fn total(&self) -> usize {
+        self.items.len()
+    }
+
+    /// The rows of a segment that is there.
+    pub fn ends(&self, segment: i64) -> Option<[u32; 2]> {
+        let i = usize::try_from(segment).ok()?;
+        let ends = self.items.items().get(i)?.ends;
+        (ends[0] != NONE).then_some(ends)
+    }
+
+    /// The segments that are there, ascending, with their rows.
+    pub fn iter(&self) -> impl Iterator<Item = (u32, [u32; 2])> + '_ {
+        (0u32..)
+            .zip(self.items.items())
+            .filter(|(_, s)| s.ends[0] != NONE)
+            .map(|(i, s)| (i, s.ends))
+    }
+
+    /// The segments that end at a row, each with its other row.
+    pub fn at(&self, row: u32) -> impl Iterator<Item = (u32, u32)> + '_ {
+        let first = self.first.items().get(row as usize);
+        let link = first.copied().filter(|&link| link != NONE);
+        let next = |&link: &u32| {
+            let after = self.items[link as usize / 2].after[link as usize % 2];
+            (after != NONE).then_some(after)
+        };
+        std::iter::successors(link, next).map(|link| {
+            (
+                link / 2,
+                self.items[link as usize / 2].ends[1 - link as usize % 2],
+            )
+        })
+    }
+
+    /// Appends a number whose segment is gone.
+    fn push(&mut self) -> Result<u32> {
+        if self.items.len() >= NONE as usize / 2 {
+            return Err(Error::TooMany {
+                found: self.items.len() + 1,
+                limit: NONE as usize / 2,
+            });
+        }
+        self.items.push(Segment {
+            ends: [NONE; 2],
+            after: [NONE; 2],
+            before: [NONE; 2],
+        })?;
+        Ok(self.items.len() as u32 - 1)
+    }
+
+    /// Inserts a segment between two rows and returns its number.
+    pub fn insert(&mut self, ends: [u32; 2]) -> Result<u32> {
+        let rows = ends[0].max(ends[1]) as usize + 1;
+        self.first.reserve(rows.saturating_sub(self.first.len()))?;
+        while self.first.len() < rows {
+            self.first.push(NONE)?;
+        }
+        let i = self.push()?;
+        self.items.get_mut(i as usize).ends = ends;
+        self.list(i);
+        self.live += 1;
+        Ok(i)
+    }
+
+    /// Inserts segments whose numbers, ascending, are known, where there have been `total` ever.
+    pub fn insert_known(&mut self, known: &[(u32, [u32; 2])], total: usize) -> Result<()> {
+        for &(number, ends) in known {
+            while self.items.len() < number as usize {
+                self.push()?;
+            }
+            self.insert(ends)?;
+        }
+        while self.items.len() < total {
+            self.push()?;
+        }
+        Ok(())
+    }
+
+    /// Removes a segment that is there.
+    pub fn remove(&mut self, segment: u32) {
+        self.unlist(segment);
+        self.items.get_mut(segment as usize).ends = [NONE; 2];
+        self.live -= 1;
+    }
+
+    /// Puts a segment into the lists of its rows.
+    pub fn list(&mut self, segment: u32) {
+        for (k, row) in self.items[segment as usize].ends.into_iter().enumerate() {
+            let link = 2 * segment + k as u32;
+            let after = std::mem::replace(self.first.get_mut(row as usize), link);
+            let own = self.items.get_mut(segment as usize);
+            (own.after[k], own.before[k]) = (after, NONE);
+            if after != NONE {
+                self.items.get_mut(after as usize / 2).before[after as usize % 2] = link;
+            }
+        }
+    }
+
+    /// Takes a segment out of the lists of its rows; its number and its rows stay.
+    pub fn unlist(&mut self, segment: u32) {
+        for k in 0..2 {
+            let Segment {
+                ends,
+                after,
+                before,
+            } = self.items[segment as usize];
+            let (after, before) = (after[k], before[k]);
+            if before == NONE {
+                *self.first.get_mut(ends[k] as usize) = after;
+            } else {
+                self.items.get_mut(before as usize / 2).after[before as usize % 2] = after;
+            }
+            if after != NONE {
+                self.items.get_mut(after as usize / 2).before[after as usize % 2] = before;
+            }
+        }
+    }
+
+    /// A snapshot.
+    pub fn image(&mut self, watch: &Watch) -> Result<SegmentsImage> {
+        Ok(SegmentsImage {
+            items: self.items.image(watch)?,
+            first: self.first.image(watch)?,
+            live: self.live,
+            split: self.split,
+            tangle: Arc::clone(&self.tangle),
+        })
+    }
+
+    /// Reserves the memory for [`Self::restore`], with `total` numbers.
+    pub fn make_room(&mut self, image: &SegmentsImage, total: usize) -> Result<()> {
+        self.items.make_room(&image.items)?;
+        self.items.reserve(total.saturating_sub(self.items.len()))?;
+        self.first.make_room(&image.first)
+    }
+
+    /// Restores a snapshot. Numbers below `total` are not used again.
+    pub fn restore(&mut self, image: &SegmentsImage, total: usize) -> Result<()> {
+        self.items.restore(&image.items)?;
+        self.first.restore(&image.first)?;
+        self.live = image.live;
+        self.split = image.split;
+        self.tangle = Arc::clone(&image.tangle);
+        while self.items.len() < total {
+            self.push()?;
+        }
+        Ok(())
+    }
+
+    /// The numbers of segments that are there, ascending, and their rows.
+    pub fn listed(&self) -> Result<(Vec<i64>, Vec<[i64; 2]>)> {
+        let (mut numbers, mut ends) = (with_room(self.live)?, with_room(self.live)?);
+        for (i, rows) in self.iter() {
+            numbers.push(i64::from(i));
+            ends.push(rows.map(i64::from));
+        }
+        Ok((numbers, ends))
+    }
+}
+
+impl SegmentsImage {
+    /// Bytes that are not shared with `other`.
+    pub fn own_bytes(&self, other: &Self) -> usize {
+        self.items.own_bytes(&other.items) + self.first.own_bytes(&other.first)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_of_rows_follow_insertions_and_removals() {
+        let mut segments = Segments::new(false).unwrap();
+        let numbers: Vec<u32> = [[0, 1], [1, 2], [2, 2], [1, 0]]
+            .into_iter()
+            .map(|ends| segments.insert(ends).unwrap())
+            .collect();
+        assert_eq!(numbers, [0, 1, 2, 3]);
+        let at = |s: &Segments, row| {
+            let mut all: Vec<_> = s.at(row).collect();
+            all.sort_unstable();
+            all
+        };
+        assert_eq!(at(&segments, 1), [(0, 0), (1, 2), (3, 0)]);
+        assert_eq!(at(&segments, 2), [(1, 1), (2, 2), (2, 2)]);
+        segments.remove(1);
+        segments.remove(3);
+        assert_eq!(at(&segments, 1), [(0, 0)]);
+        assert_eq!(at(&segments, 2), [(2, 2), (2, 2)]);
+        segments.remove(2);
+        assert!(at(&segments, 2).is_empty() && at(&segments, 9).is_empty());
+        assert_eq!(at(&segments, 0), [(0, 1)]);
+        assert_eq!((segments.live(), segments.total()), (1, 4));
+        assert_eq!(segments.insert([2, 0]).unwrap(), 4);
+    }
+}

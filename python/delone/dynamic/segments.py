@@ -1,0 +1,268 @@
+"""Segments of a live triangulation: edges that stay while points come, go and move."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_plain_array, as_workers
+from delone.constrained import ConstrainedDelaunay
+from delone.errors import DtypeError, HandleError, InputError, ShapeError
+from delone.immutable import sealed
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+    Handles = NDArray[np.int64]
+
+__all__ = ["Segmented", "adopt", "as_handles", "given_segments", "refuse"]
+
+# Fewer items are edited with the GIL, so that nobody can change them meanwhile.
+FEW = 16
+
+
+class Segmented:
+    """What a `Dynamic` has because it may have segments."""
+
+    __slots__ = ("_edit", "_live", "_workers")
+
+    _live: _core.Live2 | _core.Live3
+    _edit: object
+    _workers: int | None
+
+    def _plane(self) -> _core.Live2:
+        """Return the core of a 2-D triangulation."""
+        if isinstance(self._live, _core.Live2):
+            return self._live
+        raise InputError("segments are for 2-D triangulations; this one is 3-D")
+
+    def _arrays(self) -> _core.LiveArrays2 | _core.LiveArrays3:
+        raise NotImplementedError
+
+    @property
+    def _has_segments(self) -> bool:
+        return isinstance(self._live, _core.Live2) and self._live.constraints()[0]
+
+    def insert_segments(self, ends: ArrayLike) -> Handles:
+        """Insert segments: edges that the triangulation must contain.
+
+        Parameters
+        ----------
+        ends : array_like of int, shape (s, 2)
+            Handles of the points that each segment joins. Segments may repeat, overlap, pass
+            through points, and have zero length.
+
+        Returns
+        -------
+        ndarray of int64, shape (s,)
+            Handles of the segments, ascending: numbers of their own, apart from those of points.
+
+        Raises
+        ------
+        CrossingSegmentsError
+            Segments cross, and `crossing` is ``"raise"``; ``error.pairs`` has the handles of all
+            pairs. Nothing has changed.
+        HandleError
+            A point is not there, or is a crossing of segments; nothing has changed.
+        BudgetExceededError, DtypeError, ShapeError, MemoryError
+            As for `ConstrainedDelaunay`; nothing has changed.
+
+        Notes
+        -----
+        Edges in the way of a segment are flipped until none is (S. W. Sloan, "A fast algorithm for
+        generating constrained Delaunay triangulations", 1993): for k of them in O(k) if most can
+        be flipped at once, and at most O(k^2). Where segments cross, everything is triangulated
+        again.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> live = Dynamic([(0, 0), (4, 0), (4, 3), (0, 3)])
+        >>> live.insert_segments([(1, 3)])
+        array([0])
+        >>> live.segments
+        array([[1, 3]], dtype=int32)
+        """
+        plane, own = self._plane(), _as_ends(ends)
+        flat = np.ascontiguousarray(own.reshape(-1))
+        gone, _ = plane.faults(flat)
+        refuse(gone, np.empty(0, dtype=np.int64), "handle")
+        if len(crossed := _crossings_among(plane, flat)):
+            raise HandleError(
+                f"handle {crossed[0]} is a crossing of segments, not a point that was inserted",
+                handles=crossed,
+            )
+        made = plane.insert_segments(own, as_workers(self._workers))
+        self._edit = object()
+        return made
+
+    def remove_segments(self, segments: ArrayLike) -> None:
+        """Remove segments.
+
+        Parameters
+        ----------
+        segments : array_like of int, shape (s,)
+            Their handles, each once.
+
+        Raises
+        ------
+        HandleError
+            A segment is not there, or is named twice; nothing has changed.
+        DtypeError
+            `segments` are not integers.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> live = Dynamic([(0, 0), (4, 0), (4, 3), (0, 3)], [(1, 3)])
+        >>> live.remove_segments([0])
+        >>> len(live.segments), live.nsimplex
+        (0, 2)
+        """
+        plane, own = self._plane(), as_handles(segments, "segments")
+        gone, twice = plane.segment_faults(own)
+        refuse(gone, twice, "segment")
+        plane.remove_segments(own, as_workers(self._workers))
+        self._edit = object()
+
+    @property
+    def segment_handles(self) -> Handles:
+        """The handles of the segments, ascending, (s,)."""
+        return sealed(self._plane().segments().handles)
+
+    @property
+    def input_segments(self) -> Handles:
+        """The handles of the ends of each segment, (s, 2), in the order of `segment_handles`."""
+        return sealed(self._plane().segments().ends)
+
+    @property
+    def crossings(self) -> Handles:
+        """Two segments that cross, and the handle of the vertex there, (c, 3); all are handles."""
+        return sealed(self._plane().segments().crossings)
+
+    @property
+    def constrained(self) -> NDArray[np.bool_]:
+        """Whether the edge opposite each vertex is part of a segment, (m, 3)."""
+        self._plane()
+        made = self._arrays()
+        marked = made.constrained if isinstance(made, _core.LiveArrays2) else None
+        if marked is None:
+            marked = np.zeros(made.simplices.shape, dtype=bool)
+        return sealed(marked)
+
+    @property
+    def segments(self) -> Indices:
+        """The edges that the segments consist of, as rows of `points`, ascending, (q, 2)."""
+        simplices, marked = self._arrays().simplices, self.constrained
+        corners = [simplices[marked[:, k]][:, [(k + 1) % 3, (k + 2) % 3]] for k in range(3)]
+        edges = np.sort(np.concatenate(corners), axis=1)
+        return sealed(np.unique(edges, axis=0).astype(np.int32))
+
+    def _frozen_segments(self) -> ConstrainedDelaunay:
+        """Return the present triangulation with its segments as an object that never changes."""
+        plane = self._plane()
+        made, own = self._arrays(), plane.segments()
+        kept = ~np.isin(made.handles, own.added)
+        handles = made.handles[kept]
+        rows = np.searchsorted(handles, own.ends).astype(np.int32)
+        return ConstrainedDelaunay(
+            made.points[kept],
+            rows,
+            crossing="split" if plane.constraints()[1] else "raise",
+            workers=self._workers,
+            planar=True,
+        )
+
+    def _saved_segments(self) -> tuple[Any, ...] | None:
+        """Return what a pickle keeps of the segments."""
+        if not isinstance(self._live, _core.Live2):
+            return None
+        own, (_, split) = self._live.segments(), self._live.constraints()
+        handles, points = self._live.points()
+        places = points[np.searchsorted(handles, own.added)]
+        return split, own.handles, own.ends, own.total, own.added, places
+
+    def _refuse_held(self, handles: Handles) -> None:
+        """Raise an error if points to be removed are ends of segments, or crossings."""
+        if not self._has_segments:
+            return
+        held = self._plane().held(handles)
+        for handle, segment in held[:1].tolist():
+            if segment < 0:
+                message = f"handle {handle} is a crossing of segments: it goes with them"
+            else:
+                message = f"handle {handle} is an end of segment {segment}: remove that one first"
+            raise HandleError(message, handles=held[:, 0])
+
+
+def adopt(
+    live: _core.Live2, saved: tuple[bool, Handles, Handles, int, Handles, Floats], workers: int
+) -> None:
+    """Insert the segments of a pickle."""
+    split, handles, ends, total, added, places = saved
+    live.split_crossings(split)
+    live.adopt_segments((handles, ends), total, (added, places), workers)
+
+
+def given_segments(live: _core.Live2, segments: ArrayLike, workers: int) -> None:
+    """Insert the segments of a constructor, pairs of its rows."""
+    ends = _as_ends(segments)
+    count = live.counts()[3]
+    outside = np.flatnonzero(((ends < 0) | (ends >= count)).any(axis=1))
+    if len(outside):
+        row = int(outside[0])
+        raise InputError(
+            f"segment {row} is {tuple(ends[row].tolist())}: rows of points are 0 to {count - 1}"
+        )
+    if len(ends):
+        live.insert_segments(ends, workers)
+
+
+def refuse(gone: Handles, twice: Handles, noun: str) -> None:
+    """Raise an error that names handles that are not there, or named twice."""
+    if len(gone):
+        names = ", ".join(map(str, gone[:5].tolist())) + (", ..." if len(gone) > 5 else "")
+        verb, nouns = ("is", noun) if len(gone) == 1 else ("are", f"{noun}s")
+        raise HandleError(f"{nouns} {names} {verb} not there", handles=gone)
+    if len(twice):
+        raise HandleError(f"{noun} {twice[0]} is named twice", handles=twice)
+
+
+def as_handles(handles: ArrayLike, name: str = "handles") -> Handles:
+    """Return handles as a contiguous array."""
+    array = _as_integers(handles, name)
+    if array.size and array.ndim != 1:
+        raise ShapeError(f"{name} must have shape (k,), got {array.shape}")
+    return array.reshape(-1)
+
+
+def _as_ends(ends: ArrayLike) -> Handles:
+    """Return pairs of handles as a contiguous array."""
+    array = _as_integers(ends, "ends")
+    if array.size and (array.ndim != 2 or array.shape[1] != 2):
+        raise ShapeError(f"ends must have shape (s, 2), got {array.shape}")
+    return array.reshape(-1, 2)
+
+
+def _as_integers(handles: ArrayLike, name: str) -> Handles:
+    array = as_plain_array(handles, name)
+    if array.size == 0:
+        return np.empty(0, dtype=np.int64)
+    if array.dtype.kind not in "iu":
+        raise DtypeError(f"{name} must be integers, got dtype {array.dtype}")
+    if array.dtype.kind == "u" and int(array.max()) >= 2**63:
+        raise DtypeError(f"{name} must be below 2**63")
+    if len(array) > FEW:
+        return np.array(array, dtype=np.int64, order="C")
+    return np.ascontiguousarray(array, dtype=np.int64)
+
+
+def _crossings_among(plane: _core.Live2, handles: Handles) -> Handles:
+    """Return which of these handles are crossings."""
+    held = plane.held(handles)
+    crossed: Handles = held[held[:, 1] < 0, 0]
+    return crossed

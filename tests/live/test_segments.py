@@ -1,0 +1,253 @@
+"""Every edit of points and segments leaves the triangulation that a fresh build has."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+import random
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+from delone import (
+    ConstrainedDelaunay,
+    CrossingSegmentsError,
+    DegenerateInputError,
+    Dynamic,
+    HandleError,
+    InputError,
+)
+
+CIRCLE = [
+    (sx * x, sy * y)
+    for x, y in [(5.0, 0.0), (0.0, 5.0), (3.0, 4.0), (4.0, 3.0)]
+    for sx in (1, -1)
+    for sy in (1, -1)
+] + [(0.0, 0.0)]
+
+PLACES = {
+    "lattice of 3": lambda draw: (float(draw.randrange(3)), float(draw.randrange(3))),
+    "lattice of 6": lambda draw: (float(draw.randrange(6)), float(draw.randrange(6))),
+    "circle": lambda draw: draw.choice(CIRCLE),
+    "square": lambda draw: (draw.random(), draw.random()),
+    "few doubles": lambda draw: (1e6 + draw.randrange(8) * 2**-30, draw.randrange(8) * 2**-33),
+    "exponents": lambda draw: (
+        draw.choice([1e-300, 1.0, 1e9, -1e300]) * draw.random(),
+        draw.choice([0.0, 5e-324, 1.0, 1e9]) * draw.random(),
+    ),
+}
+
+
+class Twin:
+    """A live triangulation, its points and segments by handle, and edits drawn at random."""
+
+    def __init__(self, draw: random.Random, place: Any, crossing: str) -> None:
+        self.draw, self.place, self.crossing = draw, place, crossing
+        start = [place(draw) for _ in range(draw.randrange(20))]
+        self.live = Dynamic(np.array(start).reshape(-1, 2), crossing=crossing)
+        self.points = dict(enumerate(start))
+        self.segments: dict[int, tuple[int, int]] = {}
+        self.kept: list[Any] = []
+
+    def some(self, items: Any, most: int) -> list[Any]:
+        listed = sorted(items)
+        return self.draw.sample(listed, min(len(listed), self.draw.randrange(1, most)))
+
+    def insert(self) -> None:
+        new = [self.place(self.draw) for _ in range(self.draw.randrange(1, 4))]
+        self.points |= zip(self.live.insert(new).tolist(), new, strict=True)
+
+    def remove(self) -> None:
+        gone = set(self.some(self.points, 4))
+        ends = {end for pair in self.segments.values() for end in pair}
+        if gone & ends:
+            with pytest.raises(HandleError, match="is an end of segment"):
+                self.live.remove(sorted(gone))
+            gone -= ends
+        self.live.remove(sorted(gone))
+        self.points = {h: p for h, p in self.points.items() if h not in gone}
+
+    def move(self) -> None:
+        moved = {h: self.place(self.draw) for h in self.some(self.points, 4)}
+        self.live.move(list(moved), np.array(list(moved.values())).reshape(-1, 2))
+        self.points |= moved
+
+    def link(self) -> None:
+        if self.points:
+            there = sorted(self.points)
+            new = [(self.draw.choice(there), self.draw.choice(there)) for _ in range(2)]
+            made = self.live.insert_segments(new).tolist()
+            self.segments |= zip(made, new, strict=True)
+
+    def unlink(self) -> None:
+        gone = self.some(self.segments, 3)
+        self.live.remove_segments(gone)
+        self.segments = {s: pair for s, pair in self.segments.items() if s not in gone}
+
+    def keep(self) -> None:
+        self.kept.append((self.live.snapshot(), dict(self.points), dict(self.segments)))
+
+    def restore(self) -> None:
+        if self.kept:
+            state, points, segments = self.draw.choice(self.kept)
+            self.live.restore(state)
+            self.points, self.segments = dict(points), dict(segments)
+
+    def duplicate(self) -> None:
+        before = self.live
+        self.live = self.draw.choice([copy.copy, lambda x: pickle.loads(pickle.dumps(x))])(before)
+        for name in ("handles", "crossings", "input_segments"):
+            assert np.array_equal(getattr(self.live, name), getattr(before, name)), name
+
+    def step(self) -> None:
+        edits = [self.insert] * 2 + [self.remove, self.move, self.move] + [self.link] * 3
+        edits += [self.unlink, self.keep, self.restore, self.duplicate]
+        before = (dict(self.points), dict(self.segments))
+        try:
+            self.draw.choice(edits)()
+        except CrossingSegmentsError as error:
+            assert self.crossing == "raise"
+            assert len(error.pairs) > 0
+            self.points, self.segments = before
+
+    def agree(self) -> None:
+        live, handles = self.live, sorted(self.points)
+        assert live.segment_handles.tolist() == sorted(self.segments)
+        added = set(live.crossings[:, 2].tolist()) - set(handles)
+        assert set(live.handles.tolist()) == added | set(handles)
+        points = np.array([self.points[h] for h in handles]).reshape(-1, 2)
+        ends = [self.segments[s] for s in sorted(self.segments)]
+        rows = np.searchsorted(handles, np.array(ends, dtype=int).reshape(-1, 2))
+        try:
+            fresh = ConstrainedDelaunay(points, rows, crossing=self.crossing)
+        except DegenerateInputError:
+            assert live.nsimplex == 0
+            return
+        first: dict[tuple[float, ...], int] = {}
+        for row, p in enumerate(map(tuple, fresh.points.tolist())):
+            first.setdefault(p, row)
+        place = np.array([first[p] for p in map(tuple, live.points.tolist())])
+        own, marked = place[live.simplices], live.constrained
+        assert triangles(own) == triangles(fresh.simplices)
+        assert edges(own, marked) == edges(fresh.simplices, fresh.constrained)
+        assert {frozenset(e) for e in place[live.segments].tolist()} == edges(own, marked)
+        met = [
+            (s, t, first[tuple(live.points[live.handles == v][0])]) for s, t, v in live.crossings
+        ]
+        numbers = live.segment_handles
+        expected = [(numbers[s], numbers[t], v) for s, t, v in fresh.report.crossings]
+        assert sorted(met) == sorted(expected)
+
+    def nearest(self) -> None:
+        for x, y in [self.place(self.draw) for _ in range(2 if len(self.live) else 0)]:
+            squares = [
+                (Fraction(a) - Fraction(x)) ** 2 + (Fraction(b) - Fraction(y)) ** 2
+                for a, b in self.live.points.tolist()
+            ]
+            assert self.live.nearest((x, y)) == self.live.handles[squares.index(min(squares))]
+
+
+def triangles(simplices: np.ndarray) -> set[tuple[int, ...]]:
+    """Return triangles from their smallest vertex on."""
+    turns = [t[k:] + t[:k] for t in simplices.tolist() for k in [t.index(min(t))]]
+    return set(map(tuple, turns))
+
+
+def edges(simplices: np.ndarray, marked: np.ndarray) -> set[frozenset[int]]:
+    """Return the marked edges."""
+    pairs = [(t, k) for t, k in zip(*np.nonzero(marked), strict=True)]
+    return {frozenset((simplices[t, k - 1].item(), simplices[t, k - 2].item())) for t, k in pairs}
+
+
+@pytest.mark.parametrize("crossing", ["raise", "split"])
+@pytest.mark.parametrize("name", PLACES)
+def test_every_edit_equals_a_fresh_build(name: str, crossing: str) -> None:
+    for seed in range(12):
+        twin = Twin(random.Random(f"{name} {seed}"), PLACES[name], crossing)
+        for _ in range(15):
+            twin.step()
+            twin.agree()
+            twin.nearest()
+
+
+def test_long_segments_through_many_points() -> None:
+    draw = np.random.default_rng(3)
+    points = draw.random((4000, 2))
+    live = Dynamic(points, crossing="split")
+    live.insert_segments([(0, 1), (2, 3)])
+    live.insert_segments(np.arange(4, 44).reshape(-1, 2))
+    live.remove_segments(np.arange(0, live.segment_handles[-1], 3))
+    moved = np.arange(30, 40)
+    live.move(moved, draw.random((10, 2)))
+    fresh = ConstrainedDelaunay(
+        live.points[:4000], live.input_segments.astype(np.int32), crossing="split"
+    )
+    assert live.nsimplex == fresh.nsimplex
+    assert live.validate()
+
+
+def test_a_dynamic_from_a_constrained_triangulation_has_its_segments() -> None:
+    square = [(0, 0), (4, 0), (4, 4), (0, 4)]
+    mesh = ConstrainedDelaunay(square, [(0, 2), (1, 3)], crossing="split")
+    live = Dynamic(mesh)
+    assert live.input_segments.tolist() == [[0, 2], [1, 3]]
+    assert live.crossings.tolist() == [[0, 1, 4]]
+    assert live.points[4].tolist() == [2.0, 2.0]
+    assert np.array_equal(live.freeze().simplices, mesh.simplices)
+    live.remove_segments([1])
+    assert live.handles.tolist() == [0, 1, 2, 3]
+
+
+def test_errors_of_segments_name_them_and_change_nothing() -> None:
+    live = Dynamic([(0, 0), (4, 0), (4, 4), (0, 4), (2, 1)], [(0, 2)])
+    before = live.simplices
+    with pytest.raises(CrossingSegmentsError) as raised:
+        live.insert_segments([(4, 1), (1, 3)])
+    assert raised.value.pairs.tolist() == [[0, 2]]
+    with pytest.raises(HandleError, match="handle 9 is not there"):
+        live.insert_segments([(0, 9)])
+    with pytest.raises(HandleError, match="segments 5, 7 are not there"):
+        live.remove_segments([5, 0, 7])
+    with pytest.raises(HandleError, match="segment 0 is named twice"):
+        live.remove_segments([0, 0])
+    with pytest.raises(HandleError, match="handle 2 is an end of segment 0: remove that one first"):
+        live.remove([4, 2])
+    with pytest.raises(CrossingSegmentsError):
+        Dynamic(live.points, [(0, 2), (1, 3)])
+    with pytest.raises(InputError, match="segment 1 is"):
+        Dynamic(live.points, [(0, 2), (1, 5)])
+    with pytest.raises(InputError, match="2-D"):
+        Dynamic(np.eye(3), [(0, 1)])
+    with pytest.raises(InputError, match="2-D"):
+        Dynamic(ndim=3).insert_segments([(0, 1)])
+    assert np.array_equal(live.simplices, before)
+    assert live.insert_segments([(4, 1)]).tolist() == [1]
+
+
+def test_a_crossing_cannot_be_edited_itself() -> None:
+    live = Dynamic([(0, 0), (4, 0), (4, 4), (0, 4)], [(0, 2), (1, 3)], crossing="split")
+    for edit in (
+        lambda: live.remove([4]),
+        lambda: live.move([4], [(1, 1)]),
+        lambda: live.insert_segments([(0, 4)]),
+    ):
+        with pytest.raises(HandleError, match="handle 4 is a crossing of segments"):
+            edit()
+    assert live.crossings.tolist() == [[0, 1, 4]]
+
+
+def test_changes_follow_segments() -> None:
+    live = Dynamic([(0, 0), (4, 0), (4, 3), (0, 3)])
+    seen = {tuple(t) for t in live.changes().new.tolist()}
+    for edit in (
+        lambda: live.insert_segments([(1, 3)]),
+        lambda: live.insert([(1, 1)]),
+        lambda: live.remove_segments([0]),
+    ):
+        edit()
+        changes = live.changes()
+        seen -= {tuple(t) for t in changes.gone.tolist()}
+        seen |= {tuple(t) for t in changes.new.tolist()}
+        assert seen == triangles(live.handles[live.simplices])
