@@ -1148,7 +1148,7 @@ class LiveArrays2:
         """The triangle opposite each vertex, -1 outside, (m, 3)."""
     @property
     def constrained(self) -> NDArray[np.bool_] | None:
-        """Whether the edge opposite each vertex is part of a segment, (m, 3); None without segments."""
+        """Whether the edge opposite each vertex is part of a segment; None without segments."""
     @property
     def duplicates(self) -> NDArray[np.int32]:
         """Rows that repeat earlier rows, and the first of these, (k, 2)."""

@@ -232,11 +232,30 @@ def test_points_can_be_added() -> None:
     assert before is not tri.simplices
     tri.add_points(points[30:].tolist(), restart=True)
     whole = Delaunay(points)
-    for name in ("points", "simplices", "neighbors", "transform", "convex_hull", "good"):
-        assert np.array_equal(getattr(tri, name), getattr(whole, name)), name
+    # The same triangles in another order: place[t] is that of triangle t of `whole`.
+    rows = {frozenset(corners): t for t, corners in enumerate(tri.simplices.tolist())}
+    place = np.array([rows[frozenset(corners)] for corners in whole.simplices.tolist()])
+    assert np.array_equal(tri.points, points)
+    for t, other in enumerate(place):
+        corners = dict(zip(tri.simplices[other], tri.neighbors[other], strict=True))
+        for corner, neighbor in zip(whole.simplices[t], whole.neighbors[t], strict=True):
+            assert corners[corner] == (place[neighbor] if neighbor >= 0 else -1)
+    assert set(map(frozenset, tri.convex_hull)) == set(map(frozenset, whole.convex_hull))
     assert (tri.npoints, tri.nsimplex) == (60, whole.nsimplex)
-    assert len(tri.equations) == tri.nsimplex
-    assert np.array_equal(tri.find_simplex(points), whole.find_simplex(points))
+    assert len(tri.equations) == len(tri.transform) == len(tri.good) == tri.nsimplex
+    queries = points + 1e-3
+    found, expected = tri.find_simplex(queries), whole.find_simplex(queries)
+    assert np.array_equal(found, np.where(expected < 0, -1, place[expected]))
+
+
+def test_points_can_be_added_in_3d() -> None:
+    points = datasets.uniform(60, ndim=3)
+    tri = Delaunay(points[:30], incremental=True)
+    tri.add_points(points[30:])
+    assert set(map(frozenset, tri.simplices)) == set(map(frozenset, Delaunay(points).simplices))
+    again = pickle.loads(pickle.dumps(tri))
+    again.add_points([(2, 2, 2)])
+    assert again.npoints == 61
 
 
 def test_furthest_site_points_can_be_added() -> None:

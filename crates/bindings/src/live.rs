@@ -37,7 +37,7 @@ pub struct LiveArrays2 {
     pub simplices: Table<i32>,
     /// The triangle opposite each vertex, -1 outside, (m, 3).
     pub neighbors: Table<i32>,
-    /// Whether the edge opposite each vertex is part of a segment, (m, 3); None without segments.
+    /// Whether the edge opposite each vertex is part of a segment; None without segments.
     pub constrained: Option<Table<bool>>,
     /// Rows that repeat earlier rows, and the first of these, (k, 2).
     pub duplicates: Table<i32>,

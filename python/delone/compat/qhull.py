@@ -58,7 +58,7 @@ class DimensionError(InputError, NotImplementedError):
 
 
 class Incremental:
-    """Points, and results that are recomputed when points are added; base of the drop-ins."""
+    """Points, and results that change when points are added; base of the drop-ins."""
 
     # Its name in messages.
     _what: str = DELAUNAY
@@ -88,7 +88,7 @@ class Incremental:
                 del self.__dict__[name]
 
     def add_points(self, points: ArrayLike, restart: bool = False) -> None:
-        """Add points, and recompute everything.
+        """Add points, and update everything.
 
         Parameters
         ----------
@@ -103,6 +103,11 @@ class Incremental:
             `incremental` was not set, or `close` has been called.
         QhullError, ValueError
             As in the constructor; nothing is changed.
+
+        Notes
+        -----
+        `Delaunay` inserts the points into its mesh, and copies the arrays. `Voronoi` and
+        `ConvexHull` compute everything again.
 
         Examples
         --------
@@ -125,6 +130,10 @@ class Incremental:
         more, ndim = as_low_points(points, 3), self._points.shape[1]
         if more.shape[1] != ndim:
             raise ShapeError(f"points must have {ndim} coordinates, got shape {more.shape}")
+        self._append(more)
+
+    def _append(self, more: Floats) -> None:
+        """Compute the results with more points; nothing changes if that fails."""
         self._set(np.concatenate((self._points, more)))
 
     def close(self) -> None:

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.compat.qhull import Incremental, as_queries, triangulate
+from delone import delaunay
+from delone.compat.qhull import Incremental, as_queries, told_as_qhull_does, triangulate
+from delone.dynamic import Dynamic
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -100,6 +102,9 @@ class Delaunay(Incremental):
     [0.25, 0.25, 0.5]
     """
 
+    # The mesh into which points are inserted, once there are some.
+    _live: Dynamic | None
+
     def __init__(
         self,
         points: ArrayLike,
@@ -111,7 +116,20 @@ class Delaunay(Incremental):
         self._begin(points, qhull_options, incremental)
 
     def _set(self, points: Floats) -> None:
-        mesh = triangulate(points, self.furthest_site)
+        self._live = None
+        self._take(triangulate(points, self.furthest_site), points)
+
+    def _append(self, more: Floats) -> None:
+        if self.furthest_site:
+            return super()._append(more)
+        live = self._live if self._live is not None else Dynamic(self._mesh)
+        with told_as_qhull_does(np.concatenate((self._points, more)), self._what):
+            live.insert(more)
+        self._live = live
+        mesh = live._frozen()
+        return self._take(mesh, mesh.points)
+
+    def _take(self, mesh: delaunay.Delaunay, points: Floats) -> None:
         self._points, self._mesh = points, mesh
         self._forget()
         self.ndim, self.npoints, self.nsimplex = mesh.ndim, mesh.npoints, mesh.nsimplex

@@ -431,8 +431,10 @@ class Dynamic(Segmented):
         >>> bool(Dynamic([(0, 0), (1, 0), (0, 1)]).freeze().validate())
         True
         """
-        if self._has_segments:
-            return self._frozen_segments()
+        return self._frozen_segments() if self._has_segments else self._frozen()
+
+    def _frozen(self) -> Delaunay:
+        """Return the present triangulation, which has no segments, as one that never changes."""
         made = self._arrays()
         if not len(made.simplices):
             return Delaunay(made.points, workers=self._workers, planar=True)
