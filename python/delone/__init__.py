@@ -41,6 +41,7 @@ from delone.errors import (
     MissingExtraError,
     NonFiniteError,
     OutputError,
+    OutsideError,
     ShapeError,
 )
 from delone.georeference import CRSWarning, GeographicWarning
@@ -111,6 +112,7 @@ __all__ = [
     "MissingExtraError",
     "NonFiniteError",
     "OutputError",
+    "OutsideError",
     "PeriodicDelaunay",
     "PolygonTriangles",
     "Quality",

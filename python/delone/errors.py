@@ -33,6 +33,7 @@ __all__ = [
     "MissingExtraError",
     "NonFiniteError",
     "OutputError",
+    "OutsideError",
     "ShapeError",
 ]
 
@@ -285,6 +286,45 @@ class ConflictingValuesError(InputError):
         super().__init__(message)
         self.rows = np.array(rows, dtype=np.int64).reshape(-1, 2)
         self.rows.flags.writeable = False
+
+
+class OutsideError(InputError):
+    """A polygon, or a side slope, leaves the surface of a TIN.
+
+    Parameters
+    ----------
+    message : str
+        The message.
+    place : tuple of float, optional
+        A place where it does.
+
+    Attributes
+    ----------
+    place : tuple of float, or None
+        A place where it does.
+
+    Examples
+    --------
+    >>> import delone
+    >>> from delone.terrain import TIN
+    >>> ground = TIN.from_points([(0, 0, 0), (9, 0, 0), (9, 9, 0), (0, 9, 0)])
+    >>> try:
+    ...     ground.flatten([(1, 1), (12, 1), (1, 8)], 1.0)
+    ... except delone.OutsideError as error:
+    ...     print(error.place)
+    (12.0, 1.0)
+    """
+
+    place: tuple[float, float] | None
+
+    def __init__(
+        self,
+        message: str = "outside of the surface",
+        *,
+        place: tuple[float, float] | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.place = None if place is None else (float(place[0]), float(place[1]))
 
 
 class BudgetExceededError(DeloneError, RuntimeError):

@@ -91,6 +91,18 @@ class Surface(Protocol):
         """The greatest coordinates."""
 
     @property
+    def nsimplex(self) -> int:
+        """Number of triangles."""
+
+    @property
+    def neighbors(self) -> Indices:
+        """The triangle opposite each vertex, (m, 3)."""
+
+    @property
+    def gradient(self) -> Floats:
+        """Gradients of the triangles, (m, 2)."""
+
+    @property
     def slope(self) -> Floats:
         """Slopes of the triangles."""
 
@@ -100,6 +112,9 @@ class Surface(Protocol):
 
     def _sheet(self) -> Sheet:
         """The arrays that the core takes."""
+
+    def _left_out(self) -> Indices:
+        """Triangles of the hull that are no part of the surface."""
 
     def heights(self, xy: ArrayLike) -> Floats:
         """Heights at positions."""

@@ -13,7 +13,7 @@ from delone.immutable import kept, sealed
 from delone.plane import topology
 from delone.refine.validation import MeshValidation, validate
 from delone.terrain import building, contouring, profiles, slopes, volumes
-from delone.triangulation import HullTiling
+from delone.terrain.earthworks import Earthworks
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,7 +39,7 @@ class _Sheet(NamedTuple):
     heights: Floats
 
 
-class TIN(HullTiling):
+class TIN(Earthworks):
     """A triangulated irregular network: a surface over triangles, linear in each.
 
     Create one with `from_points`, `from_raster` or `from_file`.
@@ -321,6 +321,9 @@ class TIN(HullTiling):
             f"{counted(self.npoints, 'point')}: {counted(self.nsimplex, 'triangle')}, "
             f"heights {low:.6g} to {high:.6g}"
         )
+
+    def _left_out(self) -> Indices:
+        return self._all_simplices[~self._kept]
 
     def _tiling(self) -> tuple[Indices, Indices]:
         return self._all_simplices, self._all_neighbors

@@ -1,0 +1,158 @@
+"""Designs: a surface with level or sloping pads, embankments and cuttings."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Self, cast
+
+from delone.terrain import regrading
+from delone.triangulation import HullTiling
+
+if TYPE_CHECKING:
+    from delone.terrain.building import Built
+    from delone.terrain.surface import Surface
+
+__all__ = ["Earthworks"]
+
+
+class Earthworks(HullTiling):
+    """What a surface with heights can be turned into."""
+
+    __slots__ = ()
+
+    @classmethod
+    def _built(cls, made: Built, workers: int | None) -> Self:
+        """Return a surface of these arrays."""
+        raise NotImplementedError
+
+    def flatten(self, polygon: Any, z: Any) -> Self:
+        """Return a surface that is a plane inside of a polygon.
+
+        Parameters
+        ----------
+        polygon : array_like, shape (k, 2), list of rings, or polygons of shapely
+            Where the plane is: inside of an odd number of rings. Heights of it are not used.
+        z : float or triple of float
+            The height, or a plane (a, b, c) of the heights c + a x + b y.
+
+        Returns
+        -------
+        TIN
+            The new surface, with the edges of the polygon as hard breaklines. Cut and fill are
+            those of ``self.volume(new)``.
+
+        Raises
+        ------
+        OutsideError
+            The polygon leaves the surface; ``error.place`` has a point of it.
+        CrossingSegmentsError
+            Edges of the polygon cross.
+        NonFiniteError, InputError, DegenerateInputError
+            A coordinate or height is NaN or infinite, or the polygon has no area.
+        BudgetExceededError, MemoryError
+            Edges cross at more than 4,000,000 places, or memory does not suffice.
+
+        See Also
+        --------
+        embank : The same with side slopes.
+
+        Notes
+        -----
+        A TIN has no vertical walls, so the step at the border is inclined: vertices inside and on
+        the polygon are removed, all others keep their heights, and between them and the polygon the
+        triangles are new. These are inside of the triangles that the polygon meets; all others
+        remain. Breaklines end at the polygon. The step is as steep as vertices are close to the
+        border; for a defined slope use `embank`.
+
+        About linear in the number of triangles near the polygon, times its edges.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> ground = TIN.from_points([(0, 0, 1), (9, 0, 1), (9, 9, 1), (0, 9, 1)])
+        >>> pond = ground.flatten([(3, 3), (6, 3), (6, 6), (3, 6)], 0.0)
+        >>> pond.heights([(4, 4), (3, 5), (9, 9)])
+        array([0., 0., 1.])
+        """
+        return self._built(regrading.flattened(cast("Surface", self), polygon, z), self.workers)
+
+    def embank(
+        self,
+        polygon: Any,
+        z: Any,
+        *,
+        slope: float | None = None,
+        cut: float | None = None,
+        fill: float | None = None,
+        corners: str = "round",
+    ) -> Self:
+        """Return a surface with a pad, and side slopes from its edge to the ground.
+
+        Parameters
+        ----------
+        polygon : array_like, shape (k, 2), list of rings, or polygons of shapely
+            The pad: inside of an odd number of rings. Heights of it are not used.
+        z : float or triple of float
+            The height of the pad, or its plane (a, b, c) of the heights c + a x + b y.
+        slope : float, optional
+            Slope of cut and fill: the rise for one unit of distance, 0.5 for 1 : 2.
+        cut, fill : float, optional
+            Slopes where the ground is above the pad, and where it is below; by default `slope`.
+        corners : {"round", "miter"}, optional
+            What is around convex corners: a cone, of planes that differ by at most 15 degrees in
+            direction and have exactly that slope; or the planes of both edges up to their
+            intersection, with further ones only where edges turn by more than 120 degrees. At
+            reflex corners slopes always meet in a valley (or ridge).
+
+        Returns
+        -------
+        TIN
+            The new surface. Its edges at the pad, where slopes meet, and where they meet the ground
+            (the daylight line) are hard breaklines; the edges at which triangles of the ground are
+            cut are soft ones. Cut and fill are those of ``self.volume(new)``.
+
+        Raises
+        ------
+        OutsideError
+            The pad leaves the surface, or a side slope reaches the end of the surface without
+            meeting the ground; ``error.place`` has a point where it does.
+        CrossingSegmentsError
+            Edges of the polygon cross.
+        NonFiniteError, InputError, DegenerateInputError
+            A coordinate or height is NaN or infinite, the polygon has no area, a slope is missing
+            or not above 0, or the pad itself is as steep.
+        BudgetExceededError, MemoryError
+            Edges cross at more than 4,000,000 places, or memory does not suffice.
+
+        See Also
+        --------
+        flatten : The same without side slopes.
+
+        Notes
+        -----
+        Where the ground at the edge of the pad is below, a slope runs down until it meets the
+        ground (fill), and where it is above, up (cut). Where slopes of several edges overlap, the
+        highest counts in fill and the lowest in cut. Ground that the slopes do not reach remains as
+        it is, also where it would lie below a slope if that went on; a hill in the way of a slope
+        remains, and behind it the slope goes on if it is connected around the hill. Where an edge
+        of the pad is on the outline of the surface, there is no slope; a slope may run along the
+        outline, not across it.
+
+        Up to rounding, the surface is that of the planes and of the old triangles, and all
+        triangles of the ground that the design does not touch remain. Differences of heights that
+        rounding can cause count as none here; in the areas of `volume` they may count.
+
+        About linear in the number of triangles near the pad, times its edges.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> ground = TIN.from_points([(0, 0, 0), (90, 0, 0), (90, 90, 0), (0, 90, 0)])
+        >>> pad = [(30, 30), (60, 30), (60, 60), (30, 60)]
+        >>> design = ground.embank(pad, 3.0, slope=0.5, corners="miter")
+        >>> design.heights([(45, 45), (45, 28), (45, 10)]).tolist()
+        [3.0, 2.0, 0.0]
+        >>> ground.volume(design)
+        <Volume: cut 0, fill 3924, net 3924, area 8100>
+        """
+        made = regrading.embanked(cast("Surface", self), polygon, z, slope, cut, fill, corners)
+        return self._built(made, self.workers)

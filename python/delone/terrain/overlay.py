@@ -1,0 +1,400 @@
+"""The overlay of a surface with a pad and its side slopes: one plane counts in each piece.
+
+The edges of the surface near the pad, the edges of the pad and the rims of the facets are segments
+of a first triangulation. In a region between them the surface is one plane, and so is each facet;
+where two of these planes cross in a triangle, the crossing is a segment of a second triangulation.
+In each of its regions one plane counts: that of the highest facet above the ground, or of the
+lowest facet below it. Regions that are not connected to the pad remain ground.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.errors import OutsideError
+from delone.terrain.pads import inside, plane_at
+from delone.terrain.snapping import closeness, threaded
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.terrain.pads import Facets, Pad
+    from delone.terrain.surface import Surface
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+    Rows = NDArray[np.int64]
+
+__all__ = ["GROUND", "PAD", "Overlay", "overlaid"]
+
+# Labels of triangles; those of facets are their numbers.
+PAD, GROUND = -1, -2
+# Differences of heights of so many roundings are none, on surfaces that are not steeper than this.
+_ROUNDINGS, _STEEPEST = 64, 16.0
+# A slope whose direction differs from the outline by less runs along it.
+_ALONG = 1e-6
+_EPS = float(np.finfo(np.float64).eps)
+
+
+class Overlay(NamedTuple):
+    """Pieces of the surface, of the pad and of facets."""
+
+    mesh: ConstrainedDelaunay
+    label: Rows  # of each triangle: `PAD`, `GROUND` or the number of a facet
+    simplex: Rows  # of each triangle: that of the surface; -1 if there is none, or it is not near
+    outside: Bools  # of each triangle: not on the surface
+    vertex: Rows  # of each row of `mesh`: the vertex of the surface there, or -1
+    corner: Bools  # of each row of `mesh`: a point of the pad
+    ground: Floats  # of each row of `mesh`: the height of the surface; NaN if it is not near
+    near: Bools  # of each triangle of the surface: whether it is part of the overlay
+
+
+class _Cells(NamedTuple):
+    """The regions between segments of a triangulation."""
+
+    largest: Rows  # the largest triangle of each
+    center: Floats  # a point in it
+    simplex: Rows  # as in `Overlay`
+    outside: Bools
+    pad: Bools
+    beyond: Bools  # inside of the polygon, but not on the surface
+
+
+class _Pairs(NamedTuple):
+    """Triangles, and facets on them that are above the ground (fill) or below it (cut)."""
+
+    triangle: Rows
+    facet: Rows
+    excess: Floats  # (p, 3), by how much, at the corners
+
+
+class _Lines(NamedTuple):
+    """Segments between points on edges of a triangulation."""
+
+    points: Floats  # (k, 2), new points
+    segments: Rows  # (s, 2), rows of the triangulation, then of new points
+    ends: Indices  # (k, 2), the edge of each new point
+    share: Floats  # (k,), where on it
+
+
+def overlaid(tin: Surface, pad: Pad, facets: Facets) -> Overlay:
+    """Overlay a surface with a pad and its side slopes."""
+    near, reach = _near(tin, pad, facets)
+    if not near.any():
+        raise _leaves(*pad.points[0].tolist())
+    points, segments, used = _first(tin, pad, facets, near, reach)
+    mesh = ConstrainedDelaunay(points, segments, crossing="split", workers=tin.workers, planar=True)
+    cells = _cells(tin, pad, near, mesh)
+    _refuse_outside(tin, pad, mesh, cells)
+    ground = _ground(tin, mesh, cells, used)
+    if len(facets.height):
+        slack = _slack(tin, pad, facets, near)
+        pairs = _raised(mesh, cells, facets, reach, ground, slack)
+        mesh = _split(mesh, pairs, facets, slack, tin.workers)
+        cells = _cells(tin, pad, near, mesh)
+        ground = _ground(tin, mesh, cells, used)
+        pairs = _raised(mesh, cells, facets, reach, ground, slack)
+        label = _connected(mesh, _labels(mesh, cells, pairs, facets))
+        _refuse_leaving(mesh, cells, facets, label)
+    else:
+        label = np.where(cells.pad[mesh.region], PAD, GROUND)
+    vertex = np.full(mesh.npoints, -1)
+    vertex[: len(used)] = used
+    corner = np.zeros(mesh.npoints, dtype=bool)
+    corner[mesh.duplicate_of[len(used) : len(used) + len(pad.points)]] = True
+    simplex, outside = cells.simplex[mesh.region], cells.outside[mesh.region]
+    return Overlay(mesh, label, simplex, outside, vertex, corner, ground, near)
+
+
+def _near(tin: Surface, pad: Pad, facets: Facets) -> tuple[Bools, Floats]:
+    """Return which triangles the pad and its slopes can meet, and how far each facet can reach."""
+    away = _distances(tin.points, pad)
+    corners = tin.points[tin.simplices]
+    size = np.hypot(*np.moveaxis(corners - corners[:, [1, 2, 0]], -1, 0)).max(axis=1)
+    closest = np.maximum(away[tin.simplices].min(axis=1) - size, 0)
+    near = closest == 0
+    z, ends = tin.z[tin.simplices], plane_at(pad.plane, pad.points)
+    reach = np.zeros(len(facets.height))
+    for rise, best, lowest in ((-1, ends.max(), z.min(axis=1)), (1, -ends.min(), -z.max(axis=1))):
+        mine = facets.rise == rise
+        if not (mine.any() and near.any()):
+            continue
+        met = best - facets.mildest[mine][0] * closest >= lowest
+        # Facets are cut off behind the last triangle that they can meet.
+        reach[mine] = 1.0625 * float(away[tin.simplices[met | near]].max())
+        near |= met
+    return near, reach
+
+
+def _distances(points: Floats, pad: Pad) -> Floats:
+    """Return the distances of points to a pad, 0 inside."""
+    found = np.full(len(points), np.inf)
+    for a, b in pad.points[pad.edges]:
+        along = b - a
+        share = np.clip((points - a) @ along / (along @ along), 0, 1)
+        np.minimum(found, np.hypot(*(points - a - share[:, None] * along).T), out=found)
+    found[inside(points, pad.rings)] = 0.0
+    return found
+
+
+def _first(
+    tin: Surface, pad: Pad, facets: Facets, near: Bools, reach: Floats
+) -> tuple[Floats, Indices, Rows]:
+    """Return points and segments of the first triangulation, and the vertices it starts with."""
+    used, rows = np.unique(tin.simplices[near], return_inverse=True)
+    ends = rows.reshape(-1, 3)[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2)
+    far = reach[:, None]
+    rims: tuple[Floats, ...] = (
+        facets.start,
+        facets.start + far * facets.first,
+        facets.end + far * facets.last,
+        facets.end,
+    )
+    rim = np.arange(4 * len(far)).reshape(4, -1).T + len(used) + len(pad.points)
+    points = np.concatenate((tin.points[used], pad.points, *rims))
+    ours, corners = np.arange(len(used)), len(used) + np.arange(len(pad.points))
+    edges = np.unique(np.sort(ends, axis=1), axis=0)
+    others = np.concatenate([pad.edges + len(used), *(rim[:, [k, k + 1]] for k in range(3))])
+    segments = (threaded(points, edges, corners), threaded(points, others, ours))
+    return points, np.concatenate(segments).astype(np.int32), used.astype(np.int64)
+
+
+def _cells(tin: Surface, pad: Pad, near: Bools, mesh: ConstrainedDelaunay) -> _Cells:
+    """Locate the regions: the largest triangle of each decides."""
+    order = np.lexsort((mesh.areas, mesh.region))
+    largest = order[np.flatnonzero(np.diff(mesh.region[order], append=-1))]
+    center = mesh.points[mesh.simplices[largest]].mean(axis=1)
+    simplex = tin.find_simplex(center).astype(np.int64)
+    outside = simplex < 0
+    simplex = np.where(outside | ~near[simplex], -1, simplex)
+    within = inside(center, pad.rings)
+    return _Cells(largest, center, simplex, outside, within & ~outside, within & outside)
+
+
+def _ground(tin: Surface, mesh: ConstrainedDelaunay, cells: _Cells, used: Rows) -> Floats:
+    """Return the height of the surface at each vertex: each on one of its triangles."""
+    found = np.full(mesh.npoints, np.nan)
+    simplex = cells.simplex[mesh.region]
+    at = np.flatnonzero(simplex >= 0)
+    rows = mesh.simplices[at].ravel()
+    corner = tin.simplices[np.repeat(simplex[at], 3)]
+    a, b, c = (tin.points[corner[:, k]] for k in range(3))
+    low, mid, high = (tin.z[corner[:, k]] for k in range(3))
+    p = mesh.points[rows] - a
+    twice = _cross(b - a, c - a)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        v, w = _cross(p, c - a) / twice, _cross(b - a, p) / twice
+        height = low + v * (mid - low) + w * (high - low)
+    # Where triangles of the surface meet, the largest has the fewest roundings.
+    order = np.argsort(twice, kind="stable")
+    found[rows[order]] = height[order]
+    found[: len(used)] = tin.z[used]
+    return found
+
+
+def _slack(tin: Surface, pad: Pad, facets: Facets, near: Bools) -> float:
+    """Return the difference of heights that may come from rounding."""
+    steepness = np.hypot(*tin.gradient[near].T).max()
+    steepness = min(float(steepness), _STEEPEST) + float(np.hypot(*facets.gradient.T).max())
+    span = max(float(np.abs(tin.min_bound).max()), float(np.abs(tin.max_bound).max()))
+    rise = max(float(np.abs(tin.z).max()), float(np.abs(plane_at(pad.plane, pad.points)).max()))
+    return _ROUNDINGS * _EPS * (span * steepness + rise)
+
+
+def _raised(  # noqa: PLR0917
+    mesh: ConstrainedDelaunay,
+    cells: _Cells,
+    facets: Facets,
+    reach: Floats,
+    ground: Floats,
+    slack: float,
+) -> _Pairs:
+    """Return the facets on each triangle that are above its ground (fill) or below it (cut)."""
+    open_ = np.flatnonzero((cells.simplex >= 0) & ~cells.pad)
+    order = np.argsort(mesh.region, kind="stable")
+    begin = np.searchsorted(mesh.region[order], np.arange(len(cells.center) + 1))
+    triangles, numbers, values = [], [], []
+    for k in range(len(reach)):
+        on = open_[facets.covers(k, cells.center[open_], float(reach[k]))]
+        count = begin[on + 1] - begin[on]
+        start = np.repeat(begin[on] - np.cumsum(count) + count, count)
+        triangle = order[start + np.arange(len(start))]
+        corners = mesh.simplices[triangle]
+        apart = facets.at(k, mesh.points[corners.ravel()]).reshape(-1, 3) - ground[corners]
+        excess = -facets.rise[k] * apart
+        excess[np.abs(excess) <= slack] = 0.0
+        some = (excess > 0).any(axis=1)
+        triangles.append(triangle[some])
+        values.append(excess[some])
+        numbers.append(np.full(np.count_nonzero(some), k))
+    triangle, facet = np.concatenate(triangles), np.concatenate(numbers)
+    order = np.lexsort((facet, triangle))
+    return _Pairs(triangle[order], facet[order], np.concatenate(values)[order])
+
+
+def _split(
+    mesh: ConstrainedDelaunay, pairs: _Pairs, facets: Facets, slack: float, workers: int | None
+) -> ConstrainedDelaunay:
+    """Triangulate again with the lines where planes cross as segments."""
+    triangles, values = [pairs.triangle], [pairs.excess]
+    for first, second in _couples(pairs, facets):
+        # Not of the excesses, which are rounded to zero.
+        corners = mesh.simplices[pairs.triangle[first]]
+        one = facets.at(np.repeat(pairs.facet[first], 3), mesh.points[corners.ravel()])
+        two = facets.at(np.repeat(pairs.facet[second], 3), mesh.points[corners.ravel()])
+        difference = (one - two).reshape(-1, 3)
+        difference[np.abs(difference) <= slack] = 0.0
+        triangles.append(pairs.triangle[first])
+        values.append(difference)
+    found = _zero_lines(mesh, np.concatenate(triangles), np.concatenate(values))
+    return ConstrainedDelaunay(
+        np.concatenate((mesh.points, found.points)),
+        np.concatenate((_through(mesh, found), found.segments)).astype(np.int32),
+        crossing="split",
+        workers=workers,
+        planar=True,
+    )
+
+
+def _couples(pairs: _Pairs, facets: Facets) -> list[tuple[Rows, Rows]]:
+    """Return rows of `pairs` of one triangle whose facets are both fill, or both cut."""
+    found: list[tuple[Rows, Rows]] = []
+    step = 1
+    while True:
+        first = np.flatnonzero(pairs.triangle[step:] == pairs.triangle[:-step])
+        if not len(first):
+            return found
+        second = first + step
+        same = facets.rise[pairs.facet[first]] == facets.rise[pairs.facet[second]]
+        found.append((first[same], second[same]))
+        step += 1
+
+
+def _zero_lines(mesh: ConstrainedDelaunay, triangle: Rows, values: Floats) -> _Lines:
+    """Return where linear functions on triangles are zero."""
+    some = (values != 0).any(axis=1)
+    triangle, values = triangle[some], values[some]
+    sign = np.sign(values)
+    changes = sign[:, [1, 2, 0]] * sign[:, [2, 0, 1]] < 0  # on the edge opposite each corner
+    row, side = np.nonzero(changes)
+    two = (side[:, None] + (1, 2)) % 3
+    ends, at = mesh.simplices[triangle[row][:, None], two], values[row[:, None], two]
+    # From the smaller row on: both triangles at an edge compute the same point.
+    turned = ends[:, 0] > ends[:, 1]
+    ends[turned], at[turned] = ends[turned, ::-1], at[turned, ::-1]
+    p, q = (mesh.points[ends[:, k]] for k in range(2))
+    share = at[:, 0] / (at[:, 0] - at[:, 1])
+    # Corners that are zero, and edges with a change, are ends: a segment has two.
+    zero, corner = np.nonzero(sign == 0)
+    of = np.concatenate((row, zero))
+    end = np.concatenate(
+        (mesh.npoints + np.arange(len(row)), mesh.simplices[triangle[zero], corner])
+    )
+    order = np.argsort(of, kind="stable")
+    of, end = of[order], end[order]
+    first = np.flatnonzero(of[1:] == of[:-1])
+    segments = np.column_stack((end[first], end[first + 1]))
+    return _Lines(p + share[:, None] * (q - p), segments, ends, share)
+
+
+def _through(mesh: ConstrainedDelaunay, lines: _Lines) -> NDArray[np.int64]:
+    """Return the segments of a mesh, through the new points that are on them.
+
+    Points are rounded: without that, regions on both sides of a segment would be connected beside
+    its new points.
+    """
+    scale = np.array([mesh.npoints, 1])
+    keys = np.sort(mesh.segments, axis=1).astype(np.int64) @ scale
+    edge = lines.ends.astype(np.int64) @ scale
+    on = np.flatnonzero(np.isin(edge, keys))
+    on = on[np.lexsort((lines.share[on], edge[on]))]
+    edge, row = edge[on], mesh.npoints + on
+    last = np.diff(edge, append=-1) != 0
+    first = np.roll(last, 1)
+    return np.concatenate(
+        (
+            mesh.segments[~np.isin(keys, edge)],
+            np.column_stack((lines.ends[on[first], 0], row[first])),
+            np.column_stack((row[:-1], row[1:]))[~last[:-1]],
+            np.column_stack((row[last], lines.ends[on[last], 1])),
+        )
+    )
+
+
+def _labels(mesh: ConstrainedDelaunay, cells: _Cells, pairs: _Pairs, facets: Facets) -> Rows:
+    """Return which plane counts on each triangle: the largest triangle of a region decides."""
+    region = mesh.region[pairs.triangle]
+    here = (cells.largest[region] == pairs.triangle) & (pairs.excess.sum(axis=1) > 0)
+    region, facet = region[here], pairs.facet[here]
+    # Of fill the highest, of cut the lowest; among equal ones the first.
+    height = -facets.rise[facet] * facets.at(facet, cells.center[region])
+    order = np.lexsort((-facet, height, region))
+    found = np.where(cells.pad, PAD, GROUND)
+    found[region[order]] = facet[order]
+    label: Rows = found[mesh.region]
+    return label
+
+
+def _connected(mesh: ConstrainedDelaunay, label: Rows) -> Rows:
+    """Turn facets that are not connected to the pad back to ground."""
+    around = np.where(mesh.neighbors < 0, GROUND, label[mesh.neighbors])
+    slope = label >= 0
+    reached = slope & (around == PAD).any(axis=1)
+    front = np.flatnonzero(reached)
+    while len(front):
+        beside = mesh.neighbors[front].ravel()
+        beside = np.unique(beside[beside >= 0])
+        front = beside[slope[beside] & ~reached[beside]]
+        reached[front] = True
+    found: Rows = np.where(slope & ~reached, GROUND, label)
+    return found
+
+
+def _refuse_outside(tin: Surface, pad: Pad, mesh: ConstrainedDelaunay, cells: _Cells) -> None:
+    """Refuse a pad that leaves the surface."""
+    off = cells.beyond[mesh.region]
+    if not off.any():
+        return
+    edges = pad.points[pad.edges]
+    length = np.hypot(*(edges[:, 1] - edges[:, 0]).T).sum()
+    # The polygon may be on the outline up to rounding.
+    if mesh.areas[off].sum() <= closeness(tin.points, pad.points) * length:
+        return
+    away = pad.points[tin.find_simplex(pad.points) < 0]
+    places = away if len(away) else cells.center[cells.beyond]
+    raise _leaves(*places[0].tolist())
+
+
+def _leaves(x: float, y: float) -> OutsideError:
+    return OutsideError(f"the polygon leaves the surface at ({x:.10g}, {y:.10g})", place=(x, y))
+
+
+def _refuse_leaving(mesh: ConstrainedDelaunay, cells: _Cells, facets: Facets, label: Rows) -> None:
+    """Refuse slopes that run across the outline of the surface before they meet the ground."""
+    outside = np.append(cells.outside[mesh.region], True)[mesh.neighbors]
+    triangle, side = np.nonzero(outside & (label >= 0)[:, None])
+    a, b = (mesh.points[mesh.simplices[triangle, (side + turn) % 3]] for turn in (1, 2))
+    normal = np.column_stack(((b - a)[:, 1], -(b - a)[:, 0]))
+    facet = label[triangle]
+    across = (normal * facets.outward[facet]).sum(axis=1) / np.hypot(*normal.T)
+    away = (((a + b) / 2 - facets.start[facet]) * facets.outward[facet]).sum(axis=1)
+    limit = closeness(mesh.points)
+    left = np.flatnonzero((across > _ALONG) & (away > limit) & (np.hypot(*normal.T) > limit))
+    if not len(left):
+        return
+    x, y = (a[left[0]] + b[left[0]]) / 2
+    fill = facets.rise[facet[left[0]]] < 0
+    raise OutsideError(
+        f"the side slope of {'fill' if fill else 'cut'} leaves the surface at ({x:.10g}, {y:.10g}) "
+        "without meeting the ground: choose a steeper slope or another height, or survey more",
+        place=(x, y),
+    )
+
+
+def _cross(u: Floats, v: Floats) -> Floats:
+    found: Floats = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+    return found

@@ -1,0 +1,325 @@
+"""A new surface from an old one, with a pad and its side slopes instead of the ground there.
+
+Between pieces of the overlay that differ, edges become segments of one triangulation; vertices of
+the ground remain where there is ground. Triangles that the design cuts keep their rest of ground:
+their edges are soft breaklines. All others stay the same, since Delaunay triangles do not depend on
+what is behind segments.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone._arrays import as_choice, as_number
+from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.errors import InputError
+from delone.terrain.building import Built
+from delone.terrain.heights import claims_of_lines
+from delone.terrain.overlay import GROUND, PAD, Overlay, overlaid
+from delone.terrain.pads import CORNERS, Facets, facets_of, pad_of, plane_at
+from delone.terrain.snapping import closeness, settled
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.terrain.pads import Pad
+    from delone.terrain.surface import Surface
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+    Rows = NDArray[np.int64]
+
+__all__ = ["embanked", "flattened"]
+
+# What is beside edges, apart from triangles of the design: those of the surface have `GROUND - 1`
+# minus their number.
+_OUTSIDE = GROUND
+
+
+class _Change(NamedTuple):
+    """What a design changes."""
+
+    ground: Bools  # of each row of the overlay: whether its height is that of the ground
+    remains: Bools  # of each vertex of the surface: whether it remains
+    cut: Bools  # of each triangle: whether the design takes a part of it
+
+
+class _Edges(NamedTuple):
+    """Edges of the new surface."""
+
+    ends: Indices  # (q, 2), rows of the overlay
+    beside: Rows  # (q, 2), what is on both sides, ascending
+    hard: Bools
+
+
+def flattened(tin: Surface, polygon: Any, z: Any) -> Built:
+    """Return a surface with the plane of a pad inside of its polygon."""
+    pad = settled(pad_of(polygon, z), tin.points)
+    facets = Facets.none()
+    overlay = overlaid(tin, pad, facets)
+    return _rebuilt(tin, overlay, _change(tin, overlay), pad, facets, exact=False)
+
+
+def embanked(  # noqa: PLR0917
+    tin: Surface, polygon: Any, z: Any, slope: Any, cut: Any, fill: Any, corners: str
+) -> Built:
+    """Return a surface with a pad and its side slopes."""
+    as_choice(corners, tuple(CORNERS), name="corners")
+    cut, fill = _slopes(slope, cut, fill)
+    pad = settled(pad_of(polygon, z), tin.points)
+    facets = Facets.joined([facets_of(pad, cut, 1, corners), facets_of(pad, fill, -1, corners)])
+    overlay = overlaid(tin, pad, facets)
+    return _rebuilt(tin, overlay, _change(tin, overlay), pad, facets, exact=True)
+
+
+def _slopes(slope: Any, cut: Any, fill: Any) -> tuple[float, float]:
+    """Return the slopes of cut and of fill."""
+    found = []
+    for name, value in (("cut", cut), ("fill", fill)):
+        given = slope if value is None else value
+        if given is None:
+            raise InputError(f"give slope, or cut and fill: {name} has none")
+        number = as_number(given, name="slope" if value is None else name)
+        if not (np.isfinite(number) and number > 0):
+            raise InputError(
+                f"{'slope' if value is None else name} must be above 0 and finite: the rise for "
+                f"one unit of distance, as 0.5 for 1 : 2; got {given!r}. A vertical wall cannot be "
+                "part of a TIN: flatten has none"
+            )
+        found.append(number)
+    return found[0], found[1]
+
+
+def _incident(overlay: Overlay, triangles: Bools) -> Bools:
+    """Which vertices belong to some of these triangles."""
+    found = np.zeros(overlay.mesh.npoints, dtype=bool)
+    found[overlay.mesh.simplices[triangles]] = True
+    return found
+
+
+def _change(tin: Surface, overlay: Overlay) -> _Change:
+    """Return what the design changes."""
+    mesh, design = overlay.mesh, overlay.label != GROUND
+    ends = mesh.points[mesh.simplices]
+    longest = np.hypot(*np.moveaxis(ends - ends[:, [1, 2, 0]], -1, 0)).max(axis=1)
+    # Ground as narrow as a rounding, at an outline that is not exactly straight, is none.
+    narrow = mesh.areas <= closeness(mesh.points) * longest
+    ground = _incident(overlay, ~(design | overlay.outside | narrow))
+    ground |= ~_incident(overlay, design)
+    ground &= ~_incident(overlay, overlay.label == PAD)
+    remains = np.ones(tin.npoints, dtype=bool)
+    remains[overlay.vertex[overlay.vertex >= 0]] = ground[overlay.vertex >= 0]
+    # Triangles whose width is a rounding may have no piece in the overlay.
+    cut = np.array(~remains[tin.simplices].all(axis=1))
+    # New points on an edge concern the triangles on both sides.
+    new = _incident(overlay, design) & ~(ground & (overlay.vertex >= 0))
+    there = design | new[mesh.simplices].any(axis=1)
+    cut[overlay.simplex[there & (overlay.simplex >= 0)]] = True
+    return _Change(ground, remains, cut)
+
+
+def _edges(tin: Surface, overlay: Overlay, change: _Change, *, exact: bool) -> _Edges:
+    """Return the edges of the overlay that the new surface needs.
+
+    If `exact`, the rest of triangles that the design cuts keeps its heights.
+    """
+    mesh, label = overlay.mesh, overlay.label
+    beyond = np.where(overlay.simplex < 0, _OUTSIDE, GROUND - 1 - overlay.simplex)
+    what = np.append(np.where(label == GROUND, beyond, label), _OUTSIDE)
+    design = np.append(label != GROUND, False)
+    cut = np.append(np.append(change.cut, False)[overlay.simplex], False)
+    triangle = np.repeat(np.arange(mesh.nsimplex), 3)
+    other = mesh.neighbors.ravel()
+    once = (triangle < other) | (other < 0)
+    side = np.tile(np.arange(3), mesh.nsimplex)[once]
+    triangle, other = triangle[once], other[once]
+    different = what[triangle] != what[other]
+    of_design = design[triangle] | design[other]
+    line = _lines_between(tin, overlay, triangle, other)
+    rest = (cut[triangle] | cut[other]) if exact else (cut[triangle] != cut[other])
+    wanted = different & (of_design | rest | ((line >= 0) & (cut[triangle] | cut[other])))
+    triangle, other, side = triangle[wanted], other[wanted], side[wanted]
+    ends = np.column_stack([mesh.simplices[triangle, (side + turn) % 3] for turn in (1, 2)])
+    if not exact:
+        what = np.where(what < GROUND, GROUND - 1, what)
+    beside = np.sort(np.column_stack((what[triangle], what[other])), axis=1)
+    hard = of_design[wanted] | (line[wanted] == 1)
+    return _straightened(overlay, change, _Edges(ends, beside, hard))
+
+
+def _lines_between(tin: Surface, overlay: Overlay, triangle: Any, other: Any) -> NDArray[np.int8]:
+    """Tell hard (1) and soft (0) breaklines of the surface from other edges (-1)."""
+    simplex = np.append(overlay.simplex, -1)
+    one, two = simplex[triangle], simplex[other]
+    found = np.full(len(one), -1, dtype=np.int8)
+    status = _status(tin)
+    # The overlay has no triangle of the surface where there is none, or it is not near.
+    beside = np.where(np.append(overlay.near, False)[tin.neighbors], tin.neighbors, -1)
+    for first, second in ((one, two), (two, one)):
+        at = np.flatnonzero((first >= 0) & (first != second))
+        side = beside[first[at]] == second[at, None]
+        hits = np.where(side, status[first[at]], -1).max(axis=1)
+        found[at] = np.maximum(found[at], hits)
+    return found
+
+
+def _status(tin: Surface) -> NDArray[np.int8]:
+    """Of each edge of each triangle: 1 on hard breaklines, 0 on soft ones, -1 elsewhere."""
+    ends = np.sort(tin.simplices[:, [[1, 2], [2, 0], [0, 1]]], axis=2).astype(np.int64)
+    keys = ends @ np.array([tin.npoints, 1])
+    lines = np.sort(tin.breaklines, axis=1).astype(np.int64) @ np.array([tin.npoints, 1])
+    found = np.full(keys.shape, -1, dtype=np.int8)
+    if len(lines):
+        order = np.argsort(lines)
+        place = np.minimum(np.searchsorted(lines[order], keys), len(lines) - 1)
+        hit = lines[order][place] == keys
+        found[hit] = (~tin.soft)[order][place][hit]
+    return found
+
+
+def _straightened(overlay: Overlay, change: _Change, edges: _Edges) -> _Edges:
+    """Join edges at vertices that the new surface does not need: crossings with other edges."""
+    count = np.bincount(edges.ends.ravel(), minlength=overlay.mesh.npoints)
+    outline = np.zeros(len(count), dtype=bool)
+    outline[edges.ends[(edges.beside == _OUTSIDE).any(axis=1)]] = True
+    passed = (count == 2) & ~overlay.corner
+    passed &= ~((overlay.vertex >= 0) & (change.ground | outline))
+    order = np.argsort(edges.ends.ravel(), kind="stable")
+    begin = np.cumsum(count) - count
+    pair = order[begin[passed][:, None] + (0, 1)] // 2
+    alike = (edges.beside[pair[:, 0]] == edges.beside[pair[:, 1]]).all(axis=1)
+    return _joined(edges, np.flatnonzero(passed)[alike].tolist(), pair[alike].tolist())
+
+
+def _joined(edges: _Edges, vertices: list[int], pairs: list[list[int]]) -> _Edges:
+    """Join two edges at each of these vertices."""
+    ends = edges.ends.tolist()
+    # An edge that was joined to another one, up to the one that is left.
+    into = list(range(len(ends)))
+    for vertex, pair in zip(vertices, pairs, strict=True):
+        one, two = (_root(into, edge) for edge in pair)
+        if one == two:
+            continue
+        a, b = ends[one], ends[two]
+        ends[one] = [
+            a[0] if a[1] == vertex else a[1],
+            b[0] if b[1] == vertex else b[1],
+        ]
+        into[two] = one
+    left = np.flatnonzero(np.array(into) == np.arange(len(into)))
+    return _Edges(
+        np.array(ends, dtype=np.int32).reshape(-1, 2)[left], edges.beside[left], edges.hard[left]
+    )
+
+
+def _root(into: list[int], edge: int) -> int:
+    while into[edge] != edge:
+        into[edge] = into[into[edge]]
+        edge = into[edge]
+    return edge
+
+
+def _rebuilt(
+    tin: Surface, overlay: Overlay, change: _Change, pad: Pad, facets: Facets, *, exact: bool
+) -> Built:
+    """Triangulate the vertices of the ground that remain, with the edges."""
+    edges = _edges(tin, overlay, change, exact=exact)
+    remains = change.remains
+    row = np.full(tin.npoints, -1)
+    row[remains] = np.arange(np.count_nonzero(remains))
+    # Rows of the overlay that are new, or no longer vertices of the ground.
+    used = np.unique(edges.ends)
+    own = used[(overlay.vertex[used] < 0) | ~remains[overlay.vertex[used]]]
+    to = np.full(overlay.mesh.npoints, -1)
+    at_vertex = np.flatnonzero(overlay.vertex >= 0)
+    to[at_vertex] = row[overlay.vertex[at_vertex]]
+    to[own] = np.count_nonzero(remains) + np.arange(len(own))
+    row[overlay.vertex[at_vertex]] = to[at_vertex]
+    old, soft = _lines_left(tin, change)
+    mesh = ConstrainedDelaunay(
+        np.concatenate((tin.points[remains], overlay.mesh.points[own])),
+        np.concatenate((row[old], to[edges.ends])).astype(np.int32),
+        crossing="split",
+        workers=tin.workers,
+        planar=True,
+    )
+    z = np.concatenate((tin.z[remains], _heights(overlay, change, pad, facets)[own]))
+    hard = np.concatenate((~soft, edges.hard))
+    return _built(tin, mesh, _complete(mesh, z), hard, row)
+
+
+def _lines_left(tin: Surface, change: _Change) -> tuple[Indices, Bools]:
+    """Return the breaklines of the surface on triangles that the design does not cut."""
+    ends = np.sort(tin.simplices[change.cut][:, [[1, 2], [2, 0], [0, 1]]], axis=2).reshape(-1, 2)
+    scale = np.array([tin.npoints, 1])
+    gone = ends.astype(np.int64) @ scale
+    left = ~np.isin(np.sort(tin.breaklines, axis=1).astype(np.int64) @ scale, gone)
+    return tin.breaklines[left], tin.soft[left]
+
+
+def _heights(overlay: Overlay, change: _Change, pad: Pad, facets: Facets) -> Floats:
+    """Return the height of each row of the overlay: of the ground, of a facet, or of the pad."""
+    z = overlay.ground.copy()
+    mesh = overlay.mesh
+    at_ground = change.ground & ~np.isnan(z)
+    slope = np.flatnonzero(overlay.label >= 0)
+    for corner in mesh.simplices[slope].T:
+        height = facets.at(overlay.label[slope], mesh.points[corner])
+        # On the daylight line heights are those of the ground, which so remains what it is.
+        z[corner] = np.where(at_ground[corner], z[corner], height)
+    of_pad = np.unique(mesh.simplices[overlay.label == PAD])
+    z[of_pad] = plane_at(pad.plane, mesh.points[of_pad])
+    return z
+
+
+def _complete(mesh: ConstrainedDelaunay, z: Floats) -> Floats:
+    """Return heights of all rows: where rounded edges cross, the mean of both."""
+    found = np.full(mesh.npoints, np.nan)
+    found[: len(z)] = z
+    if len(z) < mesh.npoints:
+        claims = claims_of_lines(mesh, z, len(z))
+        new = claims.vertex >= len(z)
+        number = np.bincount(claims.vertex[new], minlength=mesh.npoints)
+        total = np.bincount(claims.vertex[new], claims.z[new], minlength=mesh.npoints)
+        at = number > 0
+        found[at] = total[at] / number[at]
+    return found
+
+
+def _kept(tin: Surface, mesh: ConstrainedDelaunay, row: Rows) -> Bools:
+    """Which triangles are part of the surface: those that were left out are so again."""
+    gone = row[tin._left_out()]
+    kept = np.ones(mesh.nsimplex, dtype=bool)
+    if not len(gone):
+        return kept
+    corners = np.concatenate((mesh.simplices.astype(np.int64), row[tin.simplices], gone))
+    corners.sort(axis=1)
+    scale = mesh.npoints
+    _, edge = np.unique(corners[:, 0] * scale + corners[:, 1], return_inverse=True)
+    key = edge * scale + corners[:, 2]
+    ours, theirs = key[: mesh.nsimplex], key[mesh.nsimplex :]
+    kept = np.isin(ours, theirs[: -len(gone)])
+    # Others are new: inside of the surface, or because of a new point on its outline.
+    new = np.flatnonzero(~np.isin(ours, theirs))
+    kept[new] = tin.find_simplex(mesh.points[mesh.simplices[new]].mean(axis=1)) >= 0
+    return kept
+
+
+def _built(tin: Surface, mesh: ConstrainedDelaunay, z: Floats, hard: Bools, row: Rows) -> Built:
+    """Return the arrays of the new surface."""
+    start, source = mesh.segment_source
+    some = np.append(hard[source], False)
+    soft = np.add.reduceat(some, start[:-1]) == 0 if len(start) > 1 else some[:0]
+    return Built(
+        mesh.points,
+        z,
+        mesh.simplices.copy(),
+        mesh.neighbors.copy(),
+        _kept(tin, mesh, row),
+        mesh.segments.copy(),
+        soft,
+        tin.crs,
+    )
