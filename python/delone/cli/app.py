@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from delone import ConstrainedDelaunay, Delaunay, __version__
-from delone.cli import cells, field, graph, terrain, tiles
+from delone.cli import cells, dem, field, graph, terrain, tiles
 from delone.cli.check import check_mesh
 from delone.cli.constraints import Constraints, constraint_figures, read_input, triangulated
 from delone.cli.exits import (
@@ -291,10 +291,12 @@ def info(
     layer: Layer = None,
     in_space: Solid = False,
     in_plane: Flat = False,
+    crs: Crs = None,
     as_json: Json = False,
 ) -> None:
     """Describe the contents of a file without triangulating it."""
     space = space_or_plane(in_space, in_plane)
+    require_known(crs)
     with spinner(as_json) as say:
         say(f"reading {source.name}")
         figures, rows = describe(
@@ -303,6 +305,7 @@ def info(
             classes=class_numbers(classes),
             layer=layer,
             space=space,
+            crs=crs,
         )
     if as_json:
         print_json(figures)
@@ -316,11 +319,10 @@ _EPILOG = "The table of exit codes is in: delone --help"
 _ON_POINTS = (
     *(triangulate, check, info, explore, graph.graph),
     *(field.interpolate, field.crossval, cells.voronoi, tiles.tile),
-    *(terrain.contours, terrain.profile, terrain.volume),
+    *(dem.dem, terrain.contours, terrain.profile, terrain.volume),
 )
 for _command in _ON_POINTS:
     app.command(epilog=_EPILOG)(naming_lines(_command))
-app.command(epilog=_EPILOG)(tiles.dem)
 app.command(name="mesh", epilog=_EPILOG)(make_mesh)
 
 

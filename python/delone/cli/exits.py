@@ -135,7 +135,7 @@ def as_options(message: str) -> str:
 
     What attributes of the exception have is left out.
     """
-    plain = _ATTRIBUTE.sub("", message)
+    plain = _ATTRIBUTE.sub("", message).replace("max_points", "--max-points")
     return _OPTION.sub(lambda found: f"--{found[1]} {found[2].translate(_QUOTES)}", plain)
 
 

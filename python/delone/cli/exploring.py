@@ -12,6 +12,7 @@ import typer
 from delone.cli.constraints import Constraints, read_input, triangulated
 from delone.cli.exits import Exit, Failure, reading
 from delone.cli.options import Classes, Layer, Workers, class_numbers, split
+from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.show import print_text, spinner
 from delone.io import input_suffixes
 
@@ -59,6 +60,8 @@ def explore(
     no_browser: Annotated[
         bool, typer.Option("--no-browser", help="Print the address without opening it.")
     ] = False,
+    crs: Crs = None,
+    planar: Planar = False,
     workers: Workers = None,
 ) -> None:
     """Show the triangulation of a file in the browser, where points can be moved.
@@ -70,12 +73,14 @@ def explore(
     from delone.explorer.server import ExploreServer
     from delone.explorer.state import Exploration
 
+    require_known(crs)
     with spinner(False) as say:
         say(f"reading {source.name}")
         with reading():
             survey = read_input(
                 source, columns=split(columns), classes=class_numbers(classes), layer=layer
             )
+        survey = referenced(survey, crs, planar=planar, quiet=False)
         say(f"triangulating {source.name}")
         constraints = Constraints(crossing, outline, False, None)
         mesh, heights = triangulated(survey, constraints, workers=workers)

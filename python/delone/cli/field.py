@@ -158,6 +158,7 @@ def crossval(
     classes: Classes = None,
     layer: Layer = None,
     workers: Workers = None,
+    crs: Crs = None,
     planar: Planar = False,
     as_json: Json = False,
 ) -> None:
@@ -167,11 +168,12 @@ def crossval(
     names = list(dict.fromkeys(name.strip() for name in named))
     for name in names:
         chosen("--method", name, tuple(METHODS))
+    require_known(crs)
     watch = Stopwatch()
     found: dict[str, dict[str, Any]] = {}
     with spinner(as_json) as say:
         survey, values, _ = _read(source, value, columns, classes, layer, watch, say)
-        referenced(survey, None, planar=planar, quiet=False)
+        referenced(survey, crs, planar=planar, quiet=False)
         for name in names:
             options: dict[str, Any] = {}
             if gradients is not None and name in _SMOOTH:

@@ -10,6 +10,7 @@ import numpy as np
 
 from delone.cli.constraints import read_input
 from delone.cli.exits import reading
+from delone.cli.referenced import referenced
 from delone.cli.report import finite_or_none
 from delone.cli.solid import is_space
 from delone.counting import agreed
@@ -49,8 +50,9 @@ def describe(
     classes: list[int] | None,
     layer: str | None,
     space: bool | None = None,
+    crs: str | None = None,
 ) -> tuple[dict[str, Any], list[Row]]:
-    """Read a file and return figures and rows of its contents.
+    """Read a file and return figures and rows of its contents; `crs` replaces that of the file.
 
     Points are 3-D (`space`) by default as `delone.cli.solid.is_space` decides.
     """
@@ -65,6 +67,7 @@ def describe(
         )
         header = _las_header(source) if las else {}
         solid = is_space(source, space, survey)
+    survey = referenced(survey, crs, planar=True, quiet=False)
     if isinstance(survey, GeometrySet):
         figures = _figures(survey.coordinates()) | _of_geometries(survey)
     else:

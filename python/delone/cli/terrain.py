@@ -3,54 +3,45 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 import typer
 
-from delone import __version__
 from delone.atomic import replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
-from delone.cli.options import Classes, Json, Layer, Quiet, Workers, class_numbers, split
-from delone.cli.referenced import Crs, Planar, referenced, require_known
-from delone.cli.report import Stopwatch, peak_memory
-from delone.cli.show import print_json, print_report, spinner
+from delone.cli.options import Classes, Json, Layer, Quiet, Workers
+from delone.cli.referenced import Crs, Planar, require_known
+from delone.cli.report import Stopwatch
+from delone.cli.show import spinner
+from delone.cli.surfaces import (
+    Boundary,
+    Breaklines,
+    Columns,
+    Crossing,
+    Duplicates,
+    MaxEdge,
+    SoftBreaklines,
+    SurfaceOptions,
+    Survey,
+    figures_of,
+    print_figures,
+    surface,
+)
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
 from delone.extras import require
-from delone.io import input_suffixes, read_geometries, read_points
-from delone.terrain import TIN
+from delone.io import read_geometries
+from delone.terrain.contouring import MOST
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from delone.terrain import TIN
+
 __all__ = ["contours", "profile", "volume"]
 
-Survey = Annotated[
-    Path,
-    typer.Argument(
-        metavar="INPUT", help="File of points with heights: " + " ".join(input_suffixes())
-    ),
-]
-Columns = Annotated[
-    str | None, typer.Option(help="Columns of x, y and z, by name or by number from 0.")
-]
-Breaklines = Annotated[
-    Path | None, typer.Option(help="File of lines that edges follow, with or without heights.")
-]
-Boundary = Annotated[Path | None, typer.Option(help="File of polygons where the surface ends.")]
-MaxEdge = Annotated[
-    float | None, typer.Option(help="Remove outer triangles with a longer outer edge.")
-]
-Duplicates = Annotated[
-    str,
-    typer.Option(help="Height of duplicates with different heights: raise, min, max, mean."),
-]
-Crossing = Annotated[
-    str,
-    typer.Option(help="Height where lines of different heights meet: raise, min, max, mean."),
-]
 Output = Annotated[
     list[Path] | None,
     typer.Option(
@@ -60,33 +51,6 @@ Output = Annotated[
         help="File to write, once or more: " + " ".join(TABLE_SUFFIXES),
     ),
 ]
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Options:
-    """How a surface is made of files."""
-
-    columns: str | None
-    classes: str | None
-    layer: str | None
-    breaklines: Path | None
-    boundary: Path | None
-    max_edge: float | None
-    duplicates: str
-    crossing: str
-    crs: str | None
-    planar: bool
-    workers: int | None
-    quiet: bool
-
-    @classmethod
-    def among(cls, given: dict[str, Any]) -> _Options:
-        """Select the options among the arguments of a command."""
-        return cls(**{each.name: given[each.name] for each in fields(cls)})
-
-    def inputs(self) -> list[Path]:
-        """The files of lines."""
-        return [path for path in (self.breaklines, self.boundary) if path is not None]
 
 
 def contours(
@@ -102,8 +66,12 @@ def contours(
     bands: Annotated[
         bool, typer.Option("--bands", help="Write polygons between levels instead of lines.")
     ] = False,
+    max_points: Annotated[
+        int, typer.Option(help="Maximum number of points of all contours.")
+    ] = MOST,
     output: Output = None,
     breaklines: Breaklines = None,
+    soft_breaklines: SoftBreaklines = None,
     boundary: Boundary = None,
     max_edge: MaxEdge = None,
     duplicates: Duplicates = "raise",
@@ -121,29 +89,35 @@ def contours(
     wanted = None if levels is None else _numbers(levels, "--levels")
     if bands and smooth:
         raise Failure("--smooth is for lines, not for --bands", Exit.USAGE)
-    options = _Options.among(locals())
+    options = SurfaceOptions.among(locals())
     _check(output or [], source, options, "contours")
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
-        tin = _surface(source, options, watch, say)
+        tin = surface(source, options, watch, say)
         say("computing contours")
         with watch.stage("contours"):
             found: Any
             if bands:
-                found = tin.bands(wanted, interval=interval, base=base)
+                found = tin.bands(wanted, interval=interval, base=base, max_points=max_points)
             else:
                 found = tin.contours(
-                    wanted, interval=interval, base=base, index=index, smooth=smooth
+                    wanted,
+                    interval=interval,
+                    base=base,
+                    index=index,
+                    smooth=smooth,
+                    max_points=max_points,
                 )
+        say(f"writing {len(found):,} {'polygons' if bands else 'lines'}")
         _write(found.to_geopandas, output or [], watch, "bands" if bands else "contours")
     what = "polygons" if bands else "lines"
-    figures = _figures(source, tin, output) | {
+    figures = figures_of(source, tin, output) | {
         what: len(found),
         "levels": len(np.unique(found.low if bands else found.level)),
         "coordinates": len(found.points),
         "stages": watch.rows(tin.npoints),
     }
-    _print(source, figures, as_json=as_json, quiet=quiet)
+    print_figures(source, figures, as_json=as_json, quiet=quiet)
 
 
 def profile(
@@ -157,6 +131,7 @@ def profile(
         ),
     ] = None,
     breaklines: Breaklines = None,
+    soft_breaklines: SoftBreaklines = None,
     boundary: Boundary = None,
     max_edge: MaxEdge = None,
     duplicates: Duplicates = "raise",
@@ -171,29 +146,31 @@ def profile(
     quiet: Quiet = False,
 ) -> None:
     """Compute the heights along a line: a table of distances and heights, or a plot of them."""
-    options = _Options.among(locals())
+    options = SurfaceOptions.among(locals())
     if output is not None and output.suffix.lower() not in (".csv", ".png", ".svg", ".pdf"):
         raise Failure(f"{output}: a profile can be written to .csv .png .svg .pdf", Exit.USAGE)
+    require_known(crs)
     with writing():
         protect_inputs([] if output is None else [output], source, line, *options.inputs())
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         with reading():
             along = read_geometries(line)
-        tin = _surface(source, options, watch, say)
+        tin = surface(source, options, watch, say)
+        say("computing the profile")
         with watch.stage("profile"):
             found = tin.profile(along)
         if output is not None:
             with writing(), replacing(output) as target, watch.stage(f"write {output.name}"):
                 _write_profile(found, target)
-    figures = _figures(source, tin, [] if output is None else [output]) | {
+    figures = figures_of(source, tin, [] if output is None else [output]) | {
         "length": float(found.distance[-1]) if len(found) else 0.0,
         "profile_points": len(found),
         "lowest": float(np.nanmin(found.z)) if np.isfinite(found.z).any() else None,
         "highest": float(np.nanmax(found.z)) if np.isfinite(found.z).any() else None,
         "stages": watch.rows(tin.npoints),
     }
-    _print(source, figures, as_json=as_json, quiet=quiet)
+    print_figures(source, figures, as_json=as_json, quiet=quiet)
 
 
 def volume(
@@ -206,6 +183,7 @@ def volume(
         Path | None, typer.Option(help="File of polygons to which the volume is limited.")
     ] = None,
     breaklines: Breaklines = None,
+    soft_breaklines: SoftBreaklines = None,
     boundary: Boundary = None,
     max_edge: MaxEdge = None,
     duplicates: Duplicates = "raise",
@@ -223,18 +201,18 @@ def volume(
 
     Lines and boundary are those of the first surface.
     """
-    options = _Options.among(locals())
+    options = SurfaceOptions.among(locals())
     require_known(crs)
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         with reading():
             within = None if region is None else read_geometries(region)
-        tin = _surface(source, options, watch, say)
+        tin = surface(source, options, watch, say)
         goal = _goal(other, options, watch, say)
         say("computing volumes")
         with watch.stage("volume"):
             found = tin.volume(goal, region=within)
-    figures = _figures(source, tin, []) | {
+    figures = figures_of(source, tin, []) | {
         "cut": found.cut,
         "fill": found.fill,
         "net": found.net,
@@ -243,7 +221,7 @@ def volume(
         "area": found.area,
         "stages": watch.rows(tin.npoints),
     }
-    _print(source, figures, as_json=as_json, quiet=quiet)
+    print_figures(source, figures, as_json=as_json, quiet=quiet)
 
 
 def _numbers(text: str, option: str) -> list[float]:
@@ -253,7 +231,7 @@ def _numbers(text: str, option: str) -> list[float]:
         raise Failure(f"{option} takes numbers, got {text!r}", Exit.USAGE) from None
 
 
-def _check(output: list[Path], source: Path, options: _Options, what: str) -> None:
+def _check(output: list[Path], source: Path, options: SurfaceOptions, what: str) -> None:
     require_known(options.crs)
     with writing():
         protect_inputs(output, source, *options.inputs())
@@ -261,37 +239,8 @@ def _check(output: list[Path], source: Path, options: _Options, what: str) -> No
             ready_table(path, what)
 
 
-def _surface(source: Path, options: _Options, watch: Stopwatch, say: Callable[[str], None]) -> TIN:
-    """Read points and lines, and triangulate them."""
-    say(f"reading {source.name}")
-    with reading(), watch.stage("read"):
-        survey = read_points(
-            source,
-            columns=split(options.columns),
-            classes=class_numbers(options.classes),
-            layer=options.layer,
-        )
-        lines = None if options.breaklines is None else read_geometries(options.breaklines)
-        rim = None if options.boundary is None else read_geometries(options.boundary)
-    if survey.z is None:
-        raise Failure(f"{source}: no column has heights: name it with --columns x,y,z", Exit.USAGE)
-    survey = referenced(survey, options.crs, planar=options.planar, quiet=options.quiet)
-    say(f"triangulating {len(survey):,} points")
-    with watch.stage("triangulate"):
-        return TIN.from_points(
-            survey,
-            breaklines=lines,
-            boundary=rim,
-            max_edge=options.max_edge,
-            duplicates=options.duplicates,
-            crossing=options.crossing,
-            planar=True,
-            workers=options.workers,
-        )
-
-
 def _goal(
-    other: str, options: _Options, watch: Stopwatch, say: Callable[[str], None]
+    other: str, options: SurfaceOptions, watch: Stopwatch, say: Callable[[str], None]
 ) -> float | TIN:
     """Return the height or surface that is to be reached."""
     if not Path(other).exists():
@@ -299,7 +248,12 @@ def _goal(
             return float(other)
         except ValueError:
             raise Failure(f"{other}: neither a file nor a height", Exit.INPUT) from None
-    return _surface(Path(other), replace(options, breaklines=None, boundary=None), watch, say)
+    return surface(
+        Path(other),
+        replace(options, breaklines=None, soft_breaklines=None, boundary=None),
+        watch,
+        say,
+    )
 
 
 def _write(table: Callable[[], Any], output: list[Path], watch: Stopwatch, layer: str) -> None:
@@ -322,30 +276,3 @@ def _write_profile(found: Any, path: Path) -> None:
     found.plot(ax)
     figure.savefig(path, format=path.suffix[1:].lower())
     pyplot.close(figure)
-
-
-def _figures(source: Path, tin: TIN, output: list[Path] | None) -> dict[str, Any]:
-    return {
-        "delone": __version__,
-        "input": str(source),
-        "crs": tin.crs,
-        "points": tin.npoints,
-        "triangles": tin.nsimplex,
-        "outputs": [str(path) for path in output or ()],
-        "peak_memory_bytes": peak_memory(),
-    }
-
-
-def _print(source: Path, figures: dict[str, Any], *, as_json: bool, quiet: bool) -> None:
-    if as_json:
-        print_json(figures)
-        return
-    if quiet:
-        return
-    left_out = {"delone", "input", "crs", "stages", "outputs", "peak_memory_bytes"}
-    rows = []
-    for name, value in figures.items():
-        if name not in left_out and value is not None:
-            text = f"{value:,}" if isinstance(value, int) else f"{value:.10g}"
-            rows.append((name.replace("_", " "), text))
-    print_report(str(source), rows, figures)

@@ -1,4 +1,4 @@
-"""The commands ``tile`` (out-of-core triangulation) and ``dem`` (rasters from tiles)."""
+"""The command ``tile``: out-of-core triangulation."""
 
 from __future__ import annotations
 
@@ -14,11 +14,10 @@ import numpy as np
 import typer
 
 from delone import __version__, distributed
-from delone.atomic import check_target
-from delone.cli.exits import Exit, Failure, os_message, reading, writing
+from delone.cli.exits import Exit, Failure, os_message, reading
 from delone.cli.options import Classes, Json, Quiet, class_numbers, split
 from delone.cli.referenced import Crs, Planar, note_degrees, require_known
-from delone.cli.show import memory_text, print_json, print_rows, spinner
+from delone.cli.show import memory_text, print_json, print_rows
 from delone.distributed.run.executors import Processes
 from delone.errors import DeloneError, OutputError
 from delone.extras import require
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
 
     from delone.distributed import Plan, Progress, TiledDelaunay
 
-__all__ = ["dem", "tile"]
+__all__ = ["tile"]
 
 
 def tile(
@@ -121,40 +120,6 @@ def tile(
         quiet=planar or quiet,
     )
     _report(tin, output, time.perf_counter() - start, as_json=as_json, quiet=quiet)
-
-
-def dem(
-    tin: Annotated[Path, typer.Argument(metavar="FOLDER", help="Output of delone tile.")],
-    *,
-    resolution: Annotated[
-        str, typer.Option("--resolution", "-r", help="Size of a cell: 1 or 0.5,0.25.")
-    ],
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="OUTPUT", help="GeoTIFF.")],
-    value: Annotated[str, typer.Option(help="Column of the values.")] = "z",
-    crs: Crs = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
-    """Interpolate a tiled triangulation to a GeoTIFF, linearly and without seams."""
-    try:
-        sides = [float(part) for part in resolution.split(",")]
-    except ValueError:
-        raise Failure(f"--resolution takes numbers, got {resolution!r}", Exit.USAGE) from None
-    if len(sides) > 2:
-        raise Failure(f"--resolution takes one or two numbers, got {resolution!r}", Exit.USAGE)
-    require_known(crs)
-    with writing():
-        check_target(output)
-    with reading():
-        found = distributed.open(tin)
-    cells = sides[0], sides[-1]
-    with spinner(quiet or as_json) as say, writing():
-        say(f"interpolating {found.ntiles:,} tiles")
-        found.to_raster(cells, output, value=value, crs=crs)
-    if as_json:
-        print_json({"delone": __version__, "input": str(tin), "outputs": [str(output)]})
-    elif not quiet:
-        print_rows(str(tin), [("cell", " x ".join(map(str, cells))), ("written", str(output))])
 
 
 @contextlib.contextmanager

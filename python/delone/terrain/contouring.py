@@ -28,6 +28,8 @@ __all__ = ["MOST", "Bands", "Contours", "bands", "levels_of", "lines"]
 
 # Points of contours that a call may compute by default: about 3 GB with what is needed beside.
 MOST = 50_000_000
+# Rounds of smoothing that are possible; `smoothing` refuses more.
+_MOST_ROUNDS = 5
 # Levels that an interval may give.
 _LEVELS = 1_000_000
 
@@ -326,7 +328,8 @@ def lines(tin: Surface, levels: Floats, marked: Bools, smooth: int, max_points: 
     from delone.terrain.smoothing import smoothed
 
     rounds = as_count(smooth, name="smooth")
-    made = _core.contour_lines2(tin._sheet(), levels, as_count(max_points, name="max_points"))
+    # Each round doubles the points at most.
+    made = _within(_core.contour_lines2, tin, levels, max_points, 1 << min(rounds, _MOST_ROUNDS))
     points, starts = made.points, made.starts
     if rounds:
         points, starts = smoothed(points, starts, tin, rounds)
@@ -340,9 +343,28 @@ def lines(tin: Surface, levels: Floats, marked: Bools, smooth: int, max_points: 
     )
 
 
+def _within(compute: Any, tin: Surface, levels: Floats, max_points: int, factor: int) -> Any:
+    """Compute contours that have at most so many points once each is replaced by `factor`.
+
+    The core counts them before it computes them.
+    """
+    limit = as_count(max_points, name="max_points")
+    try:
+        return compute(tin._sheet(), levels, limit // factor)
+    except BudgetExceededError as error:
+        found = error.found * factor
+        most = "" if factor == 1 else "at most "
+        raise BudgetExceededError(
+            f"{counted(len(levels), 'level')} would give contours of {most}{found:,} points, more "
+            f"than {limit:,}: choose fewer levels, or raise max_points",
+            limit=limit,
+            found=found,
+        ) from error
+
+
 def bands(tin: Surface, levels: Floats, max_points: int) -> Bands:
     """Return the polygons between contours of a surface."""
-    made = _core.contour_bands2(tin._sheet(), levels, as_count(max_points, name="max_points"))
+    made = _within(_core.contour_bands2, tin, levels, max_points, 1)
     used = tin.z[np.unique(tin.simplices)]
     ends = np.concatenate(([used.min()], levels, [used.max()]))
     return Bands(

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_choice, as_number
+from delone._arrays import as_callback, as_choice, as_number
 from delone.errors import InputError
 from delone.interpolate.raster import Grid, raster_nodes, require_memory
 
@@ -86,6 +86,7 @@ def raster(tin: Surface, what: str, options: dict[str, Any]) -> Grid:
     for name in _LIGHT:
         if name in options and what == "hillshade":
             light[name] = options.pop(name)
+    tell = as_callback(options.pop("progress", None), name="progress")
     x, y = _nodes(tin, options)
     require_memory(len(x), len(y), 1)
     values = np.empty((len(y), len(x)))
@@ -97,10 +98,11 @@ def raster(tin: Surface, what: str, options: dict[str, Any]) -> Grid:
         nodes = np.stack(np.meshgrid(x, y[start : start + rows]), axis=-1)
         if of_triangles is None:
             values[start : start + rows] = tin.heights(nodes)
-            continue
-        simplex = tin.find_simplex(nodes)
-        found = np.where(simplex < 0, np.nan, of_triangles[simplex])
-        values[start : start + rows] = found
+        else:
+            simplex = tin.find_simplex(nodes)
+            values[start : start + rows] = np.where(simplex < 0, np.nan, of_triangles[simplex])
+        if tell is not None:
+            tell(min(1.0, (start + rows) / len(y)))
     return Grid(values, x, y)
 
 

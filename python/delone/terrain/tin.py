@@ -543,7 +543,7 @@ class TIN(Earthworks):
             Rounds of corner cutting, at most 5; 0 keeps contours straight in each triangle.
             Smoothed lines do not cross: where they would, corners remain.
         max_points : int, optional
-            Maximum number of points of all contours.
+            Maximum number of points of all contours; smoothing may double them in each round.
 
         Returns
         -------
@@ -751,8 +751,8 @@ class TIN(Earthworks):
         what : {"height", "slope", "aspect", "hillshade"}, optional
             The values: heights at the centers of cells, or the measure of the triangle there.
         **options
-            ``resolution``, ``shape``, ``x``, ``y`` and ``bounds`` as for `delone.interpolate.grid`;
-            for ``"hillshade"`` those of `hillshade`.
+            ``resolution``, ``shape``, ``x``, ``y``, ``bounds`` and ``progress`` as for
+            `delone.interpolate.grid`; for ``"hillshade"`` those of `hillshade`.
 
         Returns
         -------

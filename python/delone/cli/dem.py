@@ -1,0 +1,220 @@
+"""The command ``dem``: rasters of heights, slopes and hillshades, of tiles or of a survey."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+import typer
+
+from delone import __version__, distributed
+from delone.atomic import check_target
+from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.options import Classes, Json, Layer, Quiet, Workers
+from delone.cli.outputs import write_all
+from delone.cli.referenced import Crs, Planar, require_known
+from delone.cli.report import Stopwatch
+from delone.cli.show import print_json, print_rows, spinner
+from delone.cli.surfaces import (
+    Boundary,
+    Breaklines,
+    Columns,
+    Crossing,
+    Duplicates,
+    MaxEdge,
+    SoftBreaklines,
+    SurfaceOptions,
+    figures_of,
+    print_figures,
+    surface,
+)
+from delone.io import input_suffixes, raster_suffixes
+from delone.io.raster import raster_writer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from delone.interpolate import Grid
+    from delone.terrain import TIN
+
+__all__ = ["dem"]
+
+_LIGHT = {"azimuth": 315.0, "altitude": 45.0, "z_factor": 1.0}
+
+
+def dem(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            metavar="INPUT",
+            help="Output of delone tile, or file of points with heights: "
+            + " ".join(input_suffixes()),
+        ),
+    ],
+    *,
+    resolution: Annotated[
+        str, typer.Option("--resolution", "-r", help="Size of a cell: 1 or 0.5,0.25.")
+    ],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="OUTPUT",
+            help="GeoTIFF, or of a file of points: " + " ".join(raster_suffixes()),
+        ),
+    ],
+    hillshade: Annotated[
+        bool, typer.Option("--hillshade", help="Brightness, 0 to 1, instead of heights.")
+    ] = False,
+    slope: Annotated[
+        bool, typer.Option("--slope", help="Slope in degrees instead of heights.")
+    ] = False,
+    aspect: Annotated[
+        bool,
+        typer.Option("--aspect", help="Direction of the slope, degrees from north clockwise."),
+    ] = False,
+    azimuth: Annotated[
+        float | None, typer.Option(help="Direction of the light of --hillshade; by default 315.")
+    ] = None,
+    altitude: Annotated[
+        float | None, typer.Option(help="Its angle above the horizon; by default 45.")
+    ] = None,
+    z_factor: Annotated[
+        float | None, typer.Option(help="Factor of heights for --hillshade; by default 1.")
+    ] = None,
+    bounds: Annotated[
+        str | None, typer.Option(help="Left, bottom, right, top; by default those of the points.")
+    ] = None,
+    value: Annotated[str, typer.Option(help="Column of the values of tiles.")] = "z",
+    breaklines: Breaklines = None,
+    soft_breaklines: SoftBreaklines = None,
+    boundary: Boundary = None,
+    max_edge: MaxEdge = None,
+    duplicates: Duplicates = "raise",
+    crossing: Crossing = "raise",
+    columns: Columns = None,
+    classes: Classes = None,
+    layer: Layer = None,
+    crs: Crs = None,
+    planar: Planar = False,
+    workers: Workers = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Make a raster of the surface of points: its heights, slope, aspect or hillshade.
+
+    The surface is linear between the points. Of a folder of tiles, which has no breaklines, heights
+    or another column are written; of a file of points also what is computed from the slopes of the
+    triangles.
+    """
+    given = locals()
+    cells = _numbers(resolution, "--resolution", (1, 2))
+    box = None if bounds is None else _numbers(bounds, "--bounds", (4,))
+    light = {name: given[name] for name in _LIGHT if given[name] is not None}
+    what = _measure(given, light)
+    require_known(crs)
+    size = (cells[0], cells[-1])
+    if source.is_dir():
+        _refuse_for_tiles(given, what)
+        _of_tiles(source, size, output, value=value, crs=crs, as_json=as_json, quiet=quiet)
+        return
+    if value != "z":
+        raise Failure("--value is for tiles; name the heights with --columns x,y,z", Exit.USAGE)
+    options = SurfaceOptions.among(given)
+    with writing():
+        protect_inputs([output], source, *options.inputs())
+        writers = {output: (raster_writer(output), check_target(output))[0]}
+    watch = Stopwatch()
+    with spinner(quiet or as_json) as say:
+        tin = surface(source, options, watch, say)
+        with watch.stage(what):
+            found = _raster(tin, what, {"resolution": size, "bounds": box} | light, say)
+        unit = "degrees" if what in ("slope", "aspect") else None
+        write_all(writers, found, watch, say, name=what, crs=tin.crs, units=unit)
+    figures = figures_of(source, tin, [output]) | _figures(found, what)
+    figures["stages"] = watch.rows(tin.npoints)
+    print_figures(source, figures, as_json=as_json, quiet=quiet)
+
+
+def _measure(given: dict[str, Any], light: dict[str, Any]) -> str:
+    """Return what is to be computed."""
+    chosen = [name for name in ("hillshade", "slope", "aspect") if given[name]]
+    if len(chosen) > 1:
+        options = " and ".join(f"--{name}" for name in chosen)
+        raise Failure(f"{options} are separate rasters: run the command once for each", Exit.USAGE)
+    if light and chosen != ["hillshade"]:
+        options = ", ".join(f"--{name.replace('_', '-')}" for name in light)
+        raise Failure(f"{options}: only for --hillshade", Exit.USAGE)
+    return chosen[0] if chosen else "height"
+
+
+def _refuse_for_tiles(given: dict[str, Any], what: str) -> None:
+    if what != "height":
+        raise Failure(
+            f"--{what} is for files of points; of a folder of tiles write the heights, and apply "
+            f"'gdaldem {what}' to them",
+            Exit.USAGE,
+        )
+    names = ("bounds", "breaklines", "soft_breaklines", "boundary", "max_edge", "columns")
+    set_ = [name for name in (*names, "classes", "layer", "workers") if given[name] is not None]
+    set_ += [name for name in ("duplicates", "crossing") if given[name] != "raise"]
+    if set_:
+        options = ", ".join(f"--{name.replace('_', '-')}" for name in set_)
+        raise Failure(f"{options}: for files of points, not for folders of tiles", Exit.USAGE)
+
+
+def _of_tiles(
+    folder: Path,
+    cells: tuple[float, float],
+    output: Path,
+    *,
+    value: str,
+    crs: str | None,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    with writing():
+        check_target(output)
+    with reading():
+        found = distributed.open(folder)
+    with spinner(quiet or as_json) as say, writing():
+        say(f"interpolating {found.ntiles:,} tiles")
+        found.to_raster(cells, output, value=value, crs=crs)
+    if as_json:
+        print_json({"delone": __version__, "input": str(folder), "outputs": [str(output)]})
+    elif not quiet:
+        print_rows(str(folder), [("cell", " x ".join(map(str, cells))), ("written", str(output))])
+
+
+def _raster(tin: TIN, what: str, options: dict[str, Any], say: Callable[[str], None]) -> Grid:
+    say(f"computing the {what}")
+    return tin.raster(
+        what,
+        progress=lambda share: say(f"computing the {what}: {share:.0%} done"),
+        **{name: given for name, given in options.items() if given is not None},
+    )
+
+
+def _figures(found: Grid, what: str) -> dict[str, Any]:
+    known = found.values[np.isfinite(found.values)]
+    return {
+        "columns": len(found.x),
+        "rows": len(found.y),
+        "values": what,
+        "without_value": int(found.values.size - known.size),
+        "least": float(known.min()) if known.size else None,
+        "greatest": float(known.max()) if known.size else None,
+    }
+
+
+def _numbers(text: str, option: str, counts: tuple[int, ...]) -> list[float]:
+    words = {(1, 2): "one or two numbers", (4,): "four numbers"}[counts]
+    try:
+        found = [float(part) for part in text.split(",")]
+    except ValueError:
+        raise Failure(f"{option} takes numbers, got {text!r}", Exit.USAGE) from None
+    if len(found) not in counts:
+        raise Failure(f"{option} takes {words}, got {text!r}", Exit.USAGE)
+    return found

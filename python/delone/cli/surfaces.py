@@ -1,0 +1,159 @@
+"""Surfaces of points and lines in files: the options and the reading that commands share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from delone import __version__
+from delone.cli.exits import Exit, Failure, reading
+from delone.cli.options import class_numbers, split
+from delone.cli.referenced import referenced
+from delone.cli.report import Stopwatch, peak_memory
+from delone.cli.show import print_json, print_report
+from delone.io import input_suffixes, read_geometries, read_points
+from delone.terrain import TIN
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = [
+    "Boundary",
+    "Breaklines",
+    "Columns",
+    "Crossing",
+    "Duplicates",
+    "MaxEdge",
+    "SoftBreaklines",
+    "SurfaceOptions",
+    "Survey",
+    "figures_of",
+    "print_figures",
+    "surface",
+]
+
+Survey = Annotated[
+    Path,
+    typer.Argument(
+        metavar="INPUT", help="File of points with heights: " + " ".join(input_suffixes())
+    ),
+]
+Columns = Annotated[
+    str | None, typer.Option(help="Columns of x, y and z, by name or by number from 0.")
+]
+Breaklines = Annotated[
+    Path | None, typer.Option(help="File of lines that edges follow, with or without heights.")
+]
+SoftBreaklines = Annotated[
+    Path | None,
+    typer.Option(help="File of lines that edges follow and at which smoothing cuts corners."),
+]
+Boundary = Annotated[Path | None, typer.Option(help="File of polygons where the surface ends.")]
+MaxEdge = Annotated[
+    float | None, typer.Option(help="Remove outer triangles with a longer outer edge.")
+]
+Duplicates = Annotated[
+    str,
+    typer.Option(help="Height of duplicates with different heights: raise, min, max, mean."),
+]
+Crossing = Annotated[
+    str,
+    typer.Option(help="Height where lines of different heights meet: raise, min, max, mean."),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SurfaceOptions:
+    """How a surface is made of files."""
+
+    columns: str | None
+    classes: str | None
+    layer: str | None
+    breaklines: Path | None
+    soft_breaklines: Path | None
+    boundary: Path | None
+    max_edge: float | None
+    duplicates: str
+    crossing: str
+    crs: str | None
+    planar: bool
+    workers: int | None
+    quiet: bool
+
+    @classmethod
+    def among(cls, given: dict[str, Any]) -> SurfaceOptions:
+        """Select the options among the arguments of a command."""
+        return cls(**{each.name: given[each.name] for each in fields(cls)})
+
+    def inputs(self) -> list[Path]:
+        """The files of lines."""
+        lines = (self.breaklines, self.soft_breaklines, self.boundary)
+        return [path for path in lines if path is not None]
+
+
+def surface(
+    source: Path, options: SurfaceOptions, watch: Stopwatch, say: Callable[[str], None]
+) -> TIN:
+    """Read points and lines, and triangulate them."""
+    say(f"reading {source.name}")
+    with reading(), watch.stage("read"):
+        survey = read_points(
+            source,
+            columns=split(options.columns),
+            classes=class_numbers(options.classes),
+            layer=options.layer,
+        )
+        files = (options.breaklines, options.soft_breaklines, options.boundary)
+        lines, soft, rim = (None if each is None else read_geometries(each) for each in files)
+    if survey.z is None:
+        raise Failure(f"{source}: no column has heights: name it with --columns x,y,z", Exit.USAGE)
+    survey = referenced(survey, options.crs, planar=options.planar, quiet=options.quiet)
+    say(f"triangulating {len(survey):,} points")
+    with watch.stage("triangulate"):
+        return TIN.from_points(
+            survey,
+            breaklines=lines,
+            soft_breaklines=soft,
+            boundary=rim,
+            max_edge=options.max_edge,
+            duplicates=options.duplicates,
+            crossing=options.crossing,
+            planar=True,
+            workers=options.workers,
+        )
+
+
+def figures_of(source: Path, tin: TIN, output: list[Path] | None) -> dict[str, Any]:
+    """Return what commands report of a surface and of the files written."""
+    return {
+        "delone": __version__,
+        "input": str(source),
+        "crs": tin.crs,
+        "points": tin.npoints,
+        "triangles": tin.nsimplex,
+        "outputs": [str(path) for path in output or ()],
+        "output_bytes": sum(path.stat().st_size for path in output or ()),
+        "peak_memory_bytes": peak_memory(),
+    }
+
+
+def print_figures(source: Path, figures: dict[str, Any], *, as_json: bool, quiet: bool) -> None:
+    """Print figures as a table, or as JSON."""
+    if as_json:
+        print_json(figures)
+        return
+    if quiet:
+        return
+    left_out = {"delone", "input", "crs", "stages", "outputs", "peak_memory_bytes"}
+    if not figures["outputs"]:
+        left_out.add("output_bytes")
+    rows = []
+    for name, value in figures.items():
+        if name not in left_out and value is not None:
+            text = f"{value:.10g}" if isinstance(value, float) else f"{value:,}"
+            text = value if isinstance(value, str) else text
+            rows.append((name.replace("_", " "), text))
+    print_report(str(source), rows, figures)

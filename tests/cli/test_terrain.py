@@ -1,0 +1,222 @@
+"""The commands ``contours``, ``profile``, ``volume`` and ``dem``, in folders with spaces."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from delone.interpolate import grid
+from delone.terrain import TIN
+
+geopandas = pytest.importorskip("geopandas")
+rasterio = pytest.importorskip("rasterio")
+shapely = pytest.importorskip("shapely")
+
+SLOPE = [(0, 0, 0), (40, 0, 0), (40, 40, 20), (0, 40, 20)]
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A folder with spaces and an accent, with points, lines and polygons."""
+    path = tmp_path / "survey of the höhe" / "day 1"
+    path.mkdir(parents=True)
+    np.savetxt(path / "the points.csv", SLOPE, delimiter=",", header="x,y,z", comments="")
+    np.savetxt(
+        path / "after it.csv",
+        [(x, y, z + 1) for x, y, z in SLOPE],
+        delimiter=",",
+        header="x,y,z",
+        comments="",
+    )
+    for name, geometry in {
+        "the line": shapely.LineString([(10, 0), (10, 40)]),
+        "the dike": shapely.LineString([(0, 15, 14), (40, 15, 14)]),
+        "the pit": shapely.box(0, 0, 20, 40),
+    }.items():
+        geopandas.GeoSeries([geometry]).to_file(path / f"{name}.gpkg")
+    return path
+
+
+def read(path):
+    with rasterio.open(path) as file:
+        return file.read(1), file.transform, file.crs
+
+
+def test_contours(folder, figures):
+    out = folder / "some contours.gpkg"
+    found = figures(
+        "contours", folder / "the points.csv", "--interval", 5, "-o", out, "--crs", "EPSG:28992"
+    )
+    assert found["lines"] == 4 and found["levels"] == 4 and found["crs"] == "EPSG:28992"
+    assert found["output_bytes"] == out.stat().st_size and found["coordinates"] == 11
+    table = geopandas.read_file(out)
+    assert table.level.tolist() == [5, 10, 15, 20] and table.crs.to_epsg() == 28992
+    bands = folder / "some bands.geojson"
+    figures("contours", folder / "the points.csv", "--levels", "10", "--bands", "-o", bands)
+    assert geopandas.read_file(bands).area.tolist() == [800, 800]
+
+
+@pytest.mark.parametrize(
+    ("option", "sharp"), [("--breaklines", True), ("--soft-breaklines", False)]
+)
+def test_hard_and_soft_breaklines(folder, figures, option, sharp):
+    dike = folder / "a ridge.geojson"
+    ridge = shapely.LineString([(20, 0, 20), (20, 40, 40)])
+    geopandas.GeoSeries([ridge]).to_file(dike)
+    out = folder / "smooth ones.gpkg"
+    found = figures(
+        *("contours", folder / "the points.csv", option, dike, "--levels", 15, "--smooth", 1),
+        *("--duplicates", "max", "-o", out),
+    )
+    line = geopandas.read_file(out).geometry[0]
+    assert found["points"] == 6
+    # The level 15 crosses the ridge nowhere, that of 30 does.
+    figures(
+        *("contours", folder / "the points.csv", option, dike, "--levels", 30, "--smooth", 1),
+        *("--duplicates", "max", "-o", out),
+    )
+    line = geopandas.read_file(out).geometry[0]
+    corner = shapely.Point(20, 20)
+    assert (shapely.distance(line, corner) == 0) == sharp
+
+
+def test_profile(folder, figures):
+    out = folder / "a profile.csv"
+    found = figures(
+        *("profile", folder / "the points.csv", folder / "the line.gpkg", "-o", out),
+        *("--breaklines", folder / "the dike.gpkg"),
+    )
+    table = np.loadtxt(out, delimiter=",", skiprows=1)
+    assert found["length"] == 40 and found["highest"] == 20
+    assert [0.0, 0.0] in table[:, :2].tolist() and [15.0, 14.0] in table[:, :2].tolist()
+    picture = folder / "a profile.svg"
+    figures("profile", folder / "the points.csv", folder / "the line.gpkg", "-o", picture)
+    assert picture.read_text().startswith("<?xml")
+
+
+def test_volume(folder, figures):
+    found = figures("volume", folder / "the points.csv", folder / "after it.csv")
+    assert (found["cut"], found["fill"]) == pytest.approx((0, 1600))
+    found = figures("volume", folder / "the points.csv", 10, "--region", folder / "the pit.gpkg")
+    assert (found["cut"], found["fill"]) == pytest.approx((2000, 2000)) and found["area"] == 800
+    found = figures("volume", folder / "the points.csv", 0)
+    assert (found["cut"], found["fill"]) == pytest.approx((16000, 0))
+
+
+@pytest.mark.parametrize("what", ["height", "slope", "aspect", "hillshade"])
+def test_dem_of_a_file_of_points(folder, figures, what):
+    out = folder / f"the {what}.tif"
+    options = [] if what == "height" else [f"--{what}"]
+    found = figures(
+        *("dem", folder / "the points.csv", "-r", 5, *options, "-o", out, "--crs", "EPSG:28992")
+    )
+    values, transform, crs = read(out)
+    expected = TIN.from_points(SLOPE).raster(what, resolution=5)
+    assert np.allclose(values[::-1], expected.values)
+    assert (transform.a, transform.e, transform.c, transform.f) == (5, -5, 0, 40)
+    assert crs.to_epsg() == 28992 and found["values"] == what
+    assert found["output_bytes"] == out.stat().st_size
+    if what == "slope":
+        assert np.allclose(values, np.degrees(np.arctan(0.5)))
+    if what == "aspect":
+        assert np.allclose(values, 180)
+
+
+def test_dem_with_light_bounds_and_lines(folder, figures):
+    out = folder / "shade.tif"
+    figures(
+        *("dem", folder / "the points.csv", "-r", "5,10", "--hillshade", "--azimuth", 180),
+        *("--altitude", 30, "--z-factor", 2, "--bounds", "0,0,20,40", "-o", out),
+    )
+    values = read(out)[0]
+    # The light is at a right angle to the slope of 45 degrees, but for 15 degrees.
+    assert values.shape == (4, 4) and np.allclose(values, np.cos(np.radians(15)))
+    figures(
+        *("dem", folder / "the points.csv", "-r", 10, "-o", out),
+        *("--soft-breaklines", folder / "the dike.gpkg", "--boundary", folder / "the pit.gpkg"),
+        *("--crossing", "max"),
+    )
+    values = read(out)[0][::-1]
+    assert np.isnan(values[:, 2:]).all() and values[1, 0] == pytest.approx(14)
+
+
+def test_dem_of_tiles_in_a_folder_with_spaces(folder, figures, command):
+    points = np.random.default_rng(2).random((3000, 3)) * 100
+    np.savetxt(folder / "many.csv", points, delimiter=",", header="x,y,z", comments="")
+    tiles, out = folder / "my tiles", folder / "tiles.tif"
+    command("tile", folder / "many.csv", "-o", tiles, "--tile-points", 500)
+    figures("dem", tiles, "-r", 5, "-o", out)
+    values, transform, _ = read(out)
+    x = transform.c + transform.a * (np.arange(values.shape[1]) + 0.5)
+    y = transform.f + transform.e * (np.arange(values.shape[0]) + 0.5)
+    expected = grid(points[:, :2], points[:, 2], x=x, y=y[::-1])
+    assert np.allclose(values, expected.values[::-1], equal_nan=True)
+    code, _, err = command("dem", tiles, "-r", 5, "-o", out, "--hillshade")
+    assert code == 2 and "gdaldem hillshade" in err
+    code, _, err = command("dem", tiles, "-r", 5, "-o", out, "--max-edge", 3, "--crossing", "min")
+    assert code == 2 and "--max-edge, --crossing: for files of points" in err
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--hillshade", "--slope"], "--hillshade and --slope are separate rasters"),
+        (["--azimuth", "90"], "--azimuth: only for --hillshade"),
+        (["--value", "intensity"], "--value is for tiles"),
+        (["--bounds", "1,2,3"], "--bounds takes four numbers"),
+        (["--crs", "EPSG:0"], "not a reference system"),
+        (["--hillshade", "--altitude", "100"], "altitude must be between 0 and 90"),
+    ],
+)
+def test_wrong_options_of_dem(folder, command, options, message):
+    out = folder / "x.tif"
+    code, _, err = command("dem", folder / "the points.csv", "-r", 5, "-o", out, *options)
+    assert code == 2 and message in err and not out.exists()
+
+
+def test_too_many_contours_are_refused_with_the_number(folder, command, figures):
+    out = folder / "many.gpkg"
+    few = ("contours", folder / "the points.csv", "--interval", 0.1)
+    code, _, err = command(*few, "--max-points", 100, "-o", out)
+    assert code == 4 and not out.exists()
+    # Level 0 is only at the lower edge.
+    assert "contours of 600 points, more than 100" in err and "raise --max-points" in err
+    code, _, err = command(*few, "--max-points", 600, "--smooth", 2)
+    assert code == 4 and "at most 2,400 points, more than 600" in err
+    assert 590 < figures(*few, "--max-points", 600)["coordinates"] <= 600
+    assert command(*few, "--max-points", 2400, "--smooth", 2)[0] == 0
+    code, _, err = command(*few, "--bands", "--max-points", 100)
+    assert code == 4 and "600 points" in err
+
+
+def test_reports_name_the_size_of_files(folder, command):
+    out = folder / "c.geojson"
+    code, text, err = command("contours", folder / "the points.csv", "--interval", 5, "-o", out)
+    assert (code, err) == (0, "")
+    assert f"output bytes  {out.stat().st_size:,}" in " ".join(text.split("\n")).replace(
+        "   ", "  "
+    )
+    _, text, _ = command("contours", folder / "the points.csv", "--interval", 5)
+    assert "output bytes" not in text
+
+
+@pytest.mark.parametrize("name", ["contours", "profile", "volume", "dem", "info", "crossval"])
+def test_all_commands_that_read_points_take_a_reference_system(folder, command, name):
+    more = {
+        "contours": ["--interval", "5"],
+        "profile": [folder / "the line.gpkg"],
+        "volume": ["3"],
+        "dem": ["-r", "5", "-o", folder / "o.tif"],
+        "crossval": ["--method", "nearest"],
+    }.get(name, [])
+    code, out, _ = command(name, folder / "the points.csv", *more, "--crs", "EPSG:28992", "--json")
+    assert code == 0 and json.loads(out)
+    code, _, err = command(name, folder / "the points.csv", *more, "--crs", "EPSG:nowhere")
+    assert code == 2 and "not a reference system known to pyproj" in err
+
+
+def test_info_reports_the_given_reference_system(folder, figures):
+    found = figures("info", folder / "the points.csv", "--crs", "EPSG:28992")
+    assert found["crs"] == "EPSG:28992"
