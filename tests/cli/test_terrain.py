@@ -211,6 +211,8 @@ def test_all_commands_that_read_points_take_a_reference_system(folder, command, 
         "dem": ["-r", "5", "-o", folder / "o.tif"],
         "crossval": ["--method", "nearest"],
     }.get(name, [])
+    code, out, err = command(name, folder / "the points.csv", *more)
+    assert code == 0 and out.startswith(str(folder / "the points.csv")), err
     code, out, _ = command(name, folder / "the points.csv", *more, "--crs", "EPSG:28992", "--json")
     assert code == 0 and json.loads(out)
     code, _, err = command(name, folder / "the points.csv", *more, "--crs", "EPSG:nowhere")

@@ -153,7 +153,7 @@ def print_figures(source: Path, figures: dict[str, Any], *, as_json: bool, quiet
     rows = []
     for name, value in figures.items():
         if name not in left_out and value is not None:
-            text = f"{value:.10g}" if isinstance(value, float) else f"{value:,}"
-            text = value if isinstance(value, str) else text
+            form = {float: ".10g", int: ","}.get(type(value), "")
+            text = f"{value:{form}}"
             rows.append((name.replace("_", " "), text))
     print_report(str(source), rows, figures)
