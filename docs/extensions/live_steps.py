@@ -11,14 +11,12 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from delone import Delaunay
+import live_cells
+from live_answers import Points, delaunay, plain
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable
 
-Points = list[list[float]]
-
-WIDE = (0, 0, 1000, 600)
 SCATTERED: Points = [
     [120, 130], [310, 60], [520, 150], [760, 70], [900, 230], [680, 260], [430, 290],
     [200, 330], [80, 500], [330, 520], [560, 430], [620, 560], [860, 490],
@@ -29,43 +27,6 @@ INSERTED: Points = [
     [150, 110], [820, 80], [500, 540], [470, 230], [330, 330], [640, 300], [420, 130],
     [520, 390], [860, 470], [560, 180], [140, 430],
 ]  # fmt: skip
-
-
-def key(name: str, *parts: Iterable[float]) -> str:
-    """Return the name of an answer, as `keyOf` of stored.js does."""
-    return ":".join([name, *(" ".join(map(number, part)) for part in parts)])
-
-
-def number(value: float) -> str:
-    """Return a number as JavaScript writes it."""
-    if isinstance(value, str):
-        return value
-    return str(int(value)) if value == int(value) else repr(float(value))
-
-
-def flat(rows: Any) -> list[Any]:
-    """Return the numbers of an array in one list."""
-    return [value for row in rows for value in row]
-
-
-def delaunay(points: Sequence[Sequence[float]]) -> dict[str, Any]:
-    """Return the answer about the triangles of points."""
-    return {key("delaunay", flat(points)): flat(Delaunay(points).simplices.tolist())}
-
-
-def picture(
-    points: Points, triangles: list[int], view: tuple[float, float, float, float] = WIDE
-) -> dict[str, Any]:
-    """Return what the first picture shows."""
-    faces = [triangles[t : t + 3] for t in range(0, len(triangles), 3)]
-    return {"points": points, "triangles": faces, "view": view}
-
-
-def plain(points: Points, view: tuple[float, float, float, float] = WIDE) -> dict[str, Any]:
-    """Return a figure that asks for the triangles of its points alone."""
-    answers = delaunay(points)
-    shown = picture(points, next(iter(answers.values())), view)
-    return {"points": points, "answers": answers, "picture": shown}
 
 
 def circle() -> dict[str, Any]:
@@ -92,6 +53,8 @@ FIGURES: dict[str, Callable[[], dict[str, Any]]] = {
     "circle": circle,
     "five": five,
     "insertion": insertion,
+    "lift": live_cells.lift,
+    "voronoi": live_cells.voronoi,
 }
 
 

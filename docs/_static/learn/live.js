@@ -13,6 +13,11 @@ class LiveCore {
     return this.core.triangulate(Float64Array.from(points)).triangles;
   }
 
+  /** Voronoi cells cut to a box: the corners of cell i are starts[i] to starts[i + 1]. */
+  voronoi(points, box) {
+    return this.core.voronoi(Float64Array.from(points), box);
+  }
+
   /** Sign of the in-circle determinant of four rows, exact. */
   inside(points, ...rows) {
     return this.core.incircle(...rows.flatMap((row) => [points[2 * row], points[2 * row + 1]]));

@@ -7,22 +7,26 @@ const REACH = 22;
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 // Arrows move by this part of the width of the view, with Shift by a tenth of it.
 const NUDGE = 1 / 50;
+// An arrow turns a drawing in 3-D as a drag by so many pixels does.
+const TURN = 12;
 
 /** Let a figure hear pointer and keys. */
 export function listen(figure) {
   const { canvas, kind } = figure;
   let held = -1;
   let start = null;
+  let turning = false;
 
   canvas.addEventListener("pointerdown", (event) => {
     const [px, py] = place(event);
     start = [px, py];
     held = nearest(figure, px, py);
-    if (held >= 0 || kind.turn) canvas.setPointerCapture(event.pointerId);
+    turning = held < 0 && turns(figure, px, py);
+    if (held >= 0 || turning) canvas.setPointerCapture(event.pointerId);
   });
   canvas.addEventListener("pointermove", (event) => {
     const [px, py] = place(event);
-    if (start && kind.turn) {
+    if (start && turning) {
       kind.turn(figure, px - start[0], py - start[1]);
       start = [px, py];
     } else if (held >= 0 && !figure.marking?.()) {
@@ -30,7 +34,7 @@ export function listen(figure) {
       if (!figure.move(held, x, y)) held = -1;
     } else if (!start) {
       const over = nearest(figure, px, py) >= 0;
-      canvas.style.cursor = over ? "grab" : kind.turn ? "move" : "default";
+      canvas.style.cursor = over ? "grab" : turns(figure, px, py) ? "move" : "default";
     }
   });
   canvas.addEventListener("pointerup", (event) => {
@@ -53,13 +57,30 @@ export function listen(figure) {
     (event) => {
       const box = canvas.getBoundingClientRect();
       const { clientX, clientY } = event.touches[0];
-      if (kind.turn || nearest(figure, clientX - box.left, clientY - box.top) >= 0) {
-        event.preventDefault();
-      }
+      const [px, py] = [clientX - box.left, clientY - box.top];
+      if (turns(figure, px, py) || nearest(figure, px, py) >= 0) event.preventDefault();
     },
     { passive: false },
   );
+  if (kind.turn) addTurning(figure);
   if (!kind.fixed) addHandles(figure);
+}
+
+/** Whether a pixel is in a panel that shows a drawing in 3-D, which a drag turns. */
+function turns(figure, px, py) {
+  const { kind, paints } = figure;
+  return paints.some((paint, i) => kind.panels[i].turns && paint.contains(px, py));
+}
+
+/** A Tab stop on the canvas: arrows turn the drawing in 3-D. */
+function addTurning(figure) {
+  figure.canvas.tabIndex = 0;
+  figure.canvas.addEventListener("keydown", (event) => {
+    const arrow = ARROWS[event.key];
+    if (!arrow) return;
+    event.preventDefault();
+    figure.kind.turn(figure, TURN * arrow[0], -TURN * arrow[1]);
+  });
 }
 
 function place(event) {

@@ -27,6 +27,10 @@ export class StoredCore {
     return Int32Array.from(this.ask("delaunay", points));
   }
 
+  voronoi(points, box) {
+    return this.ask("voronoi", points, box);
+  }
+
   /** Sign of the in-circle determinant of four rows. Stored points are integers below 2000: the
    * determinant is then exact in doubles. */
   inside(points, a, b, c, d) {
