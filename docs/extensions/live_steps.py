@@ -12,6 +12,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import live_cells
+import live_domains
 from live_answers import Points, delaunay, plain
 
 if TYPE_CHECKING:
@@ -53,7 +54,9 @@ FIGURES: dict[str, Callable[[], dict[str, Any]]] = {
     "circle": circle,
     "five": five,
     "insertion": insertion,
+    "constrained": live_domains.constrained,
     "lift": live_cells.lift,
+    "refined": live_domains.refined,
     "voronoi": live_cells.voronoi,
 }
 

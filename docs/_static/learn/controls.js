@@ -55,10 +55,11 @@ function stepper(figure, bar) {
     const last = figure.states.length - 1;
     Object.assign(input, { max: last, disabled: last === 0 });
     input.value = figure.step;
-    input.setAttribute("aria-valuetext", `${figure.step + 1} of ${last + 1}`);
+    const { mark } = figure.state;
+    input.setAttribute("aria-valuetext", mark ?? `${figure.step + 1} of ${last + 1}`);
     back.disabled = figure.step === 0;
     next.disabled = figure.step === last;
-    count.textContent = `${figure.step + 1} / ${last + 1}`;
+    count.textContent = mark ?? `${figure.step + 1} / ${last + 1}`;
   };
 }
 

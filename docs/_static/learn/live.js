@@ -2,6 +2,9 @@
 
 import { load as loadCore } from "./core/delone.js";
 
+// Points that a refined mesh may add.
+const MOST = 20_000;
+
 class LiveCore {
   constructor(core) {
     this.live = true;
@@ -16,6 +19,17 @@ class LiveCore {
   /** Voronoi cells cut to a box: the corners of cell i are starts[i] to starts[i + 1]. */
   voronoi(points, box) {
     return this.core.voronoi(Float64Array.from(points), box);
+  }
+
+  /** The triangles with segments, flat pairs of rows, as edges. */
+  constrain(points, segments) {
+    return this.core.constrain(Float64Array.from(points), Int32Array.from(segments)).triangles;
+  }
+
+  /** The mesh of what segments enclose, without holes, whose angles are at least a bound. */
+  refine(points, segments, holes, minAngle) {
+    const [xy, ends] = [Float64Array.from(points), Int32Array.from(segments)];
+    return this.core.mesh(xy, ends, { holes, minAngle, maxPoints: MOST });
   }
 
   /** Sign of the in-circle determinant of four rows, exact. */

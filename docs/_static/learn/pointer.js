@@ -32,6 +32,8 @@ export function listen(figure) {
     } else if (held >= 0 && !figure.marking?.()) {
       const [x, y] = figure.paints[0].at(px, py);
       if (!figure.move(held, x, y)) held = -1;
+    } else if (held >= 0) {
+      band(figure, held, px, py);
     } else if (!start) {
       const over = nearest(figure, px, py) >= 0;
       canvas.style.cursor = over ? "grab" : turns(figure, px, py) ? "move" : "default";
@@ -99,6 +101,21 @@ function nearest(figure, px, py) {
     }
   }
   return found;
+}
+
+/** A line from a point to the pointer, while two points are marked by a drag. */
+function band(figure, row, px, py) {
+  figure.draw();
+  const [paint] = figure.paints;
+  const { context, colors } = paint;
+  context.beginPath();
+  context.moveTo(paint.x(figure.points[2 * row]), paint.y(figure.points[2 * row + 1]));
+  context.lineTo(px, py);
+  context.setLineDash([6, 4]);
+  context.lineWidth = 2;
+  context.strokeStyle = colors.accent;
+  context.stroke();
+  context.setLineDash([]);
 }
 
 /** Tell the kind which two points were marked: by a drag, or one after the other. */

@@ -6,7 +6,8 @@
 //   ratio     height of the canvas divided by its width
 //   fixed     true if points cannot be dragged; `handles`: at most so many points have a Tab stop
 //   states    function of {points, options, core, stored}: the list of states
-// A state is {layers: [layers of panel 0, ...], say}. States are made together and never changed:
+// A state is {layers: [layers of panel 0, ...], say, mark}; `mark` is shown beside the slider instead
+// of the number of the step. States are made together and never changed:
 // the slider only selects one, so that going back shows the same picture.
 
 import { addControls } from "./controls.js";
@@ -103,6 +104,7 @@ export class Figure {
       figure.points = Float64Array.from(figure.stored.points.flat());
       figure.options = { ...figure.controls.defaults };
       figure.step = 0;
+      figure.marked = -1;
     });
   }
 

@@ -31,6 +31,15 @@ export class StoredCore {
     return this.ask("voronoi", points, box);
   }
 
+  constrain(points, segments) {
+    return Int32Array.from(this.ask("constrain", points, segments).triangles);
+  }
+
+  refine(points, segments, holes, minAngle) {
+    const found = this.ask("refine", points, segments, holes, [minAngle]);
+    return { ...found, triangles: Int32Array.from(found.triangles) };
+  }
+
   /** Sign of the in-circle determinant of four rows. Stored points are integers below 2000: the
    * determinant is then exact in doubles. */
   inside(points, a, b, c, d) {
