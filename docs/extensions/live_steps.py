@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import live_cells
 import live_domains
+import live_space
 from live_answers import Points, delaunay, plain
 
 if TYPE_CHECKING:
@@ -57,6 +58,8 @@ FIGURES: dict[str, Callable[[], dict[str, Any]]] = {
     "constrained": live_domains.constrained,
     "lift": live_cells.lift,
     "refined": live_domains.refined,
+    "sliver": live_space.sliver,
+    "slivers": live_space.slivers,
     "voronoi": live_cells.voronoi,
 }
 

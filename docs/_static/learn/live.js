@@ -32,6 +32,11 @@ class LiveCore {
     return this.core.mesh(xy, ends, { holes, minAngle, maxPoints: MOST });
   }
 
+  /** Tetrahedra of points in 3-D, with their volumes and dihedral angles in degrees. */
+  tetrahedra(points) {
+    return this.core.tetrahedra(Float64Array.from(points));
+  }
+
   /** Sign of the in-circle determinant of four rows, exact. */
   inside(points, ...rows) {
     return this.core.incircle(...rows.flatMap((row) => [points[2 * row], points[2 * row + 1]]));

@@ -40,6 +40,10 @@ export class StoredCore {
     return { ...found, triangles: Int32Array.from(found.triangles) };
   }
 
+  tetrahedra(points) {
+    return this.ask("tetrahedra", points);
+  }
+
   /** Sign of the in-circle determinant of four rows. Stored points are integers below 2000: the
    * determinant is then exact in doubles. */
   inside(points, a, b, c, d) {
