@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from delone import Delaunay
@@ -23,6 +24,8 @@ def number(value: float) -> str:
     """Return a number as JavaScript writes it."""
     if isinstance(value, str):
         return value
+    if not math.isfinite(value):
+        return "NaN" if math.isnan(value) else f"{'-' * (value < 0)}Infinity"
     return str(int(value)) if value == int(value) else repr(float(value))
 
 

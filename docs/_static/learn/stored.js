@@ -19,7 +19,7 @@ export class StoredCore {
   ask(name, ...parts) {
     const found = this.answers[keyOf(name, ...parts)];
     if (found === undefined) throw new NotStored();
-    if (found.error) throw new Error(found.error);
+    if (found.error) throw Object.assign(new Error(found.error), { name: found.name });
     return found;
   }
 
