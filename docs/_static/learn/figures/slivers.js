@@ -12,7 +12,7 @@ export default {
   fixed: true,
   panels: [
     { view: [-310, -310, 310, 310], turns: true, title: "Drag to turn" },
-    { view: [-6, -12, 106, 84], title: "Smallest dihedral angle of each tetrahedron" },
+    { view: [-6, -12, 106, 84], title: "Smallest dihedral angles" },
   ],
   ratio: 0.9,
   step: "State",
@@ -99,7 +99,7 @@ function bars(before, now, high, below) {
       const color = BIN * (i + 1) <= below ? "accent" : "second";
       return { kind: "path", xy: bar(count, i), closed: true, fill: true, color, alpha: 0.8 };
     }),
-    ...before.map((count, i) => (
+    ...(before === now ? [] : before).map((count, i) => (
       { kind: "path", xy: bar(count, i), closed: true, color: "muted", width: 1, dash: [3, 2] }
     )),
     { kind: "lines", segments: Float64Array.of(0, 0, 100, 0), color: "edge", width: 1 },
