@@ -54,6 +54,14 @@ def test_filled_cells_are_those_of_python(page: Page) -> None:
     assert page.complaints() == []
 
 
+def test_outlines_have_the_perimeters_of_python(page: Page) -> None:
+    state = shown(page, VORONOI)[0]
+    (lines,) = drawn(state, kind="lines", color="second")
+    sides = zip(*(lines["segments"][k::4] for k in range(4)), strict=True)
+    total = sum(math.dist((a, b), (c, d)) for a, b, c, d in sides)
+    assert total == pytest.approx(Voronoi(live_cells.SITES, clip=BOX).cell_perimeters.sum())
+
+
 def test_points_say_neighbors_and_whether_cells_are_bounded(page: Page) -> None:
     mesh = Delaunay(live_cells.SITES)
     degrees = [0] * len(mesh.points)
@@ -143,6 +151,31 @@ def test_seen_from_above_the_lower_hull_is_the_triangulation(page: Page) -> None
     plane = [(value - 300) / 300 for row in live_cells.LIFTED for value in row]
     assert top["xy"] == pytest.approx(plane)
     page.run(f"{LIFT}.reset()")
+
+
+def test_seen_from_above_the_cut_is_the_circle(page: Page) -> None:
+    choose(page, LIFT, turn=0, tilt=90)
+    for state in shown(page, LIFT):
+        (circle,) = [layer["circles"] for layer in drawn(state, kind="circles")]
+        (cut,) = drawn(state, 1, kind="lines", color="accent")
+        x, y = ((value - 300) / 300 for value in circle[:2])
+        places = zip(cut["segments"][::2], cut["segments"][1::2], strict=True)
+        far = [math.dist((x, y), place) for place in places]
+        assert far == pytest.approx([circle[2] / 300] * len(far))
+    page.run(f"{LIFT}.reset()")
+
+
+def test_projection_turns_without_stretching_and_depth_grows_away(page: Page) -> None:
+    code = (
+        "import('./_static/learn/spin.js').then(({{ projection }}) => {{ "
+        "const project = projection({{ turn: {turn}, tilt: {tilt} }}); "
+        "return [...project(3, -4, 12), project.depth(3, -4, 12)]; }})"
+    )
+    for turn, tilt in ((0, 0), (0, 90), (25, 14), (-130, -60)):
+        found = page.run(code.format(turn=turn, tilt=tilt))
+        assert math.hypot(*found) == pytest.approx(13)
+    assert page.run(code.format(turn=0, tilt=0)) == pytest.approx([3, 12, -4])
+    assert page.run(code.format(turn=0, tilt=90)) == pytest.approx([3, -4, -12])
 
 
 def test_lifted_points_have_their_heights(page: Page) -> None:
