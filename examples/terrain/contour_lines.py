@@ -1,59 +1,65 @@
 """
-Contour lines over a shaded surface
-===================================
+Contour map over a hillshade
+============================
 
-Contour lines of lidar points, drawn by matplotlib on delone's triangles, over a shaded raster of the same surface.
+Contour lines of lidar points with index contours and labels, over a hillshade of the same triangles.
 
 Install: ``pip install "delone[plot]"``.
 """
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.colors import LightSource
 
-import delone
 from delone.datasets import ahn3
-from delone.interpolate import grid
+from delone.terrain import TIN
 
 # %%
 # One point in eight of those that are ground: contour lines of roofs and trees are of no use. The origin is moved to
-# the corner of the tile, so that the axes have short numbers.
+# the corner of the tile, so that the axes have short numbers. ``max_edge`` ends the surface at buildings and water,
+# which have no points.
 
 survey = ahn3()
 ground = np.flatnonzero(survey.attributes["classification"] == 2)[::8]
-points, z = survey.points[ground] - survey.points.min(axis=0), survey.z[ground]
-mesh = delone.Delaunay(points)
-print(mesh, f"heights from {z.min():.2f} to {z.max():.2f} m")
+points = np.column_stack((survey.points - survey.points.min(axis=0), survey.z))[ground]
+measured = TIN.from_points(points, max_edge=6)
+print(measured)
 
 # %%
 # Heights of lidar points scatter by a few centimeters. On flat ground contour lines follow that scatter, a usual
 # mistake. So each height becomes the mean of the point and its neighbors in the triangulation, a few times.
 
-indptr, indices = mesh.vertex_neighbor_vertices
+indptr, indices = measured.vertex_neighbor_vertices
 count = np.diff(indptr)
-smooth = z.copy()
+z = measured.z.copy()
 for _ in range(8):
-    smooth = (smooth + np.add.reduceat(smooth[indices], indptr[:-1])) / (1 + count)
-print(f"mean change {np.abs(smooth - z).mean():.3f} m")
+    z = (z + np.add.reduceat(z[indices], indptr[:-1])) / (1 + count)
+smooth = TIN.from_points(np.column_stack((measured.points, z)), max_edge=6)
+print(f"mean change {np.abs(z - measured.z).mean():.3f} m")
 
 # %%
-# Under the lines is a raster of the same heights, shaded ten times too high. ``max_distance`` leaves gaps where
-# buildings stand. Triangles span them too, so those with long edges are masked.
+# Contours every 25 cm, each fourth an index contour. ``smooth=2`` cuts corners, but never lets lines cross. The
+# hillshade is ten times too high, so that streets can be seen; it has a value for each triangle. On the left are the
+# lines of the measured heights.
 
-surface = grid(mesh, smooth, resolution=0.5, max_distance=3)
-extent = (surface.x[0], surface.x[-1], surface.y[0], surface.y[-1])
-shaded = LightSource(azdeg=315, altdeg=45).hillshade(surface.values, vert_exag=10, dx=0.5, dy=0.5)
-
-triangles = mesh.to_matplotlib()
-corners = points[mesh.simplices]
-longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-triangles.set_mask(longest > 6)
-
-levels = np.arange(0, 3.5, 0.25)
 figure, axes = plt.subplots(1, 2, figsize=(11, 5.4), layout="constrained", sharey=True)
-for ax, heights, title in zip(axes, (z, smooth), ("As measured", "Smoothed"), strict=True):
-    ax.imshow(shaded, origin="lower", extent=extent, cmap="gray")
-    lines = ax.tricontour(triangles, heights, levels=levels, colors="firebrick", linewidths=0.8)
-    ax.set(title=title, xlabel="m", aspect="equal")
-axes[1].clabel(lines, levels[levels % 0.5 == 0], fontsize=8, fmt="%.1f m")
+for ax, tin, title in zip(
+    axes, (measured, smooth), ("As measured", "Smoothed heights"), strict=True
+):
+    shade = smooth.hillshade(z_factor=10)
+    ax.tripcolor(smooth.to_matplotlib(), shade, cmap="gray", vmin=-0.3, vmax=1)
+    contours = tin.contours(interval=0.25, index=4, smooth=2)
+    print(title, contours)
+    contours.plot(ax, colors="firebrick")
+    ax.set(title=title, xlabel="m", aspect="equal", xlim=(0, 100), ylim=(0, 100))
+
+# %%
+# Labels at the longest line of each index contour. For a map in a GIS, ``contours.to_geopandas().to_file(...)``.
+
+lengths = np.diff(contours.starts)
+for level in np.unique(contours.level[contours.index]):
+    longest = np.flatnonzero(contours.level == level)[lengths[contours.level == level].argmax()]
+    line = contours.coordinates(longest)
+    x, y = line[len(line) // 2]
+    box = {"facecolor": "white", "edgecolor": "none", "pad": 1}
+    axes[1].text(x, y, f"{level:g} m", fontsize=8, ha="center", va="center", bbox=box)
 plt.show()
