@@ -87,6 +87,38 @@ def test_a_square_pad_on_level_ground_is_a_frustum(z, slope, corners):
     assert np.abs(steep[steep > 1e-9] - slope).max() < 1e-9
 
 
+@pytest.mark.parametrize("z", [3.0, -3.0])
+def test_slopes_meet_in_a_line_at_reflex_corners(z):
+    ring = [(20, 20), (70, 20), (70, 40), (40, 40), (40, 70), (20, 70)]
+    design = level().embank(ring, z, slope=0.5, corners="miter")
+    sign = np.sign(z)
+    for x, y in [(41, 43), (43, 41), (45, 45), (44, 60), (60, 44)]:
+        assert design.heights((x, y)) == pytest.approx(sign * (3 - 0.5 * min(x - 40, y - 40)))
+    # An edge has the area 9 in section; six corners: five pyramids more, and one less.
+    found = level().volume(design)
+    volume = 1600 * 3 + 200 * 9 + (5 - 1) * 36
+    assert (found.fill if z > 0 else found.cut) == pytest.approx(volume, rel=1e-12)
+    assert set(design.z.tolist()) == {0.0, z}
+
+
+def test_slopes_of_three_edges_meet_in_a_slot():
+    slot = [(20, 20), (70, 20), (70, 70), (50, 70), (50, 40), (40, 40), (40, 70), (20, 70)]
+    for z in (3.0, -3.0):
+        design = level().embank(slot, z, slope=0.25)
+        for x, y in [
+            (45, 41),
+            (45, 44),
+            (45, 45),
+            (45, 60),
+            (41, 60),
+            (48, 60),
+            (44, 42),
+            (49, 42),
+        ]:
+            away = min(x - 40, 50 - x, y - 40)
+            assert design.heights((x, y)) == pytest.approx(np.sign(z) * (3 - 0.25 * away))
+
+
 def test_slopes_run_down_in_fill_and_up_in_cut():
     fill = level().embank(SQUARE, 3.0, cut=2.0, fill=0.5)
     assert fill.heights([(45, 29), (45, 25), (45, 23)]) == pytest.approx([2.5, 0.5, 0])
@@ -169,6 +201,21 @@ def test_a_tilted_pad_has_slopes_of_the_same_steepness():
         level().embank(SQUARE, (0.5, 0, 0), slope=0.5)
 
 
+def test_the_sharp_corner_of_a_tilted_pad_has_a_whole_cone():
+    ring, plane = np.array([(40.0, 48), (80, 50), (40, 52)]), (0.4, 0.0, -26.0)
+    places = np.random.default_rng(1).uniform(20, 80, (4000, 2))
+    for slope in (0.5, 1.0):
+        design = level(size=100).embank(ring, plane, slope=slope)
+        share = np.linspace(0, 1, 2000)[:, None]
+        rim = np.concatenate([ring[k] + share * (ring[k - 2] - ring[k]) for k in range(3)])
+        reach = np.linalg.norm(places[:, None] - rim, axis=2)
+        above = plane[2] + 0.4 * rim[:, 0]
+        low, high = (above - slope * reach).max(axis=1), (above + slope * reach).min(axis=1)
+        within = distances(places, ring) == 0
+        expected = np.where(within, plane[2] + 0.4 * places[:, 0], np.clip(0, low, high))
+        assert np.abs(design.heights(places) - expected).max() < 0.1
+
+
 def test_what_the_design_does_not_touch_is_the_same():
     lines = [[(5, 5, 0), (95, 12, 1)], [(10, 50, 2), (95, 55, 3)]]
     ground = rough(5, breaklines=lines[:1], soft_breaklines=lines[1:], duplicates="mean")
@@ -221,6 +268,31 @@ def test_pads_on_lattice_lines_and_vertices():
     assert np.array_equal(design.heights(ground.points[outside]), ground.z[outside])
     flush = level().embank(SQUARE, 0.0, slope=1)
     assert level().volume(flush).cut_area == level().volume(flush).fill_area == 0
+
+
+def test_pads_that_touch_lattice_lines_from_one_side():
+    ground = rough(7, lattice=5.0)
+    ring = np.array([(44.0, 66), (47, 37), (55, 27)])
+    design = ground.flatten(ring, 2.0)
+    new = triangles(design)
+    for rows in ground.simplices:
+        x, y = ground.points[rows].T
+        if x.min() >= 60 or x.max() <= 40 or y.min() >= 70 or y.max() <= 25:
+            assert tuple(sorted(map(tuple, ground.xyz[rows].tolist()))) in new
+    places = np.array([(58, 26), (59, 28), (56, 29.5), (58.3, 26.7)])
+    right = ground.heights(places)
+    # The triangle on the other side of the line that a corner touches has that corner, no more.
+    assert design.heights(places[[0, 3]]) == pytest.approx(right[[0, 3]])
+    assert design.validate()
+
+
+def test_corners_that_are_vertices_up_to_rounding_are_these_vertices():
+    ground = rough(7, lattice=5.0)
+    exact = ground.flatten(SQUARE, 2.0)
+    for shift in (1e-14, -2e-14):
+        near = ground.flatten(np.array(SQUARE) * (1 + shift), 2.0)
+        assert near.npoints == exact.npoints
+        assert set(map(tuple, near.xyz.tolist())) == set(map(tuple, exact.xyz.tolist()))
 
 
 def test_hollows_that_are_not_connected_remain():
