@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Self, cast
 
-from delone.terrain import regrading
+from delone.terrain import reshaping
 from delone.triangulation import HullTiling
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ class Earthworks(HullTiling):
         >>> pond.heights([(4, 4), (3, 5), (9, 9)])
         array([0., 0., 1.])
         """
-        return self._built(regrading.flattened(cast("Surface", self), polygon, z), self.workers)
+        return self._built(reshaping.flattened(cast("Surface", self), polygon, z), self.workers)
 
     def embank(
         self,
@@ -154,5 +154,5 @@ class Earthworks(HullTiling):
         >>> ground.volume(design)
         <Volume: cut 0, fill 3924, net 3924, area 8100>
         """
-        made = regrading.embanked(cast("Surface", self), polygon, z, slope, cut, fill, corners)
+        made = reshaping.embanked(cast("Surface", self), polygon, z, slope, cut, fill, corners)
         return self._built(made, self.workers)
