@@ -47,6 +47,7 @@ from delone.errors import (
 from delone.georeference import CRSWarning, GeographicWarning
 from delone.plane.quality import Quality
 from delone.space.quality import TetQuality
+from delone.units import UnitsWarning
 from delone.validation import ValidationReport
 
 if TYPE_CHECKING:
@@ -121,6 +122,7 @@ __all__ = [
     "ShapeError",
     "TetMesh",
     "TetQuality",
+    "UnitsWarning",
     "ValidationReport",
     "Voronoi",
     "__version__",

@@ -27,6 +27,7 @@ __all__ = [
     "GeographicWarning",
     "as_crs",
     "as_known_crs",
+    "caller_level",
     "common_crs",
     "crs_of",
     "degrees_in",
@@ -35,6 +36,7 @@ __all__ = [
     "may_be_degrees",
     "message_of_degrees",
     "names_degrees",
+    "parsed",
     "same_crs",
     "warn_of_degrees",
 ]
@@ -135,18 +137,18 @@ def same_crs(a: str, b: str) -> bool:
     """Return whether two results of `as_crs` denote one system; without pyproj, whether equal."""
     if a == b:
         return True
-    first, second = _parsed(a), _parsed(b)
+    first, second = parsed(a), parsed(b)
     return first is not None and second is not None and bool(first == second)
 
 
 def is_known(crs: str) -> bool:
     """Return whether a string denotes a reference system; without pyproj always True."""
-    return _parsed(crs) is not None or not _has_pyproj()
+    return parsed(crs) is not None or not _has_pyproj()
 
 
 def is_geographic(crs: str) -> bool:
     """Return whether coordinates are degrees; without pyproj, if the system is a common one."""
-    known = _parsed(crs)
+    known = parsed(crs)
     return bool(_GEOGRAPHIC.match(crs)) if known is None else bool(known.is_geographic)
 
 
@@ -230,8 +232,8 @@ def _has_pyproj() -> bool:
     return importlib.util.find_spec("pyproj") is not None
 
 
-def _parsed(crs: str) -> Any:
-    """The pyproj object; None without pyproj, and for unknown systems."""
+def parsed(crs: str) -> Any:
+    """Return the pyproj object; None without pyproj, and for unknown systems."""
     if not _has_pyproj():
         return None
     pyproj = importlib.import_module("pyproj")

@@ -46,7 +46,8 @@ def _cells(file: Path) -> None:
 
 def _writers() -> Iterator[tuple[str, str, Write]]:
     for suffix in output_suffixes():
-        yield "plane", suffix, lambda file: write_mesh(file, PLANE)
+        z = HEIGHTS if suffix in (".xml", ".landxml") else None
+        yield "plane", suffix, lambda file, z=z: write_mesh(file, PLANE, z=z)
     for suffix in (".gpkg", ".geojson", ".vtu", ".msh"):
         yield "edges", suffix, lambda file: write_mesh(file, PLANE, edges=True)
     for suffix in (".vtu", ".msh", ".xdmf", ".npz", ".poly"):

@@ -113,6 +113,7 @@ def test_failure_in_the_middle_leaves_what_was_there(tmp_path, monkeypatch, suff
     module = "picture" if suffix in (".png", ".svg") else module
     module = "fem" if suffix in (".xdmf", ".inp", ".su2") else module
     module = "triangle" if suffix in (".node", ".ele", ".poly") else module
+    module = "landxml" if suffix in (".xml", ".landxml") else module
     monkeypatch.setattr(f"delone.io.{module}.write_mesh", write_half)
     with pytest.raises(error):
         write_mesh(target, MESH)
@@ -120,11 +121,12 @@ def test_failure_in_the_middle_leaves_what_was_there(tmp_path, monkeypatch, suff
     assert target.read_bytes() == b"old"
 
 
+@pytest.mark.filterwarnings("ignore::delone.UnitsWarning")
 @pytest.mark.parametrize("suffix", output_suffixes())
 def test_success_replaces_and_leaves_nothing_else(tmp_path, suffix):
     target = tmp_path / f"a b{suffix}"
     target.write_bytes(b"old")
-    write_mesh(target, MESH)
+    write_mesh(target, MESH, z=None if suffix == ".su2" else np.zeros(MESH.npoints))
     assert [path.name for path in tmp_path.iterdir()] == [target.name]
     assert target.stat().st_size > 30
 

@@ -31,7 +31,7 @@ CRATES = ROOT / "crates"
 PYTHON: tuple[set[str], ...] = (
     {"_core", "errors", "blocks", "counting", "duplicates"},
     {"_masks", "atomic", "bounded", "extras", "georeference"},
-    {"_arrays"},
+    {"_arrays", "units"},
     {"_values", "immutable", "predicates"},
     # Rooms that take plain arrays and protocols, and no class.
     {"exchange", "plot"},

@@ -118,7 +118,7 @@ _TIN = Kind(
         "soft": ("|b1", 0),
     },
     checks.check_surface,
-    ("crs",),
+    ("crs", "units"),
 )
 
 

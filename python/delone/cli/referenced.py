@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+import warnings
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, TypeVar
 
@@ -10,17 +12,18 @@ import typer
 
 from delone.cli.exits import Exit, Failure
 from delone.georeference import degrees_in, is_known, may_be_degrees, message_of_degrees, same_crs
-from delone.io import GeometrySet, PointSet
+from delone.io import GeometrySet, PointSet, SurfaceFile
 from delone.io.referencing import left_out
+from delone.units import UnitsWarning
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["Crs", "Planar", "note", "note_degrees", "referenced", "require_known"]
+__all__ = ["Crs", "Planar", "note", "note_degrees", "noting", "referenced", "require_known"]
 
 Crs = Annotated[
     str | None,
@@ -34,7 +37,7 @@ Planar = Annotated[
     typer.Option("--planar", help="Treat longitudes and latitudes as planar coordinates: no note."),
 ]
 
-Survey = TypeVar("Survey", bound=PointSet | GeometrySet)
+Survey = TypeVar("Survey", bound=PointSet | GeometrySet | SurfaceFile)
 
 
 def require_known(crs: str | None) -> None:
@@ -86,3 +89,16 @@ def note(message: str | None, *, quiet: bool = False) -> None:
     """Print a note on standard error, if there is one."""
     if message is not None and not quiet:
         print(f"delone: note: {' '.join(message.split())}", file=sys.stderr)
+
+
+@contextmanager
+def noting(*, quiet: bool = False) -> Iterator[None]:
+    """Print warnings about units as notes, and pass all others on."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", UnitsWarning)
+        yield
+    for each in caught:
+        if issubclass(each.category, UnitsWarning):
+            note(str(each.message), quiet=quiet)
+        else:
+            warnings.warn_explicit(each.message, each.category, each.filename, each.lineno)

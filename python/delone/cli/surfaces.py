@@ -11,10 +11,18 @@ import typer
 from delone import __version__
 from delone.cli.exits import Exit, Failure, reading
 from delone.cli.options import class_numbers, split
-from delone.cli.referenced import referenced
+from delone.cli.referenced import noting, referenced
 from delone.cli.report import Stopwatch, peak_memory
 from delone.cli.show import print_json, print_report
-from delone.io import input_suffixes, read_geometries, read_points
+from delone.io import (
+    PointSet,
+    SurfaceFile,
+    input_suffixes,
+    read_geometries,
+    read_points,
+    read_surface,
+)
+from delone.io.registry import holds_surface
 from delone.terrain import TIN
 
 if TYPE_CHECKING:
@@ -27,6 +35,8 @@ __all__ = [
     "Crossing",
     "Duplicates",
     "MaxEdge",
+    "EastingFirst",
+    "Retriangulate",
     "SoftBreaklines",
     "SurfaceOptions",
     "Survey",
@@ -64,6 +74,16 @@ Crossing = Annotated[
     typer.Option(help="Height where lines of different heights meet: raise, min, max, mean."),
 ]
 
+Retriangulate = Annotated[
+    bool,
+    typer.Option(
+        "--retriangulate", help="Triangulate points and lines of LandXML or DXF, not its faces."
+    ),
+]
+EastingFirst = Annotated[
+    bool, typer.Option("--easting-first", help="Take the first number of LandXML as the easting.")
+]
+
 
 @dataclass(frozen=True, kw_only=True)
 class SurfaceOptions:
@@ -72,6 +92,8 @@ class SurfaceOptions:
     columns: str | None
     classes: str | None
     layer: str | None
+    retriangulate: bool
+    easting_first: bool
     breaklines: Path | None
     soft_breaklines: Path | None
     boundary: Path | None
@@ -97,33 +119,39 @@ class SurfaceOptions:
 def surface(
     source: Path, options: SurfaceOptions, watch: Stopwatch, say: Callable[[str], None]
 ) -> TIN:
-    """Read points and lines, and triangulate them."""
+    """Read points and lines, or a surface, and triangulate them."""
     say(f"reading {source.name}")
+    lined: dict[str, Any] = {"max_edge": options.max_edge}
+    survey: PointSet | SurfaceFile
     with reading(), watch.stage("read"):
-        survey = read_points(
-            source,
-            columns=split(options.columns),
-            classes=class_numbers(options.classes),
-            layer=options.layer,
-        )
-        files = (options.breaklines, options.soft_breaklines, options.boundary)
-        lines, soft, rim = (None if each is None else read_geometries(each) for each in files)
-    if survey.z is None:
+        if source.exists() and holds_surface(source):
+            survey = _read_surface(source, options)
+        else:
+            survey = read_points(
+                source,
+                columns=split(options.columns),
+                classes=class_numbers(options.classes),
+                layer=options.layer,
+            )
+        for name in ("breaklines", "soft_breaklines", "boundary"):
+            path = getattr(options, name)
+            lined[name] = None if path is None else read_geometries(path)
+    if isinstance(survey, PointSet) and survey.z is None:
         raise Failure(f"{source}: no column has heights: name it with --columns x,y,z", Exit.USAGE)
     survey = referenced(survey, options.crs, planar=options.planar, quiet=options.quiet)
-    say(f"triangulating {len(survey):,} points")
-    with watch.stage("triangulate"):
-        return TIN.from_points(
-            survey,
-            breaklines=lines,
-            soft_breaklines=soft,
-            boundary=rim,
-            max_edge=options.max_edge,
-            duplicates=options.duplicates,
-            crossing=options.crossing,
-            planar=True,
-            workers=options.workers,
-        )
+    say(f"triangulating {len(survey.points):,} points")
+    lined |= {name: getattr(options, name) for name in ("duplicates", "crossing", "workers")}
+    with watch.stage("triangulate"), noting(quiet=options.quiet):
+        if isinstance(survey, PointSet):
+            return TIN.from_points(survey, planar=True, **lined)
+        return TIN.from_surface(survey, faces=not options.retriangulate, planar=True, **lined)
+
+
+def _read_surface(source: Path, options: SurfaceOptions) -> SurfaceFile:
+    if options.columns is not None or options.classes is not None:
+        raise Failure(f"{source}: surfaces have neither columns nor classes", Exit.USAGE)
+    order = "enz" if options.easting_first else None
+    return read_surface(source, layer=options.layer, order=order)
 
 
 def figures_of(source: Path, tin: TIN, output: list[Path] | None) -> dict[str, Any]:
@@ -132,6 +160,7 @@ def figures_of(source: Path, tin: TIN, output: list[Path] | None) -> dict[str, A
         "delone": __version__,
         "input": str(source),
         "crs": tin.crs,
+        "units": tin.units,
         "points": tin.npoints,
         "triangles": tin.nsimplex,
         "outputs": [str(path) for path in output or ()],
@@ -147,7 +176,7 @@ def print_figures(source: Path, figures: dict[str, Any], *, as_json: bool, quiet
         return
     if quiet:
         return
-    left_out = {"delone", "input", "crs", "stages", "outputs", "peak_memory_bytes"}
+    left_out = {"delone", "input", "crs", "units", "stages", "outputs", "peak_memory_bytes"}
     if not figures["outputs"]:
         left_out.add("output_bytes")
     rows = []

@@ -15,13 +15,16 @@ from delone.io.registry import (
     read_geometries,
     read_mesh,
     read_points,
+    read_surface,
     write_mesh,
 )
+from delone.io.surfacefile import SurfaceFile
 
 __all__ = [
     "GeometrySet",
     "MeshFile",
     "PointSet",
+    "SurfaceFile",
     "input_suffixes",
     "line_numbers",
     "output_suffixes",
@@ -29,6 +32,7 @@ __all__ = [
     "read_geometries",
     "read_mesh",
     "read_points",
+    "read_surface",
     "write_mesh",
     "write_raster",
 ]

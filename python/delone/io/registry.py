@@ -29,10 +29,12 @@ if TYPE_CHECKING:
     from delone.exchange.parts import HasParts
     from delone.io.geometryset import GeometrySet
     from delone.io.pointset import PointSet
+    from delone.io.surfacefile import SurfaceFile
 
 __all__ = [
     "MeshFile",
     "holds_geometries",
+    "holds_surface",
     "input_suffixes",
     "is_text",
     "line_numbers",
@@ -41,12 +43,14 @@ __all__ = [
     "read_geometries",
     "read_mesh",
     "read_points",
+    "read_surface",
     "write_mesh",
 ]
 
 _JSON = (".geojson", ".json")
 _MESHES = (".vtu", ".ply", ".obj", ".stl", ".msh")
 _TRIANGLE = (".node", ".ele", ".poly")
+_LANDXML = (".xml", ".landxml")
 _READERS = {
     **dict.fromkeys((".csv", ".tsv", ".txt", ".xyz", ".pts", ".dat"), "text"),
     **dict.fromkeys((".npy", ".npz"), "arrays"),
@@ -55,6 +59,8 @@ _READERS = {
     **dict.fromkeys((".parquet", ".arrow", ".feather"), "parquet"),
     **dict.fromkeys(_MESHES, "mesh"),
     **dict.fromkeys(_TRIANGLE, "triangle"),
+    **dict.fromkeys(_LANDXML, "landxml"),
+    ".dxf": "dxf",
 }
 _WRITERS = {
     **dict.fromkeys(_MESHES, "mesh"),
@@ -62,6 +68,7 @@ _WRITERS = {
     **dict.fromkeys(_TRIANGLE, "triangle"),
     **dict.fromkeys((".gpkg", ".geojson"), "vector"),
     ".npz": "arrays",
+    **dict.fromkeys(_LANDXML, "landxml"),
     **dict.fromkeys((".png", ".svg"), "picture"),
 }
 # What holds tetrahedra, or triangles in 3-D, or draws them.
@@ -75,10 +82,11 @@ _HOLDERS: dict[str, tuple[tuple[str, ...], str]] = {
     "surface": (_SURFACES, "surfaces in 3-D"),
     "tetrahedra": (_TETRAHEDRA, "tetrahedra"),
 }
-_GEOMETRIES = ("vector", "parquet")
+_SHEETS = ("landxml", "dxf")
+_GEOMETRIES = ("vector", "parquet", *_SHEETS)
 # Formats that can store a reference system, or label the axes with it.
 _LABELS = (".png", ".svg")
-WITH_CRS = (".gpkg", ".geojson", ".npz", *_LABELS)
+WITH_CRS = (".gpkg", ".geojson", ".npz", *_LANDXML, *_LABELS)
 _MESH_READERS = {".npz": "arrays", **dict.fromkeys(_MESHES, "mesh"), ".ele": "triangle"}
 
 
@@ -169,8 +177,8 @@ def read_points(
     ----------
     path : str or path-like
         CSV, TSV, TXT, XYZ, PTS, DAT or GeoJSON (these also .gz, .xz, .bz2), npy, npz, LAS, LAZ,
-        GeoPackage, Shapefile, FlatGeobuf, Parquet, GeoParquet, Arrow, Feather, or the vertices of a
-        mesh.
+        GeoPackage, Shapefile, FlatGeobuf, Parquet, GeoParquet, Arrow, Feather, LandXML, DXF, or the
+        vertices of a mesh.
     columns : sequence of str or int, optional
         Columns of x, y and (optionally) z, by name or by number from 0. By default columns are
         recognized by their names; without names the first two or three are used, even if the first
@@ -178,7 +186,7 @@ def read_points(
     classes : sequence of int, optional
         Keep the points of these classes (LAS and LAZ).
     layer : str, optional
-        The layer, for files that have several; the array of an npz file.
+        The layer, for files that have several; the array of an npz file; the surface of LandXML.
     attributes : sequence of str, optional
         Further columns to read.
 
@@ -232,7 +240,7 @@ def read_points(
     options: dict[str, Any] = {"columns": columns, "attributes": tuple(attributes)}
     if module.__name__.endswith(".las"):
         options["classes"] = classes
-    if module.__name__.endswith((".vector", ".arrays")):
+    if module.__name__.endswith((".vector", ".arrays", ".landxml", ".dxf")):
         options["layer"] = layer
     elif layer is not None:
         raise FileFormatError(f"{file}: {suffix} files have no layers")
@@ -317,7 +325,8 @@ def read_geometries(
     Parameters
     ----------
     path : str or path-like
-        GeoJSON (also .gz, .xz, .bz2), GeoPackage, Shapefile, FlatGeobuf or GeoParquet.
+        GeoJSON (also .gz, .xz, .bz2), GeoPackage, Shapefile, FlatGeobuf or GeoParquet; the lines of
+        LandXML and DXF.
     columns : sequence of str or int, optional
         The one attribute that is the height of each feature, as for contour lines. By default
         heights are those of the coordinates, if any.
@@ -352,6 +361,80 @@ def read_geometries(
     module = _module(modules, _suffix(file), file, "read geometries from")
     read: Callable[..., GeometrySet] = module.read_geometries
     return read(file, columns=columns, layer=layer)
+
+
+def holds_surface(path: str | os.PathLike[str]) -> bool:
+    """Return whether the suffix is that of a file which `read_surface` reads."""
+    return _READERS.get(Path(path).suffix.lower()) in _SHEETS
+
+
+def read_surface(
+    path: str | os.PathLike[str], *, layer: str | None = None, order: str | None = None
+) -> SurfaceFile:
+    """Read the surface of a LandXML or DXF file: points, faces, lines and units.
+
+    Parameters
+    ----------
+    path : str or path-like
+        LandXML 1.0, 1.1 or 1.2 (.xml, .landxml), or DXF.
+    layer : str, optional
+        The name of the surface, for LandXML files that have several; for DXF the layers to read,
+        separated by commas, by default all.
+    order : {"nez", "enz"}, optional
+        Whether a LandXML file has northings first, as the standard says and by default, or, against
+        it, eastings.
+
+    Returns
+    -------
+    SurfaceFile
+        What the file has. `delone.terrain.TIN.from_file` makes a surface of it.
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no such file.
+    FileFormatError
+        The file is not what its suffix says, has no such surface or layer, contains something other
+        than finite numbers, or faces of unknown points; the message has the line. Northing and
+        easting are swapped, as the declared reference system shows (with pyproj).
+    InputError
+        `order` is not one of its choices.
+    MissingExtraError
+        lxml (extra ``landxml``) or ezdxf (extra ``dxf``) is not installed.
+
+    Notes
+    -----
+    Invisible faces (``i="1"``) are left out, and the neighbors of faces are ignored. Boundaries of
+    the types void, hole, hide and inner are holes; all others are boundaries. Contours are soft
+    breaklines. Of DXF, 3DFACE, POINT, LINE, LWPOLYLINE and POLYLINE of the model space are read;
+    blocks are not.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from delone.io import read_surface
+    >>> text = '<LandXML xmlns="http://www.landxml.org/schema/LandXML-1.2"><Units><Metric '
+    >>> text += 'linearUnit="meter"/></Units><Surfaces><Surface name="ground"><Definition>'
+    >>> text += '<Pnts><P id="1">0 0 5</P><P id="2">0 4 6</P><P id="3">3 0 7</P></Pnts>'
+    >>> text += "<Faces><F>1 2 3</F></Faces></Definition></Surface></Surfaces></LandXML>"
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "site.xml"
+    ...     _ = file.write_text(text)
+    ...     surface = read_surface(file)
+    >>> surface
+    <SurfaceFile of 3 points: 1 face, 0 breaklines, heights in m>
+    >>> surface.points[1].tolist()
+    [4.0, 0.0, 6.0]
+    """
+    file = _existing(path)
+    modules = {suffix: name for suffix, name in _READERS.items() if name in _SHEETS}
+    module = _module(modules, _suffix(file), file, "read a surface from")
+    if order not in (None, "nez", "enz"):
+        raise InputError(f"order must be 'nez' or 'enz', got {order!r:.60}")
+    plain = "nez" if modules[_suffix(file)] == "landxml" else "enz"
+    read: Callable[..., SurfaceFile] = module.read_surface
+    return read(file, name=layer, order=order or plain)
 
 
 def read_mesh(path: str | os.PathLike[str]) -> MeshFile:
@@ -411,8 +494,8 @@ def write_mesh(
     ----------
     path : str or path-like
         VTU, PLY, OBJ, STL, MSH, XDMF, INP, SU2, Triangle's NODE, ELE and POLY, GeoPackage,
-        GeoJSON, npz, PNG or SVG. An existing file is
-        replaced only once the new one is complete.
+        GeoJSON, LandXML (.xml, .landxml), npz, PNG or SVG. An existing file is replaced only once
+        the new one is complete.
     triangulation : Delaunay, ConstrainedDelaunay, Mesh, TetMesh or another mesh
         What to write: also a `RegularTriangulation`, a `PeriodicDelaunay` or a `ConvexHull` in 3-D.
         Tetrahedra go to VTU, MSH, XDMF, INP, SU2 and PNG, those of a `Delaunay` to npz as well. The
@@ -422,7 +505,7 @@ def write_mesh(
         Heights, the third coordinate, by default those of a `delone.terrain.TIN`; in plots the
         color, with shading if there are 2000 triangles or more, but never on a `Mesh`.
     crs : str, int or pyproj.CRS, optional
-        Coordinate reference system, for GeoPackage, GeoJSON, npz and the labels of plots; by
+        Coordinate reference system, for GeoPackage, GeoJSON, LandXML, npz and labels of plots; by
         default that of the triangulation, which `delone.from_geometry` keeps. Nothing is
         transformed.
     edges : bool, optional
@@ -445,6 +528,8 @@ def write_mesh(
     -----
     CRSWarning
         `crs` is given, but the format cannot store it.
+    UnitsWarning
+        A LandXML file names no units, because those of the heights are unknown.
 
     Notes
     -----
@@ -457,6 +542,8 @@ def write_mesh(
 
     Of a `PeriodicDelaunay` each triangle has three points of its own in the file, with ``row``, the
     row of ``triangulation.points`` that each is a copy of; `z` and attributes are those of rows.
+
+    LandXML needs heights. Of a TIN, it has breaklines and outlines, units and reference system.
 
     Examples
     --------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -10,10 +11,25 @@ from delone._arrays import as_choice, as_number, as_points, require_finite
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.counting import counted
 from delone.errors import CrossingSegmentsError, InputError, ShapeError
-from delone.georeference import as_known_crs, crs_of, same_crs, warn_of_degrees
+from delone.georeference import (
+    as_known_crs,
+    caller_level,
+    crs_of,
+    is_geographic,
+    same_crs,
+    warn_of_degrees,
+)
 from delone.terrain.heights import POLICIES, Claims, claims_of_lines, resolved
 from delone.terrain.lines import lines_of, rings_of
 from delone.terrain.profiles import profile
+from delone.units import (
+    UnitsWarning,
+    as_units,
+    heights_of_crs,
+    lengths_of_crs,
+    require_same_units,
+    warn_of_units,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,10 +42,22 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Built", "build", "peeled"]
+__all__ = [
+    "HARD",
+    "SOFT",
+    "Built",
+    "Lines",
+    "build",
+    "compact",
+    "degrees_of",
+    "is_soft",
+    "peeled",
+    "settled_units",
+    "system_of",
+]
 
 # The kinds of lines.
-_HARD, _SOFT, _BOUNDARY, _HOLE = range(4)
+HARD, SOFT, _BOUNDARY, _HOLE = range(4)
 
 
 class Built(NamedTuple):
@@ -43,9 +71,10 @@ class Built(NamedTuple):
     segments: Indices
     soft: Bools
     crs: str | None
+    units: str | None
 
 
-class _Lines(NamedTuple):
+class Lines(NamedTuple):
     """All lines: their points, segments between them, and the kind of each segment."""
 
     points: Floats  # (p, 3), heights NaN where there are none
@@ -65,6 +94,7 @@ def build(
     duplicates: str,
     crossing: str,
     crs: Any,
+    units: Any,
     planar: bool,
     workers: int | None,
     surface_of: Callable[[Floats], Surface],
@@ -76,8 +106,9 @@ def build(
     as_choice(duplicates, POLICIES, name="duplicates")
     as_choice(crossing, POLICIES, name="crossing")
     points = _points_of(xyz)
-    system = _system(crs, xyz, breaklines, soft_breaklines, boundary, holes)
-    warn_of_degrees(xyz, points[:, :2], planar=planar)
+    system = system_of(crs, xyz, breaklines, soft_breaklines, boundary, holes)
+    heights_in = settled_units(units, system, None, str(system))
+    warn_of_degrees(xyz, points[:, :2], planar=planar, by=degrees_of(system))
     lines = _gathered(
         [
             lines_of(breaklines, name="breaklines"),
@@ -107,13 +138,13 @@ def build(
         crossing=crossing,
     )
     kept = _within(mesh, lines)
-    soft = _is_soft(mesh, lines)
+    soft = is_soft(mesh, lines)
     if max_edge is not None:
         limit = as_number(max_edge, name="max_edge")
         if not limit > 0:
             raise InputError(f"max_edge must be above 0, got {max_edge!r}")
         kept = peeled(mesh.points, mesh.simplices, mesh.neighbors, kept, mesh.constrained, limit)
-    return _compact(mesh, heights, kept, soft, system)
+    return compact(mesh, heights, kept, soft, system, heights_in)
 
 
 def _points_of(xyz: Any) -> Floats:
@@ -131,7 +162,7 @@ def _points_of(xyz: Any) -> Floats:
     return found
 
 
-def _system(crs: Any, *data: Any) -> str | None:
+def system_of(crs: Any, *data: Any) -> str | None:
     """Return the one reference system that is given or declared by data."""
     found = as_known_crs(crs)
     for each in data:
@@ -146,9 +177,32 @@ def _system(crs: Any, *data: Any) -> str | None:
     return found
 
 
+def degrees_of(system: str | None) -> str | None:
+    """Return a system whose coordinates are degrees; None for all others."""
+    return system[:60] if system is not None and is_geographic(system) else None
+
+
+def settled_units(given: Any, system: str | None, lengths: str | None, by: str) -> str | None:
+    """Return the unit of heights, given or that of the system; warn if x and y have another one.
+
+    `lengths` is the unit of x and y that data declare, `by` their file.
+    """
+    vertical, horizontal = heights_of_crs(system), lengths_of_crs(system)
+    units = as_units(given) or vertical
+    require_same_units(units, vertical, what=f"units and the vertical axis of {system!s:.60}")
+    if lengths is not None and horizontal is not None and lengths != horizontal:
+        warnings.warn(
+            f"{by}: x and y are in {lengths}, but those of {system!s:.60} in {horizontal}",
+            UnitsWarning,
+            stacklevel=caller_level(),
+        )
+    warn_of_units(lengths or horizontal, units, by=by)
+    return units
+
+
 def _gathered(
     given: list[list[Floats]], points: Floats, surface_of: Callable[[Floats], Surface]
-) -> _Lines:
+) -> Lines:
     """Gather the lines of each kind, and put those without heights onto the points."""
     parts: list[Floats] = [np.empty((0, 3))]
     segments: list[NDArray[np.int64]] = [np.empty((0, 2), dtype=np.int64)]
@@ -167,7 +221,7 @@ def _gathered(
                 kinds.append(np.full(len(first), kind, dtype=np.int8))
                 parts.append(part)
                 count += len(part)
-    return _Lines(
+    return Lines(
         np.concatenate(parts),
         np.concatenate(segments).astype(np.int32),
         np.concatenate(kinds),
@@ -197,7 +251,7 @@ def _on_ground(line: Floats, ground: Surface, *, outside: bool) -> list[Floats]:
     return [part for part in parts if len(part) > 1]
 
 
-def _refuse_crossing_rings(lines: _Lines) -> None:
+def _refuse_crossing_rings(lines: Lines) -> None:
     """Refuse a boundary or hole that crosses itself or another one."""
     rings = [ring[:, :2] for kind in (_BOUNDARY, _HOLE) for ring in lines.rings[kind]]
     if not rings:
@@ -216,7 +270,7 @@ def _refuse_crossing_rings(lines: _Lines) -> None:
         ) from error
 
 
-def _within(mesh: ConstrainedDelaunay, lines: _Lines) -> Bools:
+def _within(mesh: ConstrainedDelaunay, lines: Lines) -> Bools:
     """Which triangles are inside of the boundary and outside of the holes."""
     if not (lines.rings[_BOUNDARY] or lines.rings[_HOLE]):
         return np.ones(mesh.nsimplex, dtype=bool)
@@ -249,10 +303,10 @@ def _odd(centers: Floats, rings: list[Floats]) -> Bools:
     return odd
 
 
-def _is_soft(mesh: ConstrainedDelaunay, lines: _Lines) -> Bools:
+def is_soft(mesh: ConstrainedDelaunay, lines: Lines) -> Bools:
     """Which subsegments are on soft breaklines only."""
     start, source = mesh.segment_source
-    hard = np.append(lines.kinds[source] != _SOFT, False)
+    hard = np.append(lines.kinds[source] != SOFT, False)
     found: Bools = np.add.reduceat(hard, start[:-1]) == 0 if len(start) > 1 else hard[:0]
     return found
 
@@ -286,8 +340,13 @@ def peeled(  # noqa: PLR0917
     return kept
 
 
-def _compact(
-    mesh: ConstrainedDelaunay, z: Floats, kept: Bools, soft: Bools, crs: str | None
+def compact(  # noqa: PLR0917
+    mesh: ConstrainedDelaunay,
+    z: Floats,
+    kept: Bools,
+    soft: Bools,
+    crs: str | None,
+    units: str | None,
 ) -> Built:
     """Leave out rows that are duplicates; all others are vertices."""
     if not kept.any():
@@ -303,4 +362,5 @@ def _compact(
         number[mesh.segments].astype(np.int32),
         soft,
         crs,
+        units,
     )

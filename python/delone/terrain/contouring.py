@@ -52,6 +52,8 @@ class Contours(ReadOnly):
         All levels, also those without lines.
     crs : str, optional
         Coordinate reference system.
+    units : str, optional
+        The unit of heights.
 
     Examples
     --------
@@ -68,6 +70,7 @@ class Contours(ReadOnly):
     index: Bools
     levels: Floats
     crs: str | None = None
+    units: str | None = None
 
     def __len__(self) -> int:
         return len(self.level)
@@ -209,6 +212,8 @@ class Bands(ReadOnly):
         level and above the last.
     crs : str, optional
         Coordinate reference system.
+    units : str, optional
+        The unit of heights.
 
     Examples
     --------
@@ -225,6 +230,7 @@ class Bands(ReadOnly):
     low: Floats
     high: Floats
     crs: str | None = None
+    units: str | None = None
 
     def __len__(self) -> int:
         return len(self.low)
@@ -340,6 +346,7 @@ def lines(tin: Surface, levels: Floats, marked: Bools, smooth: int, max_points: 
         index=marked[made.levels],
         levels=levels,
         crs=tin.crs,
+        units=tin.units,
     )
 
 
@@ -374,4 +381,5 @@ def bands(tin: Surface, levels: Floats, max_points: int) -> Bands:
         low=ends[made.bands],
         high=ends[made.bands + 1],
         crs=tin.crs,
+        units=tin.units,
     )

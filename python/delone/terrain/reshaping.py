@@ -322,4 +322,5 @@ def _built(tin: Surface, mesh: ConstrainedDelaunay, z: Floats, hard: Bools, row:
         mesh.segments.copy(),
         soft,
         tin.crs,
+        tin.units,
     )

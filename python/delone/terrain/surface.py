@@ -79,6 +79,10 @@ class Surface(Protocol):
         """Coordinate reference system."""
 
     @property
+    def units(self) -> str | None:
+        """The unit of heights."""
+
+    @property
     def workers(self) -> int | None:
         """Maximum number of threads."""
 

@@ -6,21 +6,22 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from delone._arrays import as_vectors
+from delone._arrays import as_flag, as_vectors
 from delone.counting import counted
-from delone.errors import DtypeError
+from delone.errors import DtypeError, InputError
 from delone.immutable import kept, sealed
 from delone.plane import topology
 from delone.refine.validation import MeshValidation, validate
 from delone.terrain import building, contouring, profiles, slopes, volumes
+from delone.terrain import faces as faces_
 from delone.terrain.earthworks import Earthworks
+from delone.terrain.surveyed import Surveyed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.exchange.parts import Parts
     from delone.interpolate.raster import Grid
 
     Bools = NDArray[np.bool_]
@@ -39,7 +40,7 @@ class _Sheet(NamedTuple):
     heights: Floats
 
 
-class TIN(Earthworks):
+class TIN(Surveyed, Earthworks):
     """A triangulated irregular network: a surface over triangles, linear in each.
 
     Create one with `from_points`, `from_raster` or `from_file`.
@@ -80,15 +81,7 @@ class TIN(Earthworks):
     4.0
     """
 
-    __slots__ = (
-        "_all_neighbors",
-        "_all_simplices",
-        "_breaklines",
-        "_crs",
-        "_kept",
-        "_soft",
-        "_z",
-    )
+    __slots__ = ("_all_neighbors", "_all_simplices", "_kept")
 
     _ARRAYS: ClassVar[tuple[str, ...]] = (
         "points",
@@ -102,11 +95,7 @@ class TIN(Earthworks):
 
     _all_neighbors: Indices
     _all_simplices: Indices
-    _breaklines: Indices
-    _crs: NDArray[np.str_]
     _kept: Bools
-    _soft: Bools
-    _z: Floats
 
     def __init__(self, *given: Any, **options: Any) -> None:
         raise DtypeError("create a TIN with TIN.from_points, from_raster or from_file")
@@ -124,6 +113,7 @@ class TIN(Earthworks):
         duplicates: str = "raise",
         crossing: str = "raise",
         crs: Any = None,
+        units: str | None = None,
         planar: bool = False,
         workers: int | None = None,
     ) -> Self:
@@ -154,6 +144,9 @@ class TIN(Earthworks):
         crs : optional
             Coordinate reference system, as ``"EPSG:28992"``, an EPSG code or a pyproj.CRS; by
             default that of the data.
+        units : str, optional
+            The unit of heights, as ``"m"``, ``"ft"`` or ``"us-ft"``; by default that of the
+            vertical axis of the reference system, if it has one.
         planar : bool, optional
             Whether longitudes and latitudes are intentional, without a warning.
         workers : int, optional
@@ -179,6 +172,11 @@ class TIN(Earthworks):
         DegenerateInputError, ShapeError, DtypeError, MemoryError, KeyboardInterrupt
             As for `delone.Delaunay`.
 
+        Warns
+        -----
+        GeographicWarning, UnitsWarning
+            x and y are degrees, or in another unit than the heights.
+
         Examples
         --------
         >>> from delone.terrain import TIN
@@ -196,6 +194,7 @@ class TIN(Earthworks):
             duplicates=duplicates,
             crossing=crossing,
             crs=crs,
+            units=units,
             planar=planar,
             workers=workers,
             surface_of=lambda points: cls.from_points(
@@ -242,18 +241,26 @@ class TIN(Earthworks):
 
     @classmethod
     def from_file(
-        cls, path: Any, *, columns: Sequence[str | int] | None = None, **options: Any
+        cls,
+        path: Any,
+        *,
+        columns: Sequence[str | int] | None = None,
+        layer: str | None = None,
+        order: str | None = None,
+        **options: Any,
     ) -> Self:
-        r"""Triangulate the points of a file: LAS, LAZ, CSV, GeoPackage and others.
+        r"""Make a surface of a file: LandXML, DXF, or points in LAS, LAZ, CSV and others.
 
         Parameters
         ----------
         path : str or path-like
-            The file, of any format of `delone.io.read_points`.
+            The file, of any format of `delone.io.read_surface` or `delone.io.read_points`.
         columns : sequence of str or int, optional
             The columns of x, y and z; by default by their names.
+        layer, order : str, optional
+            As for these functions: the name of a surface or layer, ``"enz"`` for eastings first.
         **options
-            Options of `from_points`.
+            Options of `from_surface` for LandXML and DXF, else of `from_points`.
 
         Returns
         -------
@@ -263,7 +270,7 @@ class TIN(Earthworks):
         Raises
         ------
         FileFormatError, MissingExtraError, OSError
-            As for `delone.io.read_points`; otherwise as for `from_points`.
+            As for these functions; otherwise as for `from_surface` and `from_points`.
 
         Examples
         --------
@@ -277,8 +284,60 @@ class TIN(Earthworks):
         <TIN of 3 points: 1 triangle, heights 1 to 3>
         """
         from delone import io
+        from delone.io.registry import holds_surface
 
-        return cls.from_points(io.read_points(path, columns=columns), **options)
+        if holds_surface(path):
+            if columns is not None:
+                raise InputError(f"{path}: surfaces have x, y and z, and no columns")
+            return cls.from_surface(io.read_surface(path, layer=layer, order=order), **options)
+        if order is not None:
+            raise InputError(f"{path}: order is for LandXML files; name the columns")
+        survey = io.read_points(path, columns=columns, layer=layer)
+        return cls.from_points(survey, **options)
+
+    @classmethod
+    def from_surface(cls, surface: Any, *, faces: bool = True, **options: Any) -> Self:
+        """Make a TIN of the surface of a file, with the triangles of the file.
+
+        Parameters
+        ----------
+        surface : delone.io.SurfaceFile
+            The result of `delone.io.read_surface`.
+        faces : bool, optional
+            Keep the faces, if there are some, as triangles. Else points and lines are triangulated.
+        **options
+            Options of `from_points`; those for lines and `max_edge` only where no faces are kept.
+
+        Returns
+        -------
+        TIN
+            The surface, with the units and the reference system of the file.
+
+        Raises
+        ------
+        InputError
+            Faces overlap; the message has a place. Otherwise as for `from_points`.
+        ConflictingValuesError
+            Points with the same x and y have different heights: a vertical wall.
+
+        Notes
+        -----
+        Vertices are the points of visible faces. Their edges on breaklines are breaklines, and
+        those that a Delaunay triangulation would not have are soft ones. Faces without an area seen
+        from above are left out.
+
+        Examples
+        --------
+        See `delone.io.read_surface`.
+        """
+        if as_flag(faces, name="faces") and len(surface.faces):
+            return cls._built(faces_.build_faces(surface, options), options.get("workers"))
+        options = faces_.with_lines(surface, options)
+        system = options["crs"] = building.system_of(options.get("crs"), surface)
+        options["units"] = building.settled_units(
+            options.get("units") or surface.units, system, surface.lengths, surface.source
+        )
+        return cls.from_points(surface.points, **options)
 
     @classmethod
     def _built(cls, made: building.Built, workers: int | None) -> Self:
@@ -292,12 +351,13 @@ class TIN(Earthworks):
                 "breaklines": made.segments,
                 "soft": made.soft,
                 "crs": np.array(made.crs or ""),
+                "units": np.array(made.units or ""),
             },
             workers=workers,
         )
 
     def _fill(self, arrays: Any, stages: Any, workers: int | None) -> None:
-        crs = arrays.get("crs", np.array(""))
+        known = {name: arrays.get(name, np.array("")) for name in ("crs", "units")}
         plain = {name: arrays[name] for name in self._ARRAYS}
         number = np.cumsum(plain["kept"], dtype=np.int32) - 1
         number = np.append(np.where(plain["kept"], number, -1), -1).astype(np.int32)
@@ -306,14 +366,15 @@ class TIN(Earthworks):
             | {
                 "simplices": plain["all_simplices"][plain["kept"]],
                 "neighbors": number[plain["all_neighbors"][plain["kept"]]],
-                "crs": crs,
-            },
+            }
+            | known,
             stages,
             workers,
         )
 
     def _arrays(self) -> dict[str, NDArray[Any]]:
-        return super()._arrays() | ({} if self.crs is None else {"crs": self._crs})
+        known = {"crs": self._crs, "units": self._units}
+        return super()._arrays() | {name: text for name, text in known.items() if str(text)}
 
     def _described(self) -> str:
         low, high = float(self.z.min()), float(self.z.max())
@@ -335,88 +396,6 @@ class TIN(Earthworks):
             return None
         number = np.cumsum(self._kept, dtype=np.int32) - 1
         return np.append(np.where(self._kept, number, -1), -1).astype(np.int32)
-
-    @property
-    def z(self) -> Floats:
-        """Heights of the vertices, (n,)."""
-        return self._z
-
-    @property
-    @kept
-    def xyz(self) -> Floats:
-        """The vertices with their heights, (n, 3)."""
-        return sealed(np.column_stack((self._points, self._z)))
-
-    @property
-    def breaklines(self) -> Indices:
-        """The edges on lines, (q, 2), as rows of `points`."""
-        return self._breaklines
-
-    @property
-    def soft(self) -> Bools:
-        """Which of the breaklines are soft only, (q,)."""
-        return self._soft
-
-    @property
-    def crs(self) -> str | None:
-        """Coordinate reference system, as ``"EPSG:28992"`` or WKT; None if it is unknown."""
-        return str(self._crs) or None
-
-    def _parts(self) -> Parts:
-        from delone.exchange.parts import Parts
-
-        return Parts(
-            self._points,
-            self._simplices,
-            segments=self._breaklines if len(self._breaklines) else None,
-            crs=self.crs,
-        )
-
-    def to_meshio(self) -> Any:
-        """Convert to a mesh of meshio with heights (extra ``mesh``).
-
-        Returns
-        -------
-        meshio.Mesh
-            Triangles between points in 3-D, and breaklines as lines.
-
-        Raises
-        ------
-        MissingExtraError
-            meshio is not installed.
-
-        Examples
-        --------
-        >>> from delone.terrain import TIN
-        >>> TIN.from_points([(0, 0, 1), (1, 0, 2), (0, 1, 3)]).to_meshio().points[:, 2]
-        array([1., 2., 3.])
-        """
-        from delone.exchange.meshio import to_meshio
-
-        return to_meshio(self._parts()._replace(points=self.xyz))
-
-    def to_pyvista(self) -> Any:
-        """Convert to a surface of PyVista with heights (extra ``pyvista``).
-
-        Returns
-        -------
-        pyvista.PolyData
-            Triangles between points in 3-D.
-
-        Raises
-        ------
-        MissingExtraError
-            PyVista is not installed.
-
-        Examples
-        --------
-        >>> from delone.terrain import TIN
-        >>> TIN.from_points([(0, 0, 1), (1, 0, 2), (0, 1, 3)]).to_pyvista().bounds[4:]
-        (1.0, 3.0)
-        """
-        from delone.exchange.pyvista import to_pyvista
-
-        return to_pyvista(self._parts()._replace(points=self.xyz))
 
     def _sheet(self) -> _Sheet:
         return _Sheet(self._points, self._simplices, self._neighbors, self._z)
@@ -726,7 +705,8 @@ class TIN(Earthworks):
         Raises
         ------
         InputError
-            The surfaces are in different reference systems, or `other` is none of these.
+            The surfaces are in different reference systems, or their heights in different units;
+            or `other` is none of these.
 
         Notes
         -----

@@ -15,6 +15,7 @@ from delone.errors import InputError
 from delone.georeference import same_crs
 from delone.immutable import ReadOnly, sealed
 from delone.terrain.lines import rings_of
+from delone.units import require_same_units
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -50,6 +51,10 @@ class Volume(ReadOnly):
         The area where both are defined, including where they are equal.
     of_triangles : ndarray of float64, shape (m, 5)
         The same five numbers for each triangle of the surface, for maps.
+    units : str, optional
+        The unit of heights. Volumes are in this unit times the unit of x and y squared.
+    crs : str, optional
+        Coordinate reference system.
 
     Examples
     --------
@@ -65,6 +70,8 @@ class Volume(ReadOnly):
     fill_area: float
     area: float
     of_triangles: Floats
+    units: str | None = None
+    crs: str | None = None
 
     @property
     def net(self) -> float:
@@ -95,6 +102,7 @@ def volume(tin: Surface, other: Any, region: Any) -> Volume:
             raise InputError(
                 f"the surfaces are in {tin.crs:.60} and in {other.crs:.60}: transform one of them"
             )
+        require_same_units(tin.units, other.units, what="the surfaces")
     else:
         plane = _plane(other)
     found = _core.volumes2(tin._sheet(), surface, plane, _region(region), as_workers(tin.workers))
@@ -108,6 +116,8 @@ def volume(tin: Surface, other: Any, region: Any) -> Volume:
         fill_area=fill_area,
         area=area,
         of_triangles=of_triangles,
+        units=tin.units,
+        crs=tin.crs,
     )
 
 

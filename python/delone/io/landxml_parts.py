@@ -1,0 +1,194 @@
+"""The elements of a LandXML surface: numbers, points, faces, lines and units."""
+
+from __future__ import annotations
+
+import re
+from array import array
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.errors import FileFormatError, InputError
+from delone.io.surfacefile import SurfaceFile
+from delone.units import as_units
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["ORDERS", "Draft", "Head"]
+
+# The places of x and y among the first two numbers of a point.
+ORDERS = {"nez": (1, 0), "enz": (0, 1)}
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_EPSG = re.compile(r"\d{1,6}")
+# Lines by the element around them: breaklines, contours, boundaries, and points.
+_AROUND = ("Breakline", "Contour", "Boundary", "DataPoints", "Chain", "Watershed")
+_HOLES = ("void", "hole", "hide", "inner")
+
+
+class Head:
+    """What is said before the surfaces: units and reference system."""
+
+    def __init__(self, source: str, order: tuple[int, int]) -> None:
+        self.source, self.order = source, order
+        self.lengths: str | None = None
+        self.units: str | None = None
+        self.crs: str | None = None
+
+    def begin(self, tag: str, element: Any) -> None:
+        """Take note of an element."""
+        if tag in ("Metric", "Imperial"):
+            self.lengths = self._unit(element, "linearUnit")
+            self.units = self._unit(element, "elevationUnit") or self.lengths
+        elif tag == "CoordinateSystem" and self.crs is None:
+            code = (element.get("epsgCode") or "").strip().upper().removeprefix("EPSG:")
+            wkt = (element.get("ogcWktCode") or "").strip()
+            if code and not _EPSG.fullmatch(code):
+                raise self.fault(element, f"epsgCode {code!r:.40} is not a number")
+            self.crs = f"EPSG:{int(code)}" if code and int(code) else wkt or None
+
+    def _unit(self, element: Any, name: str) -> str | None:
+        value = element.get(name)
+        try:
+            return as_units(value, name=name)
+        except InputError as error:
+            raise self.fault(element, str(error)) from error
+
+    def fault(self, element: Any, what: str) -> FileFormatError:
+        """Return an error that names the line of an element."""
+        return FileFormatError(f"{self.source}, line {element.sourceline}: {what}")
+
+    def numbers(self, element: Any, width: int) -> Floats:
+        """Return the numbers of an element as rows (k, 3): x, y and height, NaN without one."""
+        words = (element.text or "").split()
+        for word in words:
+            if not _NUMBER.fullmatch(word):
+                raise self.fault(element, f"{word!r:.40} is not a finite number")
+        if not words or len(words) % width:
+            raise self.fault(
+                element, f"{width} numbers for each point are needed, got {len(words)} numbers"
+            )
+        values = np.array(words, dtype=np.float64).reshape(-1, width)
+        if not np.isfinite(values).all():
+            raise self.fault(element, "a number is beyond the range of doubles")
+        rows = np.full((len(values), 3), np.nan)
+        rows[:, :2] = values[:, self.order]
+        if width == 3:
+            rows[:, 2] = values[:, 2]
+        return rows
+
+
+class Draft:
+    """A surface while it is read."""
+
+    def __init__(self, head: Head, name: str | None, line: int) -> None:
+        self.head, self.name, self.line = head, name, line
+        self._coordinates, self._rows = array("d"), dict[str, int]()
+        self._faces, self._pending = array("q"), list[tuple[int, list[str], int]]()
+        self._lines: dict[str, list[Floats]] = {}
+        self._has_faces = self._is_grid = False
+        self._around: Any = None
+        self._kind = ""
+
+    def begin(self, tag: str, element: Any) -> None:
+        """Take note of an element that begins."""
+        if tag in _AROUND:
+            self._around, self._kind = element, tag
+        elif tag == "Definition":
+            self._is_grid = (element.get("surfType") or "TIN").casefold() == "grid"
+
+    def end(self, tag: str, element: Any) -> None:
+        """Read an element that ends."""
+        if tag == "P":
+            self._point(element)
+        elif tag == "F":
+            self._face(element)
+        else:
+            rows = self.head.numbers(element, 2 if tag == "PntList2D" else 3)
+            self._line(element, rows)
+
+    def _point(self, element: Any) -> None:
+        name = (element.get("id") or "").strip()
+        if not name:
+            raise self.head.fault(element, "this point has no id")
+        if name in self._rows:
+            raise self.head.fault(element, f"a second point has the id {name!r:.40}")
+        if len(element):
+            raise self.head.fault(element, f"point {name!r:.40} contains another element")
+        found = self.head.numbers(element, 3)
+        if len(found) > 1:
+            raise self.head.fault(element, f"point {name!r:.40} has {found.size} numbers, not 3")
+        self._rows[name] = len(self._rows)
+        self._coordinates.extend(found[0].tolist())
+
+    def _face(self, element: Any) -> None:
+        names = (element.text or "").split()
+        if len(names) != 3 or len(set(names)) != 3:
+            raise self.head.fault(
+                element, f"a face has three different points, got {(element.text or '')!r:.60}"
+            )
+        self._has_faces = True
+        if (element.get("i") or "0").strip() in ("1", "true"):
+            return
+        for name in names:
+            row = self._rows.get(name)
+            if row is None:  # points may follow
+                self._pending.append((len(self._faces), [name], element.sourceline))
+            self._faces.append(-1 if row is None else row)
+
+    def _line(self, element: Any, rows: Floats) -> None:
+        around = self._around
+        if around is None or self._kind in ("Chain", "Watershed"):
+            return
+        kind = self._kind
+        if kind == "Boundary":
+            given = (around.get("bndType") or "outer").strip().casefold()
+            kind = "Hole" if given in _HOLES else "Boundary"
+        elif kind == "Breakline" and (around.get("desc") or "").strip() == "soft":
+            kind = "Contour"
+        elif kind == "Contour" and around.get("elev") is not None:
+            level = around.get("elev").strip()
+            if not _NUMBER.fullmatch(level):
+                raise self.head.fault(around, f"elev {level!r:.40} is not a finite number")
+            rows[:, 2] = float(level)
+        if kind == "DataPoints" and np.isnan(rows[:, 2]).any():
+            raise self.head.fault(element, "points of DataPoints have no heights")
+        self._lines.setdefault(kind, []).append(rows)
+
+    def finished(self) -> SurfaceFile:
+        """Return the surface."""
+        head = self.head
+        if self._is_grid:
+            raise FileFormatError(
+                f"{head.source}, line {self.line}: surface {self.name!r} is a grid, not a TIN"
+            )
+        for place, (name,), line in self._pending:
+            if name not in self._rows:
+                raise FileFormatError(
+                    f"{head.source}, line {line}: a face refers to point {name!r:.40}, which the "
+                    "surface does not have"
+                )
+            self._faces[place] = self._rows[name]
+        points = np.array(self._coordinates, dtype=np.float64).reshape(-1, 3)
+        faces = np.array(self._faces, dtype=np.int64).reshape(-1, 3)
+        if self._has_faces and not len(faces):
+            raise FileFormatError(
+                f"{head.source}, line {self.line}: all faces of surface {self.name!r} are invisible"
+            )
+        if not len(faces):
+            points = np.concatenate((points, *self._lines.get("DataPoints", ())))
+        return SurfaceFile(
+            points=points,
+            faces=faces.astype(np.int32),
+            breaklines=tuple(self._lines.get("Breakline", ())),
+            soft_breaklines=tuple(self._lines.get("Contour", ())),
+            boundary=tuple(self._lines.get("Boundary", ())),
+            holes=tuple(self._lines.get("Hole", ())),
+            units=head.units,
+            lengths=head.lengths,
+            crs=head.crs,
+            name=self.name,
+            source=head.source,
+        )

@@ -1,0 +1,179 @@
+"""The surface of a file: points with heights, faces, lines and units, as the file has them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.counting import counted
+from delone.errors import FileFormatError
+from delone.extras import require
+from delone.georeference import parsed
+from delone.io.geometryset import GeometrySet
+from delone.io.pointset import PointSet
+from delone.io.systems import check_system
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["SurfaceFile"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SurfaceFile:
+    """The surface of a LandXML or DXF file, not triangulated.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 3)
+        The points: easting (x), northing (y) and height.
+    faces : ndarray of int32, shape (m, 3)
+        The visible faces as rows of `points`; empty if the file has none.
+    breaklines, soft_breaklines : tuple of ndarray of float64, shape (k, 3), optional
+        The lines that edges follow; heights are NaN where the file has none.
+    boundary, holes : tuple of ndarray of float64, shape (k, 3), optional
+        The rings where the surface ends.
+    units : str, optional
+        The unit of heights, as ``"m"``, ``"ft"`` or ``"us-ft"``; None if the file has none.
+    lengths : str, optional
+        The unit of x and y.
+    crs : str, optional
+        Coordinate reference system, as ``"EPSG:28992"`` or in WKT; None if the file has none.
+    name : str, optional
+        The name of the surface.
+    source : str, optional
+        The file.
+
+    Examples
+    --------
+    See `read_surface`.
+    """
+
+    points: Floats
+    faces: Indices
+    breaklines: tuple[Floats, ...] = ()
+    soft_breaklines: tuple[Floats, ...] = ()
+    boundary: tuple[Floats, ...] = ()
+    holes: tuple[Floats, ...] = ()
+    units: str | None = None
+    lengths: str | None = None
+    crs: str | None = None
+    name: str | None = None
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        check_system(self.crs, self.source)
+
+    def __repr__(self) -> str:
+        lines = len(self.breaklines) + len(self.soft_breaklines)
+        units = "unknown units" if self.units is None else f"heights in {self.units}"
+        return (
+            f"<SurfaceFile of {counted(len(self.points), 'point')}: "
+            f"{counted(len(self.faces), 'face')}, {counted(lines, 'breakline')}, {units}>"
+        )
+
+    def as_points(self) -> PointSet:
+        """Return the points with their heights, and the vertices of lines that have some.
+
+        Returns
+        -------
+        PointSet
+            The points, then those of breaklines if there are no faces.
+
+        Raises
+        ------
+        FileFormatError
+            There are none.
+
+        Examples
+        --------
+        See `read_surface`.
+        """
+        found = self.points
+        if not len(self.faces):
+            lines = [
+                line[~np.isnan(line[:, 2])] for line in (*self.breaklines, *self.soft_breaklines)
+            ]
+            found = np.concatenate((found, *lines))
+        if not len(found):
+            raise FileFormatError(f"{self.source} contains no points with heights")
+        x_y, z = np.ascontiguousarray(found[:, :2]), found[:, 2].copy()
+        return PointSet(points=x_y, z=z, crs=self.crs, source=self.source)
+
+    def as_geometries(self) -> GeometrySet:
+        """Return breaklines as lines, boundary and holes as polygons (extra ``geo``).
+
+        Returns
+        -------
+        GeometrySet
+            One geometry for each.
+
+        Raises
+        ------
+        FileFormatError
+            There are none.
+        MissingExtraError
+            shapely is not installed.
+
+        Examples
+        --------
+        See `read_surface`.
+        """
+        shapely = require("shapely", extra="geo", what="geometries")
+        lines = [*self.breaklines, *self.soft_breaklines]
+        rings = [*self.boundary, *self.holes]
+        if not lines and not rings:
+            raise FileFormatError(f"{self.source} contains no lines")
+        found = [shapely.linestrings(_known(line)) for line in lines]
+        found += [shapely.polygons(_known(ring)) for ring in rings]
+        geometries = np.empty(len(found), dtype=object)
+        geometries[:] = found
+        return GeometrySet(geometries=geometries, crs=self.crs, source=self.source)
+
+    def require_order(self) -> None:
+        """Refuse northing and easting that are swapped, if the reference system makes it evident.
+
+        That is, if all points are outside of the area of use, and would be inside if swapped.
+        Without pyproj nothing is evident.
+        """
+        bounds = _area(self.crs)
+        if bounds is None or not len(self.points):
+            return
+        x, y = self.points[:, 0], self.points[:, 1]
+        if not _inside(x, y, bounds).any() and _inside(y, x, bounds).all():
+            raise FileFormatError(
+                f"{self.source}: easting and northing are swapped: ({x[0]:.10g}, {y[0]:.10g}) is "
+                f"outside of the area of {self.crs!s:.60}, ({y[0]:.10g}, {x[0]:.10g}) inside. "
+                'If the file has the easting first, read it with order="enz"'
+            )
+
+
+def _known(line: Floats) -> Any:
+    """A line without its heights if one is missing."""
+    return line[:, :2] if np.isnan(line[:, 2]).any() else line
+
+
+def _area(crs: str | None) -> tuple[float, float, float, float] | None:
+    """The least and greatest x and y in the area of use of a projected system."""
+    system = None if crs is None else parsed(crs)
+    if system is None or not system.is_projected or system.area_of_use is None:
+        return None
+    area = system.area_of_use
+    pyproj = require("pyproj", extra="geo", what="reference systems")
+    to_plane = pyproj.Transformer.from_crs(system.geodetic_crs, system, always_xy=True)
+    bounds = to_plane.transform_bounds(area.west, area.south, area.east, area.north)
+    return bounds if np.isfinite(bounds).all() else None
+
+
+def _inside(x: Floats, y: Floats, bounds: tuple[float, float, float, float]) -> NDArray[np.bool_]:
+    west, south, east, north = bounds
+    wide, high = (east - west) / 4, (north - south) / 4
+    found: NDArray[np.bool_] = (
+        (x >= west - wide) & (x <= east + wide) & (y >= south - high) & (y <= north + high)
+    )
+    return found

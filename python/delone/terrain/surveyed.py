@@ -1,0 +1,120 @@
+"""What a TIN keeps of its survey: heights, lines, reference system and units; its exports."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.immutable import kept, sealed
+from delone.triangulation import HullTiling
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.exchange.parts import Parts
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Surveyed"]
+
+
+class Surveyed(HullTiling):
+    """A triangulation with heights, lines, a reference system and units."""
+
+    __slots__ = ("_breaklines", "_crs", "_soft", "_units", "_z")
+
+    _breaklines: Indices
+    _crs: NDArray[np.str_]
+    _soft: Bools
+    _units: NDArray[np.str_]
+    _z: Floats
+
+    @property
+    def z(self) -> Floats:
+        """Heights of the vertices, (n,)."""
+        return self._z
+
+    @property
+    @kept
+    def xyz(self) -> Floats:
+        """The vertices with their heights, (n, 3)."""
+        return sealed(np.column_stack((self._points, self._z)))
+
+    @property
+    def breaklines(self) -> Indices:
+        """The edges on lines, (q, 2), as rows of `points`."""
+        return self._breaklines
+
+    @property
+    def soft(self) -> Bools:
+        """Which of the breaklines are soft only, (q,)."""
+        return self._soft
+
+    @property
+    def crs(self) -> str | None:
+        """Coordinate reference system, as ``"EPSG:28992"`` or WKT; None if it is unknown."""
+        return str(self._crs) or None
+
+    @property
+    def units(self) -> str | None:
+        """The unit of heights, as ``"m"``, ``"ft"`` or ``"us-ft"``; None if it is unknown."""
+        return str(self._units) or None
+
+    def _parts(self) -> Parts:
+        from delone.exchange.parts import Parts
+
+        return Parts(
+            self._points,
+            self._simplices,
+            segments=self._breaklines if len(self._breaklines) else None,
+            crs=self.crs,
+        )
+
+    def to_meshio(self) -> Any:
+        """Convert to a mesh of meshio with heights (extra ``mesh``).
+
+        Returns
+        -------
+        meshio.Mesh
+            Triangles between points in 3-D, and breaklines as lines.
+
+        Raises
+        ------
+        MissingExtraError
+            meshio is not installed.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> TIN.from_points([(0, 0, 1), (1, 0, 2), (0, 1, 3)]).to_meshio().points[:, 2]
+        array([1., 2., 3.])
+        """
+        from delone.exchange.meshio import to_meshio
+
+        return to_meshio(self._parts()._replace(points=self.xyz))
+
+    def to_pyvista(self) -> Any:
+        """Convert to a surface of PyVista with heights (extra ``pyvista``).
+
+        Returns
+        -------
+        pyvista.PolyData
+            Triangles between points in 3-D.
+
+        Raises
+        ------
+        MissingExtraError
+            PyVista is not installed.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> TIN.from_points([(0, 0, 1), (1, 0, 2), (0, 1, 3)]).to_pyvista().bounds[4:]
+        (1.0, 3.0)
+        """
+        from delone.exchange.pyvista import to_pyvista
+
+        return to_pyvista(self._parts()._replace(points=self.xyz))
