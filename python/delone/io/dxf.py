@@ -63,7 +63,9 @@ def read_surface(path: Path, *, name: str | None, order: str) -> SurfaceFile:
     drawing = _drawing(path)
     space = drawing.modelspace()
     layers = _layers(space, name, str(path))
-    faces, points, lines = list[Floats](), list[Floats](), list[Floats]()
+    faces: list[Floats] = []
+    points: list[Floats] = []
+    lines: list[Floats] = []
     others = Counter[str]()
     for entity in space:
         if layers is not None and entity.dxf.layer.casefold() not in layers:
