@@ -232,9 +232,11 @@ def test_swapped_coordinates_are_found_by_the_system(tmp_path):
     place += '<P id="c">155004 463000 1</P>\n'
     text = document(place, "<F>a b c</F>", before='<CoordinateSystem epsgCode="28992"/>')
     path = written(tmp_path, text)
-    with pytest.raises(FileFormatError, match=r'northing are swapped.*order="enz"'):
+    with pytest.raises(FileFormatError, match=r"northing are swapped.*order='enz'"):
         TIN.from_file(path)
     assert TIN.from_file(path, order="enz").points[0].tolist() == [155000, 463000]
+    with pytest.raises(FileFormatError, match=r"northing are swapped.*order='nez'"):
+        TIN.from_file(FILES / "civil3d.xml", order="enz")
     plain = written(tmp_path, document(place, "<F>a b c</F>"))
     assert TIN.from_file(plain).points[0].tolist() == [463000, 155000]
     with pytest.raises(InputError, match="order must be"):

@@ -164,6 +164,7 @@ def _refuse_for_tiles(given: dict[str, Any], what: str) -> None:
     names = ("bounds", "breaklines", "soft_breaklines", "boundary", "max_edge", "columns")
     set_ = [name for name in (*names, "classes", "layer", "workers") if given[name] is not None]
     set_ += [name for name in ("duplicates", "crossing") if given[name] != "raise"]
+    set_ += [name for name in ("retriangulate", "easting_first") if given[name]]
     if set_:
         options = ", ".join(f"--{name.replace('_', '-')}" for name in set_)
         raise Failure(f"{options}: for files of points, not for folders of tiles", Exit.USAGE)

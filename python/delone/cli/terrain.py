@@ -188,6 +188,9 @@ def volume(
     region: Annotated[
         Path | None, typer.Option(help="File of polygons to which the volume is limited.")
     ] = None,
+    other_layer: Annotated[
+        str | None, typer.Option(help="Layer or surface of OTHER, if not that of --layer.")
+    ] = None,
     breaklines: Breaklines = None,
     soft_breaklines: SoftBreaklines = None,
     boundary: Boundary = None,
@@ -216,7 +219,8 @@ def volume(
         with reading():
             within = None if region is None else read_geometries(region)
         tin = surface(source, options, watch, say)
-        goal = _goal(other, options, watch, say)
+        within_other = replace(options, layer=other_layer or options.layer)
+        goal = _goal(other, within_other, watch, say)
         say("computing volumes")
         with watch.stage("volume"):
             found = tin.volume(goal, region=within)

@@ -62,8 +62,7 @@ def read_surface(path: Path, *, name: str | None, order: str) -> SurfaceFile:
     except etree.XMLSyntaxError as error:
         raise FileFormatError(f"{path} is not valid XML: {error.msg}") from error
     found = _chosen(drafts, name, str(path)).finished()
-    if order == "nez":
-        found.require_order()
+    found.require_order(order)
     return found
 
 
@@ -129,5 +128,5 @@ def _chosen(drafts: list[Draft], name: str | None, source: str) -> Draft:
         raise FileFormatError(f"{source} has no surface {name!r}; its surfaces are {names}")
     if len(found) > 1:
         what = "several surfaces" if name is None else f"{len(found)} surfaces {name!r}"
-        raise FileFormatError(f"{source} has {what}; choose one by its name (layer): {names}")
+        raise FileFormatError(f"{source} has {what}; choose one (--layer): {names}")
     return found[0]

@@ -135,21 +135,22 @@ class SurfaceFile:
         geometries[:] = found
         return GeometrySet(geometries=geometries, crs=self.crs, source=self.source)
 
-    def require_order(self) -> None:
+    def require_order(self, order: str) -> None:
         """Refuse northing and easting that are swapped, if the reference system makes it evident.
 
         That is, if all points are outside of the area of use, and would be inside if swapped.
-        Without pyproj nothing is evident.
+        Without pyproj nothing is evident. `order` is the one in which they were read.
         """
         bounds = _area(self.crs)
         if bounds is None or not len(self.points):
             return
         x, y = self.points[:, 0], self.points[:, 1]
         if not _inside(x, y, bounds).any() and _inside(y, x, bounds).all():
+            other = "'enz'" if order == "nez" else "'nez'"
             raise FileFormatError(
                 f"{self.source}: easting and northing are swapped: ({x[0]:.10g}, {y[0]:.10g}) is "
                 f"outside of the area of {self.crs!s:.60}, ({y[0]:.10g}, {x[0]:.10g}) inside. "
-                'If the file has the easting first, read it with order="enz"'
+                f"Read it with order={other} (--easting-first for 'enz')"
             )
 
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["build_faces", "with_lines"]
 
 _LINES = ("breaklines", "soft_breaklines", "boundary", "holes")
-_AFRESH = "faces=False triangulates its points and lines afresh"
+_AFRESH = "faces=False (--retriangulate) triangulates its points and lines afresh"
 
 
 def with_lines(surface: SurfaceFile, options: dict[str, Any]) -> dict[str, Any]:
