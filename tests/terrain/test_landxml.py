@@ -95,7 +95,7 @@ def test_faces_that_are_not_delaunay_are_kept(tmp_path):
         frozenset({(0.0, 0.0, 0.0), (4.0, 1.0, 9.0), (8.0, 0.0, 0.0)}),
         frozenset({(0.0, 0.0, 0.0), (4.0, -1.0, 9.0), (8.0, 0.0, 0.0)}),
     }
-    assert tin.heights((4, 0)) == 0 and tin.soft.all() and tin.validate()
+    assert tin.heights((4, 0)) == 0 and tin.soft.tolist() == [True] and tin.validate()
     assert TIN.from_file(path, faces=False).heights((4, 0)) == 9
 
 
@@ -307,6 +307,27 @@ def test_units_of_systems(tmp_path):
         TIN.from_surface(read_surface(written(tmp_path, text)))
     with pytest.warns(delone.GeographicWarning, match="EPSG:4326"):
         TIN.from_points([(4, 52, 0), (5, 52, 0), (4, 53, 0)], crs="EPSG:4326")
+
+
+def test_outlines_and_lines_are_joined_up_to_their_ends(tmp_path):
+    x = np.arange(9.0)
+    grid = np.array([(i, j, 0.0) for i in x for j in x])
+    star = [[(7, 7, 0), (7, 4, 0)], [(7, 7, 0), (4, 7, 0)], [(7, 7, 0), (4, 4, 0)]]
+    hole = [(1.5, 1.5, 0), (2.5, 1.5, 0), (2.5, 2.5, 0), (1.5, 2.5, 0)]
+    tin = TIN.from_points(grid, breaklines=star, holes=[hole], units="m")
+    write_mesh(tmp_path / "a.xml", tin)
+    text = (tmp_path / "a.xml").read_text()
+    assert (text.count('"outer"'), text.count('"void"')) == (1, 1)
+    surface = read_surface(tmp_path / "a.xml")
+    assert sorted(map(len, surface.breaklines)) == [4, 4, 4, 5]
+    assert [len(ring) for ring in surface.boundary + surface.holes] == [33, 5]
+    # Two triangles that share a corner have two outlines.
+    points = '<P id="e">-3 -4 0</P><P id="f">-3 0 0</P>' + "".join(reversed(POINTS.splitlines()))
+    touching = TIN.from_file(
+        written(tmp_path, document(points, "<F>a b c</F><F>a e f</F>", before=METER))
+    )
+    write_mesh(tmp_path / "b.xml", touching)
+    assert [len(ring) for ring in read_surface(tmp_path / "b.xml").boundary] == [4, 4]
 
 
 def test_what_the_format_cannot_store(tmp_path):

@@ -163,7 +163,8 @@ def _chains(edges: list[Any], *, directed: bool = False) -> Iterator[list[int]]:
         if not directed:
             around.setdefault(b, []).append(row)
     free = [True] * len(edges)
-    ends = [] if directed else [v for v, rows in around.items() if len(rows) != 2]
+    plain = 1 if directed else 2
+    ends = [v for v, rows in around.items() if len(rows) != plain]
     for start in (*ends, *around):
         for row in around[start]:
             if free[row]:
