@@ -406,6 +406,13 @@ def test_bad_polygons_are_refused():
         ground.flatten([(30, 30), (40, 40), (50, 50)], 0.0)
     with pytest.raises(InputError, match="at least three points"):
         ground.flatten([(30, 30), (40, 40)], 0.0)
+    with pytest.raises(InputError, match="polygon has no area"):
+        ground.flatten([SQUARE, SQUARE], 0.0)
+    for factor in (1e298, 1e-298):
+        with pytest.raises(InputError, match="designs need coordinates"):
+            TIN.from_points(ground.xyz * factor).flatten(np.array(SQUARE) * factor, 0.0)
+    with pytest.raises(InputError, match="designs need coordinates"):
+        ground.embank(SQUARE, 1e300, slope=1)
     for empty in ([], np.empty((0, 2)), "abc", 5, None):
         with pytest.raises(DeloneError):
             ground.flatten(empty, 0.0)
@@ -425,8 +432,8 @@ def test_bad_slopes_are_refused():
         ground.embank(SQUARE, 1.0)
     with pytest.raises(InputError, match="fill has none"):
         ground.embank(SQUARE, 1.0, cut=1)
-    for bad in (0, -1, np.nan, np.inf):
-        with pytest.raises(InputError, match="must be above 0 and finite"):
+    for bad in (0, -1, np.nan, np.inf, 1e300, 1e-300):
+        with pytest.raises(InputError, match="must be from 1e-6 to 1e6"):
             ground.embank(SQUARE, 1.0, slope=bad)
     with pytest.raises(InputError, match="corners must be one of"):
         ground.embank(SQUARE, 1.0, slope=1, corners="sharp")

@@ -47,7 +47,7 @@ class Earthworks(HullTiling):
         CrossingSegmentsError
             Edges of the polygon cross.
         NonFiniteError, InputError, DegenerateInputError
-            A coordinate or height is NaN or infinite, or the polygon has no area.
+            A coordinate or height is NaN, infinite or beyond 1e100, or the polygon has no area.
         BudgetExceededError, MemoryError
             Edges cross at more than 4,000,000 places, or memory does not suffice.
 
@@ -118,8 +118,8 @@ class Earthworks(HullTiling):
         CrossingSegmentsError
             Edges of the polygon cross.
         NonFiniteError, InputError, DegenerateInputError
-            A coordinate or height is NaN or infinite, the polygon has no area, a slope is missing
-            or not above 0, or the pad itself is as steep.
+            A coordinate or height is NaN, infinite or beyond 1e100, the polygon has no area, a
+            slope is missing or not from 1e-6 to 1e6, or the pad itself is as steep.
         BudgetExceededError, MemoryError
             Edges cross at more than 4,000,000 places, or memory does not suffice.
 

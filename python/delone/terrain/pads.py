@@ -121,6 +121,8 @@ def pad_of(polygon: Any, z: Any) -> Pad:
     edges = np.column_stack(
         [mesh.simplices[triangle, (side + turn) % 3] for turn in (1, 2)]
     ).astype(np.int32)
+    if not len(edges):
+        raise InputError("polygon has no area: each point is inside of an even number of rings")
     used, rows = np.unique(edges, return_inverse=True)
     return Pad(mesh.points[used], rows.reshape(-1, 2).astype(np.int32), rings, plane)
 
@@ -147,7 +149,9 @@ def inside(points: Floats, rings: list[Floats]) -> Bools:
             if ay == by:
                 continue
             hit = (ay > at_y) != (by > at_y)
-            side = (bx - ax) * (at_y - ay) - (by - ay) * (at_x - ax)
+            # Beyond the range, which the caller refuses, this is nonsense.
+            with np.errstate(over="ignore", invalid="ignore"):
+                side = (bx - ax) * (at_y - ay) - (by - ay) * (at_x - ax)
             found[near[hit & ((side > 0) == (by > ay))]] ^= True
     return found
 

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 __all__ = ["embanked", "flattened"]
 
+# Slopes from this to its inverse are possible, and coordinates up to `_LARGEST`.
+_MILDEST, _LARGEST = 1e-6, 1e100
 # What is beside edges, apart from triangles of the design: those of the surface have `GROUND - 1`
 # minus their number.
 _OUTSIDE = GROUND
@@ -57,7 +59,7 @@ class _Edges(NamedTuple):
 
 def flattened(tin: Surface, polygon: Any, z: Any) -> Built:
     """Return a surface with the plane of a pad inside of its polygon."""
-    pad = settled(pad_of(polygon, z), tin.points)
+    pad = _pad(tin, polygon, z)
     facets = Facets.none()
     overlay = overlaid(tin, pad, facets)
     return _rebuilt(tin, overlay, _change(tin, overlay), pad, facets, exact=False)
@@ -69,7 +71,7 @@ def embanked(  # noqa: PLR0917
     """Return a surface with a pad and its side slopes."""
     as_choice(corners, tuple(CORNERS), name="corners")
     cut, fill = _slopes(slope, cut, fill)
-    pad = settled(pad_of(polygon, z), tin.points)
+    pad = _pad(tin, polygon, z)
     facets = Facets.joined([facets_of(pad, cut, 1, corners), facets_of(pad, fill, -1, corners)])
     overlay = overlaid(tin, pad, facets)
     return _rebuilt(tin, overlay, _change(tin, overlay), pad, facets, exact=True)
@@ -83,14 +85,27 @@ def _slopes(slope: Any, cut: Any, fill: Any) -> tuple[float, float]:
         if given is None:
             raise InputError(f"give slope, or cut and fill: {name} has none")
         number = as_number(given, name="slope" if value is None else name)
-        if not (np.isfinite(number) and number > 0):
+        if not _MILDEST <= number <= 1 / _MILDEST:
             raise InputError(
-                f"{'slope' if value is None else name} must be above 0 and finite: the rise for "
-                f"one unit of distance, as 0.5 for 1 : 2; got {given!r}. A vertical wall cannot be "
-                "part of a TIN: flatten has none"
+                f"{'slope' if value is None else name} must be from 1e-6 to 1e6: the rise for one "
+                f"unit of distance, as 0.5 for 1 : 2; got {given!r}. A vertical wall cannot be "
+                "part of a TIN"
             )
         found.append(number)
     return found[0], found[1]
+
+
+def _pad(tin: Surface, polygon: Any, z: Any) -> Pad:
+    """Return the pad, with coordinates whose products are no overflow."""
+    pad = pad_of(polygon, z)
+    extents = [*np.ptp(tin.points, axis=0), *np.ptp(pad.points, axis=0)]
+    largest = max(float(np.abs(each).max()) for each in (tin.xyz, pad.points, pad.plane))
+    if not (largest <= _LARGEST and min(extents) >= 1 / _LARGEST):
+        raise InputError(
+            f"designs need coordinates and heights up to {_LARGEST:g} and extents of at least "
+            f"{1 / _LARGEST:g}: change their unit"
+        )
+    return settled(pad, tin.points)
 
 
 def _incident(overlay: Overlay, triangles: Bools) -> Bools:
