@@ -99,7 +99,8 @@ def _pad(tin: Surface, polygon: Any, z: Any) -> Pad:
     """Return the pad, with coordinates whose products are no overflow."""
     pad = pad_of(polygon, z)
     extents = [*np.ptp(tin.points, axis=0), *np.ptp(pad.points, axis=0)]
-    largest = max(float(np.abs(each).max()) for each in (tin.xyz, pad.points, pad.plane))
+    given = (tin.points, tin.z, pad.points, pad.plane)
+    largest = max(float(np.abs(each).max()) for each in given)
     if not (largest <= _LARGEST and min(extents) >= 1 / _LARGEST):
         raise InputError(
             f"designs need coordinates and heights up to {_LARGEST:g} and extents of at least "
