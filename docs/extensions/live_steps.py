@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import live_cells
 import live_domains
 import live_failures
+import live_predicates
 import live_space
 from live_answers import Points, delaunay, plain
 
@@ -62,6 +63,7 @@ FIGURES: dict[str, Callable[[], dict[str, Any]]] = {
     "sliver": live_space.sliver,
     "slivers": live_space.slivers,
     "voronoi": live_cells.voronoi,
+    **live_predicates.FIGURES,
     **live_failures.FIGURES,
 }
 

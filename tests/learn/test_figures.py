@@ -49,7 +49,7 @@ def test_points_move_with_the_core_and_stay_without(page: Page, name: str) -> No
     if page.run(f"{figure}.kind.fixed"):
         assert page.run(f"{figure}.element.querySelector('.live-handle')") is None
         return
-    live = page.run(f"{figure}.core.live")
+    live = page.run(f"{figure}.core.live || Boolean({figure}.kind.free)")
     before = picture(page, name)
     moved = page.run(
         f"(() => {{ const [x, y] = {figure}.points; "

@@ -37,6 +37,11 @@ class LiveCore {
     return this.core.tetrahedra(Float64Array.from(points));
   }
 
+  /** Exact signs of a test, "orient2d" or "incircle", for lists of coordinates one after the other. */
+  signs(test, exponent, coordinates) {
+    return test === "incircle" ? this.core.incircles(coordinates) : this.core.orientations(coordinates);
+  }
+
   /** Sign of the in-circle determinant of four rows, exact. */
   inside(points, ...rows) {
     return this.core.incircle(...rows.flatMap((row) => [points[2 * row], points[2 * row + 1]]));

@@ -5,6 +5,7 @@
 //   controls  list of controls besides the step, see controls.js
 //   ratio     height of the canvas divided by its width
 //   fixed     true if points cannot be dragged; `handles`: at most so many points have a Tab stop
+//   free      true if points can be moved without the core, too
 //   states    function of {points, options, core, stored}: the list of states
 // A state is {layers: [layers of panel 0, ...], say, mark}; `mark` is shown beside the slider instead
 // of the number of the step. States are made together and never changed:

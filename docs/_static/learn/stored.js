@@ -44,6 +44,11 @@ export class StoredCore {
     return this.ask("tetrahedra", points);
   }
 
+  /** Signs of a test for the cells whose distance has an exponent. */
+  signs(test, exponent) {
+    return Int8Array.from(this.ask("signs", [test], [exponent]), (digit) => Number(digit) - 1);
+  }
+
   /** Sign of the in-circle determinant of four rows. Stored points are integers below 2000: the
    * determinant is then exact in doubles. */
   inside(points, a, b, c, d) {
