@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import live_cells
 import live_domains
 import live_failures
+import live_flips
 import live_predicates
 import live_space
 from live_answers import Points, delaunay, plain
@@ -64,6 +65,7 @@ FIGURES: dict[str, Callable[[], dict[str, Any]]] = {
     "slivers": live_space.slivers,
     "voronoi": live_cells.voronoi,
     **live_predicates.FIGURES,
+    **live_flips.FIGURES,
     **live_failures.FIGURES,
 }
 

@@ -17,8 +17,8 @@ export function circleAt(points, triangles, t) {
   return circleOf(points, triangles[3 * t], triangles[3 * t + 1], triangles[3 * t + 2]);
 }
 
-/** All angles of triangles in degrees, ascending. */
-export function anglesOf(points, triangles) {
+/** The angle at each corner of triangles in degrees. */
+export function cornersOf(points, triangles) {
   const angles = new Float64Array(triangles.length);
   for (let t = 0; t < triangles.length; t += 3) {
     for (let k = 0; k < 3; k += 1) {
@@ -28,7 +28,12 @@ export function anglesOf(points, triangles) {
       angles[t + k] = (Math.atan2(Math.abs(ux * vy - uy * vx), ux * vx + uy * vy) * 180) / Math.PI;
     }
   }
-  return angles.sort();
+  return angles;
+}
+
+/** All angles of triangles in degrees, ascending. */
+export function anglesOf(points, triangles) {
+  return cornersOf(points, triangles).sort();
 }
 
 /** Twice the signed area of a triangle of rows, rounded. */

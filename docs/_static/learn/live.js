@@ -37,6 +37,14 @@ class LiveCore {
     return this.core.tetrahedra(Float64Array.from(points));
   }
 
+  /** A triangulation from left to right, and the flips to the Delaunay triangulation: four rows
+   * u, v, p, q for each, where the edge u v becomes p q. */
+  flips(points) {
+    const xy = Float64Array.from(points);
+    const start = this.core.scan(xy);
+    return { start, sequence: this.core.flips(xy, start) };
+  }
+
   /** Exact signs of a test, "orient2d" or "incircle", for lists of coordinates one after the other. */
   signs(test, exponent, coordinates) {
     return test === "incircle" ? this.core.incircles(coordinates) : this.core.orientations(coordinates);

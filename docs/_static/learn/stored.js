@@ -44,6 +44,11 @@ export class StoredCore {
     return this.ask("tetrahedra", points);
   }
 
+  flips(points) {
+    const { start, sequence } = this.ask("flips", points);
+    return { start: Int32Array.from(start), sequence: Int32Array.from(sequence) };
+  }
+
   /** Signs of a test for the cells whose distance has an exponent. */
   signs(test, exponent) {
     return Int8Array.from(this.ask("signs", [test], [exponent]), (digit) => Number(digit) - 1);
