@@ -15,6 +15,7 @@ import live_cells
 import live_domains
 import live_failures
 import live_flips
+import live_methods
 import live_predicates
 import live_space
 from live_answers import Points, delaunay, plain
@@ -66,6 +67,7 @@ FIGURES: dict[str, Callable[[], dict[str, Any]]] = {
     "voronoi": live_cells.voronoi,
     **live_predicates.FIGURES,
     **live_flips.FIGURES,
+    **live_methods.FIGURES,
     **live_failures.FIGURES,
 }
 

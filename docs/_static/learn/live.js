@@ -1,9 +1,19 @@
 // The compiled core, in the terms in which figures ask: as StoredCore of stored.js, for any points.
 
 import { load as loadCore } from "./core/delone.js";
+import { wrapSteps } from "./methods/wrap.js";
 
 // Points that a refined mesh may add.
 const MOST = 20_000;
+
+// The steps of each method.
+const METHODS = {
+  "bowyer-watson": (core, points) => core.bowyerWatsonSteps(points).steps,
+  incremental: (core, points) => core.incrementalSteps(points).steps,
+  "divide-and-conquer": (core, points) => core.divideSteps(points).steps,
+  sweep: (core, points) => core.sweepSteps(points).steps,
+  lifting: wrapSteps,
+};
 
 class LiveCore {
   constructor(core) {
@@ -35,6 +45,11 @@ class LiveCore {
   /** Tetrahedra of points in 3-D, with their volumes and dihedral angles in degrees. */
   tetrahedra(points) {
     return this.core.tetrahedra(Float64Array.from(points));
+  }
+
+  /** The steps of a method, each with the triangles that it removes and adds. */
+  method(name, points) {
+    return METHODS[name](this.core, Float64Array.from(points));
   }
 
   /** A triangulation from left to right, and the flips to the Delaunay triangulation: four rows

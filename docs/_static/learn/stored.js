@@ -44,6 +44,10 @@ export class StoredCore {
     return this.ask("tetrahedra", points);
   }
 
+  method(name, points) {
+    return this.ask("method", [name], points);
+  }
+
   flips(points) {
     const { start, sequence } = this.ask("flips", points);
     return { start: Int32Array.from(start), sequence: Int32Array.from(sequence) };
