@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import live_answers
 import live_methods
 import numpy as np
 import pytest
@@ -29,12 +30,20 @@ def triples(rows: list[int]) -> set[frozenset[int]]:
 
 @pytest.mark.parametrize("method", METHODS)
 def test_steps_of_python_are_those_of_the_core(page: Page, method: str) -> None:
+    everything = [live_methods.PLACED]
+    if page.run(f"{FIGURE}.core.live"):
+        everything.append(np.random.default_rng(3).integers(0, 10_000, (40, 2)).tolist())
+    for points in everything:
+        compare(page, method, points)
+
+
+def compare(page: Page, method: str, points: list[list[float]]) -> None:
     found: list[dict[str, Any]] = page.run(
-        f"{FIGURE}.core.method('{method}', Float64Array.from({FIGURE}.stored.points.flat()))"
+        f"{FIGURE}.core.method('{method}', Float64Array.from({live_answers.flat(points)}))"
         ".map((step) => Object.fromEntries(Object.entries(step).map(([name, value]) => "
         "[name, ArrayBuffer.isView(value) ? Array.from(value) : value])))"
     )
-    steps = live_methods.METHODS[method](live_methods.PLACED)
+    steps = live_methods.METHODS[method](points)
     assert len(found) == len(steps) > 5
     for one, other in zip(found, steps, strict=True):
         assert one["kind"] == other["kind"]
