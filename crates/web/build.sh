@@ -79,8 +79,12 @@ if [ -e "$sid/ready" ]; then
     work=$sid/build seen=/build
 fi
 
-# A copy of the sources, whose lock file may change.
+# Several trees may share the cache: one build at a time.
 mkdir -p "$work"
+exec 9>"$cache/lock"
+if command -v flock >/dev/null; then flock 9; fi
+
+# A copy of the sources, whose lock file may change.
 rm -rf "$work/crates"
 mkdir "$work/crates"
 cp -p Cargo.toml Cargo.lock "$work"

@@ -20,11 +20,28 @@ function walked(steps) {
   };
 }
 
+/** What a live triangulation answers to edits, and its state after each of them. */
+function edited(core, xy, edits) {
+  const live = core.live(xy);
+  const answers = edits.map(([name, ...args]) => {
+    try {
+      return { value: plain(live[name](...args.map(numbers))), state: plain(live.state()) };
+    } catch (error) {
+      return { error: error.name, message: error.message, state: plain(live.state()) };
+    }
+  });
+  live.free();
+  return answers;
+}
+
+const numbers = (arg) => (Array.isArray(arg) ? arg.map(number) : number(arg));
+
 /** The points of a case whose coordinates JSON cannot write. */
 const number = (text) => (typeof text === "string" ? Number(text) : text);
 
 function run(core, { call, args }) {
   try {
+    if (call === "edited") return { value: edited(core, ...args) };
     const given = args.map((arg) => (Array.isArray(arg) ? arg.map(number) : arg));
     const value = core[call](...given);
     return { value: call.endsWith("Steps") ? walked(value) : plain(value) };

@@ -13,7 +13,7 @@ export function load(source?: string | URL | BufferSource): Promise<Core>;
 /** What a call throws: `name` is that of the Python class, for example "NonFiniteError". */
 export class DeloneError extends Error {
   /** "DegenerateInputError", "NonFiniteError", "CrossingSegmentsError", "BudgetExceededError",
-   * "ShapeError", "InputError", "LimitError", "MemoryError", "InternalError". */
+   * "ShapeError", "InputError", "LimitError", "HandleError", "MemoryError", "InternalError". */
   name: string;
   /** Rows: of bad points, of the points of a degenerate set along its line, or of the segments that
    * cross, two for each pair. */
@@ -169,6 +169,35 @@ export interface Steps {
   at(k: number): Int32Array;
 }
 
+/** Triangles by rows of points, the smallest first, that an edit takes and makes. */
+export interface Changes {
+  gone: Int32Array;
+  added: Int32Array;
+}
+
+/** A triangulation that is edited in place, in microseconds for each point. After any edits it is
+ * what `triangulate` makes of the points. Points on one line have no triangles, and no error. An
+ * edit that throws changes nothing. */
+export interface LiveTriangulation {
+  /** Moves the point of a row. */
+  move(row: number, x: number, y: number): Changes;
+  /** Adds points, whose rows are the next numbers. */
+  insert(xy: Coordinates): Changes;
+  /** Removes the points of these rows; the numbers are not used again. */
+  remove(rows: Rows): Changes;
+  /** The rows that are there, and their points and triangles. Triangles and duplicates name points
+   * by their position in `rows` and `points`. */
+  state(): {
+    rows: Int32Array;
+    points: Float64Array;
+    triangles: Int32Array;
+    neighbors: Int32Array;
+    duplicates: Int32Array;
+  };
+  /** Gives the memory back. */
+  free(): void;
+}
+
 export interface Core {
   readonly version: string;
   readonly methods: readonly Method[];
@@ -178,6 +207,9 @@ export interface Core {
   constrain(xy: Coordinates, segments: Rows, options?: ConstrainOptions): Mesh;
   /** A constrained triangulation, refined. */
   mesh(xy: Coordinates, segments: Rows, options?: MeshOptions): Mesh;
+
+  /** A triangulation to edit, for example while a point is dragged. */
+  live(xy: Coordinates): LiveTriangulation;
 
   hull(xy: Coordinates): Int32Array;
   circumcircles(xy: Coordinates, triangles: Rows): Circles;

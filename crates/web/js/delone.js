@@ -271,6 +271,10 @@ class Core {
     return scan(this, doubles(xy));
   }
 
+  live(xy) {
+    return new LiveTriangulation(doubles(xy));
+  }
+
   tetrahedra(xyz) {
     const points = doubles(xyz, 3);
     return ask(
@@ -287,6 +291,59 @@ class Core {
     );
   }
 }
+
+/** A triangulation that is edited in place. */
+class LiveTriangulation {
+  #live = new core.Live();
+
+  constructor(points) {
+    ask(() => this.#live.start(points), () => {});
+  }
+
+  move(row, x, y) {
+    this.#check([row]);
+    return ask(() => this.#live.relocate(row, x, y), changes);
+  }
+
+  insert(xy) {
+    const points = doubles(xy);
+    return ask(() => this.#live.insert(points), changes);
+  }
+
+  remove(rows) {
+    const gone = integers(rows, 1, "rows");
+    this.#check(gone);
+    return ask(() => this.#live.remove(gone), changes);
+  }
+
+  state() {
+    return ask(
+      () => this.#live.state(),
+      (answer) => ({
+        rows: answer.integers(0),
+        triangles: answer.integers(1),
+        neighbors: answer.integers(2),
+        duplicates: answer.integers(3),
+        points: answer.numbers(0),
+      }),
+    );
+  }
+
+  free() {
+    this.#live.free();
+  }
+
+  #check(rows) {
+    const gone = Array.from(rows).filter((row) => !this.#live.has(row));
+    if (!gone.length) return;
+    const names = gone.slice(0, 5).join(", ") + (gone.length > 5 ? ", ..." : "");
+    const text = gone.length === 1 ? `handle ${names} is not there` : `handles ${names} are not there`;
+    throw new DeloneError("HandleError", text, Int32Array.from(gone));
+  }
+}
+
+/** Triangles that went and came. */
+const changes = (answer) => ({ gone: answer.integers(0), added: answer.integers(1) });
 
 /** The arrays of a constrained triangulation or mesh. */
 function constrained(answer) {

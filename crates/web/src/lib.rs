@@ -3,6 +3,7 @@
 //! `js/delone.js` wraps these functions; nothing else calls them. No algorithm lives here.
 
 mod answer;
+mod live;
 mod mesh;
 mod plane;
 mod signs;
