@@ -34,6 +34,7 @@ extensions = [
     "sphinxext.opengraph",
     "live",
     "picture_texts",
+    "try_page",
 ]
 templates_path = ["_templates"]
 # The folder `gallery` also receives notebooks and scripts, which are not pages.

@@ -71,13 +71,10 @@ def add_scripts(
     app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: nodes.document | None
 ) -> None:
     """Load styles and scripts on the pages that need them."""
-    del template, context
+    del page, template, context
     if doctree is not None and any(doctree.findall(LiveFigure)):
         app.add_css_file("learn/learn.css")
         app.add_js_file("learn/main.js", type="module")
-    elif page == "learn/try":
-        app.add_css_file("learn/learn.css")
-        app.add_js_file("learn/try/main.js", type="module")
 
 
 def write_files(app: Sphinx, exception: Exception | None) -> None:
