@@ -90,10 +90,12 @@ class Page {
 
   read(name, given, transfer = []) {
     const wanted = this.parts.columns.value.split(",").map((each) => each.trim()).filter(Boolean);
+    this.parts.sample.value = "";
     return this.begin(name, "read", { ...given, wanted }, transfer);
   }
 
   readSample(name) {
+    this.parts.sample.value = name;
     return name ? this.begin(name, "sample", { name }) : null;
   }
 
@@ -212,12 +214,13 @@ const element = document.querySelector("[data-try]");
 if (element) window.deloneTry = start(element);
 
 async function start(found) {
-  found.querySelector(".try-before").textContent = "";
+  const before = found.querySelector(".try-before");
   if (found.dataset.core !== "yes") {
-    found.querySelector(".try-before").textContent =
+    before.textContent =
       "This copy of the site comes without the compiled core, so this page cannot triangulate.";
     return null;
   }
+  before.remove();
   const page = new Page(found);
   try {
     await page.client.ask("ready");

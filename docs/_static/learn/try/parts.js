@@ -100,7 +100,7 @@ function chooser(parent) {
 function select(parent) {
   const { input } = field(parent, "select", "Sample", "try-sample");
   input.className = "live-select";
-  for (const [value, text] of SAMPLES) append(input, "option", "", text).value = value;
+  for (const [value, text] of [["", "choose one"], ...SAMPLES]) append(input, "option", "", text).value = value;
   return input;
 }
 

@@ -37,8 +37,7 @@ export function describe({ summary, columns = [], note = "", reading, triangulat
   const from = columns.length && columns.some((name) => !/^\d+$/.test(name))
     ? ` Columns: ${columns.join(", ")}.`
     : "";
-  const time = triangulating === undefined
-    ? ""
-    : ` Read in ${reading.toFixed(0)} ms, triangulated in ${triangulating.toFixed(0)} ms.`;
+  const read = reading === undefined ? "" : ` Read in ${reading.toFixed(0)} ms.`;
+  const time = triangulating === undefined ? "" : `${read} Triangulated in ${triangulating.toFixed(0)} ms.`;
   return `${whole(points)} points${twice}: ${whole(triangles)} triangles.${time}${from}${note ? ` ${note}` : ""}`;
 }

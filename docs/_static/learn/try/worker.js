@@ -28,7 +28,7 @@ const CALLS = {
     return { ...begun(found.points, found.lines, source), ...notes(found), reading };
   },
 
-  sample: ({ name }) => ({ ...begun(sample(name)), reading: 0, movable: name === "many" }),
+  sample: ({ name }) => ({ ...begun(sample(name)), movable: name === "many" }),
 
   cells: ({ box }) => core.voronoi(points, box),
 
