@@ -527,3 +527,47 @@ def test_without_the_core_the_page_says_so(
         page.run("window.deloneTry.then(() => 1)")
         assert "without the compiled core" in page.run("document.body.innerText")
         assert page.complaints() == []
+
+
+def test_a_point_of_an_edge_of_the_hull_becomes_a_corner(page: Page) -> None:
+    read(page, b"0 0\n2 0\n4 0\n2 3\n", "x.txt")
+    assert ask(page, "return [...scene.hull]") == [0, 2, 3]
+    # No triangle goes or comes.
+    assert ask(page, "await page.hand.drag(1, 2, -0.1); return [...picture.scene.hull]") == [
+        0,
+        1,
+        2,
+        3,
+    ]
+
+
+def test_places_are_filled_without_gaps(page: Page) -> None:
+    wrong = ask(
+        page,
+        """
+        const { Slots } = await import("./_static/learn/try/slots.js");
+        let state = 7;
+        const random = (n) => (state = (state * 48271) % 2147483647) % n;
+        const triangle = (k) => [k, k + 1000, k + 2000];
+        const names = (list) => JSON.stringify(list.map((k) => triangle(k).join()).sort());
+        let there = Array.from({ length: 40 }, (_, k) => k);
+        const slots = new Slots(Int32Array.from(there.flatMap(triangle)), 3000);
+        // What a page has: it writes what it is told.
+        const kept = Array.from(slots.triangles);
+        for (let round = 1; round <= 400; round += 1) {
+          const gone = there.filter(() => random(100) < 30);
+          const added = Array.from({ length: random(gone.length + 5) }, (_, k) => k)
+            .map((k) => (round % 2 ? 500 : 0) + k + 100).filter((k) => !there.includes(k));
+          const flat = (list) => Int32Array.from(list.flatMap(triangle));
+          const { count, writes } = slots.apply({ gone: flat(gone), added: flat(added) });
+          for (let k = 0; k < writes.length; k += 4) {
+            for (let j = 0; j < 3; j += 1) kept[3 * writes[k] + j] = writes[k + 1 + j];
+          }
+          there = [...there.filter((k) => !gone.includes(k)), ...added];
+          const shown = Array.from({ length: count }, (_, t) => kept[3 * t]);
+          if (names(shown) !== names(there)) return [round, count, there.length];
+        }
+        return null;
+        """,
+    )
+    assert wrong is None
