@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 import warnings
 from pathlib import Path
@@ -335,17 +336,19 @@ DIFFERENT = """
 
 
 @pytest.mark.parametrize(
-    ("sample", "x", "y"), [("many", 481, 290), ("many", -30, 700), ("grid", 7.4, 6.6)]
+    ("sample", "row", "x", "y"),
+    [("many", 9, 481, 290), ("many", 9, -30, 700), ("grid", 9, 7.4, 6.6), ("grid", 0, 7.4, 6.6)],
 )
 def test_what_is_drawn_again_is_the_whole_picture(
-    page: Page, sample: str, x: float, y: float
+    page: Page, sample: str, row: int, x: float, y: float
 ) -> None:
     ask(page, f"await page.readSample('{sample}')")
     settle(page)
     before = ask(page, "return picture.front.toDataURL()")
     different = ask(
         page,
-        f"for (let k = 1; k <= 5; k += 1) await page.hand.drag(9, {x} + k, {y} - k); {DIFFERENT}",
+        f"for (let k = 1; k <= 5; k += 1) await page.hand.drag({row}, {x} + k, {y} - k); "
+        + DIFFERENT,
     )
     assert different < 60
     assert ask(page, "return picture.front.toDataURL()") != before
@@ -571,3 +574,17 @@ def test_places_are_filled_without_gaps(page: Page) -> None:
         """,
     )
     assert wrong is None
+
+
+@pytest.mark.parametrize("moved", [False, True])
+def test_each_edge_is_drawn(page: Page, moved: bool) -> None:
+    if moved:
+        ask(page, "await page.hand.drag(7, 100, 700); await page.hand.drag(8, 900, 300);")
+    svg, points = ask(
+        page,
+        "picture.shown = { triangles: true }; return [page.svg(), [...picture.scene.points]]",
+    )
+    mesh = Delaunay(np.reshape(points, (-1, 2)))
+    lines = re.findall(r"M([-\d.]+ [-\d.]+)L([-\d.]+ [-\d.]+)(?=[M\"])", svg)
+    drawn = {frozenset(line) for line in lines}
+    assert len(drawn) == len(mesh.edges)

@@ -141,11 +141,11 @@ export class Picture {
       this.draw();
       return;
     }
-    // Triangles around the point may only change their shape.
     const dirty = new Box();
-    dirty.add(this.at, changes.gone, this.scene.star(row), [row]);
+    dirty.add(this.at, changes.gone, [row]);
     this.change(changes, row, x, y);
     [this.at[2 * row], this.at[2 * row + 1]] = [camera.px(x), camera.py(y)];
+    // Triangles around the point may only have changed their shape.
     dirty.add(this.at, changes.added, this.marked.star, [row]);
     this.repaint(dirty.pixels(AROUND, camera));
   }
