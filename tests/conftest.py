@@ -85,6 +85,11 @@ EXPECTED_SKIPS = {
         "tests/learn/*",
         "the module for pages is not built",
     ): "it needs a compiler for WebAssembly: make web",
+    ("tests/try_it/*", "no Chromium is installed"): "a browser is not a package of Python",
+    (
+        "tests/try_it/*",
+        "the module for pages is not built",
+    ): "it needs a compiler for WebAssembly: make web",
     ("tests/web/*", "no Chromium is installed"): "a browser is not a package of Python",
     ("tests/web/*", "no Node is installed"): "Node is not a package of Python",
     (
