@@ -7,7 +7,7 @@
 `Delaunay` triangulates 2-D or 3-D points; `ConstrainedDelaunay` and `from_geometry` also take
 segments and polygons. `mesh` and `improve` create triangles and tetrahedra of good quality. Related
 structures are `Voronoi`, `ConvexHull`, `RegularTriangulation` and `PeriodicDelaunay`. The modules
-`graphs`, `terrain`, `interpolate`, `distributed`, `io`, `plot`, `predicates`, `datasets`,
+`graphs`, `cluster`, `terrain`, `interpolate`, `distributed`, `io`, `plot`, `predicates`, `datasets`,
 `testing`, `reference` and `compat` have the rest. All errors are subclasses of `DeloneError`.
 """
 
@@ -52,6 +52,7 @@ from delone.validation import ValidationReport
 
 if TYPE_CHECKING:
     from delone import (
+        cluster,
         compat,
         datasets,
         distributed,
@@ -126,6 +127,7 @@ __all__ = [
     "ValidationReport",
     "Voronoi",
     "__version__",
+    "cluster",
     "compat",
     "datasets",
     "distributed",
@@ -148,6 +150,7 @@ __all__ = [
 # What not every program needs is imported on first access, which keeps `import delone` short:
 # modules, and classes and functions by their modules.
 _MODULES = {
+    "cluster",
     "compat",
     "constrained",
     "datasets",

@@ -989,6 +989,43 @@ def spanning_triangles2(tiling: _Tiling, workers: int) -> NDArray[np.int32]: ...
 def of_triangles2(
     tiling: _Tiling, name: str, beta: float, closed: bool, workers: int
 ) -> NDArray[np.int32]: ...
+
+_Tower = tuple[
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.float64],
+    NDArray[np.float64],
+    tuple[int, int],
+]
+
+def linkage2(
+    points: NDArray[np.float64],
+    edges: NDArray[np.int32],
+    duplicates: NDArray[np.int32],
+    workers: int,
+) -> NDArray[np.float64]: ...
+def linkage3(
+    points: NDArray[np.float64],
+    edges: NDArray[np.int32],
+    duplicates: NDArray[np.int32],
+    workers: int,
+) -> NDArray[np.float64]: ...
+def condensed2(
+    points: NDArray[np.float64], k: int, least: int, number: float, workers: int
+) -> _Tower: ...
+def condensed3(
+    points: NDArray[np.float64], k: int, least: int, number: float, workers: int
+) -> _Tower: ...
+def density2(
+    points: NDArray[np.float64], eps: float, k: int, workers: int
+) -> tuple[NDArray[np.int32], NDArray[np.bool_]]: ...
+def density3(
+    points: NDArray[np.float64], eps: float, k: int, workers: int
+) -> tuple[NDArray[np.int32], NDArray[np.bool_]]: ...
 def around(
     edges: NDArray[np.int32], npoints: int
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...

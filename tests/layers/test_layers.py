@@ -46,7 +46,7 @@ PYTHON: tuple[set[str], ...] = (
     {"delaunay", "constrained", "regular", "tetmesh"},
     {"dynamic", "hull", "periodic", "refine"},
     {"graphs", "io"},
-    {"voronoi", "interpolate"},
+    {"voronoi", "interpolate", "cluster"},
     {"compat", "distributed", "explorer", "terrain"},
     # Data and oracles: nothing that they test may use them, and they use the ground alone.
     {"datasets", "reference", "testing"},
@@ -65,6 +65,8 @@ GROUND_FLOOR = set[str]().union(*PYTHON[:4])
 GROUND = {"arrays", "error", "memory", "watch"}
 CORE: dict[str, set[str]] = {
     "arrays": set(),
+    "cluster": {"graphs", "order", "points", "parallel", "wide", "num_bigint", "delone_predicates"}
+    | GROUND,
     "consistency": {"parallel", "delone_predicates"} | GROUND,
     "error": {"delone_predicates"},
     "memory": {"error", "libc"},
@@ -148,6 +150,7 @@ NEEDS = {
 # What the bindings take from the core: what the crate `delone` does not offer.
 BINDINGS = {
     "arrays",
+    "cluster",
     "consistency",
     "constrained::components",
     "constrained::simple_ring",

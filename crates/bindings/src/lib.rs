@@ -6,6 +6,7 @@
 //! clipped cells, terrain, and tetrahedral improvement.
 
 mod arrays;
+mod cluster;
 mod consistency;
 mod constrained;
 mod distributed;
@@ -142,6 +143,12 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(graphs::not_longer2, m)?)?;
     m.add_function(wrap_pyfunction!(graphs::not_longer3, m)?)?;
     m.add_function(wrap_pyfunction!(graphs::graph_components, m)?)?;
+    m.add_function(wrap_pyfunction!(cluster::linkage2, m)?)?;
+    m.add_function(wrap_pyfunction!(cluster::linkage3, m)?)?;
+    m.add_function(wrap_pyfunction!(cluster::condensed2, m)?)?;
+    m.add_function(wrap_pyfunction!(cluster::condensed3, m)?)?;
+    m.add_function(wrap_pyfunction!(cluster::density2, m)?)?;
+    m.add_function(wrap_pyfunction!(cluster::density3, m)?)?;
     m.add_function(wrap_pyfunction!(hull::hull2, m)?)?;
     m.add_function(wrap_pyfunction!(hull::hull3, m)?)?;
     m.add_function(wrap_pyfunction!(lawson::lawson2, m)?)?;

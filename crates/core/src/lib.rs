@@ -4,6 +4,7 @@
 //! which fills a `mesh2`; later stages read that mesh and return arrays.
 
 pub mod arrays;
+pub mod cluster;
 pub mod consistency;
 pub mod constrained;
 pub mod contour;

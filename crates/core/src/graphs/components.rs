@@ -9,14 +9,14 @@ use crate::watch::{Pace, Watch};
 const LOT: usize = 1 << 16;
 
 /// Disjoint sets of rows.
-pub(super) struct Sets {
+pub(crate) struct Sets {
     /// The parent of each row; a root is its own.
     parents: Vec<u32>,
 }
 
 impl Sets {
     /// A set for each of `n` rows.
-    pub(super) fn of(n: usize) -> Result<Self> {
+    pub(crate) fn of(n: usize) -> Result<Self> {
         let mut parents = with_room(n)?;
         parents.extend(0..n as u32);
         Ok(Self { parents })
@@ -24,7 +24,7 @@ impl Sets {
 
     /// The root of a row; paths are halved.
     #[inline]
-    pub(super) fn root(&mut self, row: i32) -> u32 {
+    pub(crate) fn root(&mut self, row: i32) -> u32 {
         let mut at = row as u32;
         loop {
             let above = self.parents[at as usize];
@@ -40,7 +40,7 @@ impl Sets {
     /// Joins the sets of two rows; whether they were two. The smaller root stays, so that roots
     /// are the first rows.
     #[inline]
-    pub(super) fn join(&mut self, a: i32, b: i32) -> bool {
+    pub(crate) fn join(&mut self, a: i32, b: i32) -> bool {
         let (a, b) = (self.root(a), self.root(b));
         self.parents[a.max(b) as usize] = a.min(b);
         a != b

@@ -22,11 +22,14 @@ mod tree;
 mod triangles;
 
 pub use antipodes::antipodes;
+pub(crate) use components::Sets;
 pub use components::components;
 pub use edges::{Skeleton, not_longer};
 pub use influence::influence;
+pub(crate) use nearest::each;
 pub use nearest::{Neighbors, nearest};
 pub use regions::{Region, filter};
 pub use spanning::{spanning_tree, spanning_tree_of_triangles};
 pub use tree::{Distinct, Tree};
+pub(crate) use tree::{certainly_above, squared, squared_gap};
 pub use triangles::{Rule, of_triangles};

@@ -19,7 +19,7 @@ use crate::watch::{Pace, Watch};
 const LOT: usize = 1 << 14;
 
 /// The neighbors of one point: squared distances and places, nearest first.
-pub(super) type Nearest = Vec<(f64, u32)>;
+pub(crate) type Nearest = Vec<(f64, u32)>;
 
 /// How edges to neighbors are listed.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -56,7 +56,7 @@ pub fn nearest<const D: usize>(
 }
 
 /// What `of` appends for each place and its `k` nearest neighbors.
-pub(super) fn each<const D: usize, T: Send + Copy>(
+pub(crate) fn each<const D: usize, T: Send + Copy>(
     tree: &Tree<D>,
     k: usize,
     workers: usize,
@@ -150,10 +150,9 @@ impl<const D: usize> Search<'_, D> {
         if other == place || self.excludes(new.0) {
             return;
         }
-        let mut at = self.best.len();
-        while at > 0 && self.is_nearer(q, new, self.best[at - 1]) {
-            at -= 1;
-        }
+        let at = self
+            .best
+            .partition_point(|&best| !self.is_nearer(q, new, best));
         if at < self.k {
             self.best.truncate(self.k - 1);
             self.best.insert(at, new);

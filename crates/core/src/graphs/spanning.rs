@@ -21,7 +21,7 @@ use super::tree::{certainly_above, squared};
 use super::triangles::filtered;
 use crate::error::Result;
 use crate::memory::{filled, with_room};
-use crate::order::sort_by;
+use crate::order::{sort_by, sort_shared};
 use crate::parallel;
 use crate::watch::{Pace, Watch};
 
@@ -29,8 +29,6 @@ use crate::watch::{Pace, Watch};
 const LOT: usize = 1 << 16;
 /// The longest run whose edges are ordered without numbers for the order of points.
 const SHORT: usize = 64;
-/// Items per task of the sort.
-const PART: usize = 1 << 16;
 
 /// A squared length, rounded, and the number of an edge.
 type Item = (f64, u32);
@@ -126,18 +124,7 @@ fn by_length<const D: usize>(
             Ok(())
         },
     )?;
-    // Medians split until the parts are small, so that threads can sort them.
-    let mut parts = vec![&mut items[..]];
-    while workers > 1 && parts.len() < 4 * workers && parts[0].len() > PART {
-        let halves = parallel::map_watched(workers, parts, watch, |part| {
-            let middle = part.len() / 2;
-            part.select_nth_unstable_by(middle, by_item);
-            let (before, after) = part.split_at_mut(middle);
-            Ok([before, after])
-        })?;
-        parts = halves.into_iter().flatten().collect();
-    }
-    parallel::map_watched(workers, parts, watch, |part| sort_by(part, watch, by_item))?;
+    sort_shared(&mut items, workers, watch, by_item)?;
     Ok(items)
 }
 

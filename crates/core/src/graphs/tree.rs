@@ -16,7 +16,7 @@ use crate::points::{Extent, scan};
 use crate::watch::Watch;
 
 /// Points per lowest box.
-pub(super) const LEAF: usize = 8;
+pub(crate) const LEAF: usize = 8;
 /// Boxes per box.
 const WIDTH: usize = 4;
 /// Lowest boxes per task.
@@ -60,13 +60,13 @@ impl Distinct<3> for Point3 {
 /// The tree.
 pub struct Tree<const D: usize> {
     /// Distinct points along the curve.
-    pub(super) points: Vec<[f64; D]>,
+    pub(crate) points: Vec<[f64; D]>,
     /// For each, its first row in the input.
-    pub(super) rows: Vec<u32>,
+    pub(crate) rows: Vec<u32>,
     /// `[row, first row of the same point]` for each further row, ascending.
     pub duplicates: Vec<[u32; 2]>,
     /// The boxes of each level, from those of points up to a single one.
-    pub(super) levels: Vec<Vec<Extent<D>>>,
+    pub(crate) levels: Vec<Vec<Extent<D>>>,
 }
 
 impl<const D: usize> Tree<D> {
@@ -113,21 +113,21 @@ impl<const D: usize> Tree<D> {
 
     /// The places of the points of a box.
     #[inline]
-    pub(super) fn places(&self, level: usize, i: usize) -> Range<usize> {
+    pub(crate) fn places(&self, level: usize, i: usize) -> Range<usize> {
         let width = LEAF * WIDTH.pow(level as u32);
         i * width..((i + 1) * width).min(self.points.len())
     }
 
     /// The boxes of a box on a level above 0.
     #[inline]
-    pub(super) fn below(&self, level: usize, i: usize) -> Range<usize> {
+    pub(crate) fn below(&self, level: usize, i: usize) -> Range<usize> {
         i * WIDTH..((i + 1) * WIDTH).min(self.levels[level - 1].len())
     }
 
     /// Calls `visit` on the places of points in all boxes that `enter` accepts, by level and
     /// number, until it answers `false`; whether it never did.
     #[inline]
-    pub(super) fn each(
+    pub(crate) fn each(
         &self,
         open: &mut Vec<(usize, usize)>,
         enter: impl Fn(&Extent<D>, usize, usize) -> bool,
@@ -153,7 +153,7 @@ impl<const D: usize> Tree<D> {
 
 /// The squared distance of a box from `q`, rounded; 0 inside.
 #[inline]
-pub(super) fn squared_gap<const D: usize>(extent: &Extent<D>, q: [f64; D]) -> f64 {
+pub(crate) fn squared_gap<const D: usize>(extent: &Extent<D>, q: [f64; D]) -> f64 {
     (0..D).fold(0.0, |sum, k| {
         let (before, after) = (extent.min[k] - q[k], q[k] - extent.max[k]);
         let gap = if before > after { before } else { after };
@@ -163,7 +163,7 @@ pub(super) fn squared_gap<const D: usize>(extent: &Extent<D>, q: [f64; D]) -> f6
 
 /// The squared distance of two points, rounded.
 #[inline]
-pub(super) fn squared<const D: usize>(a: [f64; D], b: [f64; D]) -> f64 {
+pub(crate) fn squared<const D: usize>(a: [f64; D], b: [f64; D]) -> f64 {
     (0..D).fold(0.0, |sum, k| {
         let x = a[k] - b[k];
         sum + x * x
@@ -173,6 +173,6 @@ pub(super) fn squared<const D: usize>(a: [f64; D], b: [f64; D]) -> f64 {
 /// Whether one squared distance is certainly larger than another: each errs by less than 1e-15 of
 /// itself, and by underflow. `false` for NaN and infinity.
 #[inline]
-pub(super) fn certainly_above(one: f64, other: f64) -> bool {
+pub(crate) fn certainly_above(one: f64, other: f64) -> bool {
     one * (1.0 - 1e-14) > other * (1.0 + 1e-14) + f64::MIN_POSITIVE && one < f64::INFINITY
 }

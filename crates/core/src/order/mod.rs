@@ -19,4 +19,4 @@ pub mod space_blocks;
 pub use arrange::{Arranged, arrange};
 pub use rounds::{Rounds, random};
 pub use rows::order_of;
-pub use sort::{sort, sort_by};
+pub use sort::{sort, sort_by, sort_shared};

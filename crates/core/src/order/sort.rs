@@ -3,10 +3,13 @@
 use std::cmp::Ordering;
 
 use crate::error::Result;
+use crate::parallel;
 use crate::watch::Watch;
 
 /// Items sorted without a check for interruption.
 const LOT: usize = 1 << 18;
+/// Items per task.
+const PART: usize = 1 << 16;
 
 /// Sorts items by a total order, unstably. Larger sets are split at their medians, which takes
 /// linear time per split.
@@ -26,7 +29,28 @@ pub fn sort_by<T>(
     sort_by(after, watch, compare)
 }
 
-/// The same by the natural order of the items.
+/// The same with threads: medians split until the parts are small.
+pub fn sort_shared<T: Send>(
+    items: &mut [T],
+    workers: usize,
+    watch: &Watch,
+    compare: impl Fn(&T, &T) -> Ordering + Copy + Sync,
+) -> Result<()> {
+    let mut parts = vec![items];
+    while workers > 1 && parts.len() < 4 * workers && parts[0].len() > PART {
+        let halves = parallel::map_watched(workers, parts, watch, |part| {
+            let middle = part.len() / 2;
+            part.select_nth_unstable_by(middle, compare);
+            let (before, after) = part.split_at_mut(middle);
+            Ok([before, after])
+        })?;
+        parts = halves.into_iter().flatten().collect();
+    }
+    parallel::map_watched(workers, parts, watch, |part| sort_by(part, watch, compare))?;
+    Ok(())
+}
+
+/// Sorts items by their natural order.
 pub fn sort<T: Ord>(items: &mut [T], watch: &Watch) -> Result<()> {
     sort_by(items, watch, T::cmp)
 }

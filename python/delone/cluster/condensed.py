@@ -1,0 +1,86 @@
+"""The condensed tree of HDBSCAN, as the core returns it and as a table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone import _core
+from delone.immutable import sealed
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["CondensedTree", "condensed_tree"]
+
+_TABLE = [("parent", np.int64), ("child", np.int64), ("lambda_val", float), ("child_size", np.int64)]
+
+
+@dataclass(frozen=True, eq=False)
+class CondensedTree:
+    """Clusters of at least a size; cluster 0 is the root, and parents have smaller numbers.
+
+    Levels number the distances where something changes, ascending.
+    """
+
+    clusters: Indices  # (n,): the cluster that each row leaves last
+    levels: Indices  # (n,): the level where it does
+    parents: Indices  # (c,): -1 for the root
+    births: Indices  # (c,): the level where a cluster splits from its parent, -1 for the root
+    deaths: Indices  # (c,): the lowest level where something leaves it
+    sizes: Indices  # (c,)
+    stabilities: Floats  # (c,)
+    heights: Floats  # the distance of each level
+    below: int  # levels below cluster_selection_epsilon
+    up_to: int  # levels up to it
+
+    @property
+    def lambdas(self) -> Floats:
+        """One over the distance of each level; 0 where it exceeds doubles, infinite for zero."""
+        with np.errstate(divide="ignore", over="ignore"):
+            found: Floats = 1 / self.heights
+            return found
+
+    def table(self) -> NDArray[np.void]:
+        """Return rows and clusters that leave clusters; clusters are numbered from n on."""
+        n = len(self.clusters)
+        count = n + len(self.parents) - 1
+        lambdas = self.lambdas
+        table = np.empty(count, dtype=_TABLE)
+        table["parent"][:n] = self.clusters + n
+        table["parent"][n:] = self.parents[1:] + n
+        table["child"] = np.concatenate((np.arange(n), n + np.arange(1, len(self.parents))))
+        table["lambda_val"] = lambdas[np.concatenate((self.levels, self.births[1:]))]
+        table["child_size"][:n] = 1
+        table["child_size"][n:] = self.sizes[1:]
+        return sealed(table[np.lexsort((table["child"], table["parent"]))])
+
+
+def condensed_tree(
+    points: Floats, *, samples: int, least: int, epsilon: float, workers: int
+) -> CondensedTree:
+    """Return the condensed tree of points, by mutual reachability."""
+    n = len(points)
+    if n >= 2 and samples <= n:
+        core = _core.condensed2 if points.shape[1] == 2 else _core.condensed3
+        *arrays, (below, up_to) = core(points, samples, least, epsilon, workers)
+        return CondensedTree(*arrays, below=below, up_to=up_to)
+    # Core distances do not exist, so all rows leave the root at the start.
+    zeros, root = np.zeros(n, dtype=np.int32), np.array([-1], dtype=np.int32)
+    return CondensedTree(
+        clusters=zeros,
+        levels=zeros,
+        parents=root,
+        births=root,
+        deaths=root + 1,
+        sizes=np.array([n], dtype=np.int32),
+        stabilities=np.zeros(1),
+        heights=np.array([np.inf]),
+        below=0,
+        up_to=0,
+    )

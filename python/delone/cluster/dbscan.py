@@ -1,0 +1,131 @@
+"""DBSCAN: clusters of one density."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_workers
+from delone.cluster.estimator import Clusterer, as_least, as_reach, numbered
+from delone.immutable import sealed
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["DBSCAN"]
+
+
+class DBSCAN(Clusterer):
+    """Clusters of one density, with the interface of ``sklearn.cluster.DBSCAN``; exact.
+
+    Parameters
+    ----------
+    eps : float, optional
+        From 0 on, used as the double that it is: points at this distance are neighbors. With 0,
+        these are only rows with the same coordinates; it may be infinite.
+    min_samples : int, optional
+        At least 1: a core point has this many rows within `eps`, itself included.
+    metric : {"euclidean", "l2"}, optional
+        Other metrics are refused.
+    workers : int, optional
+        Maximum number of threads; by default one per core. The result does not depend on it.
+    planar : bool, optional
+        Treat longitudes and latitudes as coordinates of a plane, without a warning.
+
+    Attributes
+    ----------
+    labels_ : ndarray of int32, shape (n,)
+        The cluster of each row, or -1 for noise. Clusters are numbered from 0 on by their first
+        rows.
+    core_sample_indices_ : ndarray of int32, shape (m,)
+        The rows of core points, ascending.
+    components_ : ndarray of float64, shape (m, d)
+        The core points.
+    n_features_in_ : int
+        Number of coordinates, 2 or 3.
+
+    Notes
+    -----
+    M. Ester, H.-P. Kriegel, J. Sander and X. Xu, "A density-based algorithm for discovering clusters
+    in large spatial databases with noise" (1996). Core points within `eps` of each other are in one
+    cluster. Another point within `eps` of core points belongs to the cluster of the nearest one, of
+    several to that with the lexicographically smallest coordinates; scikit-learn assigns it to the
+    cluster that reaches it first. All squared distances are compared exactly. So the clusters do not
+    depend on the order of the rows, and scaling points and `eps` by a power of two leaves them
+    unchanged.
+
+    Rows with the same coordinates count separately. With `min_samples` above n, all points are
+    noise. Points on one line or in one plane need nothing special.
+
+    Points are counted, and core points joined, in a tree of boxes: about O(n log n) time for
+    scattered points and a small `min_samples`, whatever `eps` is; memory is O(n).
+
+    Examples
+    --------
+    >>> from delone.cluster import DBSCAN
+    >>> model = DBSCAN(eps=1, min_samples=3).fit([(0, 0), (1, 0), (0, 1), (5, 5), (1, 1)])
+    >>> model.labels_, model.core_sample_indices_
+    (array([ 0,  0,  0, -1,  0], dtype=int32), array([0, 1, 2, 4], dtype=int32))
+    """
+
+    core_sample_indices_: NDArray[np.int32]
+    components_: Floats
+
+    def __init__(
+        self,
+        eps: float = 0.5,
+        *,
+        min_samples: int = 5,
+        metric: str = "euclidean",
+        workers: int | None = None,
+        planar: bool = False,
+    ) -> None:
+        self.eps = eps
+        self.min_samples = min_samples
+        self.metric = metric
+        self.workers = workers
+        self.planar = planar
+
+    def fit(self, X: ArrayLike, y: Any = None) -> Self:  # noqa: N803
+        """Cluster points.
+
+        Parameters
+        ----------
+        X : array_like, shape (n, 2) or (n, 3)
+            Finite coordinates.
+        y : optional
+            Without effect.
+
+        Returns
+        -------
+        DBSCAN
+            The estimator itself.
+
+        Raises
+        ------
+        InputError
+            An option is out of range, or the metric is not Euclidean.
+        NonFiniteError
+            A coordinate is NaN or infinite.
+        ShapeError, DtypeError
+            `X` is not a real array of shape (n, 2) or (n, 3), or an option has the wrong type.
+
+        Examples
+        --------
+        See `DBSCAN`.
+        """
+        eps = as_reach(self.eps, name="eps")
+        samples = as_least(self.min_samples, 1, name="min_samples")
+        workers = as_workers(self.workers)
+        points = self._points(X)
+        core = _core.density2 if points.shape[1] == 2 else _core.density3
+        # A count above that of all rows stands for every larger one.
+        clusters, is_core = core(points, eps, min(samples, len(points) + 1), workers)
+        self.labels_ = numbered(clusters)
+        self.core_sample_indices_ = sealed(np.flatnonzero(is_core).astype(np.int32))
+        self.components_ = sealed(points[self.core_sample_indices_])
+        return self

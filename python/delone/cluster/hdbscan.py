@@ -1,0 +1,174 @@
+"""HDBSCAN: clusters of varying density, from a minimum spanning tree by mutual reachability."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from delone._arrays import as_choice, as_flag, as_workers
+from delone.cluster.condensed import condensed_tree
+from delone.cluster.estimator import Clusterer, as_least, as_reach, numbered
+from delone.cluster.selection import labeled, memberships, selected
+from delone.immutable import sealed
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["HDBSCAN"]
+
+
+class HDBSCAN(Clusterer):
+    """Clusters of varying density, with the interface of ``sklearn.cluster.HDBSCAN``; exact.
+
+    Parameters
+    ----------
+    min_cluster_size : int, optional
+        At least 2: the smallest number of rows that is a cluster.
+    min_samples : int, optional
+        At least 1: the core distance of a row is that of its `min_samples`-th nearest row, the row
+        itself included, as in scikit-learn. By default `min_cluster_size`.
+    cluster_selection_epsilon : float, optional
+        Clusters that split from each other at a smaller distance are not split.
+    max_cluster_size : int, optional
+        With ``"eom"``, larger clusters are not selected.
+    metric : {"euclidean", "l2"}, optional
+        Other metrics are refused.
+    cluster_selection_method : {"eom", "leaf"}, optional
+        ``"eom"`` selects the clusters with the largest sum of stabilities (excess of mass),
+        ``"leaf"`` those that are not split.
+    allow_single_cluster : bool, optional
+        Whether all points may be one cluster.
+    workers : int, optional
+        Maximum number of threads; by default one per core. The result does not depend on it.
+    planar : bool, optional
+        Treat longitudes and latitudes as coordinates of a plane, without a warning.
+
+    Attributes
+    ----------
+    labels_ : ndarray of int32, shape (n,)
+        The cluster of each row, or -1 for noise. Clusters are numbered from 0 on by their first
+        rows.
+    probabilities_ : ndarray of float64, shape (n,)
+        How long each row stays in its cluster as the distance shrinks, relative to the row that
+        stays longest; 0 for noise.
+    condensed_tree_ : ndarray, shape (m,)
+        A structured array with ``parent``, ``child``, ``lambda_val`` and ``child_size``: the rows
+        (children below n) and clusters (from n on, n being the root) that leave each cluster.
+    n_features_in_ : int
+        Number of coordinates, 2 or 3.
+
+    Notes
+    -----
+    R. J. G. B. Campello, D. Moulavi and J. Sander, "Density-based clustering based on hierarchical
+    density estimates" (2013). The mutual reachability of two points is the largest of their distance
+    and both core distances. All of these are compared exactly. Equal distances are removed together:
+    a cluster may split into more than two, and no choice between ties is made. So the clusters do
+    not depend on the order of the rows, and scaling by a power of two leaves them unchanged. Only
+    stabilities are sums of doubles.
+
+    Where no distances are equal, the clusters are those of scikit-learn, up to the numbers. Its
+    alpha is always 1. Rows with the same coordinates count separately.
+
+    The minimum spanning tree of all pairs is found by Boruvka's algorithm in a tree of boxes; it is
+    not part of the Delaunay graph if `min_samples` exceeds 2. About O(n log n) time for scattered
+    points, and O(n) memory. Where squared distances exceed the range of doubles, time is quadratic.
+
+    With `min_samples` above n, no row has a core distance, and all are noise. A single point is
+    noise; so are points that all coincide, unless `allow_single_cluster` is set. Points on one line
+    or in one plane need nothing special.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.cluster import HDBSCAN
+    >>> random = np.random.default_rng(1)
+    >>> points = np.concatenate([random.normal(x, 0.1, (100, 2)) for x in (0, 1, 5)])
+    >>> model = HDBSCAN(min_cluster_size=20).fit(points)
+    >>> np.unique(model.labels_)
+    array([-1,  0,  1,  2], dtype=int32)
+    """
+
+    condensed_tree_: NDArray[np.void]
+    probabilities_: Floats
+
+    def __init__(
+        self,
+        min_cluster_size: int = 5,
+        *,
+        min_samples: int | None = None,
+        cluster_selection_epsilon: float = 0.0,
+        max_cluster_size: int | None = None,
+        metric: str = "euclidean",
+        cluster_selection_method: str = "eom",
+        allow_single_cluster: bool = False,
+        workers: int | None = None,
+        planar: bool = False,
+    ) -> None:
+        self.min_cluster_size = min_cluster_size
+        self.min_samples = min_samples
+        self.cluster_selection_epsilon = cluster_selection_epsilon
+        self.max_cluster_size = max_cluster_size
+        self.metric = metric
+        self.cluster_selection_method = cluster_selection_method
+        self.allow_single_cluster = allow_single_cluster
+        self.workers = workers
+        self.planar = planar
+
+    def fit(self, X: ArrayLike, y: Any = None) -> Self:  # noqa: N803
+        """Cluster points.
+
+        Parameters
+        ----------
+        X : array_like, shape (n, 2) or (n, 3)
+            Finite coordinates.
+        y : optional
+            Without effect.
+
+        Returns
+        -------
+        HDBSCAN
+            The estimator itself.
+
+        Raises
+        ------
+        InputError
+            An option is out of range, or the metric is not Euclidean.
+        NonFiniteError
+            A coordinate is NaN or infinite.
+        ShapeError, DtypeError
+            `X` is not a real array of shape (n, 2) or (n, 3), or an option has the wrong type.
+
+        Examples
+        --------
+        See `HDBSCAN`.
+        """
+        least = as_least(self.min_cluster_size, 2, name="min_cluster_size")
+        samples = least
+        if self.min_samples is not None:
+            samples = as_least(self.min_samples, 1, name="min_samples")
+        largest = None
+        if self.max_cluster_size is not None:
+            largest = as_least(self.max_cluster_size, 1, name="max_cluster_size")
+        epsilon = as_reach(self.cluster_selection_epsilon, name="cluster_selection_epsilon")
+        methods = ("eom", "leaf")
+        name = "cluster_selection_method"
+        method = as_choice(self.cluster_selection_method, methods, name=name)
+        single = as_flag(self.allow_single_cluster, name="allow_single_cluster")
+        workers = as_workers(self.workers)
+        points = self._points(X)
+        tree = condensed_tree(
+            points, samples=samples, least=least, epsilon=epsilon, workers=workers
+        )
+        if len(points) < 2 or samples > len(points):
+            chosen = []
+        else:
+            chosen = selected(tree, method=method, epsilon=epsilon, single=single, largest=largest)
+        labels = labeled(tree, chosen, epsilon=epsilon)
+        self.labels_ = numbered(labels)
+        self.probabilities_ = sealed(memberships(tree, labels))
+        self.condensed_tree_ = tree.table()
+        return self
