@@ -34,7 +34,7 @@ class CondensedTree:
     births: Indices  # (c,): the level where a cluster splits from its parent, -1 for the root
     deaths: Indices  # (c,): the lowest level where something leaves it
     sizes: Indices  # (c,)
-    stabilities: Floats  # (c,)
+    stabilities: Floats  # (c,), in some unit
     heights: Floats  # the distance of each level
     below: int  # levels below cluster_selection_epsilon
     up_to: int  # levels up to it

@@ -115,10 +115,10 @@ def memberships(tree: CondensedTree, labels: NDArray[np.int64]) -> NDArray[np.fl
     """Return how long each row stays in its cluster, relative to the last row, from 0 to 1."""
     found = np.zeros(len(labels))
     inside = labels >= 0
-    lambdas = tree.lambdas
-    own = lambdas[tree.levels[inside]]
-    most = lambdas[tree.deaths[labels[inside]]]
+    own = tree.heights[tree.levels[inside]]
+    least = tree.heights[tree.deaths[labels[inside]]]
     with np.errstate(invalid="ignore", divide="ignore"):
-        share = np.minimum(own, most) / most
-    found[inside] = np.where(np.isfinite(own) & (most > 0), share, 1.0)
+        share = np.minimum(least / own, 1.0)
+    # Distances may be zero, or exceed the range of doubles.
+    found[inside] = np.where((own > 0) & np.isfinite(least), share, 1.0)
     return found

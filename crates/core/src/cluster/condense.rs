@@ -36,7 +36,7 @@ pub struct Condensed {
     pub deaths: Vec<i32>,
     /// Number of rows of each cluster.
     pub sizes: Vec<i32>,
-    /// Stability of each cluster.
+    /// Stability of each cluster, in a unit that is a power of two.
     pub stabilities: Vec<f64>,
 }
 
@@ -68,6 +68,7 @@ pub fn condense(hierarchy: &Hierarchy, n: usize, least: usize, watch: &Watch) ->
         n: n as u32,
         least: least.min(n + 1) as u32,
         heights: &hierarchy.heights,
+        unit: unit(&hierarchy.heights),
         merges: &merges,
         firsts: vec![0],
         found: Condensed {
@@ -82,6 +83,17 @@ pub fn condense(hierarchy: &Hierarchy, n: usize, least: usize, watch: &Watch) ->
     };
     work.descend(watch)?;
     work.numbered()
+}
+
+/// A power of two, at most the first height above zero: one over a small height would overflow.
+fn unit(heights: &[f64]) -> f64 {
+    let first = heights.iter().copied().find(|&height| height > 0.0);
+    let bits = first.unwrap_or(1.0).to_bits();
+    match bits & f64::INFINITY.to_bits() {
+        // Subnormal: the highest bit.
+        0 => f64::from_bits(1 << bits.ilog2()),
+        exponent => f64::from_bits(exponent),
+    }
 }
 
 /// The merges of a hierarchy, those below before those above.
@@ -126,6 +138,8 @@ struct Work<'a> {
     n: u32,
     least: u32,
     heights: &'a [f64],
+    /// The numerator of lambdas.
+    unit: f64,
     merges: &'a [Merge],
     /// The first row of each cluster.
     firsts: Vec<u32>,
@@ -200,9 +214,9 @@ impl Work<'_> {
         let i = cluster as usize;
         let birth = match self.found.births[i] {
             -1 => 0.0,
-            level => 1.0 / self.heights[level as usize],
+            level => self.unit / self.heights[level as usize],
         };
-        let lambda = 1.0 / self.heights[merge.level as usize];
+        let lambda = self.unit / self.heights[merge.level as usize];
         if gone > 0 && lambda > birth {
             self.found.stabilities[i] += (lambda - birth) * f64::from(gone);
         }
@@ -274,5 +288,7 @@ mod tests {
         assert_eq!(found.levels, [0, 0, 1, 0, 0]);
         assert_eq!(found.stabilities, [2.5, 1.0, 1.0]);
         assert_eq!(found.deaths, [1, 0, 0]);
+        assert_eq!(unit(&[0.0, 6.0, 7.0]), 4.0);
+        assert_eq!(unit(&[1.75e-320]), f64::from_bits(2048));
     }
 }
