@@ -47,7 +47,7 @@ pub fn density<const D: usize>(
     workers: usize,
     watch: &Watch,
 ) -> Result<Density> {
-    let counts = multiplicities(tree, n)?;
+    let starts = starts(tree, n)?;
     let mut found = Density {
         clusters: filled(n, -1)?,
         is_core: filled(n, false)?,
@@ -57,7 +57,7 @@ pub fn density<const D: usize>(
     }
     let ball = Ball::of(tree, eps);
     let is_core = ball.each(workers, watch, |search, place| {
-        search.is_core(place, k, &counts)
+        search.is_core(place, k, &starts)
     })?;
     let cores = Cores::of(tree, is_core, watch)?;
     let mut sets = Sets::of(tree.len())?;
@@ -89,6 +89,18 @@ pub fn density<const D: usize>(
         found.clusters[row as usize] = found.clusters[of as usize];
     }
     Ok(found)
+}
+
+/// Where the rows of each place would begin if all were listed by place, plus the end.
+fn starts<const D: usize>(tree: &Tree<D>, n: usize) -> Result<Vec<u32>> {
+    let mut starts = with_room(tree.len() + 1)?;
+    let mut sum = 0;
+    starts.push(sum);
+    for count in multiplicities(tree, n)? {
+        sum += count;
+        starts.push(sum);
+    }
+    Ok(starts)
 }
 
 /// A distance around the points of a tree.
@@ -176,7 +188,7 @@ impl<'a, const D: usize> Ball<'a, D> {
 
 impl<const D: usize> Search<'_, '_, D> {
     /// Whether there are `k` rows within the distance of a place.
-    fn is_core(&mut self, place: usize, k: usize, counts: &[u32]) -> Result<bool> {
+    fn is_core(&mut self, place: usize, k: usize, starts: &[u32]) -> Result<bool> {
         let tree = self.ball.tree;
         let q = tree.points[place];
         let mut rows = 0;
@@ -204,7 +216,7 @@ impl<const D: usize> Search<'_, '_, D> {
                 self.pace.spend(places.len())?;
                 for other in places {
                     if self.ball.joins(q, tree.points[other]) {
-                        rows += counts[other] as usize;
+                        rows += (starts[other + 1] - starts[other]) as usize;
                     }
                 }
             }
