@@ -203,11 +203,7 @@ impl<const D: usize> Search<'_, '_, D> {
             }
             let places = tree.places(level, i);
             if self.ball.holds(q, extent) {
-                // Each place is one row at least.
-                rows += places
-                    .map(|other| counts[other] as usize)
-                    .take(k)
-                    .sum::<usize>();
+                rows += (starts[places.end] - starts[places.start]) as usize;
             } else if level > 0 {
                 let below = tree.below(level, i);
                 self.open
