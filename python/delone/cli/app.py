@@ -16,6 +16,7 @@ import typer
 
 from delone import ConstrainedDelaunay, Delaunay, __version__
 from delone.cli import cells, dem, field, graph, terrain, tiles
+from delone.cli import cells, cluster, field, graph, terrain, tiles
 from delone.cli.check import check_mesh
 from delone.cli.constraints import Constraints, constraint_figures, read_input, triangulated
 from delone.cli.exits import (
@@ -324,6 +325,7 @@ _ON_POINTS = (
 for _command in _ON_POINTS:
     app.command(epilog=_EPILOG)(naming_lines(_command))
 app.command(name="mesh", epilog=_EPILOG)(make_mesh)
+app.command(name="cluster", epilog=_EPILOG)(naming_lines(cluster.cluster_points))
 
 
 def _what(survey: PointSet | GeometrySet) -> str:

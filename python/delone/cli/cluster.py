@@ -1,0 +1,280 @@
+"""The command ``cluster``: which points of a file are close together, as labels."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+
+import numpy as np
+import typer
+
+from delone import __version__, cluster
+from delone.atomic import check_target, replacing
+from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.options import (
+    Classes,
+    Flat,
+    Json,
+    Layer,
+    Quiet,
+    Solid,
+    Workers,
+    class_numbers,
+    space_or_plane,
+    split,
+)
+from delone.cli.referenced import Crs, Planar, referenced, require_known
+from delone.cli.report import Stopwatch, peak_memory
+from delone.cli.show import print_json, print_report, spinner
+from delone.cli.solid import is_space
+from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
+from delone.extras import require
+from delone.io import input_suffixes, read_points
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+__all__ = ["cluster_points"]
+
+_SUFFIXES = (*TABLE_SUFFIXES, ".csv")
+
+
+class Method(StrEnum):
+    """The methods."""
+
+    HDBSCAN = "hdbscan"
+    DBSCAN = "dbscan"
+    SINGLE = "single-linkage"
+
+
+class Selection(StrEnum):
+    """How HDBSCAN selects clusters."""
+
+    EOM = "eom"
+    LEAF = "leaf"
+
+
+class Labels(NamedTuple):
+    """What is known of each point."""
+
+    points: NDArray[np.float64]
+    labels: NDArray[np.int32]
+    others: dict[str, NDArray[Any]]
+
+
+# The methods that have an option.
+_OWN = {
+    "--min-cluster-size": (Method.HDBSCAN,),
+    "--min-samples": (Method.HDBSCAN, Method.DBSCAN),
+    "--selection": (Method.HDBSCAN,),
+    "--epsilon": (Method.HDBSCAN,),
+    "--single-cluster": (Method.HDBSCAN,),
+    "--eps": (Method.DBSCAN,),
+    "--height": (Method.SINGLE,),
+    "--n-clusters": (Method.SINGLE,),
+}
+# The arguments that they are.
+_NAMES = {
+    "--selection": "cluster_selection_method",
+    "--epsilon": "cluster_selection_epsilon",
+    "--single-cluster": "allow_single_cluster",
+}
+
+
+def cluster_points(
+    source: Annotated[
+        Path, typer.Argument(metavar="INPUT", help="File of points: " + " ".join(input_suffixes()))
+    ],
+    *,
+    method: Annotated[Method, typer.Option(help="The method.")] = Method.HDBSCAN,
+    output: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="OUTPUT",
+            help="File of points with labels, once or more: " + " ".join(_SUFFIXES),
+        ),
+    ] = None,
+    min_cluster_size: Annotated[
+        int | None, typer.Option(help="hdbscan: smallest number of points; 5 by default.")
+    ] = None,
+    min_samples: Annotated[
+        int | None,
+        typer.Option(
+            help="hdbscan, dbscan: number of points nearby that makes a point dense, itself "
+            "included; by default that of --min-cluster-size, or 5."
+        ),
+    ] = None,
+    selection: Annotated[
+        Selection | None,
+        typer.Option(help="hdbscan: most stable clusters, or the smallest; eom by default."),
+    ] = None,
+    epsilon: Annotated[
+        float | None, typer.Option(help="hdbscan: do not split clusters at smaller distances.")
+    ] = None,
+    single_cluster: Annotated[
+        bool | None, typer.Option("--single-cluster", help="hdbscan: all points may be a cluster.")
+    ] = None,
+    eps: Annotated[
+        float | None, typer.Option(help="dbscan: the distance of neighbors.")
+    ] = None,
+    height: Annotated[
+        float | None, typer.Option(help="single-linkage: the longest step inside a cluster.")
+    ] = None,
+    n_clusters: Annotated[
+        int | None, typer.Option(help="single-linkage: the number of clusters.")
+    ] = None,
+    classes: Classes = None,
+    columns: Annotated[
+        str | None,
+        typer.Option(help="Columns of x, y and z, by name or by number from 0."),
+    ] = None,
+    layer: Layer = None,
+    in_space: Solid = False,
+    in_plane: Flat = False,
+    crs: Crs = None,
+    planar: Planar = False,
+    workers: Workers = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Find clusters of points, and write the points with their labels; noise is -1."""
+    given = {
+        "--min-cluster-size": min_cluster_size,
+        "--min-samples": min_samples,
+        "--selection": selection,
+        "--epsilon": epsilon,
+        "--single-cluster": single_cluster,
+        "--eps": eps,
+        "--height": height,
+        "--n-clusters": n_clusters,
+    }
+    _require_own(method, given)
+    space = space_or_plane(in_space, in_plane)
+    require_known(crs)
+    with writing():
+        protect_inputs(output or (), source)
+        for path in output or ():
+            _ready(path)
+    watch = Stopwatch()
+    with spinner(quiet or as_json) as say:
+        say(f"reading {source.name}")
+        with reading(), watch.stage("read"):
+            survey = read_points(
+                source, columns=split(columns), classes=class_numbers(classes), layer=layer
+            )
+            survey = referenced(survey, crs, planar=planar, quiet=quiet)
+        say(f"clustering {len(survey):,} points")
+        points = survey.points
+        if is_space(source, space, survey) and survey.z is not None:
+            points = np.column_stack((survey.points, survey.z))
+        with watch.stage("cluster"):
+            found = _found(method, points, _options(given, workers))
+        with writing(), ExitStack() as stack:
+            for path in output or ():
+                say(f"writing {path.name}")
+                with watch.stage(f"write {path.name}"):
+                    _write_one(found, survey.crs, stack.enter_context(replacing(path)))
+    sizes = np.bincount(found.labels[found.labels >= 0])
+    figures: dict[str, Any] = {
+        "delone": __version__,
+        "input": str(source),
+        "crs": survey.crs,
+        "method": str(method),
+        "points": len(points),
+        "clusters": len(sizes),
+        "noise": int((found.labels < 0).sum()),
+        "largest": int(sizes.max(initial=0)),
+        "smallest": int(sizes.min()) if len(sizes) else 0,
+        "stages": watch.rows(len(points)),
+        "outputs": [str(path) for path in output or ()],
+        "peak_memory_bytes": peak_memory(),
+    }
+    if as_json:
+        print_json(figures)
+    elif not quiet:
+        _print(figures, str(source))
+
+
+def _require_own(method: Method, given: dict[str, Any]) -> None:
+    """Refuse options of other methods, and require those without a default."""
+    for name, value in given.items():
+        if value is not None and method not in _OWN[name]:
+            methods = ", ".join(_OWN[name])
+            raise Failure(f"{name} is for --method {methods}, not {method}", Exit.USAGE)
+    if method is Method.DBSCAN and given["--eps"] is None:
+        raise Failure("--method dbscan needs --eps, the distance of neighbors", Exit.USAGE)
+    if method is Method.SINGLE and (given["--height"] is None) == (given["--n-clusters"] is None):
+        needs = "needs --height or --n-clusters, and not both"
+        raise Failure(f"--method single-linkage {needs}", Exit.USAGE)
+
+
+def _options(given: dict[str, Any], workers: int | None) -> dict[str, Any]:
+    """The arguments of a method of `cluster`."""
+    options: dict[str, Any] = {"workers": workers, "planar": True}
+    for name, value in given.items():
+        if value is not None:
+            argument = _NAMES.get(name, name.removeprefix("--").replace("-", "_"))
+            options[argument] = str(value) if isinstance(value, StrEnum) else value
+    return options
+
+
+def _found(method: Method, points: NDArray[np.float64], options: dict[str, Any]) -> Labels:
+    """Labels by a method. Notes about degrees have been printed."""
+    if method is Method.HDBSCAN:
+        model = cluster.HDBSCAN(**options).fit(points)
+        return Labels(points, model.labels_, {"probability": model.probabilities_})
+    if method is Method.DBSCAN:
+        dense = cluster.DBSCAN(**options).fit(points)
+        is_core = np.zeros(len(points), dtype=bool)
+        is_core[dense.core_sample_indices_] = True
+        return Labels(points, dense.labels_, {"core": is_core})
+    own = {name: options.pop(name) for name in ("height", "n_clusters") if name in options}
+    merges = cluster.single_linkage(points, **options)
+    return Labels(points, merges.labels(**own), {})
+
+
+def _ready(path: Path) -> None:
+    """Check that a file can be written before any work is done."""
+    suffix = path.suffix.lower()
+    if suffix not in _SUFFIXES:
+        raise Failure(f"{path}: labels can only be written to {' '.join(_SUFFIXES)}", Exit.USAGE)
+    if suffix == ".csv":
+        check_target(path)
+    else:
+        ready_table(path, "labels")
+
+
+def _write_one(found: Labels, crs: str | None, path: Path) -> None:
+    """Write points with labels in place; the suffix determines the format."""
+    if path.suffix.lower() != ".csv":
+        geopandas = require("geopandas", extra="geo", what="writing labels")
+        shapes = geopandas.points_from_xy(*found.points.T)
+        columns = {"label": found.labels, **found.others}
+        write_table(geopandas.GeoDataFrame(columns, geometry=shapes, crs=crs), path, layer="labels")
+        return
+    others = {name: values * 1 for name, values in found.others.items()}
+    names = [*"xyz"[: found.points.shape[1]], "label", *others]
+    columns = [*found.points.T, found.labels, *others.values()]
+    with path.open("w", encoding="utf-8", newline="\n") as file:
+        file.write(",".join(names) + "\n")
+        rows = zip(*(column.tolist() for column in columns), strict=True)
+        file.writelines(",".join(map(repr, row)) + "\n" for row in rows)
+
+
+def _print(figures: dict[str, Any], source: str) -> None:
+    names = {
+        "points": "points",
+        "clusters": "clusters",
+        "noise": "noise",
+        "largest": "largest cluster",
+        "smallest": "smallest cluster",
+    }
+    rows = [("method", figures["method"])]
+    rows += [(title, f"{figures[name]:,}") for name, title in names.items()]
+    print_report(source, rows, figures)
