@@ -22,7 +22,9 @@ roof = survey.attributes["classification"] == 6
 xyz = np.column_stack((survey.points, survey.z))[roof]
 model = HDBSCAN(min_cluster_size=300, min_samples=10).fit(xyz)
 sizes = np.bincount(model.labels_[model.labels_ >= 0])
-print(f"{len(sizes)} clusters of {sizes.tolist()} points, {np.sum(model.labels_ < 0)} points of noise")
+print(
+    f"{len(sizes)} clusters of {sizes.tolist()} points, {np.sum(model.labels_ < 0)} points of noise"
+)
 assert len(sizes) == 5
 
 # %%
@@ -44,7 +46,9 @@ for ax, (title, labels) in zip(axes, shown.items(), strict=True):
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
     ax.scatter(*survey.points[~roof][::20].T, s=0.4, color="0.9", linewidths=0)
-    ax.scatter(*xyz[~noise, :2].T, c=rank[labels[~noise]] % 10, s=0.6, cmap="tab10", vmax=9, linewidths=0)
+    ax.scatter(
+        *xyz[~noise, :2].T, c=rank[labels[~noise]] % 10, s=0.6, cmap="tab10", vmax=9, linewidths=0
+    )
     ax.scatter(*xyz[noise, :2].T, s=0.6, color="black", linewidths=0)
     count = labels.max() + 1
     ax.set(title=f"{title}: {count} clusters", aspect="equal", xticks=[], yticks=[])

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-import density
 import numpy as np
 import pytest
 import sklearn.cluster
-from clustered import SMALL, partition
 
+import density
+from clustered import SMALL, partition
 from delone.cluster import DBSCAN, single_linkage
 
 
@@ -21,7 +21,9 @@ def test_the_clusters_are_those_of_the_definition(name: str, samples: int) -> No
     heights = np.unique(single_linkage(points).linkage[:, 2])
     # Around the distances of the points, where ties are.
     chosen = [0.0, *heights[:: max(1, len(heights) // 5)], 1.5 * heights[-1], 4 * heights[-1]]
-    limits = {side for eps in chosen for side in (eps, np.nextafter(eps, 0), np.nextafter(eps, 1e308))}
+    limits = {
+        side for eps in chosen for side in (eps, np.nextafter(eps, 0), np.nextafter(eps, 1e308))
+    }
     for eps in limits:
         core, homes = density.dbscan(exact, Fraction(eps), samples)
         model = DBSCAN(eps, min_samples=samples, workers=2).fit(points)
@@ -36,7 +38,9 @@ def test_the_clusters_are_those_of_the_definition(name: str, samples: int) -> No
 @pytest.mark.parametrize("seed", range(5))
 def test_core_points_are_those_of_scikit_learn(d: int, seed: int) -> None:
     random = np.random.default_rng(seed)
-    points = np.concatenate([random.normal(random.random(d), s, (400, d)) for s in (0.02, 0.1, 0.2)])
+    points = np.concatenate(
+        [random.normal(random.random(d), s, (400, d)) for s in (0.02, 0.1, 0.2)]
+    )
     for eps, samples in ((0.005, 2), (0.03, 4), (0.1, 20), (0.3, 100), (5, 3)):
         model = DBSCAN(eps, min_samples=samples).fit(points)
         peer = sklearn.cluster.DBSCAN(eps=eps, min_samples=samples).fit(points)

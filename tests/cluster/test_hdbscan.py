@@ -1,21 +1,23 @@
-"""HDBSCAN against its definition, in fractions, and against scikit-learn where there are no ties."""
+"""HDBSCAN against its definition, in fractions, and against scikit-learn without ties."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import density
 import numpy as np
 import pytest
 import sklearn.cluster
-from clustered import SMALL, partition
 
+import density
+from clustered import SMALL, partition
 from delone.cluster import HDBSCAN
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-CASES = [(name, samples) for name in SMALL for samples in (1, 2, 3, 5) if len(SMALL[name]) >= samples]
+CASES = [
+    (name, samples) for name in SMALL for samples in (1, 2, 3, 5) if len(SMALL[name]) >= samples
+]
 
 
 @pytest.mark.parametrize(("name", "samples"), CASES)
@@ -98,7 +100,9 @@ def pairs(one: NDArray[Any], other: NDArray[Any]) -> set[tuple[int, int]]:
 def test_without_ties_the_labels_are_those_of_scikit_learn(d: int, seed: int) -> None:
     # With one or two samples, weights are distances, which all differ.
     random = np.random.default_rng(seed)
-    points = np.concatenate([random.normal(random.random(d), s, (150, d)) for s in (0.02, 0.1, 0.2)])
+    points = np.concatenate(
+        [random.normal(random.random(d), s, (150, d)) for s in (0.02, 0.1, 0.2)]
+    )
     options = {
         "min_cluster_size": int(random.integers(2, 15)),
         "min_samples": int(random.integers(1, 3)),

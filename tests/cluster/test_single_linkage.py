@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pickle
 
-import density
 import numpy as np
 import pytest
-from clustered import LARGE, SMALL, partition
 from scipy.cluster import hierarchy
 
+import density
+from clustered import LARGE, SMALL, partition
 from delone import Delaunay
 from delone.cluster import single_linkage
 from delone.errors import DtypeError, InputError, NonFiniteError, ShapeError
@@ -62,7 +62,10 @@ def test_without_ties_it_is_the_linkage_of_scipy(d: int) -> None:
 def test_rows_and_units_do_not_matter(name: str) -> None:
     points = LARGE[name]
     order = np.random.default_rng(0).permutation(len(points))
-    one, other = single_linkage(points, workers=1), single_linkage(points[order] * 2.0**70, workers=3)
+    one, other = (
+        single_linkage(points, workers=1),
+        single_linkage(points[order] * 2.0**70, workers=3),
+    )
     assert np.array_equal(one.linkage[:, 2:] * (2.0**70, 1), other.linkage[:, 2:])
     for count in (2, 40, len(points) // 2):
         labels = np.empty(len(points), dtype=np.int32)

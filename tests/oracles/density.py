@@ -49,14 +49,12 @@ def reach(points: Sequence[Point], k: int) -> Weight:
 
 
 def distances(points: Sequence[Point]) -> Weight:
-    return {
-        (i, j): squared(points[i], points[j]) for i, j in combinations(range(len(points)), 2)
-    }
+    return {(i, j): squared(points[i], points[j]) for i, j in combinations(range(len(points)), 2)}
 
 
 def at_most(weights: Weight, rows: Iterable[int], limit: Fraction) -> set[Rows]:
     """The components by weights up to a limit."""
-    return parts(rows, lambda i, j: weights[min(i, j), max(i, j)] <= limit)
+    return parts(rows, lambda i, j: weights.get((min(i, j), max(i, j)), limit + 1) <= limit)
 
 
 class Cluster(NamedTuple):
@@ -75,7 +73,8 @@ def condensed(weights: Weight, rows: Rows, least: int, birth: Fraction | None = 
     while True:
         levels = sorted({weights[pair] for pair in combinations(sorted(component), 2)})
         top = next(level for level in levels if len(at_most(weights, component, level)) == 1)
-        split = parts(component, lambda i, j: weights[min(i, j), max(i, j)] < top)
+        lower = {pair: weight for pair, weight in weights.items() if weight < top}
+        split = at_most(lower, component, top)
         large = {part for part in split if len(part) >= least}
         leaves |= {row: top for part in split - large for row in part}
         if len(large) > 1:

@@ -34,8 +34,6 @@ from delone.extras import require
 from delone.io import input_suffixes, read_points
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
 __all__ = ["cluster_points"]
@@ -120,9 +118,7 @@ def cluster_points(
     single_cluster: Annotated[
         bool | None, typer.Option("--single-cluster", help="hdbscan: all points may be a cluster.")
     ] = None,
-    eps: Annotated[
-        float | None, typer.Option(help="dbscan: the distance of neighbors.")
-    ] = None,
+    eps: Annotated[float | None, typer.Option(help="dbscan: the distance of neighbors.")] = None,
     height: Annotated[
         float | None, typer.Option(help="single-linkage: the longest step inside a cluster.")
     ] = None,
@@ -255,8 +251,8 @@ def _write_one(found: Labels, crs: str | None, path: Path) -> None:
     if path.suffix.lower() != ".csv":
         geopandas = require("geopandas", extra="geo", what="writing labels")
         shapes = geopandas.points_from_xy(*found.points.T)
-        columns = {"label": found.labels, **found.others}
-        write_table(geopandas.GeoDataFrame(columns, geometry=shapes, crs=crs), path, layer="labels")
+        table = {"label": found.labels, **found.others}
+        write_table(geopandas.GeoDataFrame(table, geometry=shapes, crs=crs), path, layer="labels")
         return
     others = {name: values * 1 for name, values in found.others.items()}
     names = [*"xyz"[: found.points.shape[1]], "label", *others]

@@ -18,7 +18,12 @@ if TYPE_CHECKING:
 
 __all__ = ["CondensedTree", "condensed_tree"]
 
-_TABLE = [("parent", np.int64), ("child", np.int64), ("lambda_val", float), ("child_size", np.int64)]
+_TABLE = [
+    ("parent", np.int64),
+    ("child", np.int64),
+    ("lambda_val", float),
+    ("child_size", np.int64),
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,8 +73,8 @@ def condensed_tree(
     n = len(points)
     if n >= 2 and samples <= n:
         core = _core.condensed2 if points.shape[1] == 2 else _core.condensed3
-        *arrays, (below, up_to) = core(points, samples, least, epsilon, workers)
-        return CondensedTree(*arrays, below=below, up_to=up_to)
+        found = core(points, samples, least, epsilon, workers)
+        return CondensedTree(*found[:8], *found[8])
     # Core distances do not exist, so all rows leave the root at the start.
     zeros, root = np.zeros(n, dtype=np.int32), np.array([-1], dtype=np.int32)
     return CondensedTree(

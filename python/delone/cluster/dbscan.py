@@ -50,13 +50,13 @@ class DBSCAN(Clusterer):
 
     Notes
     -----
-    M. Ester, H.-P. Kriegel, J. Sander and X. Xu, "A density-based algorithm for discovering clusters
-    in large spatial databases with noise" (1996). Core points within `eps` of each other are in one
-    cluster. Another point within `eps` of core points belongs to the cluster of the nearest one, of
-    several to that with the lexicographically smallest coordinates; scikit-learn assigns it to the
-    cluster that reaches it first. All squared distances are compared exactly. So the clusters do not
-    depend on the order of the rows, and scaling points and `eps` by a power of two leaves them
-    unchanged.
+    M. Ester, H.-P. Kriegel, J. Sander and X. Xu, "A density-based algorithm for discovering
+    clusters in large spatial databases with noise" (1996). Core points within `eps` of each other
+    are in one cluster. Another point within `eps` of core points belongs to the cluster of the
+    nearest one, of several to that with the lexicographically smallest coordinates; scikit-learn
+    assigns it to the cluster that reaches it first. All squared distances are compared exactly. So
+    the clusters do not depend on the order of the rows, and scaling points and `eps` by a power of
+    two leaves them unchanged.
 
     Rows with the same coordinates count separately. With `min_samples` above n, all points are
     noise. Points on one line or in one plane need nothing special.

@@ -200,5 +200,3 @@ def numbered(clusters: NDArray[np.integer[Any]]) -> Indices:
     number[found < 0] = -1
     number[order] = np.arange(len(order), dtype=np.int32)
     return sealed(number[inverse.ravel()])
-
-

@@ -64,14 +64,16 @@ class HDBSCAN(Clusterer):
     Notes
     -----
     R. J. G. B. Campello, D. Moulavi and J. Sander, "Density-based clustering based on hierarchical
-    density estimates" (2013). The mutual reachability of two points is the largest of their distance
-    and both core distances. All of these are compared exactly. Equal distances are removed together:
-    a cluster may split into more than two, and no choice between ties is made. So the clusters do
-    not depend on the order of the rows, and scaling by a power of two leaves them unchanged. Only
-    stabilities are sums of doubles.
+    density estimates" (2013). The mutual reachability of two points is the largest of their
+    distance and both core distances. All of these are compared exactly. Edges of equal weight are
+    removed together, as in the paper: a cluster may split into more than two, and no choice between
+    ties is made. So the clusters do not depend on the order of the rows, and scaling by a power of
+    two leaves them unchanged. Only stabilities are sums of doubles.
 
-    Where no distances are equal, the clusters are those of scikit-learn, up to the numbers. Its
-    alpha is always 1. Rows with the same coordinates count separately.
+    Where no weights are equal, the clusters are those of scikit-learn, up to the numbers. With
+    `min_samples` above 2 some always are: a core distance is the weight of several edges. There,
+    scikit-learn splits in an order that depends on the rows. Its alpha is always 1. Rows with the
+    same coordinates count separately.
 
     The minimum spanning tree of all pairs is found by Boruvka's algorithm in a tree of boxes; it is
     not part of the Delaunay graph if `min_samples` exceeds 2. About O(n log n) time for scattered

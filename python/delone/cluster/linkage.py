@@ -141,7 +141,9 @@ class SingleLinkage(Immutable):
         wanted = as_count(0 if n_clusters is None else n_clusters, name="n_clusters")
         n = self.npoints
         if not min(n, 1) <= wanted <= n:
-            raise InputError(f"n_clusters must be from 1 to the {counted(n, 'point')}, got {wanted}")
+            raise InputError(
+                f"n_clusters must be from 1 to the {counted(n, 'point')}, got {wanted}"
+            )
         if wanted == n:
             return sealed(np.arange(n, dtype=np.int32))
         return sealed(_core.graph_components(self._joined(n - wanted), n))
@@ -193,9 +195,9 @@ def single_linkage(
 
     Notes
     -----
-    The merges are the edges of the minimum spanning tree in the order of their lengths (J. C. Gower
-    and G. J. S. Ross, "Minimum spanning trees and single linkage cluster analysis", 1969), which are
-    compared exactly. The tree is inside the Delaunay graph: O(n log n) time and O(n) memory in 2-D;
+    The merges are the edges of the minimum spanning tree in the order of their lengths, which are
+    compared exactly (J. C. Gower and G. J. S. Ross, "Minimum spanning trees and single linkage
+    cluster analysis", 1969). The tree is inside the Delaunay graph: O(n log n) time and O(n) memory in 2-D;
     in 3-D, that of the triangulation. All pairs of points, as in
     ``scipy.cluster.hierarchy.linkage``, are never computed.
 
