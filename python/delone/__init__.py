@@ -8,7 +8,8 @@
 segments and polygons. `mesh` and `improve` create triangles and tetrahedra of good quality. Related
 structures are `Voronoi`, `ConvexHull`, `RegularTriangulation` and `PeriodicDelaunay`. The modules
 `graphs`, `cluster`, `terrain`, `interpolate`, `distributed`, `io`, `plot`, `predicates`,
-`datasets`, `testing`, `reference` and `compat` have the rest. All errors are subclasses of `DeloneError`.
+`datasets`, `testing`, `reference` and `compat` have the rest. All errors are subclasses of
+`DeloneError`.
 """
 
 from __future__ import annotations

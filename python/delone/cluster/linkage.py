@@ -197,8 +197,8 @@ def single_linkage(
     -----
     The merges are the edges of the minimum spanning tree in the order of their lengths, which are
     compared exactly (J. C. Gower and G. J. S. Ross, "Minimum spanning trees and single linkage
-    cluster analysis", 1969). The tree is inside the Delaunay graph: O(n log n) time and O(n) memory in 2-D;
-    in 3-D, that of the triangulation. All pairs of points, as in
+    cluster analysis", 1969). The tree is inside the Delaunay graph: O(n log n) time and O(n) memory
+    in 2-D; in 3-D, that of the triangulation. All pairs of points, as in
     ``scipy.cluster.hierarchy.linkage``, are never computed.
 
     Rows with the same coordinates are merged first, at distance zero. No points, or a single one,
