@@ -91,7 +91,7 @@ class HDBSCAN(Clusterer):
     >>> points = np.concatenate([random.normal(x, 0.1, (100, 2)) for x in (0, 1, 5)])
     >>> model = HDBSCAN(min_cluster_size=20).fit(points)
     >>> np.unique(model.labels_)
-    array([-1,  0,  1,  2], dtype=int32)
+    array([0, 1, 2], dtype=int32)
     """
 
     condensed_tree_: NDArray[np.void]
