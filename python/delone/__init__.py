@@ -65,6 +65,9 @@ if TYPE_CHECKING:
         testing,
     )
     from delone import io as io
+    from delone.alpha.concave import concave_hull
+    from delone.alpha.filtration import AlphaComplex
+    from delone.alpha.shape import AlphaShape, ConcaveHull
     from delone.constrained.delaunay import ConstrainedDelaunay
     from delone.constrained.editing import Editing
     from delone.constrained.polygons import PolygonTriangles, from_geometry, triangulate_polygon
@@ -87,9 +90,12 @@ if TYPE_CHECKING:
 
 # Without `io`: after a star import, that name would no longer be the standard library's.
 __all__ = [
+    "AlphaComplex",
+    "AlphaShape",
     "BudgetExceededError",
     "BusyError",
     "CRSWarning",
+    "ConcaveHull",
     "ConflictingValuesError",
     "ConstrainedDelaunay",
     "ConstrainedReport",
@@ -130,6 +136,7 @@ __all__ = [
     "__version__",
     "cluster",
     "compat",
+    "concave_hull",
     "datasets",
     "distributed",
     "explore",
@@ -152,6 +159,7 @@ __all__ = [
 # modules, and classes and functions by their modules.
 _MODULES = {
     "cluster",
+    "alpha",
     "compat",
     "constrained",
     "datasets",
@@ -175,6 +183,9 @@ _MODULES = {
     "voronoi",
 }
 _HOMES = {
+    "AlphaComplex": "alpha.filtration",
+    "AlphaShape": "alpha.shape",
+    "ConcaveHull": "alpha.shape",
     "ConstrainedDelaunay": "constrained.delaunay",
     "ConstrainedReport": "constrained.validation",
     "ConvexHull": "hull",
@@ -191,6 +202,7 @@ _HOMES = {
     "SegmentReport": "constrained.segments",
     "TetMesh": "tetmesh.tetmesh",
     "Voronoi": "voronoi.diagram",
+    "concave_hull": "alpha.concave",
     "explore": "explorer.widget",
     "from_geometry": "constrained.polygons",
     "improve": "tetmesh.improvement",

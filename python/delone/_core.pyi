@@ -47,6 +47,19 @@ __all__ = [
     "Triangulation",
     "WeightRows",
     "__version__",
+    "alpha_counts2",
+    "alpha_counts3",
+    "alpha_edges2",
+    "alpha_edges3",
+    "alpha_flat2",
+    "alpha_flat3",
+    "alpha_labels2",
+    "alpha_labels3",
+    "alpha_rings2",
+    "alpha_solid3",
+    "alpha_torus2",
+    "alpha_vertices2",
+    "alpha_vertices3",
     "antipodes2",
     "antipodes3",
     "areas2",
@@ -64,6 +77,8 @@ __all__ = [
     "deepest2",
     "density2",
     "density3",
+    "dig2",
+    "dig3",
     "dihedral_angles3",
     "disks2",
     "edges2",
@@ -1032,6 +1047,91 @@ def density2(
 def density3(
     points: NDArray[np.float64], eps: float, k: int, workers: int
 ) -> tuple[NDArray[np.int32], NDArray[np.bool_]]: ...
+_Valued = tuple[NDArray[np.int32], NDArray[np.float64]]
+
+def alpha_flat2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    workers: int,
+) -> tuple[NDArray[np.float64], _Valued]: ...
+def alpha_edges2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    edges: NDArray[np.int32],
+    workers: int,
+) -> NDArray[np.float64]: ...
+def alpha_vertices2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    edges: NDArray[np.int32],
+    values: NDArray[np.float64],
+) -> NDArray[np.float64]: ...
+def alpha_counts2(
+    order: NDArray[np.int32], neighbors: NDArray[np.int32], outside: bool
+) -> NDArray[np.int32]: ...
+def alpha_labels2(kept: NDArray[np.bool_], neighbors: NDArray[np.int32]) -> NDArray[np.int32]: ...
+def alpha_flat3(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    workers: int,
+) -> tuple[NDArray[np.float64], _Valued]: ...
+def alpha_edges3(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    edges: NDArray[np.int32],
+    workers: int,
+) -> NDArray[np.float64]: ...
+def alpha_vertices3(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    edges: NDArray[np.int32],
+    values: NDArray[np.float64],
+) -> NDArray[np.float64]: ...
+def alpha_counts3(
+    order: NDArray[np.int32], neighbors: NDArray[np.int32], outside: bool
+) -> NDArray[np.int32]: ...
+def alpha_labels3(kept: NDArray[np.bool_], neighbors: NDArray[np.int32]) -> NDArray[np.int32]: ...
+def alpha_solid3(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    workers: int,
+) -> tuple[NDArray[np.float64], _Valued, _Valued]: ...
+def alpha_torus2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    periods: tuple[float, float],
+    simplices: NDArray[np.int32],
+    offsets: NDArray[np.int32],
+    partners: NDArray[np.int32],
+    workers: int,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int32]]: ...
+def alpha_rings2(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    labels: NDArray[np.int32],
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.bool_]]: ...
+def dig2(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    name: str,
+    value: float,
+    holes: bool,
+) -> NDArray[np.bool_]: ...
+def dig3(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    name: str,
+    value: float,
+) -> NDArray[np.bool_]: ...
 def around(
     edges: NDArray[np.int32], npoints: int
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...

@@ -5,6 +5,7 @@
 //! periodic sets, tiles, interpolation and location with a shared index, hulls, measures, proofs,
 //! clipped cells, terrain, and tetrahedral improvement.
 
+mod alpha;
 mod arrays;
 mod cluster;
 mod consistency;
@@ -128,6 +129,21 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(measure::dihedral_angles3, m)?)?;
     m.add_function(wrap_pyfunction!(measure::transforms2, m)?)?;
     m.add_function(wrap_pyfunction!(measure::transforms3, m)?)?;
+    m.add_function(wrap_pyfunction!(alpha::alpha_flat2, m)?)?;
+    m.add_function(wrap_pyfunction!(alpha::alpha_flat3, m)?)?;
+    m.add_function(wrap_pyfunction!(alpha::alpha_edges2, m)?)?;
+    m.add_function(wrap_pyfunction!(alpha::alpha_edges3, m)?)?;
+    m.add_function(wrap_pyfunction!(alpha::alpha_vertices2, m)?)?;
+    m.add_function(wrap_pyfunction!(alpha::alpha_vertices3, m)?)?;
+    m.add_function(wrap_pyfunction!(alpha::alpha_counts2, m)?)?;
+    m.add_function(wrap_pyfunction!(alpha::alpha_counts3, m)?)?;
+    m.add_function(wrap_pyfunction!(alpha::alpha_labels2, m)?)?;
+    m.add_function(wrap_pyfunction!(alpha::alpha_labels3, m)?)?;
+    m.add_function(wrap_pyfunction!(alpha::alpha_solid3, m)?)?;
+    m.add_function(wrap_pyfunction!(alpha::alpha_torus2, m)?)?;
+    m.add_function(wrap_pyfunction!(alpha::alpha_rings2, m)?)?;
+    m.add_function(wrap_pyfunction!(alpha::dig2, m)?)?;
+    m.add_function(wrap_pyfunction!(alpha::dig3, m)?)?;
     m.add_function(wrap_pyfunction!(graphs::proximity2, m)?)?;
     m.add_function(wrap_pyfunction!(graphs::proximity3, m)?)?;
     m.add_function(wrap_pyfunction!(graphs::antipodes2, m)?)?;

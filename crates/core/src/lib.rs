@@ -3,6 +3,7 @@
 //! The core has no knowledge of Python. Data flows one way: `points` and `order` feed `delaunay2`,
 //! which fills a `mesh2`; later stages read that mesh and return arrays.
 
+pub mod alpha;
 pub mod arrays;
 pub mod cluster;
 pub mod consistency;

@@ -182,6 +182,10 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
         ),
     ),
     "Graph": (_graph(2), _graph(3)),
+    "AlphaComplex": (
+        _input("AlphaComplex", 2, weights=_WEIGHTS, periods=_PERIODS),
+        _input("AlphaComplex", 3, weights=_WEIGHTS),
+    ),
     "ConvexHull": tuple(_input("ConvexHull", ndim) for ndim in (2, 3)),
     "TIN": (_TIN,),
 }

@@ -128,7 +128,7 @@ pub fn around(edges: &[[i32; 2]], n: usize, watch: &Watch) -> Result<(Vec<i32>, 
 }
 
 /// The rows of some simplices, bucketed by the range of their first vertex.
-struct Buckets<T> {
+pub(crate) struct Buckets<T> {
     /// A range has 2^bits vertices.
     bits: u32,
     rows: Vec<Vec<(i32, T)>>,
@@ -142,14 +142,14 @@ impl<T> Buckets<T> {
     }
 
     #[inline]
-    fn put(&mut self, u: i32, rest: T) -> Result<()> {
+    pub(crate) fn put(&mut self, u: i32, rest: T) -> Result<()> {
         push(&mut self.rows[u as usize >> self.bits], (u, rest))
     }
 }
 
 /// The rows of `count` simplices, sorted. A row is its first vertex, below `n`, and the rest. If
 /// `UNIQUE`, no two rows are equal; otherwise, of equal rows one is kept.
-fn distinct<const UNIQUE: bool, T, R>(
+pub(crate) fn distinct<const UNIQUE: bool, T, R>(
     count: usize,
     n: usize,
     workers: usize,

@@ -1,0 +1,311 @@
+//! Alpha complexes and concave hulls as arrays.
+
+use delone::{Error, Result};
+use delone_core::alpha::{self, Limit, Sites};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
+use pyo3::prelude::*;
+
+use crate::arrays::{Column, Table, column, flat, in_range, rows, table};
+use crate::errors::attached;
+use crate::given::{checked, finite_weights, simplices_of, unequal};
+use crate::signals::watched;
+
+/// `(simplices, values)`.
+type Valued = (Table<i32>, Column<f64>);
+/// `(values of triangles, (edges, values))`.
+type Flat = (Column<f64>, Valued);
+/// `(values of tetrahedra, (faces, values), (edges, values))`.
+type Solid = (Column<f64>, Valued, Valued);
+
+/// The functions of one dimension.
+macro_rules! of_dimension {
+    ($d:literal, $corners:literal, $flat:ident, $edges:ident, $vertices:ident, $counts:ident,
+     $labels:ident) => {
+        /// The values of triangles and their edges.
+        #[pyfunction]
+        pub fn $flat(
+            py: Python<'_>,
+            points: PyReadonlyArray2<'_, f64>,
+            weights: Option<PyReadonlyArray1<'_, f64>>,
+            simplices: PyReadonlyArray2<'_, i32>,
+            neighbors: PyReadonlyArray2<'_, i32>,
+            workers: usize,
+        ) -> PyResult<Flat> {
+            let (given, weights) = attached(py, || {
+                let given = checked::<$d, 3>(&points, &simplices, &neighbors)?;
+                let weights = finite_weights(weights.as_ref(), given.points.len())?;
+                Ok((given, weights))
+            })?;
+            let found = watched(py, |watch| {
+                let sites = Sites {
+                    points: given.points,
+                    weights,
+                };
+                alpha::flat(sites, given.simplices, given.neighbors, workers, watch)
+            })?;
+            let edges = (table(py, found.edges)?, column(py, found.of_edges));
+            Ok((column(py, found.triangles), edges))
+        }
+
+        /// The values of edges without cofaces.
+        #[pyfunction]
+        pub fn $edges(
+            py: Python<'_>,
+            points: PyReadonlyArray2<'_, f64>,
+            weights: Option<PyReadonlyArray1<'_, f64>>,
+            edges: PyReadonlyArray2<'_, i32>,
+            workers: usize,
+        ) -> PyResult<Column<f64>> {
+            let (sites, edges) = attached(py, || {
+                let points: &[[f64; $d]] = rows(&points, "points")?;
+                let weights = finite_weights(weights.as_ref(), points.len())?;
+                Ok((
+                    Sites { points, weights },
+                    simplices_of::<2>(&edges, points.len())?,
+                ))
+            })?;
+            let found = watched(py, |watch| alpha::edges(sites, edges, workers, watch))?;
+            Ok(column(py, found))
+        }
+
+        /// The values of points, from those of edges.
+        #[pyfunction]
+        pub fn $vertices(
+            py: Python<'_>,
+            points: PyReadonlyArray2<'_, f64>,
+            weights: Option<PyReadonlyArray1<'_, f64>>,
+            edges: PyReadonlyArray2<'_, i32>,
+            values: PyReadonlyArray1<'_, f64>,
+        ) -> PyResult<Column<f64>> {
+            let (sites, edges, values) = attached(py, || {
+                let points: &[[f64; $d]] = rows(&points, "points")?;
+                let weights = finite_weights(weights.as_ref(), points.len())?;
+                let edges = simplices_of::<2>(&edges, points.len())?;
+                let values = flat(&values, "values")?;
+                if edges.len() != values.len() {
+                    return Err(unequal());
+                }
+                Ok((Sites { points, weights }, edges, values))
+            })?;
+            let found = watched(py, |watch| alpha::vertices(sites, edges, values, watch))?;
+            Ok(column(py, found))
+        }
+
+        /// The numbers of components of the first simplices of an order.
+        #[pyfunction]
+        pub fn $counts(
+            py: Python<'_>,
+            order: PyReadonlyArray1<'_, i32>,
+            neighbors: PyReadonlyArray2<'_, i32>,
+            outside: bool,
+        ) -> PyResult<Column<i32>> {
+            let (order, neighbors) = attached(py, || {
+                let neighbors: &[[i32; $corners]] = rows(&neighbors, "neighbors")?;
+                in_range(neighbors, -1, neighbors.len(), "neighbors")?;
+                let order = flat(&order, "order")?;
+                in_range(order.as_chunks::<1>().0, 0, neighbors.len(), "order")?;
+                Ok((order, neighbors))
+            })?;
+            let found = watched(py, |watch| alpha::counts(order, neighbors, outside, watch))?;
+            Ok(column(py, found))
+        }
+
+        /// The component of each simplex that is kept, -1 of others.
+        #[pyfunction]
+        pub fn $labels(
+            py: Python<'_>,
+            kept: PyReadonlyArray1<'_, bool>,
+            neighbors: PyReadonlyArray2<'_, i32>,
+        ) -> PyResult<Column<i32>> {
+            let (kept, neighbors) = attached(py, || {
+                let neighbors: &[[i32; $corners]] = rows(&neighbors, "neighbors")?;
+                in_range(neighbors, -1, neighbors.len(), "neighbors")?;
+                let kept = flat(&kept, "kept")?;
+                if kept.len() != neighbors.len() {
+                    return Err(unequal());
+                }
+                Ok((kept, neighbors))
+            })?;
+            let found = watched(py, |watch| alpha::labels(kept, neighbors, watch))?;
+            Ok(column(py, found))
+        }
+    };
+}
+
+of_dimension!(
+    2,
+    3,
+    alpha_flat2,
+    alpha_edges2,
+    alpha_vertices2,
+    alpha_counts2,
+    alpha_labels2
+);
+of_dimension!(
+    3,
+    4,
+    alpha_flat3,
+    alpha_edges3,
+    alpha_vertices3,
+    alpha_counts3,
+    alpha_labels3
+);
+
+/// The values of tetrahedra, their faces and their edges.
+#[pyfunction]
+pub fn alpha_solid3(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> PyResult<Solid> {
+    let (given, weights) = attached(py, || {
+        let given = checked::<3, 4>(&points, &simplices, &neighbors)?;
+        let weights = finite_weights(weights.as_ref(), given.points.len())?;
+        Ok((given, weights))
+    })?;
+    let found = watched(py, |watch| {
+        let sites = Sites {
+            points: given.points,
+            weights,
+        };
+        alpha::solid(sites, given.simplices, given.neighbors, workers, watch)
+    })?;
+    let faces = (table(py, found.faces)?, column(py, found.of_faces));
+    let edges = (table(py, found.edges)?, column(py, found.of_edges));
+    Ok((column(py, found.tetrahedra), faces, edges))
+}
+
+/// `(triangles, edges, conflicts)`: the values of periodic triangles, (m,), and of the edges opposite
+/// their corners, (m, 3), and whether (tail, head) of these are in conflict with the other, (3 m, 2).
+#[pyfunction]
+pub fn alpha_torus2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
+    periods: [f64; 2],
+    simplices: PyReadonlyArray2<'_, i32>,
+    offsets: PyReadonlyArray3<'_, i32>,
+    partners: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> PyResult<(Column<f64>, Table<f64>, Table<i32>)> {
+    let (sites, simplices, offsets, partners) = attached(py, || {
+        let points: &[[f64; 2]] = rows(&points, "points")?;
+        let weights = finite_weights(weights.as_ref(), points.len())?;
+        let simplices = simplices_of::<3>(&simplices, points.len())?;
+        let partners: &[[i32; 3]] = rows(&partners, "partners")?;
+        in_range(partners, -1, 3 * simplices.len(), "partners")?;
+        let offsets = flat(&offsets, "offsets")?.as_chunks::<2>().0;
+        let offsets: &[[[i32; 2]; 3]] = offsets.as_chunks::<3>().0;
+        let right = |corner: &[i32; 2]| corner.iter().all(|k| (-2..=2).contains(k));
+        if !offsets.iter().flatten().all(right) {
+            return Err(Error::Shape("offsets must be -2 to 2 periods".into()));
+        }
+        if offsets.len() != simplices.len() || partners.len() != simplices.len() {
+            return Err(unequal());
+        }
+        Ok((Sites { points, weights }, simplices, offsets, partners))
+    })?;
+    let found = watched(py, |watch| {
+        alpha::torus(sites, periods, simplices, offsets, partners, workers, watch)
+    })?;
+    Ok((
+        column(py, found.triangles),
+        table(py, found.of_edges)?,
+        table(py, found.conflicts.into_flattened())?,
+    ))
+}
+
+/// `(vertices, starts, parts, outer)`: the rings of the components of triangles.
+#[pyfunction]
+#[allow(clippy::type_complexity)]
+pub fn alpha_rings2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    labels: PyReadonlyArray1<'_, i32>,
+) -> PyResult<(Column<i32>, Column<i32>, Column<i32>, Column<bool>)> {
+    let (given, labels) = attached(py, || {
+        let given = checked::<2, 3>(&points, &simplices, &neighbors)?;
+        let labels = flat(&labels, "labels")?;
+        if labels.len() != given.simplices.len() {
+            return Err(unequal());
+        }
+        Ok((given, labels))
+    })?;
+    let found = watched(py, |watch| {
+        alpha::rings(
+            given.points,
+            given.simplices,
+            given.neighbors,
+            labels,
+            watch,
+        )
+    })?;
+    Ok((
+        column(py, found.vertices),
+        column(py, found.starts),
+        column(py, found.parts),
+        column(py, found.outer),
+    ))
+}
+
+/// The limit of a name: a length, or a ratio.
+fn limit(name: &str, value: f64) -> Result<Limit> {
+    match name {
+        "length" => Ok(Limit::Length(value)),
+        "ratio" => Ok(Limit::Ratio(value)),
+        _ => Err(Error::Shape(format!("no limit {name}"))),
+    }
+}
+
+/// Which triangles of a concave hull remain.
+#[pyfunction]
+pub fn dig2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    name: &str,
+    value: f64,
+    holes: bool,
+) -> PyResult<Column<bool>> {
+    let (given, limit) = attached(py, || {
+        let given = checked::<2, 3>(&points, &simplices, &neighbors)?;
+        Ok((given, limit(name, value)?))
+    })?;
+    let found = watched(py, |watch| {
+        alpha::dig2(
+            given.points,
+            given.simplices,
+            given.neighbors,
+            limit,
+            holes,
+            watch,
+        )
+    })?;
+    Ok(column(py, found))
+}
+
+/// Which tetrahedra of a concave hull remain.
+#[pyfunction]
+pub fn dig3(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    name: &str,
+    value: f64,
+) -> PyResult<Column<bool>> {
+    let (given, limit) = attached(py, || {
+        let given = checked::<3, 4>(&points, &simplices, &neighbors)?;
+        Ok((given, limit(name, value)?))
+    })?;
+    let found = watched(py, |watch| {
+        alpha::dig3(given.points, given.simplices, given.neighbors, limit, watch)
+    })?;
+    Ok(column(py, found))
+}

@@ -1,0 +1,147 @@
+"""Concave hulls: one polygon around points, dug from their convex hull along long edges."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_flag, as_number, as_workers, require_finite
+from delone.alpha.shape import ConcaveHull
+from delone.complex import Stored
+from delone.delaunay import Delaunay
+from delone.errors import DegenerateInputError, InputError
+from delone.georeference import warn_of_degrees
+from delone.immutable import own_copy, sealed
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+__all__ = ["concave_hull"]
+
+
+def concave_hull(
+    points: ArrayLike | Stored,
+    *,
+    max_edge: float | None = None,
+    ratio: float | None = None,
+    holes: bool = False,
+    workers: int | None = None,
+    planar: bool = False,
+) -> ConcaveHull:
+    """Return a concave hull: a polygon that has all points inside or on its boundary.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3), or Delaunay
+        Finite coordinates in any unit. A `Delaunay` triangulation is used as it is.
+    max_edge : float, optional
+        Edges of the boundary that are longer are removed as far as possible, in the unit of the
+        points; 0 or more, infinity included. Either this or `ratio` must be given.
+    ratio : float, optional
+        From 0 to 1: the same limit, as far between the lengths of the shortest and the longest edge
+        of the triangulation. 1 keeps the convex hull. As in ``shapely.concave_hull``.
+    holes : bool, optional
+        Whether to dig holes inside, too; 2-D only.
+    workers : int, optional
+        Maximum number of threads; by default one per core. The result does not depend on it.
+    planar : bool, optional
+        Treat longitudes and latitudes as coordinates of a plane, without a warning.
+
+    Returns
+    -------
+    ConcaveHull
+        The triangles or tetrahedra that are kept, with `polygon`, `boundary` and measures. Points
+        that span no area (no volume) have none, and an empty polygon.
+
+    Raises
+    ------
+    InputError
+        Not one of `max_edge` and `ratio` is given, or it is out of range; or `holes` in 3-D.
+    NonFiniteError, ShapeError, DtypeError
+        As for `Delaunay`.
+
+    See Also
+    --------
+    AlphaComplex : Any number of parts, by the radius of circles.
+
+    Notes
+    -----
+    In 2-D, the longest edge of the boundary is taken again and again. If it is longer than the
+    limit and the corner opposite in its triangle is inside, the triangle is removed. If the corner
+    is on the boundary already, the edge stays: so the hull is one simple polygon, whatever the
+    limit, and edges that are longer may remain. With `holes`, a triangle with a longer edge and no corner on
+    the boundary begins a hole, the one with the longest edge first, which is dug in the same way;
+    holes touch neither each other nor the outline.
+
+    In 3-D, a tetrahedron is removed across a face with a longer edge unless it is the last one of a
+    point. What remains need not be a manifold: see ``ConcaveHull.is_manifold``.
+
+    Lengths are compared exactly, equal ones by the coordinates of their ends, so the result does
+    not depend on the order of the rows. The limit of a ratio is a rounded number. O(n log n) time.
+
+    References
+    ----------
+    M. Duckham, L. Kulik, M. Worboys and A. Galton, "Efficient generation of simple polygons for
+    characterizing the shape of a set of points in the plane", Pattern Recognition 41 (2008).
+
+    Examples
+    --------
+    >>> import delone
+    >>> points = [(0, 0), (4, 0), (4, 4), (0, 4), (2, 1)]
+    >>> delone.concave_hull(points, max_edge=3).area
+    12.0
+    >>> delone.concave_hull(points, ratio=1).area
+    16.0
+    """
+    name, limit = _limit(max_edge, ratio)
+    wants_holes = as_flag(holes, name="holes")
+    threads = as_workers(workers)
+    if isinstance(points, Delaunay):
+        mesh: Any = points
+    else:
+        plain: Any = getattr(points, "points") if isinstance(points, Stored) else points  # noqa: B009
+        own = own_copy(plain, ndim=None)
+        warn_of_degrees(plain, own, planar=planar)
+        require_finite(own)
+        mesh = _triangulation(own, threads)
+        if mesh is None:
+            size = own.shape[1] + 1
+            nothing = sealed(np.empty((0, size), dtype=np.int32))
+            return ConcaveHull._made(
+                sealed(own), nothing, nothing, np.empty(0, dtype=bool), workers
+            )
+    given = mesh.points, mesh.simplices, mesh.neighbors
+    if mesh.ndim == 2:
+        flags = _core.dig2(*given, name, limit, holes=wants_holes)
+    elif wants_holes:
+        raise InputError("holes=True is only available in 2-D: points are 3-D")
+    else:
+        flags = _core.dig3(*given, name, limit)
+    return ConcaveHull._made(*given, flags, workers)
+
+
+def _limit(max_edge: float | None, ratio: float | None) -> tuple[str, float]:
+    if (max_edge is None) == (ratio is None):
+        raise InputError("pass either max_edge, a length, or ratio, from 0 to 1")
+    if ratio is not None:
+        share = as_number(ratio, name="ratio")
+        if not 0 <= share <= 1:
+            raise InputError(f"ratio must be from 0 to 1, got {ratio!r:.60}")
+        return "ratio", share
+    assert max_edge is not None
+    length = as_number(max_edge, name="max_edge")
+    if math.isnan(length) or length < 0:
+        raise InputError(f"max_edge is a length and must be at least 0, got {max_edge!r:.60}")
+    return "length", length
+
+
+def _triangulation(points: Any, workers: int) -> Delaunay | None:
+    if not len(points):
+        return None
+    try:
+        return Delaunay(points, workers=workers, planar=True)
+    except DegenerateInputError:
+        return None

@@ -1,0 +1,461 @@
+"""The class AlphaComplex: all simplices of a Delaunay triangulation with exact values."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_count, as_flag, as_number, as_workers, require_finite
+from delone.alpha.shape import AlphaShape
+from delone.alpha.values import Valued, known_mesh, of_periodic, of_points
+from delone.complex import Stored
+from delone.counting import counted
+from delone.errors import InputError
+from delone.extras import require
+from delone.georeference import warn_of_degrees
+from delone.immutable import kept, own_copy, sealed
+from delone.periodic import PeriodicDelaunay, as_periods
+from delone.regular import as_weights
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["AlphaComplex"]
+
+_NAMES = ("vertex", "edge", "triangle", "tetrahedron")
+
+
+class AlphaComplex(Stored):
+    """The alpha complex of points: all Delaunay simplices with the alpha at which each appears.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3), or a triangulation
+        Finite coordinates in any unit. A `Delaunay` or `RegularTriangulation` is used as it is.
+    weights : array_like, shape (n,), optional
+        Finite weights in the square of the unit of the points: squared radii of balls around them,
+        as for `RegularTriangulation`. Of that, the weights are used.
+    periodic : tuple of two floats or None, optional
+        The periods in x and y of 2-D points, as for `PeriodicDelaunay`.
+    workers : int, optional
+        Maximum number of threads; by default one per core. The result does not depend on it.
+    planar : bool, optional
+        Treat longitudes and latitudes as coordinates of a plane, without a warning.
+
+    Raises
+    ------
+    NonFiniteError
+        A coordinate or weight is NaN or infinite.
+    ShapeError, DtypeError
+        `points` is not a real array of shape (n, 2) or (n, 3), or there are not as many weights.
+    InputError
+        `periodic` is given with 3-D points or has no valid period, or points lie a period or more
+        apart.
+    DegenerateInputError
+        Periodic points form no triangle.
+    MemoryError
+        There is not enough memory.
+    KeyboardInterrupt
+        Ctrl-C was pressed. Nothing is left behind.
+
+    See Also
+    --------
+    concave_hull : One polygon, without a parameter that depends on the density of points.
+
+    Notes
+    -----
+    The value of a simplex is the **square of a radius**, as in GUDHI and CGAL: that of the smallest
+    ball through its vertices that has no other point inside. To convert: ``alpha = radius**2``; the
+    ``alpha`` of the package alphashape is ``1 / radius``, so ``alpha = 1 / theirs**2``. With
+    weights w, the ball is orthogonal to those around the vertices; a vertex has the value ``-w``,
+    or more if a neighbor covers it, and hidden points have no simplex.
+
+    A simplex whose smallest ball has no adjacent point inside (a test that is exact) has the
+    squared radius of that ball as its value; any other has the least value of its cofaces. Each
+    value is the double nearest to the exact one. Rounding is monotone, so no face has a larger
+    value than a coface, and nothing has to be repaired afterwards.
+
+    Points that span less than their dimension have a complex, too: coplanar 3-D points triangles
+    and edges, points on one line a path, a single point a vertex, and no points nothing. Rows
+    that repeat another one are not vertices. O(n log n) time in 2-D.
+
+    References
+    ----------
+    H. Edelsbrunner and E. P. Mücke, "Three-dimensional alpha shapes", ACM Transactions on Graphics
+    13 (1994). With weights: H. Edelsbrunner, "Weighted alpha shapes", 1992.
+
+    Examples
+    --------
+    >>> import delone
+    >>> complex = delone.AlphaComplex([(0, 0), (4, 0), (0, 3), (4, 3), (9, 9)])
+    >>> complex
+    <AlphaComplex of 5 points: 5 vertices, 8 edges, 4 triangles>
+    >>> complex.values(1).tolist()
+    [4.0, 2.25, 6.25, 2.25, 64.66, 4.0, 49.5625, 15.25]
+    >>> complex.shape(6.25).area
+    12.0
+    """
+
+    __slots__ = ("_points", "_valued", "_weights")
+
+    _points: Floats
+    _valued: Valued
+    _weights: Floats | None
+
+    def __init__(
+        self,
+        points: ArrayLike | Stored,
+        weights: ArrayLike | None = None,
+        periodic: Sequence[float | None] | None = None,
+        *,
+        workers: int | None = None,
+        planar: bool = False,
+    ) -> None:
+        threads = as_workers(workers)
+        mesh = known_mesh(points)
+        if mesh is not None and weights is None and periodic is None:
+            own = mesh.points
+            own_weights = getattr(mesh, "weights", None)
+            valued = of_points(own, own_weights, threads, mesh)
+        else:
+            plain: Any = getattr(points, "points") if isinstance(points, Stored) else points  # noqa: B009
+            own = own_copy(plain, ndim=None)
+            warn_of_degrees(plain, own, planar=planar)
+            require_finite(own)
+            own_weights = None if weights is None else sealed(as_weights(weights, len(own)))
+            valued = _valued(own, own_weights, periodic, threads)
+        self._fill(own, own_weights, valued, workers)
+
+    def _fill(
+        self, points: Floats, weights: Floats | None, valued: Valued, workers: int | None
+    ) -> None:
+        for array in (*valued.simplices, *valued.values):
+            array.flags.writeable = False
+        self._hold(points=sealed(points), weights=weights, valued=valued, workers=workers)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        arrays = self._points, self._weights, self.periods
+        return _again, (type(self), *arrays, self._workers)
+
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        nothing = np.empty(0)
+        found = {
+            "points": self._points,
+            "weights": nothing if self._weights is None else self._weights,
+        }
+        if self.ndim == 2:
+            periods = self.periods
+            lengths = () if periods is None else periods
+            found["periods"] = np.array([np.nan if each is None else each for each in lengths])
+        return found
+
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        weights = arrays["weights"] if len(arrays["weights"]) else None
+        lengths = arrays.get("periods", np.empty(0)).tolist()
+        periodic = [None if math.isnan(each) else each for each in lengths] or None
+        return cls(arrays["points"], weights, periodic, planar=True)
+
+    @property
+    def points(self) -> Floats:
+        """The coordinates, (n, d)."""
+        return self._points
+
+    @property
+    def weights(self) -> Floats | None:
+        """The weights, (n,); None without."""
+        return self._weights
+
+    @property
+    def periods(self) -> tuple[float | None, float | None] | None:
+        """The periods in x and y; None without."""
+        mesh = self._valued.periodic
+        return None if mesh is None else mesh.periods
+
+    @property
+    def ndim(self) -> int:
+        """Number of coordinates, 2 or 3."""
+        return int(self._points.shape[1])
+
+    @property
+    def npoints(self) -> int:
+        """Number of points, those that are not vertices included."""
+        return len(self._points)
+
+    @property
+    def dimension(self) -> int:
+        """The highest dimension of a simplex; -1 if there are no points."""
+        found = self._valued.simplices
+        return len(found) - 1 if len(found[0]) else -1
+
+    def simplices(self, k: int) -> Indices:
+        """Return the simplices of one dimension.
+
+        Parameters
+        ----------
+        k : int
+            The dimension: 0 for vertices, 1 for edges, 2 for triangles, 3 for tetrahedra.
+
+        Returns
+        -------
+        ndarray of int32, shape (m, k + 1)
+            Rows of `points`. Edges and the faces of tetrahedra have ascending rows, in ascending
+            order; those of the highest dimension are those of the triangulation. Of periodic
+            points, one simplex of each class of translates; an edge may have one row twice.
+
+        Raises
+        ------
+        InputError
+            `k` is not from 0 to `ndim`.
+
+        Examples
+        --------
+        >>> import delone
+        >>> delone.AlphaComplex([(0, 0), (4, 0), (0, 3)]).simplices(1).tolist()
+        [[0, 1], [0, 2], [1, 2]]
+        """
+        found = self._valued.simplices
+        at = self._dimension_of(k)
+        return found[at] if at < len(found) else sealed(np.empty((0, at + 1), dtype=np.int32))
+
+    def values(self, k: int) -> Floats:
+        """Return the values of the simplices of one dimension, in the order of `simplices`.
+
+        Parameters
+        ----------
+        k : int
+            The dimension.
+
+        Returns
+        -------
+        ndarray of float64, shape (m,)
+            Squared radii, in the square of the unit of the points; negative ones are possible with
+            weights. Infinite where one exceeds the range of doubles.
+
+        Raises
+        ------
+        InputError
+            `k` is not from 0 to `ndim`.
+
+        Examples
+        --------
+        >>> import delone
+        >>> delone.AlphaComplex([(0, 0), (4, 0), (0, 3)]).values(1)
+        array([4.  , 2.25, 6.25])
+        """
+        found = self._valued.values
+        at = self._dimension_of(k)
+        return found[at] if at < len(found) else sealed(np.empty(0))
+
+    def _dimension_of(self, k: int) -> int:
+        found = as_count(k, name="k")
+        if found > self.ndim:
+            raise InputError(f"k must be from 0 to {self.ndim}, got {k!r:.60}")
+        return found
+
+    @property
+    @kept
+    def order(self) -> Indices:
+        """The order of the filtration, (s, 2): the dimension and the number of each simplex.
+
+        Ascending values; of equal ones, the lower dimension first, then the vertices in
+        lexicographic order of their sorted coordinates. So every face comes before its cofaces,
+        and the order does not depend on that of the rows.
+        """
+        rank = np.empty(self.npoints, dtype=np.int64)
+        rank[np.lexsort(self._points.T[::-1])] = np.arange(self.npoints)
+        parts = list(zip(self._valued.simplices, self._valued.values, strict=True))
+        width = len(parts)
+        keys = np.full((sum(len(rows) for rows, _ in parts), width), -1, dtype=np.int64)
+        which = np.empty((len(keys), 2), dtype=np.int32)
+        start = 0
+        for k, (rows, _) in enumerate(parts):
+            end = start + len(rows)
+            keys[start:end, : k + 1] = np.sort(rank[rows], axis=1)
+            which[start:end, 0], which[start:end, 1] = k, np.arange(len(rows))
+            start = end
+        values = np.concatenate([values for _, values in parts])
+        sequence = np.lexsort((*keys.T[::-1], which[:, 0], values))
+        return sealed(which[sequence])
+
+    @property
+    @kept
+    def spectrum(self) -> Floats:
+        """The distinct values of all simplices, ascending: where the shape changes."""
+        return sealed(np.unique(np.concatenate(self._valued.values)))
+
+    def shape(self, alpha: float) -> AlphaShape:
+        """Return the simplices with values up to alpha.
+
+        Parameters
+        ----------
+        alpha : float
+            A squared radius, infinity included. Not negative, unless there are weights.
+
+        Returns
+        -------
+        AlphaShape
+            The simplices, their boundary, polygons and measures.
+
+        Raises
+        ------
+        InputError
+            `alpha` is NaN, or negative and there are no weights.
+
+        Examples
+        --------
+        >>> import delone
+        >>> complex = delone.AlphaComplex([(0, 0), (4, 0), (0, 3), (4, 3), (9, 9)])
+        >>> complex.shape(2.5 ** 2)
+        <AlphaShape of 5 points with alpha 6.25: 5 vertices, 5 edges, 2 triangles>
+        """
+        limit = as_number(alpha, name="alpha")
+        if math.isnan(limit) or (limit < 0 and self._weights is None):
+            least = "not NaN" if self._weights is not None else "at least 0"
+            raise InputError(f"alpha is a squared radius and must be {least}, got {alpha!r:.60}")
+        return AlphaShape._made(self, limit)
+
+    def optimal(self, components: int = 1, *, holes: bool = False) -> float:
+        """Return the smallest alpha whose shape is in few parts and has all points.
+
+        Parameters
+        ----------
+        components : int, optional
+            The most parts that triangles (in 3-D tetrahedra) may form; those with an edge (a face)
+            in common are in one part.
+        holes : bool, optional
+            Whether the shape may have holes, in 3-D voids.
+
+        Returns
+        -------
+        float
+            A squared radius, one of `spectrum`. All vertices are corners of triangles
+            (tetrahedra) of its shape. If there are none, the largest value.
+
+        Raises
+        ------
+        InputError
+            `components` is not a positive integer, or there are no points.
+
+        Notes
+        -----
+        By disjoint sets: of triangles in the order of their values, and, for holes, of the others
+        in the opposite order, together with the outside.
+
+        Examples
+        --------
+        >>> import delone
+        >>> delone.AlphaComplex([(0, 0), (4, 0), (0, 3), (4, 3), (9, 9)]).optimal()
+        49.5625
+        """
+        most = as_count(components, name="components")
+        if not most:
+            raise InputError("components must be at least 1, got 0")
+        allowed = as_flag(holes, name="holes")
+        if self.dimension < 0:
+            raise InputError("there are no points, and so no alpha: pass at least one point")
+        if self.dimension < self.ndim:
+            return float(self.spectrum[-1])
+        parts, gaps = self._counts
+        top, values = self._valued.simplices[-1], self._valued.values[-1]
+        order, ends = self._steps
+        least = np.full(self.npoints, np.inf)
+        for corner in top.T:
+            np.minimum.at(least, corner, values)
+        covered = least[self._valued.simplices[0][:, 0]].max()
+        at = values[order[ends]]
+        fits = (at >= covered) & (parts[ends] <= most)
+        if not allowed:
+            fits &= gaps[ends] == 0
+        return float(at[int(fits.argmax())])
+
+    @property
+    @kept
+    def _steps(self) -> tuple[Indices, NDArray[np.int64]]:
+        """The simplices of the highest dimension by value, and the last one of each value."""
+        values = self._valued.values[-1]
+        order = np.argsort(values, kind="stable").astype(np.int32)
+        last = np.flatnonzero(np.diff(values[order], append=np.nan) != 0)
+        return order, last
+
+    @property
+    @kept
+    def _counts(self) -> tuple[Indices, Indices]:
+        """The numbers of parts, and of holes, after each simplex of the highest dimension."""
+        order, _ = self._steps
+        neighbors = self._valued.neighbors
+        core = _core.alpha_counts2 if neighbors.shape[1] == 3 else _core.alpha_counts3
+        parts = core(order, neighbors, outside=False)
+        has_outside = bool((neighbors < 0).any())
+        rest = core(np.ascontiguousarray(order[::-1]), neighbors, outside=has_outside)
+        gaps = np.append(rest[::-1][1:], int(has_outside)) - int(has_outside)
+        return parts, gaps.astype(np.int32)
+
+    def to_gudhi(self) -> Any:
+        """Convert to a tree of simplices of GUDHI, for its persistent homology.
+
+        Returns
+        -------
+        gudhi.SimplexTree
+            All simplices with their values as filtration.
+
+        Raises
+        ------
+        MissingExtraError
+            GUDHI is not installed.
+        InputError
+            The points are periodic: simplices with the same vertices may differ.
+
+        Examples
+        --------
+        >>> import delone
+        >>> tree = delone.AlphaComplex([(0, 0), (4, 0), (0, 3)]).to_gudhi()  # doctest: +SKIP
+        >>> tree.num_simplices()  # doctest: +SKIP
+        7
+        """
+        if self._valued.periodic is not None:
+            raise InputError(
+                "a tree of simplices cannot hold periodic ones, since several may have the same "
+                "vertices: use simplices, values and order"
+            )
+        gudhi = require("gudhi", extra="gudhi", what="a tree of simplices")
+        tree = gudhi.SimplexTree()
+        for rows, values in zip(self._valued.simplices, self._valued.values, strict=True):
+            tree.insert_batch(np.ascontiguousarray(rows.T), values)
+        return tree
+
+    def _described(self) -> str:
+        plural = ("vertices", "edges", "triangles", "tetrahedra")
+        listed = (
+            f"{len(rows)} {_NAMES[k] if len(rows) == 1 else plural[k]}"
+            for k, rows in enumerate(self._valued.simplices)
+        )
+        return f"{counted(self.npoints, 'point')}: {', '.join(listed)}"
+
+
+def _valued(
+    points: Floats,
+    weights: Floats | None,
+    periodic: Sequence[float | None] | None,
+    workers: int,
+) -> Valued:
+    if periodic is None:
+        return of_points(points, weights, workers)
+    if points.shape[1] != 2:
+        raise InputError("periodic complexes are only available in 2-D: points are 3-D")
+    mesh = PeriodicDelaunay(points, as_periods(periodic), weights=weights)
+    return of_periodic(mesh, workers)
+
+
+def _again(
+    cls: type[AlphaComplex], points: Floats, weights: Any, periodic: Any, workers: Any
+) -> AlphaComplex:
+    return cls(points, weights, periodic, workers=workers, planar=True)

@@ -1,0 +1,178 @@
+"""The simplices of an alpha complex and their values, for points that span anything."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import _core
+from delone.delaunay import Delaunay
+from delone.errors import DegenerateInputError
+from delone.periodic import PeriodicDelaunay
+from delone.regular import RegularTriangulation, triangulated
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Valued", "edge_slots", "known_mesh", "of_periodic", "of_points"]
+
+
+@dataclass(frozen=True, eq=False)
+class Valued:
+    """Simplices of each dimension and their values; the neighbors of those of the highest."""
+
+    simplices: tuple[Indices, ...]
+    values: tuple[Floats, ...]
+    neighbors: Indices
+    # The periodic triangulation, and the edge opposite each corner of its triangles.
+    periodic: PeriodicDelaunay | None = None
+
+
+def of_points(points: Floats, weights: Floats | None, workers: int, mesh: Any = None) -> Valued:
+    """Return the complex of finite points; `mesh` is their triangulation, if it is known."""
+    if mesh is not None:
+        return _of_simplices(points, weights, mesh.simplices, mesh.neighbors, workers)
+    if not len(points):
+        return _of_chain(points, weights, np.empty(0, dtype=np.int32), workers)
+    try:
+        if weights is None:
+            found: Any = Delaunay(points, planar=True)
+            simplices, neighbors = found.simplices, found.neighbors
+        else:
+            arrays, chain = triangulated(points, weights)
+            simplices, neighbors = arrays["simplices"], arrays["neighbors"]
+            if not len(simplices):
+                return _of_chain(points, weights, chain, workers)
+    except DegenerateInputError as error:
+        plane = error.plane
+        if plane is not None:
+            return _of_simplices(points, weights, plane.simplices, plane.neighbors, workers)
+        chain = np.asarray(error.chain, dtype=np.int32)
+        if weights is not None:
+            chain = _seen_on_line(points, weights, chain)
+        return _of_chain(points, weights, chain, workers)
+    return _of_simplices(points, weights, simplices, neighbors, workers)
+
+
+def _seen_on_line(points: Floats, weights: Floats, chain: Indices) -> Indices:
+    """Return the rows of a chain of collinear 3-D points that are not hidden."""
+    from fractions import Fraction
+
+    spread = np.ptp(points[chain], axis=0) if len(chain) else np.zeros(points.shape[1])
+    if len(chain) < 2 or not spread.any():
+        return chain
+    exact = [[Fraction(float(x)) for x in points[row]] for row in chain]
+    along = [
+        sum((q - p) * (e - p) for p, q, e in zip(exact[0], each, exact[-1], strict=True))
+        for each in exact
+    ]
+    whole = along[-1]
+    heights = [
+        sum((q - p) ** 2 for p, q in zip(exact[0], each, strict=True))
+        - Fraction(float(weights[row]))
+        for each, row in zip(exact, chain, strict=True)
+    ]
+    lower: list[int] = []
+    for i in range(len(chain)):
+        # Lower hull of the lifted points; one in the middle of an edge is hidden.
+        while len(lower) > 1 and _is_above(along, heights, lower[-2], lower[-1], i):
+            lower.pop()
+        lower.append(i)
+    assert whole > 0
+    return chain[lower]
+
+
+def _is_above(along: list[Any], heights: list[Any], i: int, j: int, k: int) -> bool:
+    """Tell whether lifted point j is not below the line through i and k."""
+    run, rise = along[k] - along[i], heights[k] - heights[i]
+    above: bool = (heights[j] - heights[i]) * run >= rise * (along[j] - along[i])
+    return above
+
+
+def _vertices(
+    points: Floats, weights: Floats | None, edges: Indices, values: Floats, rows: Indices
+) -> tuple[Indices, Floats]:
+    core = _core.alpha_vertices2 if points.shape[1] == 2 else _core.alpha_vertices3
+    if weights is None:
+        return rows[:, None], np.zeros(len(rows))
+    return rows[:, None], core(points, weights, edges, values)[rows]
+
+
+def _seen(points: Floats, simplices: Indices) -> Indices:
+    seen = np.zeros(len(points), dtype=bool)
+    seen[simplices] = True
+    return np.flatnonzero(seen).astype(np.int32)
+
+
+def _of_simplices(
+    points: Floats, weights: Floats | None, simplices: Indices, neighbors: Indices, workers: int
+) -> Valued:
+    given = points, weights, simplices, neighbors, workers
+    if simplices.shape[1] == 4:
+        tetrahedra, (faces, of_faces), (edges, of_edges) = _core.alpha_solid3(*given)
+        upper, upper_values = (faces, simplices), (of_faces, tetrahedra)
+    else:
+        core = _core.alpha_flat2 if points.shape[1] == 2 else _core.alpha_flat3
+        triangles, (edges, of_edges) = core(*given)
+        upper, upper_values = (simplices,), (triangles,)
+    rows, own = _vertices(points, weights, edges, of_edges, _seen(points, edges))
+    return Valued((rows, edges, *upper), (own, of_edges, *upper_values), neighbors)
+
+
+def _of_chain(points: Floats, weights: Floats | None, chain: Indices, workers: int) -> Valued:
+    """Return a path along a line, a single point, or nothing."""
+    edges = np.sort(np.column_stack((chain[:-1], chain[1:])), axis=1).astype(np.int32)
+    edges = np.ascontiguousarray(edges[np.lexsort((edges[:, 1], edges[:, 0]))])
+    core = _core.alpha_edges2 if points.shape[1] == 2 else _core.alpha_edges3
+    values = core(points, weights, edges, workers)
+    rows, own = _vertices(points, weights, edges, values, np.sort(chain).astype(np.int32))
+    if not len(edges):
+        return Valued((rows,), (own,), np.full((len(rows), 1), -1, dtype=np.int32))
+    return Valued((rows, edges), (own, values), np.full((len(edges), 2), -1, dtype=np.int32))
+
+
+def edge_slots(mesh: PeriodicDelaunay) -> NDArray[np.int64]:
+    """Return for each edge of a periodic triangulation one code 3 t + k: of its later triangle."""
+    partners = mesh.partners.ravel()
+    code = np.arange(partners.size)
+    return code[partners < code]
+
+
+def of_periodic(mesh: PeriodicDelaunay, workers: int) -> Valued:
+    """Return the complex of a periodic triangulation: one simplex of each class of translates."""
+    points, weights = mesh.points, mesh.weights
+    x, y = (0.0 if length is None else length for length in mesh.periods)
+    topology = mesh.simplices, mesh.offsets, mesh.partners
+    triangles, by_corner, conflicts = _core.alpha_torus2(
+        points, weights, (x, y), *topology, workers
+    )
+    slots = edge_slots(mesh)
+    t, k = np.divmod(slots, 3)
+    tail, head = mesh.simplices[t, (k + 1) % 3], mesh.simplices[t, (k + 2) % 3]
+    values = by_corner[t, k]
+    rows = _seen(points, mesh.simplices)
+    own = np.zeros(len(points)) if weights is None else 0.0 - weights
+    if weights is not None:
+        least = np.full(len(points), np.inf)
+        is_met = np.zeros(len(points), dtype=bool)
+        for at, met in ((tail, conflicts[slots, 0]), (head, conflicts[slots, 1])):
+            np.minimum.at(least, at, values)
+            is_met[at[met != 0]] = True
+        own = np.where(is_met, least, own)
+    edges = np.column_stack((tail, head))
+    return Valued(
+        (rows[:, None], edges, mesh.simplices),
+        (own[rows], values, triangles),
+        mesh.neighbors,
+        mesh,
+    )
+
+
+def known_mesh(points: Any) -> Any:
+    """Return a triangulation whose simplices are those of its points' complex, or None."""
+    return points if isinstance(points, Delaunay | RegularTriangulation) else None

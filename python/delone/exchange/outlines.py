@@ -1,0 +1,43 @@
+"""Outlines with holes as polygons of shapely."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from delone.extras import require
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["to_polygons"]
+
+
+class _Outline(Protocol):
+    @property
+    def coordinates(self) -> NDArray[np.float64]: ...
+
+    @property
+    def ring(self) -> NDArray[np.int64]: ...
+
+    @property
+    def nshells(self) -> int: ...
+
+    @property
+    def polygon(self) -> NDArray[np.int64]: ...
+
+
+def to_polygons(outline: _Outline) -> NDArray[Any]:
+    """Return a polygon of shapely for each shell, in their order."""
+    shapely = require("shapely", extra="geo", what="polygons")
+    if not outline.nshells:
+        return np.empty(0, dtype=object)
+    rings = shapely.linearrings(outline.coordinates, indices=outline.ring)
+    shells, holes = rings[: outline.nshells], rings[outline.nshells :]
+    found: NDArray[Any] = shapely.polygons(shells)
+    # Only polygons with holes are made again: of all, shapely wants each number.
+    for number in np.unique(outline.polygon):
+        first, last = np.searchsorted(outline.polygon, (number, number + 1))
+        found[number] = shapely.polygons(shells[number], holes=holes[first:last])
+    return found
