@@ -72,9 +72,9 @@ def concave_hull(
     In 2-D, the longest edge of the boundary is taken again and again. If it is longer than the
     limit and the corner opposite in its triangle is inside, the triangle is removed. If the corner
     is on the boundary already, the edge stays: so the hull is one simple polygon, whatever the
-    limit, and edges that are longer may remain. With `holes`, a triangle with a longer edge and no corner on
-    the boundary begins a hole, the one with the longest edge first, which is dug in the same way;
-    holes touch neither each other nor the outline.
+    limit, and edges that are longer may remain. With `holes`, a triangle with a longer edge and no
+    corner on the boundary begins a hole, the one with the longest edge first, which is dug in the
+    same way; holes touch neither each other nor the outline.
 
     In 3-D, a tetrahedron is removed across a face with a longer edge unless it is the last one of a
     point. What remains need not be a manifold: see ``ConcaveHull.is_manifold``.

@@ -429,7 +429,8 @@ class AlphaComplex(Stored):
         gudhi = require("gudhi", extra="gudhi", what="a tree of simplices")
         tree = gudhi.SimplexTree()
         for rows, values in zip(self._valued.simplices, self._valued.values, strict=True):
-            tree.insert_batch(np.ascontiguousarray(rows.T), values)
+            # Copies: GUDHI misreads arrays that have a stride of zero.
+            tree.insert_batch(np.array(rows.T, order="C"), np.array(values))
         return tree
 
     def _described(self) -> str:

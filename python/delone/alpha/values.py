@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone import _core
 from delone.delaunay import Delaunay
+from delone.duplicates import first_rows
 from delone.errors import DegenerateInputError
 from delone.periodic import PeriodicDelaunay
 from delone.regular import RegularTriangulation, triangulated
@@ -60,31 +62,27 @@ def of_points(points: Floats, weights: Floats | None, workers: int, mesh: Any = 
 
 
 def _seen_on_line(points: Floats, weights: Floats, chain: Indices) -> Indices:
-    """Return the rows of a chain of collinear 3-D points that are not hidden."""
-    from fractions import Fraction
-
-    spread = np.ptp(points[chain], axis=0) if len(chain) else np.zeros(points.shape[1])
-    if len(chain) < 2 or not spread.any():
-        return chain
-    exact = [[Fraction(float(x)) for x in points[row]] for row in chain]
-    along = [
-        sum((q - p) * (e - p) for p, q, e in zip(exact[0], each, exact[-1], strict=True))
-        for each in exact
-    ]
-    whole = along[-1]
-    heights = [
-        sum((q - p) ** 2 for p, q in zip(exact[0], each, strict=True))
-        - Fraction(float(weights[row]))
-        for each, row in zip(exact, chain, strict=True)
-    ]
+    """Return the rows of a chain of collinear 3-D points that are not hidden, in order."""
+    first = first_rows(points)
+    # Of equal points the heaviest, of equally heavy ones the first.
+    order = np.lexsort((np.arange(len(first)), -weights, first))
+    at = np.unique(first[order], return_index=True)[1]
+    heaviest = dict(zip(first[order][at].tolist(), order[at].tolist(), strict=True))
+    rows = [heaviest[row] for row in first[chain].tolist()]
+    exact = [[Fraction(float(x)) for x in points[row]] for row in rows]
+    way = [q - p for p, q in zip(exact[0], exact[-1], strict=True)]
+    along, heights = [], []
+    for each, row in zip(exact, rows, strict=True):
+        steps = [q - p for p, q in zip(exact[0], each, strict=True)]
+        along.append(sum(x * y for x, y in zip(steps, way, strict=True)))
+        heights.append(sum(x * x for x in steps) - Fraction(float(weights[row])))
     lower: list[int] = []
-    for i in range(len(chain)):
-        # Lower hull of the lifted points; one in the middle of an edge is hidden.
+    for i in range(len(rows)):
+        # The lower hull of the lifted points; one in the middle of an edge is hidden.
         while len(lower) > 1 and _is_above(along, heights, lower[-2], lower[-1], i):
             lower.pop()
         lower.append(i)
-    assert whole > 0
-    return chain[lower]
+    return np.array([rows[i] for i in lower], dtype=np.int32)
 
 
 def _is_above(along: list[Any], heights: list[Any], i: int, j: int, k: int) -> bool:
