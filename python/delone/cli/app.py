@@ -17,6 +17,7 @@ import typer
 from delone import ConstrainedDelaunay, Delaunay, __version__
 from delone.cli import cells, dem, field, graph, terrain, tiles
 from delone.cli import cells, cluster, field, graph, terrain, tiles
+from delone.cli import cells, field, graph, outline, terrain, tiles
 from delone.cli.check import check_mesh
 from delone.cli.constraints import Constraints, constraint_figures, read_input, triangulated
 from delone.cli.exits import (
@@ -321,6 +322,8 @@ _ON_POINTS = (
     *(triangulate, check, info, explore, graph.graph),
     *(field.interpolate, field.crossval, cells.voronoi, tiles.tile),
     *(dem.dem, terrain.contours, terrain.profile, terrain.volume),
+    *(field.interpolate, field.crossval, cells.voronoi, outline.hull, tiles.tile),
+    *(terrain.contours, terrain.profile, terrain.volume),
 )
 for _command in _ON_POINTS:
     app.command(epilog=_EPILOG)(naming_lines(_command))
