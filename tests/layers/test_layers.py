@@ -47,6 +47,8 @@ PYTHON: tuple[set[str], ...] = (
     {"dynamic", "hull", "periodic", "refine"},
     {"graphs", "io"},
     {"voronoi", "interpolate", "cluster"},
+    {"alpha", "graphs", "io"},
+    {"voronoi", "interpolate"},
     {"compat", "distributed", "explorer", "terrain"},
     # Data and oracles: nothing that they test may use them, and they use the ground alone.
     {"datasets", "reference", "testing"},
@@ -85,6 +87,7 @@ CORE: dict[str, set[str]] = {
     "refine": {"constrained", "delaunay2", "mesh2", "wide", "delone_predicates"} | GROUND,
     "improve": {"delone_predicates"} | GROUND,
     "locate": {"order", "points", "parallel", "wide", "delone_predicates"} | GROUND,
+    "alpha": {"measure", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "graphs": {"order", "points", "parallel", "delone_predicates"} | GROUND,
     "hull": {"order", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "live": {
@@ -159,6 +162,7 @@ BINDINGS = {
     "delaunay2::validate",
     "delaunay3::validate",
     "distributed",
+    "alpha",
     "graphs",
     "hull",
     "improve",

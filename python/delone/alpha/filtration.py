@@ -10,7 +10,7 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_count, as_flag, as_number, as_workers, require_finite
 from delone.alpha.shape import AlphaShape
-from delone.alpha.values import Valued, known_mesh, of_periodic, of_points
+from delone.alpha.values import Valued, known_mesh, of_periodic, of_points, simplices_of
 from delone.complex import Stored
 from delone.counting import counted
 from delone.errors import InputError
@@ -222,9 +222,7 @@ class AlphaComplex(Stored):
         >>> delone.AlphaComplex([(0, 0), (4, 0), (0, 3)]).simplices(1).tolist()
         [[0, 1], [0, 2], [1, 2]]
         """
-        found = self._valued.simplices
-        at = self._dimension_of(k)
-        return found[at] if at < len(found) else sealed(np.empty((0, at + 1), dtype=np.int32))
+        return simplices_of(self._valued, k, self.ndim)[0]
 
     def values(self, k: int) -> Floats:
         """Return the values of the simplices of one dimension, in the order of `simplices`.
@@ -251,15 +249,7 @@ class AlphaComplex(Stored):
         >>> delone.AlphaComplex([(0, 0), (4, 0), (0, 3)]).values(1)
         array([4.  , 2.25, 6.25])
         """
-        found = self._valued.values
-        at = self._dimension_of(k)
-        return found[at] if at < len(found) else sealed(np.empty(0))
-
-    def _dimension_of(self, k: int) -> int:
-        found = as_count(k, name="k")
-        if found > self.ndim:
-            raise InputError(f"k must be from 0 to {self.ndim}, got {k!r:.60}")
-        return found
+        return simplices_of(self._valued, k, self.ndim)[1]
 
     @property
     @kept
@@ -321,7 +311,7 @@ class AlphaComplex(Stored):
         if math.isnan(limit) or (limit < 0 and self._weights is None):
             least = "not NaN" if self._weights is not None else "at least 0"
             raise InputError(f"alpha is a squared radius and must be {least}, got {alpha!r:.60}")
-        return AlphaShape._made(self, limit)
+        return AlphaShape._made(self._points, self._valued, limit, self._workers)
 
     def optimal(self, components: int = 1, *, holes: bool = False) -> float:
         """Return the smallest alpha whose shape is in few parts and has all points.

@@ -9,6 +9,7 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_workers
 from delone.alpha.outline import rings_of
+from delone.alpha.values import simplices_of
 from delone.counting import counted
 from delone.errors import InputError
 from delone.immutable import Immutable, kept, sealed
@@ -19,7 +20,7 @@ from delone.space.topology import FACES
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.alpha.filtration import AlphaComplex
+    from delone.alpha.values import Valued
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -230,23 +231,22 @@ class AlphaShape(Kept):
     (12.0, 14.0, 1, (2, 0))
     """
 
-    __slots__ = ("_alpha", "_complex")
+    __slots__ = ("_alpha", "_valued")
 
     _alpha: float
-    _complex: AlphaComplex
+    _valued: Valued
 
     @classmethod
-    def _made(cls, complex: AlphaComplex, alpha: float) -> Self:
-        valued = complex._valued
+    def _made(cls, points: Floats, valued: Valued, alpha: float, workers: int | None) -> Self:
         found = cls.__new__(cls)
         found._hold(
             alpha=alpha,
-            complex=complex,
             flags=sealed(valued.values[-1] <= alpha),
             neighbors=valued.neighbors,
-            points=complex.points,
+            points=points,
             tops=valued.simplices[-1],
-            workers=complex.workers,
+            valued=valued,
+            workers=workers,
         )
         return found
 
@@ -279,13 +279,13 @@ class AlphaShape(Kept):
         >>> delone.AlphaComplex([(0, 0), (4, 0), (0, 3)]).shape(4).simplices(1).tolist()
         [[0, 1], [0, 2]]
         """
-        rows, values = self._complex.simplices(k), self._complex.values(k)
+        rows, values = simplices_of(self._valued, k, self.ndim)
         return sealed(rows[values <= self._alpha])
 
     @property
     @kept
     def _sizes(self) -> tuple[int, ...]:
-        return tuple(int((values <= self._alpha).sum()) for values in self._complex._valued.values)
+        return tuple(int((values <= self._alpha).sum()) for values in self._valued.values)
 
     @property
     def euler_characteristic(self) -> int:
@@ -307,7 +307,7 @@ class AlphaShape(Kept):
         """Numbers of components, of loops and, in 3-D, of voids; on a torus of closed surfaces."""
         parts, euler = self.ncomponents, self.euler_characteristic
         if self.ndim == 2:
-            if self._complex.periods is None:
+            if self._valued.periodic is None:
                 return parts, parts - euler
             closed = int(bool(self._flags.all()) and bool((self._neighbors >= 0).all()))
             return parts, parts + closed - euler, closed
@@ -338,14 +338,14 @@ class AlphaShape(Kept):
         return len(np.unique(found[np.append(np.flatnonzero(~self._flags), count)])) - 1
 
     def _require_plane(self) -> None:
-        if self._complex.periods is not None:
+        if self._valued.periodic is not None:
             raise InputError(
                 "outlines of periodic points are not available, since they may go around the "
                 "period: `boundary` has the edges"
             )
 
     def _areas(self) -> Floats:
-        mesh = self._complex._valued.periodic
+        mesh = self._valued.periodic
         return super()._areas() if mesh is None else mesh.areas[self._flags]
 
     def __repr__(self) -> str:

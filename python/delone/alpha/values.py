@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
+from delone._arrays import as_count
 from delone.delaunay import Delaunay
 from delone.duplicates import first_rows
-from delone.errors import DegenerateInputError
+from delone.errors import DegenerateInputError, InputError
+from delone.immutable import sealed
 from delone.periodic import PeriodicDelaunay
 from delone.regular import RegularTriangulation, triangulated
 
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Valued", "edge_slots", "known_mesh", "of_periodic", "of_points"]
+__all__ = ["Valued", "edge_slots", "known_mesh", "of_periodic", "of_points", "simplices_of"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,6 +171,16 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> Valued:
         mesh.neighbors,
         mesh,
     )
+
+
+def simplices_of(valued: Valued, k: int, ndim: int) -> tuple[Indices, Floats]:
+    """Return the simplices of one dimension, up to that of the points, and their values."""
+    at = as_count(k, name="k")
+    if at > ndim:
+        raise InputError(f"k must be from 0 to {ndim}, got {k!r:.60}")
+    if at < len(valued.simplices):
+        return valued.simplices[at], valued.values[at]
+    return sealed(np.empty((0, at + 1), dtype=np.int32)), sealed(np.empty(0))
 
 
 def known_mesh(points: Any) -> Any:
