@@ -137,8 +137,8 @@ class AlphaComplex(Stored):
     def _fill(
         self, points: Floats, weights: Floats | None, valued: Valued, workers: int | None
     ) -> None:
-        for array in (*valued.simplices, *valued.values):
-            array.flags.writeable = False
+        for rows, values in zip(valued.simplices, valued.values, strict=True):
+            rows.flags.writeable = values.flags.writeable = False
         self._hold(points=sealed(points), weights=weights, valued=valued, workers=workers)
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -62,7 +62,7 @@ class Kept(Immutable):
 
     @property
     def _is_full(self) -> bool:
-        return self._tops.shape[1] == self.ndim + 1
+        return int(self._tops.shape[1]) == self.ndim + 1
 
     @property
     @kept

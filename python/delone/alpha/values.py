@@ -113,6 +113,8 @@ def _of_simplices(
     points: Floats, weights: Floats | None, simplices: Indices, neighbors: Indices, workers: int
 ) -> Valued:
     given = points, weights, simplices, neighbors, workers
+    upper: tuple[Indices, ...]
+    upper_values: tuple[Floats, ...]
     if simplices.shape[1] == 4:
         tetrahedra, (faces, of_faces), (edges, of_edges) = _core.alpha_solid3(*given)
         upper, upper_values = (faces, simplices), (of_faces, tetrahedra)
