@@ -16,6 +16,8 @@ type Valued = (Table<i32>, Column<f64>);
 type Flat = (Column<f64>, Valued);
 /// `(values of tetrahedra, (faces, values), (edges, values))`.
 type Solid = (Column<f64>, Valued, Valued);
+/// `(vertices, starts, parts, outer)`.
+type Rings = (Column<i32>, Column<i32>, Column<i32>, Column<bool>);
 
 /// The functions of one dimension.
 macro_rules! of_dimension {
@@ -181,6 +183,7 @@ pub fn alpha_solid3(
 /// `(triangles, edges, conflicts)`: the values of periodic triangles, (m,), and of the edges opposite
 /// their corners, (m, 3), and whether (tail, head) of these are in conflict with the other, (3 m, 2).
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "one array each")]
 pub fn alpha_torus2(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
@@ -220,14 +223,13 @@ pub fn alpha_torus2(
 
 /// `(vertices, starts, parts, outer)`: the rings of the components of triangles.
 #[pyfunction]
-#[allow(clippy::type_complexity)]
 pub fn alpha_rings2(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     neighbors: PyReadonlyArray2<'_, i32>,
     labels: PyReadonlyArray1<'_, i32>,
-) -> PyResult<(Column<i32>, Column<i32>, Column<i32>, Column<bool>)> {
+) -> PyResult<Rings> {
     let (given, labels) = attached(py, || {
         let given = checked::<2, 3>(&points, &simplices, &neighbors)?;
         let labels = flat(&labels, "labels")?;

@@ -220,12 +220,12 @@ fn on_grid<const D: usize, const M: usize>(
     let mut low = i32::MAX;
     let mut plain = [[0.0; D]; M];
     for (v, site) in plain.iter_mut().zip(others) {
-        for k in 0..D {
+        for (k, v) in v.iter_mut().enumerate() {
             let pair = Pair::difference(site.at[k], first.at[k]);
             if pair.lo != 0.0 {
                 return None;
             }
-            v[k] = pair.hi;
+            *v = pair.hi;
             low = low.min(exponent(pair.hi));
         }
     }

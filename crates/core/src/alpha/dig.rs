@@ -172,9 +172,9 @@ pub fn dig2(
         is_bare: filled(points.len(), false)?,
         queue: Queue(BinaryHeap::new()),
     };
-    for t in 0..simplices.len() {
+    for (t, beyond) in neighbors.iter().enumerate() {
         pace.spend(1)?;
-        for k in (0..3).filter(|&k| neighbors[t][k] < 0) {
+        for k in (0..3).filter(|&k| beyond[k] < 0) {
             dig.bare(t, k)?;
         }
     }
@@ -292,12 +292,11 @@ pub fn dig3(
         edge.is_longer(limit).then_some(Facet { edge, tip, at })
     };
     let mut queue = Queue(BinaryHeap::new());
-    for t in 0..simplices.len() {
+    for (t, beyond) in neighbors.iter().enumerate() {
         pace.spend(1)?;
-        for found in (0..4).filter_map(|k| (neighbors[t][k] < 0).then(|| facet(t, k))) {
-            if let Some(found) = found {
-                queue.push(found)?;
-            }
+        let bare = (0..4).filter(|&k| beyond[k] < 0);
+        for found in bare.filter_map(|k| facet(t, k)) {
+            queue.push(found)?;
         }
     }
     while let Some(found) = queue.0.pop() {
