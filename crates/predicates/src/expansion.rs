@@ -84,6 +84,19 @@ impl Pair {
         Self { hi, lo }
     }
 
+    /// `a * b`, exactly.
+    #[inline]
+    pub fn product(a: f64, b: f64) -> Self {
+        let (hi, lo) = two_product(a, b);
+        Self { hi, lo }
+    }
+
+    /// The double itself.
+    #[inline]
+    pub fn from_double(hi: f64) -> Self {
+        Self { hi, lo: 0.0 }
+    }
+
     /// The square.
     #[inline]
     pub fn square(self) -> Self {

@@ -47,7 +47,7 @@ impl From<i128> for Integer<2> {
 
 impl<const N: usize> Integer<N> {
     /// `x / 2^low`, where x is a multiple of 2^low that fits.
-    fn from_double(x: f64, low: i32) -> Self {
+    pub fn from_double(x: f64, low: i32) -> Self {
         let mut limbs = [0; N];
         let (magnitude, exponent) = decode_odd(x);
         if magnitude == 0 {
@@ -86,6 +86,12 @@ impl<const N: usize> Integer<N> {
         let mut limbs = self.0;
         subtract(&mut limbs, &other.0);
         Self(limbs)
+    }
+
+    /// The number with the other sign.
+    #[inline]
+    pub fn negated(&self) -> Self {
+        Self([0; N]).minus(self)
     }
 
     /// The product; it has as many limbs as both factors together.

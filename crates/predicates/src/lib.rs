@@ -11,7 +11,8 @@
 //!
 //! The answer is a [`Sign`], exact for the given doubles: no tolerance, no range limit, subnormals
 //! and `f64::MAX` included. [`incircle_canonical`] and [`insphere_canonical`] break ties by the
-//! coordinates of the points only, never by their order.
+//! coordinates of the points only, never by their order. [`sphere`] has the predicates of
+//! directions, which include square roots.
 //!
 //! # Stages
 //!
@@ -56,6 +57,7 @@ mod orient3d;
 pub mod proximity;
 mod range;
 mod sign;
+pub mod sphere;
 pub mod sweep;
 mod ties;
 
