@@ -56,6 +56,46 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
             };
             ("NonFiniteError", message)
         }
+        Error::ZeroVectors { rows, count, .. } => {
+            details.set_item("rows", rows)?;
+            details.set_item("count", count)?;
+            let (what, row) = match count {
+                1 => ("1 vector is zero and has", rows.first()),
+                _ => ("vectors are zero and have", rows.first()),
+            };
+            let number = if *count == 1 {
+                String::new()
+            } else {
+                format!("{count} ")
+            };
+            let row = row.copied().unwrap_or_default();
+            let message = format!("{number}{what} no direction, first row {row}: drop such rows");
+            ("DirectionError", message)
+        }
+        Error::OneGreatCircle { rows, .. } => {
+            let few = rows.len() < 3;
+            let reason = if few {
+                "too few points"
+            } else {
+                "one great circle"
+            };
+            details.set_item("reason", reason)?;
+            details.set_item("chain", rows)?;
+            let message = if few {
+                format!(
+                    "{} too few for a triangle: at least three that are not on one great circle \
+                     are needed",
+                    distinct(rows.len())
+                )
+            } else {
+                format!(
+                    "all {} distinct directions are on one great circle, so there is no triangle; \
+                     `error.chain` has their rows in order around it",
+                    rows.len()
+                )
+            };
+            ("DegenerateInputError", message)
+        }
         Error::TooFew {
             rows, dimension, ..
         } => {
@@ -127,6 +167,14 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     };
     let class = py.import("delone.errors")?.getattr(class)?;
     Ok(PyErr::from_value(class.call((message,), Some(&details))?))
+}
+
+/// How many directions there are, as the start of a sentence.
+fn distinct(count: usize) -> String {
+    match count {
+        1 => "1 distinct direction is".into(),
+        _ => format!("{count} distinct directions are"),
+    }
 }
 
 /// Names the first pair of segments that cross.

@@ -3,7 +3,7 @@
 //!
 //! They use the public crate `delone`, and the core only where that crate has nothing: weights,
 //! periodic sets, tiles, interpolation and location with a shared index, hulls, measures, proofs,
-//! clipped cells, terrain, and tetrahedral improvement.
+//! clipped cells, terrain, tetrahedral improvement, and the sphere.
 
 mod alpha;
 mod arrays;
@@ -31,6 +31,7 @@ mod regular_faults;
 mod results;
 mod signals;
 mod space;
+mod sphere;
 mod terrain;
 mod triangulation;
 mod voronoi;
@@ -81,8 +82,15 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<distributed::DeepestPoints>()?;
     m.add_class::<terrain::ContourLines>()?;
     m.add_class::<terrain::ContourBands>()?;
+    m.add_class::<sphere::SphereTriangulation>()?;
+    m.add_class::<sphere::SphereLocator>()?;
     m.add_class::<improve::ImprovedMesh>()?;
     m.add_class::<improve::ImprovementCounts>()?;
+    m.add_function(wrap_pyfunction!(sphere::sphere_delaunay, m)?)?;
+    m.add_function(wrap_pyfunction!(sphere::sphere_directions, m)?)?;
+    m.add_function(wrap_pyfunction!(sphere::sphere_units, m)?)?;
+    m.add_function(wrap_pyfunction!(sphere::sphere_areas, m)?)?;
+    m.add_function(wrap_pyfunction!(sphere::sphere_circumcenters, m)?)?;
     m.add_function(wrap_pyfunction!(terrain::contour_lines2, m)?)?;
     m.add_function(wrap_pyfunction!(terrain::contour_bands2, m)?)?;
     m.add_function(wrap_pyfunction!(terrain::volumes2, m)?)?;

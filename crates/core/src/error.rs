@@ -40,6 +40,20 @@ pub enum Error {
         /// First rows of the distinct points, in order along the line.
         chain: Vec<u32>,
     },
+    /// Vectors that are zero and have no direction: the first rows, and how many there are.
+    #[error("{} zero and has no direction", agreed(*count, "row is", "rows are"))]
+    ZeroVectors {
+        /// The first such rows, ascending.
+        rows: Vec<u32>,
+        /// How many there are.
+        count: usize,
+    },
+    /// All directions are on one great circle: their rows in the order around it.
+    #[error("all {} distinct directions are on one great circle", chain.len())]
+    OneGreatCircle {
+        /// First rows of the distinct directions, in order around the circle.
+        chain: Vec<u32>,
+    },
     /// More points than the mesh's 32-bit codes can address.
     #[error("{found} points exceed the limit of {limit} for one triangulation")]
     TooMany {

@@ -33,6 +33,7 @@ pub mod proof;
 pub mod refine;
 pub mod regular;
 pub mod regular3;
+pub mod sphere;
 pub mod voronoi;
 pub mod voronoi3;
 pub mod watch;

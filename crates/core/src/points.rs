@@ -14,7 +14,7 @@ pub const LIMIT2: usize = 1 << 28;
 pub const LIMIT3: usize = 1 << 27;
 
 /// How many invalid rows an error names.
-const NAMED_ROWS: usize = 10;
+pub const NAMED_ROWS: usize = 10;
 
 /// The bounding box of a finite point set.
 #[derive(Debug, Clone, Copy, PartialEq)]

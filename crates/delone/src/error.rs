@@ -43,6 +43,25 @@ pub enum Error {
         /// The first row of each distinct point, in lexicographic order.
         rows: Vec<usize>,
     },
+    /// Vectors are zero and have no direction.
+    #[error(
+        "{count} rows are zero and have no direction; the first is row {}",
+        first(rows)
+    )]
+    #[non_exhaustive]
+    ZeroVectors {
+        /// The first of these rows, ascending.
+        rows: Vec<usize>,
+        /// How many rows there are.
+        count: usize,
+    },
+    /// All directions are on one great circle.
+    #[error("all {} distinct directions are on one great circle", rows.len())]
+    #[non_exhaustive]
+    OneGreatCircle {
+        /// The first row of each distinct direction, in order around the circle.
+        rows: Vec<usize>,
+    },
     /// There are more points, or would be more simplices, than a triangulation can hold.
     #[error("{}{what} exceed the limit of {limit} for one triangulation", counted(*found))]
     #[non_exhaustive]
@@ -182,6 +201,11 @@ impl From<core::Error> for Error {
             },
             core::Error::Collinear { chain } => Self::Collinear { rows: wide(chain) },
             core::Error::Coplanar { chain } => Self::Coplanar { rows: wide(chain) },
+            core::Error::ZeroVectors { rows, count } => Self::ZeroVectors {
+                rows: wide(rows),
+                count,
+            },
+            core::Error::OneGreatCircle { chain } => Self::OneGreatCircle { rows: wide(chain) },
             core::Error::TooMany { found, limit } => Self::TooLarge {
                 what: "points",
                 found: Some(found),

@@ -6,7 +6,8 @@ mod oracle;
 use std::cmp::Ordering;
 
 use delone_predicates::sphere::{
-    Unit, compare, incircle, incircle_canonical, incircle_exact, orient, orient_exact, same, stages,
+    Unit, compare, incircle, incircle_canonical, incircle_exact, nearer, orient, orient_exact,
+    same, stages,
 };
 use delone_predicates::{Point3, Sign};
 use num_bigint::BigInt;
@@ -366,4 +367,35 @@ fn units_are_right_to_a_hundred_bits() {
         "the check sees the error: 2^{}",
         worst.log2()
     );
+}
+
+#[test]
+fn the_nearer_direction_is_the_one_with_the_larger_cosine() {
+    let (mut random, mut ties) = (Random(9), 0);
+    for case in 0..4000 {
+        let lattice = case % 2 == 0;
+        let [q, a, b] = [(); 3].map(|()| {
+            loop {
+                let v = match lattice {
+                    true => [(); 3].map(|()| random.integer(-2, 2) as f64),
+                    false => gauss(&mut random),
+                };
+                if v != [0.0; 3] {
+                    return v;
+                }
+            }
+        });
+        let b = match case % 4 {
+            1 => shaken(a, 1, &mut random),
+            3 => scaled(a, power_of_two(random.integer(-900, 900)) * random.unit()),
+            _ => b,
+        };
+        let [qq, aa, bb] = [q, a, b].map(whole);
+        let dot = |x: &[BigInt], y: &[BigInt]| x.iter().zip(y).map(|(x, y)| x * y).sum::<BigInt>();
+        let sign = sign_of_roots(&[(dot(&qq, &aa), square(&bb)), (-dot(&qq, &bb), square(&aa))]);
+        assert_eq!(nearer(q, a, b), sign, "{q:?} {a:?} {b:?}");
+        assert_eq!(nearer(q, b, a), -sign);
+        ties += usize::from(sign.is_zero());
+    }
+    assert!(ties > 100, "{ties}");
 }

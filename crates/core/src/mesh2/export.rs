@@ -27,7 +27,8 @@ pub fn marked_arrays(
     workers: usize,
     watch: &Watch,
 ) -> Result<(Arrays<3>, Vec<[bool; 3]>)> {
-    let (mut mesh, out) = write(mesh, ghost, rows, workers, watch)?;
+    let all = 2 * mesh.vertices() - 2;
+    let (mut mesh, out) = write(mesh, Some(ghost), all, rows, workers, watch)?;
     let patch = mesh.patch();
     let count = out.simplices.len();
     let mut marks = with_room(count)?;
@@ -47,18 +48,35 @@ pub fn arrays(
     workers: usize,
     watch: &Watch,
 ) -> Result<Arrays<3>> {
-    write(mesh, ghost, rows, workers, watch).map(|(_, arrays)| arrays)
+    let all = 2 * mesh.vertices() - 2;
+    partial_arrays(mesh, Some(ghost), all, rows, workers, watch)
+}
+
+/// The same for the first `all` records of a mesh, which may lack vertices, or ghosts.
+pub fn partial_arrays(
+    mesh: Mesh2,
+    ghost: Option<Code>,
+    all: usize,
+    rows: &[u32],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Arrays<3>> {
+    write(mesh, ghost, all, rows, workers, watch).map(|(_, arrays)| arrays)
 }
 
 /// The arrays, and the mesh without ghosts.
 fn write(
     mut mesh: Mesh2,
-    ghost: Code,
+    ghost: Option<Code>,
+    all: usize,
     rows: &[u32],
     workers: usize,
     watch: &Watch,
 ) -> Result<(Mesh2, Arrays<3>)> {
-    let count = drop_ghosts(&mut mesh, ghost)?;
+    let count = match ghost {
+        Some(ghost) => drop_ghosts(&mut mesh, ghost, all)?,
+        None => all,
+    };
     let mut out = Arrays {
         simplices: zeroed(count)?,
         neighbors: zeroed(count)?,
@@ -92,9 +110,9 @@ fn write(
     Ok((mesh, out))
 }
 
-/// Moves the finite triangles of `mesh` to its first records and returns their count.
-fn drop_ghosts(mesh: &mut Mesh2, ghost: Code) -> Result<usize> {
-    let all = 2 * mesh.vertices() - 2;
+/// Moves the finite triangles among the first `all` records of `mesh` to its first records and returns
+/// their count.
+fn drop_ghosts(mesh: &mut Mesh2, ghost: Code, all: usize) -> Result<usize> {
     let mut patch = mesh.patch();
     let mut ghosts = Vec::new();
     let mut g = ghost;

@@ -7,6 +7,7 @@
 //! - [`incircle`] is the sign of |a| [b, c, d] - |b| [a, c, d] + |c| [a, b, d] - |d| [a, b, c], which is
 //!   |a| |b| |c| |d| times the determinant of the differences of the directions of b, c, d from that of
 //!   a: positive inside the circle;
+//! - [`nearer`] is the sign of (a q) / |a| - (b q) / |b|;
 //! - [`compare`] is an order of directions in which no root occurs, and [`incircle_canonical`] breaks
 //!   ties by it.
 //!
@@ -21,15 +22,17 @@
 //! Callers with many tests try the leading doubles of the directions first.
 
 mod incircle;
+mod nearer;
 mod order;
 mod orient;
 mod roots;
 mod unit;
 
 pub use incircle::{incircle, incircle_canonical, incircle_exact, incircle_of, tie};
+pub use nearer::{nearer, nearer_of};
 pub use order::{compare, same};
 pub use orient::{orient, orient_exact, orient_of};
-pub use unit::Unit;
+pub use unit::{Unit, leveled};
 
 /// Each stage by itself, for tests and measurements; not part of the stable interface.
 #[doc(hidden)]

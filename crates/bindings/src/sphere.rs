@@ -1,0 +1,189 @@
+//! Triangulations of directions as arrays.
+
+use delone::{Error, Point3, Result};
+use delone_core::arrays::Arrays;
+use delone_core::memory::copied;
+use delone_core::sphere::angles::{Measure, directions};
+use delone_core::sphere::locate::Index;
+use delone_core::sphere::{directions as rays, measure, triangulate};
+use delone_core::watch::Watch;
+use numpy::PyReadonlyArray2;
+use pyo3::prelude::*;
+
+use crate::arrays::{Column, Table, column, in_range, number_rows, rows, table};
+use crate::errors::raise;
+use crate::signals::watched;
+
+/// A Delaunay triangulation of directions.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct SphereTriangulation {
+    /// Vertices of the triangles, counter-clockwise seen from outside, (m, 3).
+    pub simplices: Table<i32>,
+    /// The triangle opposite each vertex, -1 beyond a hull, (m, 3).
+    pub neighbors: Table<i32>,
+    /// Rows that repeat the direction of earlier rows, and the first of these, (d, 2).
+    pub duplicates: Table<i32>,
+}
+
+/// Returns the triangulation of the directions of vectors.
+#[pyfunction]
+pub fn sphere_delaunay(
+    py: Python<'_>,
+    vectors: PyReadonlyArray2<'_, f64>,
+    workers: usize,
+) -> PyResult<SphereTriangulation> {
+    let vectors = rows(&vectors, "vectors").map_err(|e| raise(py, &e))?;
+    let made = watched(py, |watch| triangulate(vectors, workers, watch))?;
+    Ok(SphereTriangulation {
+        simplices: table(py, made.arrays.simplices)?,
+        neighbors: table(py, made.arrays.neighbors)?,
+        duplicates: number_rows(py, &made.duplicates)?,
+    })
+}
+
+/// Returns vectors in the directions of longitudes and latitudes, (n, 3).
+#[pyfunction]
+pub fn sphere_directions(
+    py: Python<'_>,
+    lonlat: PyReadonlyArray2<'_, f64>,
+    degrees: bool,
+    workers: usize,
+) -> PyResult<Table<f64>> {
+    let lonlat = rows(&lonlat, "lonlat").map_err(|e| raise(py, &e))?;
+    let measure = if degrees {
+        Measure::Degrees
+    } else {
+        Measure::Radians
+    };
+    let vectors = watched(py, |watch| directions(lonlat, measure, workers, watch))?;
+    table(py, vectors)
+}
+
+/// Returns the unit vectors of vectors, rounded, (n, 3).
+#[pyfunction]
+pub fn sphere_units(
+    py: Python<'_>,
+    vectors: PyReadonlyArray2<'_, f64>,
+    workers: usize,
+) -> PyResult<Table<f64>> {
+    let vectors = rows(&vectors, "vectors").map_err(|e| raise(py, &e))?;
+    let (heads, _) = watched(py, |watch| {
+        rays::check(vectors)?;
+        rays::units(vectors, workers, watch)
+    })?;
+    table(py, heads)
+}
+
+/// Returns the solid angles of triangles, (m,).
+#[pyfunction]
+pub fn sphere_areas(
+    py: Python<'_>,
+    vectors: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> PyResult<Column<f64>> {
+    let (vectors, simplices) = given(&vectors, &simplices).map_err(|e| raise(py, &e))?;
+    let found = watched(py, |watch| {
+        measure::areas(vectors, simplices, workers, watch)
+    })?;
+    Ok(column(py, found))
+}
+
+/// Returns the unit vectors at the circumcenters of triangles, (m, 3).
+#[pyfunction]
+pub fn sphere_circumcenters(
+    py: Python<'_>,
+    vectors: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> PyResult<Table<f64>> {
+    let (vectors, simplices) = given(&vectors, &simplices).map_err(|e| raise(py, &e))?;
+    let found = watched(py, |watch| {
+        measure::circumcenters(vectors, simplices, workers, watch)
+    })?;
+    table(py, found)
+}
+
+/// A triangulation of directions that is kept for many calls.
+#[pyclass(frozen, module = "delone._core")]
+pub struct SphereLocator(Index);
+
+#[pymethods]
+impl SphereLocator {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        vectors: PyReadonlyArray2<'_, f64>,
+        simplices: PyReadonlyArray2<'_, i32>,
+        neighbors: PyReadonlyArray2<'_, i32>,
+        workers: usize,
+    ) -> PyResult<Self> {
+        let made = (|| {
+            let (vectors, simplices) = given(&vectors, &simplices)?;
+            let neighbors: &[[i32; 3]] = rows(&neighbors, "neighbors")?;
+            if simplices.is_empty() || neighbors.len() != simplices.len() {
+                return Err(Error::Shape(
+                    "simplices and neighbors must be equally many".into(),
+                ));
+            }
+            in_range(neighbors, -1, simplices.len(), "neighbors")?;
+            Ok((vectors, simplices, neighbors))
+        })();
+        let (vectors, simplices, neighbors) = made.map_err(|e| raise(py, &e))?;
+        let index = watched(py, |watch| {
+            let arrays = Arrays {
+                simplices: copied(simplices)?,
+                neighbors: copied(neighbors)?,
+            };
+            Index::new(copied(vectors)?, arrays, workers, watch)
+        })?;
+        Ok(Self(index))
+    }
+
+    /// For each vector, the first triangle that contains its direction, or -1.
+    fn find(
+        &self,
+        py: Python<'_>,
+        xi: PyReadonlyArray2<'_, f64>,
+        workers: usize,
+    ) -> PyResult<Column<i32>> {
+        self.column(py, &xi, |index, xi, watch| index.find(xi, workers, watch))
+    }
+
+    /// The vertex nearest to the direction of each vector.
+    fn nearest(
+        &self,
+        py: Python<'_>,
+        xi: PyReadonlyArray2<'_, f64>,
+        workers: usize,
+    ) -> PyResult<Column<i32>> {
+        self.column(py, &xi, |index, xi, watch| {
+            index.nearest(xi, workers, watch)
+        })
+    }
+}
+
+impl SphereLocator {
+    fn column(
+        &self,
+        py: Python<'_>,
+        xi: &PyReadonlyArray2<'_, f64>,
+        answer: impl Fn(&Index, Vec<Point3>, &Watch) -> delone_core::error::Result<Vec<i32>>
+        + Sync
+        + Send,
+    ) -> PyResult<Column<i32>> {
+        let xi = rows(xi, "xi").map_err(|e| raise(py, &e))?;
+        let found = watched(py, |watch| answer(&self.0, copied(xi)?, watch))?;
+        Ok(column(py, found))
+    }
+}
+
+/// Vectors, and triangles of their rows.
+fn given<'a>(
+    vectors: &'a PyReadonlyArray2<'_, f64>,
+    simplices: &'a PyReadonlyArray2<'_, i32>,
+) -> Result<(&'a [Point3], &'a [[i32; 3]])> {
+    let (vectors, simplices) = (rows(vectors, "vectors")?, rows(simplices, "simplices")?);
+    in_range(simplices, 0, vectors.len(), "simplices")?;
+    Ok((vectors, simplices))
+}

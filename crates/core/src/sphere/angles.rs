@@ -1,0 +1,244 @@
+//! Longitudes and latitudes as directions, by sines and cosines that are the same on each platform.
+//!
+//! The direction of longitude l and latitude b is that of (cos l, sin l, tan b): vectors of one longitude
+//! have equal x and y, so meridians and the poles are on great circles exactly, and parallels that mirror
+//! each other are. Each coordinate is within 0.5001 units in the last place of the true number (sines
+//! and cosines) or 1.01 (tangents), from additions, multiplications and divisions only.
+//!
+//! # The reduction
+//!
+//! Degrees: `x % 360` is exact, and so is the difference from the nearest multiple of 90. Radians: less a
+//! multiple of pi / 2 that is known to 159 bits, which leaves 2^-150 for a few turns; the doubles that
+//! are nearest to multiples of pi / 2 count as these. Then r is at most 45 degrees, and signs and the
+//! exchange of sine and cosine by quadrants are exact.
+//!
+//! # The bound
+//!
+//! Let u = 2^-53, and r = k + f with a whole degree k and |f| <= 1/2. Sine and cosine of k are known
+//! to u^2 of themselves. With t = f in radians, q = t^2 < 7.7e-5, the series of sin t / t and
+//! (cos t - 1) / q end before q^6 / 13!, below 2^-110. Their terms from q^3 on are computed in plain floating
+//! point, and are below 2^-53, so that their few roundings are below 2^-104; the others in pairs, with 9 u^2
+//! for a product and 4 u^2 for a sum: sin t errs by 12 u^2, cos t - 1 by 32 u^2. In
+//! sin k + (sin k (cos t - 1) + cos k sin t) the last term is at most half of sin k, or k = 0 and it is all
+//! there is: the sum errs by less than 64 u^2 = 2^-100 of itself, cosines even less. For radians t itself is
+//! off by 2^-103 more, which is 2^-96 of the sine. The head of the pair is the sum rounded: half a unit
+//! in the last place and less than 2^-42 more. A quotient of two pairs, corrected once, has a relative
+//! error of 2^-95 before it is rounded twice.
+
+use delone_predicates::Point3;
+use delone_predicates::arithmetic::Pair;
+
+use super::sines::SINES;
+use crate::error::Result;
+use crate::memory::filled;
+use crate::parallel;
+use crate::watch::Watch;
+
+/// Angles converted together.
+const SHARE: usize = 1 << 14;
+
+/// A degree in radians.
+const DEGREE: Pair = Pair {
+    hi: 0.017453292519943295,
+    lo: 2.9486522708701687e-19,
+};
+/// A right angle in radians, as the sum of three doubles.
+const RIGHT: [f64; 3] = [
+    1.5707963267948966,
+    6.123233995736766e-17,
+    -1.4973849048591698e-33,
+];
+/// Degrees so small that their sine is their product with a degree, to 400 bits; the products of
+/// smaller ones would underflow.
+const TINY: f64 = f64::from_bits((1023 - 200) << 52);
+/// What tiny degrees are multiplied with, and the inverse.
+const UP: [f64; 2] = [
+    f64::from_bits((1023 + 600) << 52),
+    f64::from_bits((1023 - 600) << 52),
+];
+
+/// How angles are measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// 360 for a turn.
+    Degrees,
+    /// 2 pi for a turn.
+    Radians,
+}
+
+/// An angle as a right angle times `quarters`, and a rest of at most half a right angle.
+struct Reduced {
+    quarters: i32,
+    rest: Rest,
+}
+
+/// An angle of at most 45 degrees.
+enum Rest {
+    Degrees(f64),
+    Radians(Pair),
+}
+
+fn negated(a: Pair) -> Pair {
+    Pair {
+        hi: -a.hi,
+        lo: -a.lo,
+    }
+}
+
+fn double(a: f64) -> Pair {
+    Pair::from_double(a)
+}
+
+/// Sine and cosine of t radians, |t| < 0.0088; the cosine less one.
+fn series(t: Pair) -> [Pair; 2] {
+    let third = Pair {
+        hi: -0.16666666666666666,
+        lo: -9.25185853854297e-18,
+    };
+    let fifth = Pair {
+        hi: 0.008333333333333333,
+        lo: 1.1564823173178714e-19,
+    };
+    let fourth = Pair {
+        hi: 0.041666666666666664,
+        lo: 2.3129646346357427e-18,
+    };
+    let q = t.square();
+    let w = q.hi;
+    let rest = [
+        w * (-1.0 / 5040.0 + w * (1.0 / 362_880.0 - w / 39_916_800.0)),
+        w * (-1.0 / 720.0 + w * (1.0 / 40_320.0 - w / 3_628_800.0)),
+    ];
+    let sine = t + t * (q * (third + q * (fifth + double(rest[0]))));
+    let cosine = q * (double(-0.5) + q * (fourth + double(rest[1])));
+    [sine, cosine]
+}
+
+/// Sine and cosine of an angle from 0 to 45 degrees.
+fn first_octant(rest: &Rest) -> [Pair; 2] {
+    let table = |k: usize| Pair {
+        hi: SINES[k][0],
+        lo: SINES[k][1],
+    };
+    let (k, t) = match *rest {
+        Rest::Degrees(r) if r < TINY => {
+            // Scaled back, the product is rounded once more at most.
+            let t = (Pair::product(r * UP[0], DEGREE.hi) + double(r * UP[0] * DEGREE.lo)).hi;
+            return [double(t * UP[1]), double(1.0)];
+        }
+        Rest::Degrees(r) => {
+            let k = (r + 0.5).floor();
+            let f = r - k;
+            (k, Pair::product(f, DEGREE.hi) + double(f * DEGREE.lo))
+        }
+        Rest::Radians(r) => {
+            let k = (r.hi / DEGREE.hi + 0.5).floor();
+            (k, r - double(k) * DEGREE)
+        }
+    };
+    let k = (k as usize).min(45);
+    if t.hi == 0.0 {
+        return [table(k), table(90 - k)];
+    }
+    let [sine, cosine] = series(t);
+    if k == 0 {
+        return [sine, double(1.0) + cosine];
+    }
+    let (s, c) = (table(k), table(90 - k));
+    [s + (s * cosine + c * sine), c + (c * cosine - s * sine)]
+}
+
+/// The angle less the nearest multiple of a right angle.
+fn reduced(angle: f64, measure: Measure) -> Reduced {
+    match measure {
+        Measure::Degrees => {
+            let x = angle % 360.0;
+            let quarters = (x / 90.0).round();
+            Reduced {
+                quarters: quarters as i32,
+                // Exact: both are multiples of the last place of x, and the rest is smaller.
+                rest: Rest::Degrees(x - 90.0 * quarters),
+            }
+        }
+        Measure::Radians => {
+            let quarters = (angle / RIGHT[0]).round();
+            let parts = RIGHT.map(|part| Pair::product(quarters, part));
+            let rest = if angle == (parts[0] + parts[1]).hi {
+                double(0.0)
+            } else {
+                // The first difference is exact.
+                double(angle - parts[0].hi) - double(parts[0].lo) - parts[1] - parts[2]
+            };
+            Reduced {
+                // Beyond some turns nothing is promised.
+                quarters: (quarters % 4.0) as i32,
+                rest: Rest::Radians(rest),
+            }
+        }
+    }
+}
+
+/// Sine and cosine as pairs.
+fn pairs(angle: f64, measure: Measure) -> [Pair; 2] {
+    let Reduced { quarters, rest } = reduced(angle, measure);
+    let (turned, rest) = match rest {
+        Rest::Degrees(r) => (r < 0.0, Rest::Degrees(r.abs())),
+        Rest::Radians(r) if r.hi < 0.0 => (true, Rest::Radians(negated(r))),
+        Rest::Radians(r) => (false, Rest::Radians(r)),
+    };
+    let [sine, c] = first_octant(&rest);
+    let s = if turned { negated(sine) } else { sine };
+    match quarters.rem_euclid(4) {
+        0 => [s, c],
+        1 => [c, negated(s)],
+        2 => [negated(s), negated(c)],
+        _ => [negated(c), s],
+    }
+}
+
+/// Sine and cosine of an angle; no result is -0.
+pub fn sine_cosine(angle: f64, measure: Measure) -> [f64; 2] {
+    pairs(angle, measure).map(|x| x.hi + 0.0)
+}
+
+/// The tangent of an angle whose cosine is not zero.
+pub fn tangent(angle: f64, measure: Measure) -> f64 {
+    let [s, c] = pairs(angle, measure);
+    let q = s.hi / c.hi;
+    if q.abs() < TINY {
+        return q + 0.0;
+    }
+    let rest = s - double(q) * c;
+    q + rest.hi / c.hi + 0.0
+}
+
+/// The vector of a longitude and a latitude, of any length; latitudes from the poles on are the poles.
+pub fn direction([longitude, latitude]: [f64; 2], measure: Measure) -> Point3 {
+    let pole = match measure {
+        Measure::Degrees => 90.0,
+        Measure::Radians => RIGHT[0],
+    };
+    if latitude.abs() >= pole {
+        return [0.0, 0.0, latitude.signum()];
+    }
+    let [s, c] = sine_cosine(longitude, measure);
+    [c, s, tangent(latitude, measure)]
+}
+
+/// The vectors of rows of longitudes and latitudes.
+pub fn directions(
+    rows: &[[f64; 2]],
+    measure: Measure,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<Point3>> {
+    let mut vectors = filled(rows.len(), [0.0; 3])?;
+    let tasks = rows.chunks(SHARE).zip(vectors.chunks_mut(SHARE)).collect();
+    parallel::map_watched(workers, tasks, watch, |(rows, vectors)| {
+        for (vector, &row) in vectors.iter_mut().zip(rows) {
+            *vector = direction(row, measure);
+        }
+        Ok(())
+    })?;
+    Ok(vectors)
+}

@@ -1,0 +1,121 @@
+//! Areas and circumcenters of spherical triangles.
+
+use delone_predicates::Point3;
+use delone_predicates::arithmetic::Pair;
+use delone_predicates::sphere::{Unit, leveled};
+
+use crate::error::Result;
+use crate::memory::filled;
+use crate::parallel;
+use crate::watch::Watch;
+use crate::wide::{determinant, lowest, ratio, root, scaled};
+
+/// Triangles that are measured together.
+const SHARE: usize = 1 << 12;
+/// A determinant of pairs is right to 2^-98 times the lengths of two differences; one that is not 2^50
+/// times as large is computed by integers.
+const UNSURE: f64 = 1.0 / (1_u64 << 48) as f64;
+
+/// The solid angles of triangles: 4 pi for the whole sphere.
+pub fn areas(
+    vectors: &[Point3],
+    simplices: &[[i32; 3]],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<f64>> {
+    mapped(vectors, simplices, area, workers, watch)
+}
+
+/// The unit vectors, rounded, that are equally far from the corners of triangles, on their side of the
+/// sphere.
+pub fn circumcenters(
+    vectors: &[Point3],
+    simplices: &[[i32; 3]],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<Point3>> {
+    mapped(vectors, simplices, circumcenter, workers, watch)
+}
+
+fn mapped<T: Copy + Default + Send>(
+    vectors: &[Point3],
+    simplices: &[[i32; 3]],
+    measure: fn([Point3; 3]) -> T,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<T>> {
+    let mut values = filled(simplices.len(), T::default())?;
+    let tasks = simplices.chunks(SHARE).zip(values.chunks_mut(SHARE));
+    parallel::map_watched(workers, tasks.collect(), watch, |(simplices, values)| {
+        for (value, corners) in values.iter_mut().zip(simplices) {
+            *value = measure(corners.map(|v| vectors[v as usize]));
+        }
+        Ok(())
+    })?;
+    Ok(values)
+}
+
+fn pairs(unit: &Unit) -> [Pair; 3] {
+    [0, 1, 2].map(|k| Pair {
+        hi: unit.hi[k],
+        lo: unit.lo[k],
+    })
+}
+
+fn minus(a: [Pair; 3], b: [Pair; 3]) -> [Pair; 3] {
+    [0, 1, 2].map(|k| a[k] - b[k])
+}
+
+fn cross(a: [Pair; 3], b: [Pair; 3]) -> [Pair; 3] {
+    let minor = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
+}
+
+fn dot(a: Point3, b: Point3) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// A. Van Oosterom and J. Strackee, "The solid angle of a plane triangle" (1983): the tangent of half
+/// of it is [a, b, c] / (1 + a b + b c + c a). The determinant is right to nearly all bits, so slivers
+/// are, too; the sum has no need to be, as the angle is near a right angle where terms cancel.
+fn area(corners: [Point3; 3]) -> f64 {
+    let units = corners.map(Unit::of);
+    let [a, b, c] = units.each_ref().map(pairs);
+    let (p, q) = (minus(a, c), minus(b, c));
+    let normal = cross(p, q);
+    let det = (normal[0] * c[0] + normal[1] * c[1] + normal[2] * c[2]).hi;
+    let size = |p: [Pair; 3]| p.iter().map(|x| x.hi.abs()).sum::<f64>();
+    // The error of 2^-98 (|P| + |Q|), see `delone_predicates::sphere`, and 2^50 times that.
+    let det = if det.abs() > UNSURE * (size(p) * size(q) + (size(p) + size(q)) * UNSURE) {
+        det
+    } else {
+        exact_determinant(corners)
+    };
+    let [a, b, c] = units.map(|unit| unit.hi);
+    2.0 * det.atan2(1.0 + dot(a, b) + dot(b, c) + dot(c, a))
+}
+
+/// The determinant of three directions, by integers and one root.
+#[cold]
+fn exact_determinant(corners: [Point3; 3]) -> f64 {
+    let rows = corners.map(|v| {
+        let v = leveled(v);
+        let low = lowest(&[v], &[]);
+        v.map(|x| scaled(x, low))
+    });
+    let [a, b, c] = rows.each_ref();
+    let squares = rows
+        .iter()
+        .map(|v| v.iter().map(|x| x * x).sum::<num_bigint::BigInt>());
+    let lengths = root(&squares.product());
+    ratio(&(determinant([a, b, c]) << 64_u32), &lengths, 0).unwrap_or_default()
+}
+
+fn circumcenter(corners: [Point3; 3]) -> Point3 {
+    let [a, b, c] = corners.map(|v| pairs(&Unit::of(v)));
+    let n = cross(minus(a, c), minus(b, c)).map(|x| x.hi);
+    // Differences may be tiny, and their products may underflow when squared.
+    let n = leveled(n);
+    let length = dot(n, n).sqrt();
+    n.map(|x| x / length + 0.0)
+}

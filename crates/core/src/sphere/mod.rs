@@ -1,0 +1,27 @@
+//! Delaunay triangulations of directions, exact and canonical: the whole sphere, or a hull on it.
+//!
+//! A vector means its direction, whatever its length (see `delone_predicates::sphere`). Triangles are
+//! the facets of the convex hull of the directions that the center sees from inside: those with a
+//! positive determinant. If the directions lie in a half-space, the hull on the sphere has a boundary,
+//! and a ghost for each of its edges stands for the facets beyond, as in 2-D.
+//!
+//! | file | contents |
+//! |---|---|
+//! | `directions` | vectors and their directions, in insertion order; predicates by number |
+//! | `kernel`, `close`, `walk` | insertion; the one that covers the rest of the sphere; the walk |
+//! | `angles`, `sines` | longitudes and latitudes to vectors |
+//! | `locate`, `measure` | queries on arrays; areas and circumcenters |
+//! | `triangulate`, `degenerate` | rows to arrays; what exists where there is no triangle |
+
+pub mod angles;
+mod close;
+mod degenerate;
+pub mod directions;
+mod kernel;
+pub mod locate;
+pub mod measure;
+mod sines;
+mod triangulate;
+mod walk;
+
+pub use triangulate::{Triangulation, triangulate};
