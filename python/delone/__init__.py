@@ -10,6 +10,8 @@ structures are `Voronoi`, `ConvexHull`, `RegularTriangulation` and `PeriodicDela
 `graphs`, `cluster`, `terrain`, `interpolate`, `distributed`, `io`, `plot`, `predicates`,
 `datasets`, `testing`, `reference` and `compat` have the rest. All errors are subclasses of
 `DeloneError`.
+`graphs`, `sphere`, `terrain`, `interpolate`, `distributed`, `io`, `plot`, `predicates`, `datasets`,
+`testing`, `reference` and `compat` have the rest. All errors are subclasses of `DeloneError`.
 """
 
 from __future__ import annotations
@@ -33,6 +35,7 @@ from delone.errors import (
     CrossingSegmentsError,
     DegenerateInputError,
     DeloneError,
+    DirectionError,
     DtypeError,
     FileFormatError,
     HandleError,
@@ -61,6 +64,7 @@ if TYPE_CHECKING:
         interpolate,
         plot,
         reference,
+        sphere,
         terrain,
         testing,
     )
@@ -104,6 +108,7 @@ __all__ = [
     "DegenerateInputError",
     "Delaunay",
     "DeloneError",
+    "DirectionError",
     "DtypeError",
     "Dynamic",
     "Editing",
@@ -150,6 +155,7 @@ __all__ = [
     "plot",
     "predicates",
     "reference",
+    "sphere",
     "terrain",
     "testing",
     "triangulate_polygon",
@@ -177,6 +183,7 @@ _MODULES = {
     "reference",
     "refine",
     "regular",
+    "sphere",
     "terrain",
     "testing",
     "tetmesh",

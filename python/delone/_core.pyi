@@ -44,6 +44,8 @@ __all__ = [
     "RegularFaults2",
     "RegularFaults3",
     "RegularTriangulation",
+    "SphereLocator",
+    "SphereTriangulation",
     "Triangulation",
     "WeightRows",
     "__version__",
@@ -130,6 +132,11 @@ __all__ = [
     "spanning2",
     "spanning3",
     "spanning_triangles2",
+    "sphere_areas",
+    "sphere_circumcenters",
+    "sphere_delaunay",
+    "sphere_directions",
+    "sphere_units",
     "touched2",
     "transforms2",
     "transforms3",
@@ -354,6 +361,20 @@ class Hull3:
     @property
     def duplicates(self) -> NDArray[np.int32]:
         """Rows that repeat earlier rows, and the first of these, (d, 2)."""
+
+@final
+class SphereTriangulation:
+    """A Delaunay triangulation of directions."""
+
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the triangles, counter-clockwise seen from outside, (m, 3)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The triangle opposite each vertex, -1 beyond a hull, (m, 3)."""
+    @property
+    def duplicates(self) -> NDArray[np.int32]:
+        """Rows that repeat the direction of earlier rows, and the first of these, (d, 2)."""
 
 @final
 class FlippedTriangulation:
@@ -1421,6 +1442,29 @@ class Locator3:
     def laplace(self, xi: NDArray[np.float64], workers: int) -> NaturalWeights: ...
     def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
 
+@final
+class SphereLocator:
+    def __new__(
+        cls,
+        vectors: NDArray[np.float64],
+        simplices: NDArray[np.int32],
+        neighbors: NDArray[np.int32],
+        workers: int,
+    ) -> SphereLocator: ...
+    def find(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
+    def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
+
+def sphere_delaunay(vectors: NDArray[np.float64], workers: int) -> SphereTriangulation: ...
+def sphere_directions(
+    lonlat: NDArray[np.float64], degrees: bool, workers: int
+) -> NDArray[np.float64]: ...
+def sphere_units(vectors: NDArray[np.float64], workers: int) -> NDArray[np.float64]: ...
+def sphere_areas(
+    vectors: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]: ...
+def sphere_circumcenters(
+    vectors: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]: ...
 def refine2(
     points: NDArray[np.float64],
     simplices: NDArray[np.int32],

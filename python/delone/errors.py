@@ -24,6 +24,7 @@ __all__ = [
     "CrossingSegmentsError",
     "DegenerateInputError",
     "DeloneError",
+    "DirectionError",
     "DtypeError",
     "FileFormatError",
     "HandleError",
@@ -161,7 +162,8 @@ class DegenerateInputError(InputError):
     message : str
         The message.
     reason : str, optional
-        ``"too few points"``, ``"collinear"`` or, in 3-D, ``"coplanar"``.
+        ``"too few points"``, ``"collinear"``, in 3-D ``"coplanar"``, and on the sphere
+        ``"one great circle"``.
     chain : iterable of int, optional
         Row numbers of the distinct points, in their order along the line.
     plane : PlaneTriangulation, optional
@@ -170,10 +172,11 @@ class DegenerateInputError(InputError):
     Attributes
     ----------
     reason : str
-        ``"too few points"``, ``"collinear"`` or ``"coplanar"``; empty if unknown.
+        ``"too few points"``, ``"collinear"``, ``"coplanar"`` or ``"one great circle"``; empty if
+        unknown.
     chain : ndarray of int64
-        Row numbers of the distinct points, in their order along the line; in lexicographic order if
-        they are not on a line.
+        Row numbers of the distinct points, in their order along the line or around the circle; in
+        lexicographic order if they are on neither.
     plane : PlaneTriangulation or None
         For 3-D points that lie in one plane but not on one line, at least three of them, the
         Delaunay triangulation in that plane; with weights, the regular triangulation.
@@ -204,6 +207,51 @@ class DegenerateInputError(InputError):
         self.reason = reason
         self.chain = _row_numbers(chain)
         self.plane = plane
+
+
+class DirectionError(InputError):
+    """Some rows mean no direction: zero vectors, latitudes beyond a pole, longitudes of many turns.
+
+    Parameters
+    ----------
+    message : str
+        The message.
+    rows : iterable of int, optional
+        Row numbers of the first such rows, at most ten.
+    count : int, optional
+        Total number of such rows. By default the length of `rows`.
+
+    Attributes
+    ----------
+    rows : ndarray of int64
+        Row numbers of the first such rows.
+    count : int
+        Total number of such rows.
+
+    Examples
+    --------
+    >>> import delone
+    >>> from delone import sphere
+    >>> try:
+    ...     sphere.Delaunay(lonlat=[(0, 0), (10, 95), (20, 0)])
+    ... except delone.DirectionError as error:
+    ...     print(error.count, error.rows)
+    1 [1]
+    """
+
+    rows: NDArray[np.int64]
+    count: int
+
+    def __init__(
+        self,
+        message: str = "some rows mean no direction",
+        *,
+        rows: Iterable[int] | NDArray[np.integer] = (),
+        count: int | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.rows = _row_numbers(rows)[:10]
+        self.count = len(self.rows) if count is None else int(count)
 
 
 class CrossingSegmentsError(InputError):

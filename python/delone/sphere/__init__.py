@@ -1,0 +1,16 @@
+"""Triangulations of directions: geographic points, and others on a sphere.
+
+>>> from delone import sphere
+>>> sphere.Delaunay(lonlat=[(0, 90), (0, 0), (90, 0), (180, 0), (270, 0), (0, -90)])
+<Delaunay of 6 directions: 8 triangles, the whole sphere>
+
+A vector means its direction, exactly, whatever its length. In the plane, longitudes and latitudes
+are wrong at the date line and near the poles; here these are places like any other.
+"""
+
+from __future__ import annotations
+
+from delone.sphere.coordinates import LongitudeWarning
+from delone.sphere.delaunay import Delaunay
+
+__all__ = ["Delaunay", "LongitudeWarning"]

@@ -1,0 +1,130 @@
+"""Longitudes and latitudes, or vectors of any length, as the vectors that mean directions.
+
+The core converts angles with sines and cosines of its own, so that all platforms agree. Degrees are
+reduced exactly; the doubles nearest to pi / 2 and pi are the poles and the date line in radians.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_plain_array, as_points, as_vectors, as_workers, require_finite
+from delone.counting import agreed, counted
+from delone.errors import DirectionError, DtypeError, ShapeError
+from delone.immutable import own_copy
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Rows = NDArray[np.bool_]
+
+__all__ = ["LongitudeWarning", "directions_of", "lonlat_of", "queries_of"]
+
+# Longitudes of more turns are a mistake, such as a wrong unit.
+_TURNS = 3
+
+
+class LongitudeWarning(UserWarning):
+    """Longitudes span more than one turn: those from 0 to 360 seem to be mixed with others.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> from delone import sphere
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     warnings.simplefilter("always")
+    ...     mesh = sphere.Delaunay(lonlat=[(-170, 0), (190, 0), (350, 10), (10, 20)])
+    >>> caught[0].category.__name__, mesh.duplicates.tolist()
+    ('LongitudeWarning', [[1, 0]])
+    """
+
+
+def directions_of(
+    lonlat: ArrayLike | None, xyz: ArrayLike | None, *, degrees: bool, workers: int | None
+) -> Floats:
+    """Return the vectors of one of two kinds of input, (n, 3), which nobody else can change."""
+    if (lonlat is None) == (xyz is None):
+        given = "neither" if lonlat is None else "both"
+        raise DtypeError(f"give one of lonlat=(n, 2) and xyz=(n, 3), got {given}")
+    if xyz is not None:
+        vectors = own_copy(xyz, ndim=None)
+        if vectors.shape[1] != 3:
+            raise ShapeError(f"xyz must have shape (n, 3), got {vectors.shape}: see lonlat")
+        return vectors
+    angles = as_points(lonlat, name="lonlat")  # type: ignore[arg-type]
+    if angles.shape[1] != 2:
+        raise ShapeError(f"lonlat must have shape (n, 2), got {angles.shape}: see xyz")
+    require_finite(angles, name="lonlat")
+    _refuse_angles(angles, degrees=degrees, name="lonlat")
+    _warn_of_turns(angles, degrees=degrees)
+    return _core.sphere_directions(angles, degrees, as_workers(workers))
+
+
+def queries_of(xi: ArrayLike, *, degrees: bool, workers: int | None) -> Floats:
+    """Return queries as vectors, (..., 3), from longitudes and latitudes, (..., 2), or vectors."""
+    array = as_plain_array(xi, "xi")
+    columns = array.shape[-1] if array.ndim else 0
+    if columns not in {2, 3}:
+        raise ShapeError(f"xi must have shape (..., 2) or (..., 3), got {array.shape}")
+    if columns == 3:
+        return as_vectors(xi, 3, name="xi")
+    angles = as_vectors(xi, 2, name="xi")
+    flat = angles.reshape(-1, 2)
+    _refuse_angles(flat, degrees=degrees, name="xi")
+    vectors = _core.sphere_directions(flat, degrees, as_workers(workers))
+    return vectors.reshape((*angles.shape[:-1], 3))
+
+
+def lonlat_of(vectors: Floats) -> Floats:
+    """Return the longitudes, -180 to 180, and latitudes of vectors in degrees, (n, 2)."""
+    # Lengths may be such that squares overflow.
+    x, y, z = (vectors / np.abs(vectors).max(axis=1, keepdims=True)).T
+    radians = np.column_stack((np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))))
+    degrees: Floats = np.degrees(radians)
+    return degrees
+
+
+def _refuse_angles(angles: Floats, *, degrees: bool, name: str) -> None:
+    """Reject latitudes beyond the poles and longitudes of many turns; NaN passes."""
+    quarter, unit = (90.0, "degrees") if degrees else (math.pi / 2, "radians")
+    beyond = np.abs(angles[:, 1]) > quarter
+    if beyond.any():
+        hint = f"latitudes are from -{quarter:g} to {quarter:g} {unit}"
+        if np.nanmax(np.abs(angles[:, 0])) <= quarter:
+            hint = "the first column is the longitude, the second the latitude"
+        raise _refusal(beyond, f"{name}: {{}} a latitude beyond a pole, {{}}: {hint}")
+    wide = np.abs(angles[:, 0]) > 4 * quarter * _TURNS
+    if wide.any():
+        hint = f"longitudes are in {unit}, at most {_TURNS} turns"
+        raise _refusal(wide, f"{name}: {{}} a longitude of many turns, {{}}: {hint}")
+
+
+def _refusal(rows: Rows, message: str) -> DirectionError:
+    """Return the error of rows, whose count and first number complete the message."""
+    found = np.flatnonzero(rows)
+    count = len(found)
+    subject = f"{counted(count, 'row')} {agreed(count, 'has', 'have')}"
+    text = message.format(subject, f"first row {found[0]}")
+    return DirectionError(text, rows=found[:10], count=count)
+
+
+def _warn_of_turns(angles: Floats, *, degrees: bool) -> None:
+    """Warn if longitudes span more than one turn."""
+    if not len(angles):
+        return
+    turn = 360.0 if degrees else 2 * math.pi
+    longitudes = angles[:, 0]
+    west, east = int(longitudes.argmin()), int(longitudes.argmax())
+    if longitudes[east] - longitudes[west] > turn:
+        message = (
+            f"longitudes span more than one turn, from {longitudes[west]:g} (row {west}) to "
+            f"{longitudes[east]:g} (row {east}): they are taken modulo {turn:g}, so 190 and -170 "
+            "degrees are one meridian"
+        )
+        warnings.warn(message, LongitudeWarning, stacklevel=4)

@@ -1,0 +1,363 @@
+"""The class Delaunay of directions: a triangulation of the sphere, or of a hull on it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_flag, as_workers
+from delone.counting import counted
+from delone.errors import InternalError
+from delone.immutable import Immutable, kept, sealed
+from delone.plane import topology
+from delone.sphere.coordinates import directions_of, lonlat_of, queries_of
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Delaunay"]
+
+# Fewer points are never shared among threads.
+_FEW = 1000
+# The arrays of an object, by name.
+_ARRAYS = ("vectors", "simplices", "neighbors", "duplicates")
+
+
+class Delaunay(Immutable):
+    """The Delaunay triangulation of directions: of geographic points, or vectors.
+
+    Parameters
+    ----------
+    lonlat : array_like, shape (n, 2), optional
+        Longitudes and latitudes, in degrees unless `degrees` is false. Longitudes may be from -180
+        to 180, from 0 to 360, or anything up to three turns.
+    xyz : array_like, shape (n, 3), optional
+        Vectors from the center of the sphere. Their lengths do not matter: a vector means its
+        direction, exactly. Give either this or `lonlat`.
+    degrees : bool, optional
+        Whether `lonlat`, and longitudes and latitudes of queries, are in degrees (the default) or
+        in radians.
+    workers : int, optional
+        Maximum number of threads; by default one per core. The result does not depend on it.
+
+    Attributes
+    ----------
+    vectors : ndarray of float64, shape (n, 3)
+        The vectors for whose directions the result is exact: `xyz`, or (cos lon, sin lon, tan lat).
+    points : ndarray of float64, shape (n, 3)
+        The unit vectors of these directions, rounded.
+    lonlat : ndarray of float64, shape (n, 2)
+        Longitudes, -180 to 180, and latitudes in degrees, rounded.
+    simplices : ndarray of int32, shape (m, 3)
+        The triangles as rows of `vectors`, counter-clockwise seen from outside.
+    neighbors : ndarray of int32, shape (m, 3)
+        ``neighbors[t, k]`` is the triangle across the edge opposite vertex k of triangle t; -1
+        beyond the boundary of a hull.
+    duplicates : ndarray of int32, shape (d, 2)
+        Rows that have the direction of an earlier row, and the first such row, which is the vertex.
+    covers_sphere : bool
+        Whether the triangles cover the whole sphere; otherwise all points are in one hemisphere.
+
+    Raises
+    ------
+    DegenerateInputError
+        Fewer than three directions are distinct, or all are on one great circle; ``error.chain``
+        has them in order around it.
+    DirectionError
+        A vector is zero, a latitude is beyond a pole, or a longitude has more than three turns;
+        ``error.rows`` has the first such rows.
+    NonFiniteError
+        A coordinate is NaN or infinite; ``error.rows`` has the first such rows.
+    ShapeError, DtypeError
+        The input is not a real array of shape (n, 2) or (n, 3); both or neither are given.
+    LimitError
+        There are more than 2**27 points.
+    MemoryError
+        There is not enough memory.
+    KeyboardInterrupt
+        Ctrl-C was pressed. Nothing is left behind.
+
+    Warns
+    -----
+    LongitudeWarning
+        Longitudes span more than one turn: two conventions seem to be mixed. Both mean the same
+        directions here.
+
+    Notes
+    -----
+    The triangles are those whose circle on the sphere contains no other direction: the facets of
+    the convex hull of the directions that the center sees from inside. If all points are in one
+    hemisphere, facets of the hull that face the other way would span the void beyond; they are not
+    triangles. Each distinct direction is a vertex, at any spacing.
+
+    Predicates are exact for the given vectors, square roots included; rounded unit vectors would
+    not be on the sphere. If more than three directions are on one empty circle, their polygon is a
+    fan from its smallest vertex in an order of directions, so that a set of directions has one
+    triangulation, independent of the order and the lengths of its rows. Longitudes and latitudes
+    become vectors by sines and cosines that are the same on all platforms: degrees are reduced
+    exactly, points of one meridian are on one great circle exactly, poles and the date line are
+    what they are. Other grid points of one parallel tie only where they mirror each other.
+
+    Insertion along a space-filling curve (Bowyer; Watson, both 1981): O(n log n) on scattered
+    points, O(n²) at worst. All arrays are read-only; areas, circumcenters and edges are computed on
+    first use and kept.
+
+    Examples
+    --------
+    >>> from delone import sphere
+    >>> mesh = sphere.Delaunay(lonlat=[(0, 90), (0, 0), (120, 0), (-120, 0), (30, -60)])
+    >>> mesh
+    <Delaunay of 5 directions: 6 triangles, the whole sphere>
+    >>> round(float(mesh.areas.sum()) / 3.141592653589793, 9)
+    4.0
+
+    All in one hemisphere:
+
+    >>> sphere.Delaunay(xyz=[(1, 0, 9), (0, 1, 9), (-1, 0, 9), (0, -1, 9), (0, 0, 1)])
+    <Delaunay of 5 directions: 4 triangles>
+    """
+
+    __slots__ = (
+        "_degrees",
+        "_duplicates",
+        "_neighbors",
+        "_simplices",
+        "_vectors",
+        "_workers",
+    )
+
+    _degrees: bool
+    _duplicates: Indices
+    _neighbors: Indices
+    _simplices: Indices
+    _vectors: Floats
+    _workers: int | None
+
+    def __init__(
+        self,
+        *,
+        lonlat: ArrayLike | None = None,
+        xyz: ArrayLike | None = None,
+        degrees: bool = True,
+        workers: int | None = None,
+    ) -> None:
+        as_flag(degrees, name="degrees")
+        vectors = directions_of(lonlat, xyz, degrees=degrees, workers=workers)
+        threads = 1 if workers is None and len(vectors) < _FEW else as_workers(workers)
+        try:
+            made = _core.sphere_delaunay(vectors, threads)
+        except InternalError as error:
+            error.points = vectors
+            raise
+        self._fill(
+            {
+                "vectors": vectors,
+                "simplices": made.simplices,
+                "neighbors": made.neighbors,
+                "duplicates": made.duplicates,
+            },
+            degrees,
+            workers,
+        )
+
+    def _fill(self, arrays: dict[str, NDArray[Any]], degrees: bool, workers: int | None) -> None:
+        held = {name: sealed(array) for name, array in arrays.items()}
+        self._hold(degrees=degrees, workers=workers, **held)
+
+    @classmethod
+    def _from_arrays(
+        cls, arrays: dict[str, NDArray[Any]], degrees: bool, workers: int | None
+    ) -> Self:
+        made = cls.__new__(cls)
+        made._fill(arrays, degrees, workers)
+        return made
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        arrays = {name: getattr(self, f"_{name}") for name in _ARRAYS}
+        return type(self)._from_arrays, (arrays, self._degrees, self._workers)
+
+    def __repr__(self) -> str:
+        if not hasattr(self, "_cache"):  # the constructor failed, or has not run
+            return f"<{type(self).__name__} of nothing yet>"
+        points = counted(self.npoints, "direction")
+        if duplicates := len(self._duplicates):
+            points += f" ({counted(duplicates, 'duplicate')})"
+        whole = ", the whole sphere" if self.covers_sphere else ""
+        return f"<{type(self).__name__} of {points}: {counted(self.nsimplex, 'triangle')}{whole}>"
+
+    @property
+    def vectors(self) -> Floats:
+        """The vectors whose directions are triangulated, (n, 3)."""
+        return self._vectors
+
+    @property
+    @kept
+    def points(self) -> Floats:
+        """The unit vectors, rounded, (n, 3)."""
+        return sealed(_core.sphere_units(self._vectors, as_workers(self._workers)))
+
+    @property
+    @kept
+    def lonlat(self) -> Floats:
+        """Longitudes, -180 to 180, and latitudes in degrees, rounded, (n, 2)."""
+        return sealed(lonlat_of(self._vectors))
+
+    @property
+    def simplices(self) -> Indices:
+        """The triangles as rows of `vectors`, counter-clockwise seen from outside, (m, 3)."""
+        return self._simplices
+
+    @property
+    def neighbors(self) -> Indices:
+        """The triangle opposite each vertex, (m, 3); -1 beyond the boundary of a hull."""
+        return self._neighbors
+
+    @property
+    def duplicates(self) -> Indices:
+        """Rows that have the direction of an earlier row, and the first such row, (d, 2)."""
+        return self._duplicates
+
+    @property
+    @kept
+    def duplicate_of(self) -> Indices:
+        """The vertex of each row, (n,): the first row with the same direction."""
+        first = np.arange(self.npoints, dtype=np.int32)
+        first[self._duplicates[:, 0]] = self._duplicates[:, 1]
+        return sealed(first)
+
+    @property
+    def npoints(self) -> int:
+        """Number of rows, duplicates included."""
+        return len(self._vectors)
+
+    @property
+    def nsimplex(self) -> int:
+        """Number of triangles."""
+        return len(self._simplices)
+
+    @property
+    def workers(self) -> int | None:
+        """Maximum number of threads; None for one per core. The result does not depend on it."""
+        return self._workers
+
+    @property
+    def covers_sphere(self) -> bool:
+        """Whether the triangles cover the whole sphere."""
+        # A hull on the sphere of n vertices, h on its boundary, has 2 n - h - 2 triangles.
+        return self.nsimplex == 2 * (self.npoints - len(self._duplicates)) - 4
+
+    @property
+    @kept
+    def edges(self) -> Indices:
+        """Every edge once, (k, 2): the smaller vertex first, rows ascending."""
+        workers = self._workers
+        return sealed(topology.edges(self._simplices, self._neighbors, self.npoints, workers))
+
+    @property
+    @kept
+    def boundary(self) -> Indices:
+        """The edges of the boundary of a hull, (h, 2), with triangles to their left."""
+        return sealed(topology.boundary_edges(self._simplices, self._neighbors))
+
+    @property
+    @kept
+    def areas(self) -> Floats:
+        """The areas of the triangles on the unit sphere (steradians), (m,), also of slivers.
+
+        The whole sphere has 4 pi. Multiply by the square of a radius: of the Earth 6371.0088 km.
+        """
+        found = _core.sphere_areas(self._vectors, self._simplices, as_workers(self._workers))
+        return sealed(found)
+
+    @property
+    @kept
+    def circumcenters(self) -> Floats:
+        """The unit vectors, rounded, that are equally far from the three corners, (m, 3)."""
+        workers = as_workers(self._workers)
+        return sealed(_core.sphere_circumcenters(self._vectors, self._simplices, workers))
+
+    @property
+    @kept
+    def _locator(self) -> _core.SphereLocator:
+        workers = as_workers(self._workers)
+        return _core.SphereLocator(self._vectors, self._simplices, self._neighbors, workers)
+
+    def find_simplex(self, xi: ArrayLike) -> Indices:
+        """Return the triangles that contain directions.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2) or (..., 3)
+            Longitudes and latitudes, in the unit of the constructor, or vectors of any length.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            The triangle of each, boundaries included; on an edge or a vertex the triangle with the
+            smallest number. -1 outside of a hull, and for NaN and vectors of length zero.
+
+        Raises
+        ------
+        DirectionError
+            A latitude is beyond a pole, or a longitude has more than three turns.
+        ShapeError, DtypeError
+            `xi` is not a real array of shape (..., 2) or (..., 3).
+
+        Notes
+        -----
+        Exact. Directions are taken along a space-filling curve, each starting from the triangle of
+        the previous one; the answers do not depend on each other.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> mesh = sphere.Delaunay(lonlat=[(170, 0), (-170, 0), (180, 10), (180, -10)])
+        >>> mesh.find_simplex([(180, 1), (0, 0)]) >= 0
+        array([ True, False])
+        """
+        return self._ask(xi, self._locator.find)
+
+    def nearest(self, xi: ArrayLike) -> Indices:
+        """Return the rows of the points nearest to directions.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2) or (..., 3)
+            Longitudes and latitudes, in the unit of the constructor, or vectors of any length.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            The vertex with the smallest angle from each; of several the smallest row. -1 for NaN
+            and vectors of length zero.
+
+        Raises
+        ------
+        DirectionError
+            A latitude is beyond a pole, or a longitude has more than three turns.
+        ShapeError, DtypeError
+            `xi` is not a real array of shape (..., 2) or (..., 3).
+
+        Notes
+        -----
+        Exact, square roots included; a walk to the triangle, and from vertex to nearer vertex.
+        Beyond a hull, the points of its boundary are compared.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> mesh = sphere.Delaunay(lonlat=[(170, 0), (-170, 0), (180, 10), (180, -10)])
+        >>> mesh.nearest([(175, 1), (-171, 1)])
+        array([0, 1], dtype=int32)
+        """
+        return self._ask(xi, self._locator.nearest)
+
+    def _ask(self, xi: ArrayLike, answer: Any) -> Indices:
+        queries = queries_of(xi, degrees=self._degrees, workers=self._workers)
+        found: Indices = answer(queries.reshape(-1, 3), as_workers(self._workers))
+        return found.reshape(queries.shape[:-1])
