@@ -43,7 +43,7 @@ PYTHON: tuple[set[str], ...] = (
     {"archive", "validation"},
     {"complex"},
     {"triangulation", "regular_validation"},
-    {"delaunay", "constrained", "regular", "tetmesh"},
+    {"delaunay", "constrained", "regular", "sphere", "tetmesh"},
     {"dynamic", "hull", "periodic", "refine"},
     {"graphs", "io"},
     {"voronoi", "interpolate", "cluster"},
@@ -136,6 +136,16 @@ CORE: dict[str, set[str]] = {
         "delone_predicates",
     }
     | GROUND,
+    "sphere": {
+        "mesh2",
+        "order",
+        "parallel",
+        "points",
+        "wide",
+        "num_bigint",
+        "delone_predicates",
+    }
+    | GROUND,
     "contour": {"delone_predicates"} | GROUND,
     "overlay": {"locate", "order", "parallel", "points", "delone_predicates"} | GROUND,
     "interpolate": {"locate", "delaunay2", "parallel", "wide", "delone_predicates"} | GROUND,
@@ -178,6 +188,7 @@ BINDINGS = {
     "refine::judge",
     "regular",
     "regular3",
+    "sphere",
     "voronoi",
     "voronoi3",
     "watch",
