@@ -8,6 +8,7 @@ use delone_predicates::{Point3, Sign};
 use super::directions::{Arranged, turn};
 use crate::error::{Error, Result};
 use crate::memory::with_room;
+use crate::order::sort_by;
 use crate::watch::Watch;
 
 /// The error of directions that all lie on one great circle, with the first rows of the distinct ones in
@@ -26,7 +27,7 @@ pub fn degenerate(arranged: &Arranged, watch: &Watch) -> Result<Error> {
             .find(|&axes| !turn(start, v, axes).is_zero())
     });
     match across {
-        Some(axes) => found.sort_by(|x, y| {
+        Some(axes) => sort_by(&mut found, watch, |x, y| {
             let half = |v: Point3| match turn(start, v, axes) {
                 Sign::Positive => 1,
                 Sign::Negative => 3,
@@ -39,10 +40,11 @@ pub fn degenerate(arranged: &Arranged, watch: &Watch) -> Result<Error> {
                 Sign::Zero => Ordering::Equal,
             };
             half(x.0).cmp(&half(y.0)).then(around).then(x.1.cmp(&y.1))
-        }),
-        None => found.sort_by(|x, y| compare(x.0, y.0).then(x.1.cmp(&y.1))),
+        })?,
+        None => sort_by(&mut found, watch, |x, y| {
+            compare(x.0, y.0).then(x.1.cmp(&y.1))
+        })?,
     }
-    watch.check()?;
     found.dedup_by(|next, first| same(next.0, first.0));
     Ok(Error::OneGreatCircle {
         chain: found.into_iter().map(|(_, row)| row).collect(),

@@ -24,8 +24,9 @@ use crate::watch::{Pace, Watch};
 
 /// Work between two checks for interruption; a step of a walk is one.
 const WATCH_EVERY: usize = 1 << 12;
-/// Above this product of directions, rounded, their exact product is positive.
-const POSITIVE: f64 = 1e-15;
+/// More than two rounded products of rounded directions are off by together: each by 5 units of
+/// rounding.
+const MARGIN: f64 = 1e-14;
 
 /// Vectors with their directions.
 struct Rays {
@@ -109,14 +110,8 @@ impl Index {
             let q = queries.at(i);
             let (t, inside) = self.walk(q, start, pace)?;
             let mut best = self.climb(q, self.corner(t, 0), pace)?;
-            if !inside && !self.is_near(&q.1, best.vertex) {
-                for &at in &self.rim {
-                    pace.spend(1)?;
-                    let order = self.nearer(q, at.vertex, best.vertex);
-                    if order == Sign::Positive || order == Sign::Zero && at.vertex < best.vertex {
-                        best = at;
-                    }
-                }
+            if !inside && self.product(&q.1, best.vertex) < MARGIN {
+                best = self.along_rim(q, best, pace)?;
                 best = self.climb(q, best, pace)?;
             }
             Ok((self.smallest(q, best, pace)? as i32, t))
@@ -261,10 +256,29 @@ impl Index {
         nearer_of([q.0, a.0, b.0], [&q.1, &a.1, &b.1])
     }
 
-    /// Whether a vertex is certainly less than a right angle away.
-    fn is_near(&self, q: &Unit, v: u32) -> bool {
+    /// The cosine of the angle to a vertex, rounded.
+    #[inline]
+    fn product(&self, q: &Unit, v: u32) -> f64 {
         let v = self.rays.heads[v as usize];
-        v[0] * q.hi[0] + v[1] * q.hi[1] + v[2] * q.hi[2] > POSITIVE
+        v[0] * q.hi[0] + v[1] * q.hi[1] + v[2] * q.hi[2]
+    }
+
+    /// The nearest of a vertex and those of the boundary; of several the smallest.
+    fn along_rim(&self, q: (Point3, Unit), from: At, pace: &mut Pace) -> Result<At> {
+        let mut best = from;
+        let mut most = self.product(&q.1, from.vertex);
+        for &at in &self.rim {
+            pace.spend(1)?;
+            let product = self.product(&q.1, at.vertex);
+            if product < most - MARGIN {
+                continue;
+            }
+            let order = self.nearer(q, at.vertex, best.vertex);
+            if order == Sign::Positive || order == Sign::Zero && at.vertex < best.vertex {
+                (best, most) = (at, product);
+            }
+        }
+        Ok(best)
     }
 
     /// Goes to better neighbors while there are any; each is nearer than the one before.

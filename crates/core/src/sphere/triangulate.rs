@@ -117,3 +117,87 @@ fn join(arranged: &mut Arranged, repeats: &[[u32; 2]], watch: &Watch) -> Result<
     sort(&mut found, watch)?;
     Ok(found)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::*;
+    use crate::error::Error;
+
+    /// Scattered vectors of different lengths, with z of at least `low`.
+    fn scattered(n: u32, low: f64) -> Vec<Point3> {
+        let mut x = 1_u64;
+        let mut next = || {
+            x = x
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (x >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        (0..n)
+            .map(|_| [next(), next(), next().max(low + 0.1 * next().abs())])
+            .collect()
+    }
+
+    #[test]
+    fn all_directions_are_vertices_and_edges_agree() {
+        for (low, whole) in [(-1.0, true), (0.2, false)] {
+            let vectors = scattered(5000, low);
+            for workers in [1, 2] {
+                let made = triangulate(&vectors, workers, &Watch::idle()).unwrap();
+                let arrays = &made.arrays;
+                let rim: usize = arrays
+                    .neighbors
+                    .iter()
+                    .flatten()
+                    .filter(|&&t| t < 0)
+                    .count();
+                assert_eq!(rim == 0, whole);
+                let less = if whole { 4 } else { 2 + rim };
+                assert_eq!(arrays.simplices.len(), 2 * 5000 - less);
+                for (t, beside) in arrays.neighbors.iter().enumerate() {
+                    for k in (0..3).filter(|&k| beside[k] >= 0) {
+                        let other = arrays.neighbors[beside[k] as usize];
+                        assert!(other.contains(&(t as i32)));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn interruption_is_heard_in_every_stage() {
+        let vectors = scattered(12_000, -1.0);
+        let count = AtomicUsize::new(0);
+        let counting = || {
+            count.fetch_add(1, Ordering::Relaxed);
+            false
+        };
+        triangulate(&vectors, 1, &Watch::new(&counting)).unwrap();
+        let all = count.into_inner();
+        assert!(all > 20, "{all}");
+        for at in 0..all {
+            let left = AtomicUsize::new(at);
+            let stop = || {
+                left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |n| n.checked_sub(1))
+                    .is_err()
+            };
+            let ended = triangulate(&vectors, 1, &Watch::new(&stop));
+            assert_eq!(ended.err(), Some(Error::Interrupted), "{at} of {all}");
+        }
+    }
+
+    #[test]
+    fn a_first_triangle_is_found_behind_many_of_one_circle() {
+        let mut vectors: Vec<Point3> = (0..3000)
+            .map(|i| [f64::from(i) - 1500.5, 1.0, 0.0])
+            .collect();
+        let Err(Error::OneGreatCircle { chain }) = triangulate(&vectors, 1, &Watch::idle()) else {
+            panic!("they are on one circle");
+        };
+        assert_eq!(chain.len(), 3000);
+        vectors.push([0.0, 1.0, 1e-300]);
+        let made = triangulate(&vectors, 1, &Watch::idle()).unwrap();
+        assert_eq!(made.arrays.simplices.len(), 2999);
+    }
+}
