@@ -30,6 +30,7 @@ from delone import (
     RegularTriangulation,
     Voronoi,
     _core,
+    sphere,
 )
 
 if TYPE_CHECKING:
@@ -117,9 +118,16 @@ def tetrahedral_cells(points: Any) -> list[Any]:
     return [found.ridge_points, found.point_region, *ridges]
 
 
+def directions(**given: Any) -> list[Any]:
+    """Triangles, and the bits of the vectors that longitudes and latitudes become."""
+    mesh = sphere.Delaunay(**given)
+    return [*simplices(mesh), mesh.duplicates, np.array(mesh.vectors).view(np.int64)]
+
+
 def cases() -> dict[str, Callable[[], Iterable[Any]]]:
     """Every input by name, as a call that returns arrays of integers."""
     plane, space = scattered(5_000, 2), scattered(1_500, 3)
+    angles = plane * [360.0, 180.0] - [180.0, 90.0]
     spokes = np.arange(60).reshape(30, 2)
     found: dict[str, Callable[[], Iterable[Any]]] = {
         "2-D scattered": lambda: simplices(Delaunay(plane)),
@@ -141,6 +149,10 @@ def cases() -> dict[str, Callable[[], Iterable[Any]]]:
         "Voronoi 2-D": lambda: cells(plane[:2_000]),
         "Voronoi of a lattice": lambda: cells(lattice(20, 2)),
         "power diagram": lambda: cells(plane[:2_000], weights=unit(2_000, 9) * 1e-3),
+        "sphere, degrees": lambda: directions(lonlat=angles),
+        "sphere, radians": lambda: directions(lonlat=angles * 0.0174, degrees=False),
+        "sphere, whole degrees": lambda: directions(lonlat=np.round(angles / 5) * 5),
+        "sphere, lattice": lambda: directions(xyz=lattice(8, 3) - 3.5),
         "Voronoi 3-D": lambda: tetrahedral_cells(space[:500]),
     }
     for method in _core.methods2():
