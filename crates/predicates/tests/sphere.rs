@@ -313,6 +313,23 @@ fn the_order_is_total_and_ignores_lengths() {
         }
     }
     all.sort_by(|&a, &b| compare(a, b));
+    let sign = |v: Point3| v.map(|x| x.partial_cmp(&0.0).unwrap() as i8);
+    let mut classes: Vec<_> = all.iter().map(|&v| sign(v)).collect();
+    classes.dedup_by_key(|v| {
+        (
+            v[0],
+            if v[0] == 0 {
+                (v[1], if v[1] == 0 { v[2] } else { 0 })
+            } else {
+                (0, 0)
+            },
+        )
+    });
+    let classes = classes
+        .iter()
+        .map(|v| [v[0], if v[0] == 0 { v[1] } else { 0 }]);
+    let expected = [[-1, 0], [0, -1], [0, 0], [0, 0], [0, 1], [1, 0]];
+    assert!(classes.eq(expected));
     for (i, &a) in all.iter().enumerate() {
         for (j, &b) in all.iter().enumerate() {
             let equal = {
@@ -361,7 +378,8 @@ fn units_are_right_to_a_hundred_bits() {
         let size: f64 = unit.hi.iter().map(|x| x * x).sum();
         assert!((size - 1.0).abs() < 1e-15);
     }
-    assert!(worst < 2f64.powf(-100.9), "2^{}", worst.log2());
+    // The proven bound is 2^-100.9; this is about what is seen.
+    assert!(worst < 2f64.powf(-103.5), "2^{}", worst.log2());
     assert!(
         worst > 2f64.powi(-110),
         "the check sees the error: 2^{}",
@@ -388,6 +406,7 @@ fn the_nearer_direction_is_the_one_with_the_larger_cosine() {
         let b = match case % 4 {
             1 => shaken(a, 1, &mut random),
             3 => scaled(a, power_of_two(random.integer(-900, 900)) * random.unit()),
+            2 if case % 8 == 2 => scaled(a, [3.0, 5.0, 7.0][case % 3]),
             _ => b,
         };
         let [qq, aa, bb] = [q, a, b].map(whole);
