@@ -44,7 +44,7 @@ const DEGREE: Pair = Pair {
 };
 /// A right angle in radians, as the sum of three doubles.
 const RIGHT: [f64; 3] = [
-    1.5707963267948966,
+    std::f64::consts::FRAC_PI_2,
     6.123233995736766e-17,
     -1.4973849048591698e-33,
 ];

@@ -16,7 +16,8 @@ use crate::watch::Watch;
 pub fn degenerate(arranged: &Arranged, watch: &Watch) -> Result<Error> {
     let directions = &arranged.directions;
     let mut found: Vec<(Point3, u32)> = with_room(arranged.rows.len())?;
-    found.extend((0..directions.len()).map(|i| (directions.vector(i), arranged.rows[i as usize])));
+    found
+        .extend((0..directions.count()).map(|i| (directions.vector(i), arranged.rows[i as usize])));
     let smallest = found.iter().map(|x| x.0).min_by(|&a, &b| compare(a, b));
     let start = smallest.unwrap_or_default();
     watch.check()?;

@@ -134,7 +134,7 @@ fn rough(v: Point3) -> Point3 {
 
 impl Directions {
     /// How many there are.
-    pub fn len(&self) -> u32 {
+    pub fn count(&self) -> u32 {
         self.vectors.len() as u32 - 1
     }
 
@@ -185,13 +185,10 @@ impl Directions {
     pub fn between(&self, a: u32, p: u32, b: u32) -> bool {
         let [a, p, b] = [a, p, b].map(|i| self.vector(i));
         // The cross products of two of them are multiples of that of a and b.
-        [[0, 1], [1, 2], [2, 0]]
-            .iter()
-            .map(|&axes| {
-                let side = turn(a, b, axes);
-                !side.is_zero() && turn(a, p, axes) == side && turn(p, b, axes) == side
-            })
-            .any(|between| between)
+        [[0, 1], [1, 2], [2, 0]].iter().any(|&axes| {
+            let side = turn(a, b, axes);
+            !side.is_zero() && turn(a, p, axes) == side && turn(p, b, axes) == side
+        })
     }
 }
 

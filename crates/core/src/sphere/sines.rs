@@ -1,6 +1,10 @@
 //! The sines of whole degrees as sums of two doubles.
 
 /// The sine of each whole degree from 0 to 90: the nearest double, and the double nearest to the rest.
+#[expect(
+    clippy::approx_constant,
+    reason = "the sine of 45 degrees is one of them"
+)]
 pub const SINES: [[f64; 2]; 91] = [
     [0.0, 0.0],
     [0.01745240643728351, 1.1662166393407661e-18],

@@ -34,7 +34,7 @@ pub struct Triangulation {
 pub fn triangulate(vectors: &[Point3], workers: usize, watch: &Watch) -> Result<Triangulation> {
     check(vectors)?;
     let mut arranged = arrange(vectors, workers, watch)?;
-    let n = arranged.directions.len();
+    let n = arranged.directions.count();
     let Some(first) = first_triangle(&arranged.directions, watch)? else {
         return Err(degenerate(&arranged, watch)?);
     };
@@ -57,7 +57,7 @@ pub fn triangulate(vectors: &[Point3], workers: usize, watch: &Watch) -> Result<
 
 /// Three directions that are not on one great circle, counterclockwise; `None` if all are on one.
 fn first_triangle(directions: &Directions, watch: &Watch) -> Result<Option<[u32; 3]>> {
-    let order = || Rounds::over(directions.len(), STRIDES);
+    let order = || Rounds::over(directions.count(), STRIDES);
     let Some(a) = order().next() else {
         return Ok(None);
     };
