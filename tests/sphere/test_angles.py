@@ -172,3 +172,17 @@ def test_points_of_a_meridian_are_on_one_great_circle():
         rows = vectors([*((lon, lat) for lat in lats), (opposite, lats[0]), (0, 90)])
         a, b, c, d, pole = (oracle.whole(v) for v in rows.tolist())
         assert oracle.det(a, b, c) == oracle.det(a, b, d) == oracle.det(a, b, pole) == 0
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+def test_long_arrays_are_converted_to_their_end(workers):
+    # Longer than what one thread takes at a time, several times over.
+    rng = np.random.default_rng(4)
+    angles = rng.uniform(-90, 90, (70_000, 2))
+    found = _core.sphere_directions(angles, True, workers)
+    units = _core.sphere_units(found, workers)
+    for start in range(0, len(angles), 5_000):
+        part = slice(start, start + 5_000)
+        piece = _core.sphere_directions(angles[part], True, 1)
+        assert np.array_equal(piece, found[part])
+        assert np.array_equal(_core.sphere_units(piece, 1), units[part])

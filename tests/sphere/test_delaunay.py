@@ -192,6 +192,22 @@ def test_a_thousand_directions_of_the_whole_sphere():
     assert np.array_equal(again.simplices, mesh.simplices)
 
 
+def test_more_rows_than_one_thread_takes_at_a_time():
+    rng = np.random.default_rng(11)
+    vectors = rng.normal(size=(40_000, 3))
+    mesh = sphere.Delaunay(xyz=vectors, workers=2)
+    check_topology(mesh)
+    assert np.array_equal(mesh.simplices, sphere.Delaunay(xyz=vectors, workers=1).simplices)
+    # No vertex beside a triangle is inside its circle, as far as rounding can tell.
+    corners = mesh.points[mesh.simplices]
+    away = ((mesh.circumcenters - corners[:, 0]) ** 2).sum(axis=1)
+    for k in range(3):
+        others = mesh.points[mesh.simplices[mesh.neighbors[:, k]]]
+        distance = ((mesh.circumcenters[:, None] - others) ** 2).sum(axis=2)
+        assert np.all(distance.min(axis=1) > away - 1e-13)
+    assert mesh.areas.sum() == pytest.approx(4 * np.pi, rel=1e-13)
+
+
 def test_the_last_row_may_cover_the_sphere():
     # All others in one hemisphere, so that the hull has many boundary edges until then.
     rng = np.random.default_rng(7)
