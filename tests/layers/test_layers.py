@@ -45,10 +45,8 @@ PYTHON: tuple[set[str], ...] = (
     {"triangulation", "regular_validation"},
     {"delaunay", "constrained", "regular", "sphere", "tetmesh"},
     {"dynamic", "hull", "periodic", "refine"},
-    {"graphs", "io"},
-    {"voronoi", "interpolate", "cluster"},
     {"alpha", "graphs", "io"},
-    {"voronoi", "interpolate"},
+    {"voronoi", "interpolate", "cluster"},
     {"compat", "distributed", "explorer", "terrain"},
     # Data and oracles: nothing that they test may use them, and they use the ground alone.
     {"datasets", "reference", "testing"},
