@@ -21,7 +21,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::cores::Cores;
 use super::link::{Link, Span};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::graphs::{Sets, Tree, certainly_above, squared, squared_gap};
 use crate::memory::{filled, with_room};
 use crate::parallel;
@@ -105,12 +105,16 @@ fn spanning<const D: usize>(
         let largest = largest(&sizes);
         let limits = forest.search(&mut known, largest, workers, watch)?;
         let chosen = forest.chosen(&known, largest, &limits, watch)?;
+        let before = links.len();
         for &place in &chosen {
             let ends = [place, known[place as usize].other];
             if sets.join(ends[0] as i32, ends[1] as i32) {
                 let span = forest.span(ends[0], ends[1]);
                 links.push(Link { ends, span });
             }
+        }
+        if links.len() == before {
+            return Err(Error::Internal("a round joined no components".into()));
         }
         forest.relabel(&mut sets, &mut sizes, watch)?;
     }
