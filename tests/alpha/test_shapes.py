@@ -65,6 +65,25 @@ def test_touching_parts_and_pinched_rings():
     assert ring.betti == (1, 1)
 
 
+def test_polygons_are_sorted_and_have_their_own_holes():
+    # The hole of the first part begins to the right of that of the second.
+    below = lattice(11, 5)
+    above = lattice(6, 5) + np.array((1, 10))
+    parts = below[(below != (8, 2)).any(axis=1)], above[(above != (3, 12)).any(axis=1)]
+    polygons = delone.AlphaComplex(np.concatenate(parts)).shape(0.5).polygons()
+    assert [p.exterior.coords[0] for p in polygons] == [(0, 0), (1, 10)]
+    assert [p.interiors[0].coords[0] for p in polygons] == [(7, 2), (2, 12)]
+    # Two parts that begin at the same point, in any order of rows.
+    points = np.array([(0, 0), (2, 1), (1, 2), (2, -1), (1, -2)])
+    for seed in range(6):
+        shuffled = points[np.random.default_rng(seed).permutation(5)]
+        found = delone.AlphaComplex(shuffled).shape(1.5).polygons()
+        assert [p.exterior.coords[:2] for p in found] == [
+            [(0, 0), (1, -2)],
+            [(0, 0), (2, 1)],
+        ]
+
+
 @pytest.mark.parametrize("name", _SETS)
 def test_numbers_of_components_and_holes(name):
     complex = delone.AlphaComplex(_SETS[name])
@@ -180,6 +199,13 @@ def test_complexes_on_the_torus(n, weighted):
         center, square = ball(ends, [heavy[a], heavy[b]])
         met = any(
             p not in ends and sum((x - y) ** 2 for x, y in zip(p, center, strict=True)) - w < square
+            for p, w in copies
+        )
+        assert (value > float(square)) if met else (value == float(square))
+    for (row,), value in zip(complex.simplices(0), complex.values(0), strict=True):
+        center, square = ball([[Fraction(x) for x in points[row].tolist()]], [heavy[row]])
+        met = any(
+            p != center and sum((x - y) ** 2 for x, y in zip(p, center, strict=True)) - w < square
             for p, w in copies
         )
         assert (value > float(square)) if met else (value == float(square))
