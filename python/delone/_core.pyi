@@ -1068,6 +1068,7 @@ def density2(
 def density3(
     points: NDArray[np.float64], eps: float, k: int, workers: int
 ) -> tuple[NDArray[np.int32], NDArray[np.bool_]]: ...
+
 _Valued = tuple[NDArray[np.int32], NDArray[np.float64]]
 
 def alpha_flat2(

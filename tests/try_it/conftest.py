@@ -1,4 +1,3 @@
-"""A page with all figures of the course in a headless Chromium, with the core and without."""
 """A site with the figures of the course and the page for readers' points, for a browser."""
 
 from __future__ import annotations
@@ -17,9 +16,6 @@ import pytest
 from browser import Browser, chromium
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from browser import Page
     from collections.abc import Callable, Iterator
     from contextlib import AbstractContextManager
 
@@ -29,9 +25,6 @@ WEB = ROOT / "target" / "web"
 sys.path.insert(0, str(DOCS / "extensions"))
 
 import live_files  # noqa: E402
-import live_steps  # noqa: E402
-
-FIGURES = sorted(live_steps.FIGURES)
 
 
 class Quiet(SimpleHTTPRequestHandler):
@@ -39,7 +32,6 @@ class Quiet(SimpleHTTPRequestHandler):
         pass
 
 
-@pytest.fixture(scope="module")
 @contextmanager
 def served(folder: Path) -> Iterator[str]:
     """Serve a folder; gives the address."""
@@ -66,42 +58,6 @@ def browser() -> Iterator[Browser]:
         yield found
 
 
-@pytest.fixture(scope="module", params=["stored", "core"])
-def site(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """The address of a page with all figures, as the extension writes them."""
-    with_core = request.param == "core"
-    if with_core and not (WEB / "delone.js").exists():
-        pytest.skip("the module for pages is not built")
-    folder = tmp_path_factory.mktemp("site")
-    static = folder / live_files.FOLDER
-    shutil.copytree(DOCS / live_files.FOLDER, static)
-    live_files.write_answers(static)
-    live_files.copy_view(static)
-    if with_core:
-        shutil.copytree(WEB, static / "core")
-    figures = [
-        live_files.figure_html(name, name, folder=live_files.FOLDER, live=with_core)
-        for name in FIGURES
-    ]
-    page = (
-        "<!doctype html><meta charset=utf-8><title>figures</title><link rel=icon href=data:,>"
-        f"<link rel=stylesheet href={live_files.FOLDER}/learn.css>{''.join(figures)}"
-        f"<script type=module src={live_files.FOLDER}/main.js></script>"
-    )
-    (folder / "index.html").write_text(page, encoding="utf-8")
-    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=folder))
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    yield f"http://127.0.0.1:{server.server_port}/index.html"
-    server.shutdown()
-    server.server_close()
-
-
-@pytest.fixture
-def page(site: str, browser: Browser) -> Page:
-    found = browser.page(site)
-    found.wait("window.deloneFigures && window.deloneReady")
-    found.wait(f"Object.keys(window.deloneFigures).length === {len(FIGURES)}")
-    return found
 @pytest.fixture(scope="session")
 def core() -> Path:
     """The folder of the compiled core."""

@@ -15,9 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from delone import ConstrainedDelaunay, Delaunay, __version__
-from delone.cli import cells, dem, field, graph, terrain, tiles
-from delone.cli import cells, cluster, field, graph, terrain, tiles
-from delone.cli import cells, field, graph, outline, terrain, tiles
+from delone.cli import cells, cluster, dem, field, graph, outline, terrain, tiles
 from delone.cli.check import check_mesh
 from delone.cli.constraints import Constraints, constraint_figures, read_input, triangulated
 from delone.cli.exits import (
