@@ -210,7 +210,8 @@ def message_of_degrees(what: str, by: str) -> str:
     """Return the message that `what` are longitudes and latitudes, as identified `by` something."""
     return (
         f"{what} are longitudes and latitudes ({by}), used as planar coordinates: distances "
-        "are distorted, and 179.9 is far from -179.9. Project them first, or give planar=True"
+        "are distorted, and 179.9 is far from -179.9. Project them first, triangulate them on the "
+        "sphere with delone.sphere, or give planar=True"
     )
 
 

@@ -33,6 +33,8 @@ MAKE: dict[str, Callable[[], Any]] = {
     "ConvexHull": lambda: delone.ConvexHull(SOLID, workers=2),
     "Voronoi 2-D": lambda: delone.Voronoi(FLAT, clip="box", workers=2),
     "Voronoi 3-D": lambda: delone.Voronoi(SOLID, clip="box", workers=2),
+    "Dynamic": lambda: delone.Dynamic(FLAT, workers=2),
+    "AlphaComplex": lambda: delone.AlphaComplex(FLAT, workers=2),
 }
 # Libraries of the exports, which may be missing.
 NEEDS = {
@@ -123,4 +125,4 @@ def test_each_class_has_a_column() -> None:
         for name in delone.__all__
         if isinstance(getattr(delone, name), type) and hasattr(getattr(delone, name), "save")
     }
-    assert public | {"TIN"} == {name.split()[0] for name in MAKE}
+    assert public | {"TIN", "Dynamic"} == {name.split()[0] for name in MAKE}
