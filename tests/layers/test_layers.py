@@ -43,11 +43,11 @@ PYTHON: tuple[set[str], ...] = (
     {"archive", "validation"},
     {"complex"},
     {"triangulation", "regular_validation"},
-    {"delaunay", "constrained", "regular", "sphere", "tetmesh"},
+    {"delaunay", "constrained", "regular", "tetmesh"},
     {"dynamic", "hull", "periodic", "refine"},
     {"alpha", "graphs", "io"},
     {"voronoi", "interpolate", "cluster"},
-    {"compat", "distributed", "explorer", "terrain"},
+    {"compat", "distributed", "explorer", "sphere", "terrain"},
     # Data and oracles: nothing that they test may use them, and they use the ground alone.
     {"datasets", "reference", "testing"},
     # The package itself re-exports.

@@ -12,5 +12,6 @@ from __future__ import annotations
 
 from delone.sphere.coordinates import LongitudeWarning
 from delone.sphere.delaunay import Delaunay
+from delone.sphere.interpolation import Linear, Nearest
 
-__all__ = ["Delaunay", "LongitudeWarning"]
+__all__ = ["Delaunay", "Linear", "LongitudeWarning", "Nearest"]
