@@ -7,7 +7,7 @@ The base class `_Interpolator` has the policies and the fields, which are those 
 from __future__ import annotations
 
 import copy
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -56,12 +56,15 @@ class _Interpolator:
         self._nan = chosen("nan", nan, NAN)
         as_workers(workers)
         self._workers = workers
-        known = isinstance(points, Delaunay)
-        self._degrees = points._degrees if known else as_flag(degrees, name="degrees")
-        self._all = points if known else _triangulated(points, self._degrees, workers)
-        self._mesh, self._kept = self._all, None
-        self._field: tuple[Field, Self, Floats] | None = None
-        self._other: Self | None = None
+        as_flag(degrees, name="degrees")
+        self._all: Delaunay = (
+            points if isinstance(points, Delaunay) else _triangulated(points, degrees, workers)
+        )
+        self._degrees = self._all._degrees
+        self._mesh = self._all
+        self._kept: Rows | None = None
+        self._field: tuple[Field, _Interpolator, Floats] | None = None
+        self._other: _Interpolator | None = None
         if values is not None:
             field = as_field(values, self.npoints)
             owner = self._for(field)
@@ -201,19 +204,20 @@ class _Interpolator:
         """The caller's rows for the given rows of the mesh."""
         return (rows if self._kept is None else self._kept[rows]).astype(np.int32)
 
-    def _for(self, field: Field) -> Self:
+    def _for(self, field: Field) -> _Interpolator:
         """The interpolator without the sites that ``nan="drop"`` removes for a field."""
         dropped = field.not_finite
         if self._nan != "drop" or not dropped.size:
             return self
         kept = np.delete(np.arange(self.npoints), dropped)
-        if self._other is None or not np.array_equal(self._other._kept, kept):
+        other = self._other
+        if other is None or other._kept is None or not np.array_equal(other._kept, kept):
             other = copy.copy(self)
             other._kept, other._field, other._other = kept, None, None
             vectors = self._all.vectors[kept]
             other._mesh = Delaunay(xyz=vectors, degrees=self._degrees, workers=self._workers)
             self._other = other
-        return self._other
+        return other
 
     def _table(self, xi: ArrayLike) -> Weights:
         """Weights of the sites in the mesh."""

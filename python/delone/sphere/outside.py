@@ -49,7 +49,8 @@ def _squares(points: Floats, arcs: Indices, queries: Floats) -> Floats:
     square = np.minimum((queries @ normal.T) ** 2, 1.0)
     interior = 2 * square / (1 + np.sqrt(1 - square))
     ends = 2 - 2 * np.maximum(queries @ a.T, queries @ b.T)
-    return np.where(within, interior, np.maximum(ends, 0.0))
+    found: Floats = np.where(within, interior, np.maximum(ends, 0.0))
+    return found
 
 
 def _normals(a: Floats, b: Floats) -> Floats:
