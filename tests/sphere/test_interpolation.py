@@ -18,6 +18,7 @@ from delone.errors import (
     NonFiniteError,
     ShapeError,
 )
+from delone.sphere import outside
 
 SQUARE = [(-10, -10), (10, -10), (10, 10), (-10, 10)]
 
@@ -275,3 +276,18 @@ def test_errors():
         sphere.Linear([(0, 0), (1, 0), (2, 0)])
     with pytest.raises(DtypeError, match="degrees"):
         sphere.Linear(SQUARE, degrees="yes")
+
+
+@pytest.mark.parametrize("kind", [sphere.Linear, sphere.Nearest])
+def test_queries_without_a_direction_leave_the_others_in_place(kind):
+    interpolant = kind(SQUARE, [1.0, 2.0, 3.0, 4.0])
+    found = interpolant([(np.nan, 0), SQUARE[1], (0, np.nan), SQUARE[3]])
+    np.testing.assert_array_equal(found, [np.nan, 2.0, np.nan, 4.0])
+
+
+def test_blocks_do_not_matter_outside_of_a_hull(monkeypatch):
+    interpolant = sphere.Linear(SQUARE, [1.0, 2.0, 3.0, 4.0], extrapolate="nearest")
+    queries = scattered(100)
+    found = interpolant(queries)
+    monkeypatch.setattr(outside, "_BLOCK", 28)
+    np.testing.assert_array_equal(interpolant(queries), found)
