@@ -114,7 +114,7 @@ def lawson(points: ArrayLike, simplices: ArrayLike, *, record: bool = False) -> 
 
     Each flip lowers the surface of the triangles lifted to x² + y², and a flipped edge lies above
     that surface from then on. Therefore there are at most n (n - 1) / 2 flips. The bound has the
-    right order: the fan of n points of a parabola from the first of them takes about n² / 4. The
+    right order: a fan of n points (x, x²) from the first of them can take nearly n² / 2. The
     predicates are exact.
 
     The recorded angles are those of the exact triangles, rounded. If an edge is flipped because the

@@ -21,6 +21,7 @@ CONVERTED = (
     "docs/api/*.rst",
     "docs/decisions/*.rst",
     "docs/guide/*.rst",
+    "docs/learn/*.rst",
     "docs/mathematics/*.rst",
     "docs/tutorials/*.rst",
     "docs/coming_from/*.rst",
