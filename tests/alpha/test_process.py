@@ -90,7 +90,7 @@ def test_memory_that_runs_out_on_the_way() -> None:
         import numpy as np
         import delone
         made = [delone.Delaunay(np.random.default_rng(0).random((n, d)))
-                for n, d in ((700_000, 2), (30_000, 3))]
+                for n, d in ((700_000, 2), (120_000, 3))]
         tasks = [
             lambda: delone.AlphaComplex(made[0]),
             lambda: delone.AlphaComplex(made[1]),
