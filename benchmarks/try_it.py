@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).parents[1]
 sys.path[:0] = [str(ROOT / "tests" / "oracles"), str(ROOT / "docs" / "extensions")]
 
-from try_page import element  # noqa: E402
+from live_files import points_html  # noqa: E402
 
 from browser import Browser  # noqa: E402
 
@@ -92,7 +92,7 @@ def page() -> Iterator[str]:
         (folder / "index.html").write_text(
             "<!doctype html><meta charset=utf-8><title>Try it</title><link rel=icon href=data:,>"
             "<link rel=stylesheet href=learn/learn.css><link rel=stylesheet href=learn/try/try.css>"
-            f"{element(live=True)}<script type=module src=learn/try/main.js></script>",
+            f"{points_html(live=True)}<script type=module src=learn/try/main.js></script>",
             encoding="utf-8",
         )
         server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=folder))

@@ -14,6 +14,8 @@ FOLDER = "_static/learn"
 STATIC = Path(__file__).parents[1] / FOLDER
 EXPLORER = Path(__file__).parents[2] / "python" / "delone" / "explorer"
 
+WITHOUT_SCRIPTS = "This page needs scripts."
+
 
 def figure_html(name: str, alt: str, *, folder: str, live: bool) -> str:
     """Return the element of a figure on a page from which `folder` leads to the modules."""
@@ -22,6 +24,14 @@ def figure_html(name: str, alt: str, *, folder: str, live: bool) -> str:
         f'<div class="live-figure" data-live="{name}" data-alt="{text}" '
         f'data-stored="{folder}/stored/{name}.json" data-core="{"yes" if live else "no"}">'
         f"{live_picture.svg(live_steps.stored(name), text)}</div>\n"
+    )
+
+
+def points_html(*, live: bool) -> str:
+    """Return the element for points of the reader; without `live`, there is no compiled core."""
+    return (
+        f'<div class="live-figure try" data-try data-core="{"yes" if live else "no"}">'
+        f'<p class="try-before">{WITHOUT_SCRIPTS}</p></div>\n'
     )
 
 

@@ -9,20 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 from docutils import nodes
 from live import core_folder
+from live_files import WITHOUT_SCRIPTS, points_html
 from sphinx.util.docutils import SphinxDirective
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
-
-WITHOUT_SCRIPTS = "This page needs scripts."
-
-
-def element(*, live: bool) -> str:
-    """Return the element; without `live`, the site has no compiled core."""
-    return (
-        f'<div class="live-figure try" data-try data-core="{"yes" if live else "no"}">'
-        f'<p class="try-before">{WITHOUT_SCRIPTS}</p></div>\n'
-    )
 
 
 class TryPoints(nodes.General, nodes.Element):
@@ -41,7 +32,7 @@ def visit_html(translator: Any, node: TryPoints) -> None:
     """Write the element."""
     del node
     live = core_folder(translator.builder.app) is not None
-    translator.body.append(element(live=live))
+    translator.body.append(points_html(live=live))
     raise nodes.SkipNode
 
 

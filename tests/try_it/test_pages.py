@@ -22,7 +22,6 @@ DOCS = Path(__file__).parents[2] / "docs"
 sys.path.insert(0, str(DOCS / "extensions"))
 
 import live_files  # noqa: E402
-import try_page  # noqa: E402
 
 
 def elements(path: Path) -> list[str]:
@@ -32,7 +31,7 @@ def elements(path: Path) -> list[str]:
         live_files.figure_html(name, name, folder=live_files.FOLDER, live=True)
         for name in re.findall(r"^\.\. live:: (\w+)", text, re.MULTILINE)
     ]
-    return [*found, *([try_page.element(live=True)] if ".. try-points::" in text else [])]
+    return [*found, *([live_files.points_html(live=True)] if ".. try-points::" in text else [])]
 
 
 PAGES = {path.stem: path for path in sorted((DOCS / "learn").glob("*.rst")) if elements(path)}

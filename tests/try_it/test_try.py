@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "docs" / "extensions"))
 
-import try_page
+import live_files
 
 TEXTS = {
     "comma.csv": "x,y\n0,0\n4,0\n4,3\n0,3\n2,1\n",
@@ -73,7 +73,7 @@ def address(
 ) -> Iterator[str]:
     del core
     folder = tmp_path_factory.mktemp("try")
-    write_page(folder, try_page.element(live=True))
+    write_page(folder, live_files.points_html(live=True))
     with serve(folder) as found:
         yield f"{found}/index.html"
 
@@ -530,7 +530,7 @@ def test_nothing_is_wider_than_the_window(
 def test_without_the_core_the_page_says_so(
     browser: Browser, write_page: Write, serve: Serve, tmp_path: Path
 ) -> None:
-    write_page(tmp_path, try_page.element(live=False))
+    write_page(tmp_path, live_files.points_html(live=False))
     with serve(tmp_path) as found:
         page = browser.page(f"{found}/index.html")
         page.run("window.deloneTry.then(() => 1)")
