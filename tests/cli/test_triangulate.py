@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from delone import Delaunay
+from delone.cli import report
 from delone.io import read_mesh, read_points
 
 
@@ -30,7 +31,7 @@ def test_report_for_machines(survey, figures, tmp_path):
     names = [stage["name"] for stage in found["stages"]]
     assert names[0] == "read"
     assert set(mesh.stages) < set(names)
-    assert names[-2:] == ["write mesh.npz", "write mesh.vtu"]
+    assert names[-3:] == ["write mesh.npz", "write mesh.vtu", "measure"]
     assert all(stage["seconds"] >= 0 for stage in found["stages"])
     assert np.array_equal(read_mesh(out).simplices, mesh.simplices)
     assert np.array_equal(read_mesh(tmp_path / "mesh.vtu").z, read_points(survey).z)
@@ -68,6 +69,19 @@ def test_the_smallest_angle(tmp_path, figures):
     assert found["area"] is None  # beyond the range of doubles
 
 
+def test_the_smallest_angle_is_that_of_every_block(monkeypatch):
+    mesh = Delaunay(np.random.default_rng(5).random((60, 2)))
+    corners = mesh.points[mesh.simplices]
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+    a, b, c = np.sort(sides, axis=1).T
+    smallest = np.degrees(np.arccos((b * b + c * c - a * a) / (2 * b * c)).min())
+    for block in (1, 7, 1 << 20):
+        monkeypatch.setattr(report, "_BLOCK", block)
+        for simplices in (mesh.simplices, mesh.simplices[::-1], mesh.simplices[:, [0, 2, 1]]):
+            found = report.geometry(mesh.points, simplices)
+            assert found["smallest_angle_degrees"] == pytest.approx(smallest)
+
+
 def test_options_reach_the_reader_and_the_writer(tmp_path, figures, command):
     (tmp_path / "a.csv").write_text("a,b,c\n0,0,1\n4,0,2\n4,3,3\n0,3,4\n")
     out = tmp_path / "edges.vtu"
@@ -95,6 +109,6 @@ def test_the_order_of_rows_does_not_matter(tmp_path, figures):
     found = []
     for order in (slice(None), slice(None, None, -1)):
         np.save(tmp_path / "a.npy", points[order])
-        report = figures("triangulate", tmp_path / "a.npy")
-        found.append([report[key] for key in ("triangles", "edges", "smallest_angle_degrees")])
+        said = figures("triangulate", tmp_path / "a.npy")
+        found.append([said[key] for key in ("triangles", "edges", "smallest_angle_degrees")])
     assert found[0] == found[1]

@@ -233,12 +233,16 @@ def triangulate(
                 tetrahedra = improved(mesh, writers, say, min_angle=min_angle, passes=max_iter)
             written, gained = tetrahedra, {"improvement": improvement_figures(tetrahedra.report)}
         write_all(writers, written, watch, say, z=z, crs=survey.crs, edges=edges)
-        say("reporting")
+        say("measuring")
+        with watch.stage("measure"):
+            measures = (
+                space_summary(mesh) if isinstance(mesh, Delaunay) and solid else summary(mesh)
+            )
         figures: dict[str, Any] = {
             "delone": __version__,
             "input": str(source),
             "crs": survey.crs,
-            **(space_summary(mesh) if isinstance(mesh, Delaunay) and solid else summary(mesh)),
+            **measures,
             **_of_constraints(mesh, survey),
             **gained,
             "stages": watch.rows(mesh.npoints),

@@ -17,6 +17,8 @@ import numpy as np
 
 from delone import ConstrainedDelaunay
 from delone import Mesh as QualityMesh
+from delone.plane.quality import measured
+from delone.predicates import orient2d
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Stopwatch", "finite_or_none", "geometry", "peak_memory", "repeated_rows", "summary"]
 
-_BLOCK = 1 << 18
+_BLOCK = 1 << 20
 _FIRST_DUPLICATES = 5
 
 
@@ -88,36 +90,22 @@ def summary(triangulation: Mesh) -> dict[str, Any]:
 
 def geometry(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> dict[str, Any]:
     """Return the counts of arbitrary triangles and their smallest angle."""
+    clockwise = orient2d(*(points[column] for column in simplices.T)) < 0
+    turned = np.where(clockwise[:, None], simplices[:, ::-1], simplices)
     return {
         "points": len(points),
         "triangles": len(simplices),
-        "smallest_angle_degrees": finite_or_none(smallest_angle(points, simplices)),
+        "smallest_angle_degrees": finite_or_none(smallest_angle(points, turned)),
     }
 
 
 def smallest_angle(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> float:
-    """Return the smallest angle of all triangles in degrees, 180 if there are none.
-
-    The cross product of two sides is the same at each corner, so it is at the corner with the
-    largest dot product. Each triangle is scaled to its own size, so that squares do not overflow.
-    """
-    smallest = math.pi
+    """Return the smallest angle of counterclockwise triangles in degrees, 180 if there are none."""
+    smallest = 180.0
     for start in range(0, len(simplices), _BLOCK):
-        corners = points[simplices[start : start + _BLOCK]] * 0.5
-        sides = np.roll(corners, -1, axis=1) - corners
-        size = np.abs(sides).max(axis=(1, 2), keepdims=True)
-        with np.errstate(all="ignore"):
-            sides /= size
-        (ax, bx, cx), (ay, by, cy) = sides[..., 0].T, sides[..., 1].T
-        dots = np.array((ax * bx + ay * by, bx * cx + by * cy, cx * ax + cy * ay))
-        crosses = np.array((ax * by - ay * bx, bx * cy - by * cx, cx * ay - cy * ax))
-        # All three are twice the area; that of the two shorter sides has the least rounding.
-        lengths = np.hypot((ax, bx, cx), (ay, by, cy))
-        best = (lengths * np.roll(lengths, -1, axis=0)).argmin(axis=0)
-        twice = np.abs(np.take_along_axis(crosses, best[None], axis=0)[0])
-        angles = np.arctan2(twice, (-dots).max(axis=0))
-        smallest = min(smallest, float(np.nanmin(angles, initial=math.pi)))
-    return math.degrees(smallest)
+        angles = measured(points, simplices[start : start + _BLOCK]).smallest_angle
+        smallest = min(smallest, float(np.nanmin(angles, initial=smallest)))
+    return smallest
 
 
 def _is_whole(triangulation: Mesh) -> bool:
