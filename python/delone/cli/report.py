@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from delone import ConstrainedDelaunay
+from delone import ConstrainedDelaunay, Quality
 from delone import Mesh as QualityMesh
-from delone.plane.quality import measured
 from delone.predicates import orient2d
 
 if TYPE_CHECKING:
@@ -103,7 +102,7 @@ def smallest_angle(points: NDArray[np.float64], simplices: NDArray[np.int32]) ->
     """Return the smallest angle of counterclockwise triangles in degrees, 180 if there are none."""
     smallest = 180.0
     for start in range(0, len(simplices), _BLOCK):
-        angles = measured(points, simplices[start : start + _BLOCK]).smallest_angle
+        angles = Quality.of(points, simplices[start : start + _BLOCK]).smallest_angle
         smallest = min(smallest, float(np.nanmin(angles, initial=smallest)))
     return smallest
 

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_mesh, as_workers
+from delone._arrays import as_mesh, as_points, as_simplices, as_workers
 from delone.measures import Measures
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -67,6 +67,42 @@ class Quality(Measures):
     edge_ratio: Floats
 
     _noun = "triangle"
+
+    @classmethod
+    def of(cls, points: ArrayLike, simplices: ArrayLike, *, workers: int | None = None) -> Quality:
+        """Measure triangles given by arrays, from any source.
+
+        Parameters
+        ----------
+        points : array_like, shape (n, 2)
+            Coordinates.
+        simplices : array_like of int, shape (m, 3)
+            Rows of the corners of each triangle, counterclockwise.
+        workers : int, optional
+            Maximum number of threads; by default one per core. The result does not depend on it.
+
+        Returns
+        -------
+        Quality
+            The measures. They mean nothing where coordinates are NaN or corners coincide.
+
+        Raises
+        ------
+        InputError
+            An array has the wrong shape, or a row is out of range.
+
+        Notes
+        -----
+        O(m) time.
+
+        Examples
+        --------
+        >>> from delone import Quality
+        >>> Quality.of([(0, 0), (2, 0), (0, 2)], [(0, 1, 2)]).smallest_angle
+        array([45.])
+        """
+        rows = as_points(points, ndim=2)
+        return measured(rows, as_simplices(simplices, len(rows), 2), workers)
 
     def plot(self, ax: Any = None, *, bound: float | None = None) -> Any:
         """Draw a histogram of the smallest and the largest angles (extra ``plot``).

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_mesh, as_number, as_workers
+from delone._arrays import as_mesh, as_number, as_points, as_simplices, as_workers
 from delone.errors import InputError
 from delone.measures import Measures
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -112,6 +112,45 @@ class TetQuality(Measures):
         # The angle of the regular tetrahedron may be rounded to above the last edge.
         counts, _ = np.histogram(np.minimum(self.smallest_dihedral, bounds[-1]), bounds)
         return counts.astype(np.int64), bounds
+
+    @classmethod
+    def of(
+        cls, points: ArrayLike, simplices: ArrayLike, *, workers: int | None = None
+    ) -> TetQuality:
+        """Measure tetrahedra given by arrays, from any source.
+
+        Parameters
+        ----------
+        points : array_like, shape (n, 3)
+            Coordinates.
+        simplices : array_like of int, shape (m, 4)
+            Rows of the corners of each tetrahedron, positively oriented.
+        workers : int, optional
+            Maximum number of threads; by default one per core. The result does not depend on it.
+
+        Returns
+        -------
+        TetQuality
+            The measures. They mean nothing where coordinates are NaN or corners are coplanar.
+
+        Raises
+        ------
+        InputError
+            An array has the wrong shape, or a row is out of range.
+
+        Notes
+        -----
+        O(m) time.
+
+        Examples
+        --------
+        >>> from delone import TetQuality
+        >>> corner = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+        >>> TetQuality.of(corner, [(0, 1, 2, 3)]).largest_dihedral
+        array([90.])
+        """
+        rows = as_points(points, ndim=3)
+        return measured(rows, as_simplices(simplices, len(rows), 3), workers)
 
     def plot(self, ax: Any = None, *, bound: float | None = None) -> Any:
         """Draw a histogram of the smallest and the largest dihedral angles (extra ``plot``).
