@@ -168,10 +168,6 @@ docs: $(STAMPS)/docs
 linkcheck: $(STAMPS)/docs
 	$(BIN)/sphinx-build -q -b linkcheck docs docs/_build/linkcheck
 
-# glibc keeps what is freed, for every peer: where a virtual machine takes free memory away, giving it
-# back costs more than a triangulation.
-bench: export MALLOC_MMAP_THRESHOLD_ := 8000000000
-bench: export MALLOC_TRIM_THRESHOLD_ := 16000000000
 bench: $(STAMPS)/bench
 	$(BIN)/python benchmarks/wheels.py $(BENCH)
 	$(BIN)/python benchmarks/crates.py $(BENCH)

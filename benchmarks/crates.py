@@ -1,8 +1,9 @@
 """Delone's core beside the Rust crates spade and delaunator, and beside CGAL: the same points.
 
-Builds benchmarks/peers, hands it each point set as a file, and prints a table of medians. The
-crates take turns run by run inside one process; CGAL, where its headers are installed, follows in
-one of its own. ``python benchmarks/crates.py --help`` has options.
+Builds benchmarks/peers, hands it each point set as a file, and prints a table of medians. Each
+crate runs in processes of its own, and so does CGAL, where its headers are installed: the first run
+of a process is cold, the others are warm, and the peers take turns, round by round.
+``python benchmarks/crates.py --help`` has options.
 """
 
 import argparse
@@ -16,9 +17,17 @@ import numpy as np
 import report
 import sets
 from adapters import rows_of
+from rounds import HEAD, Program, compete
 
 CRATE = Path(__file__).parent / "peers"
 LIMIT = 600.0
+PEERS = (
+    "delone",
+    "delone, 2 workers",
+    "spade bulk_load",
+    "spade bulk_load_stable",
+    "delaunator",
+)
 
 
 def options() -> argparse.Namespace:
@@ -26,7 +35,8 @@ def options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sets", default=",".join(sets.DEFAULT), help="such as uniform:1000000")
     parser.add_argument("--n", type=int, help="take this number of points for every set")
-    parser.add_argument("--runs", type=int, default=5, help="runs for each peer (default 5)")
+    parser.add_argument("--rounds", type=int, default=5, help="processes of each peer (default 5)")
+    parser.add_argument("--warm", type=int, default=1, help="warm runs in each (default 1)")
     # `make bench` gives both programs the same options, of which wheels.py knows more.
     return parser.parse_known_args()[0]
 
@@ -58,44 +68,38 @@ def runs_of(output: str) -> dict[str, list[float]]:
     return times
 
 
-def measure(programs: list[Path], name: str, runs: int) -> str:
+def measure(crates: Path, cgal: Path | None, name: str, given: argparse.Namespace) -> str:
     """Return the table of one point set."""
     points = sets.make(name)
     with tempfile.TemporaryDirectory() as folder:
-        points_file = Path(folder) / "points"
-        points.astype("<f8").tofile(points_file)
-        output = ""
-        for program in programs:
-            command = [str(program), str(runs), str(points_file)]
-            output += subprocess.run(
-                command, capture_output=True, text=True, check=True, timeout=LIMIT
-            ).stdout
-        times = runs_of(output)
+        file = Path(folder) / "points"
+        points.astype("<f8").tofile(file)
+        peers = [Program(crates, file, peer, which=peer, limit=LIMIT) for peer in PEERS]
+        peers += [Program(cgal, file, "CGAL", limit=LIMIT)] if cgal else []
+        compete(peers, given.rounds, given.warm)
+        done = [peer.times for peer in peers if peer.times.warm]
         answers = {
-            peer: rows_of(points, np.fromfile(f"{points_file}.{peer}", "<f8").reshape(-1, 2))
-            for peer in times
-            if times[peer]
+            times.name: rows_of(
+                points, np.fromfile(f"{file}.{times.name}", "<f8").reshape(-1, 2)
+            ).reshape(-1, 3)
+            for times in done
         }
-    base = report.median(times["delone"])
-    expected = len(answers["delone"]) // 3
+    expected = len(answers["delone"])
     rows = []
-    for peer, seconds in times.items():
-        if not seconds:
-            rows.append([peer, "failed", "", ""])
-            continue
-        middle = report.median(seconds)
-        verdict = judge.verdict(points, answers[peer].reshape(-1, 3), expected)
-        rows.append([peer, report.seconds(middle), report.ratio(middle / base), verdict])
-    return report.table(["peer", "seconds", "times delone", "result"], rows)
+    for times in (peer.times for peer in peers):
+        answer = answers.get(times.name)
+        verdict = "" if answer is None else judge.verdict(points, answer, expected)
+        rows.append([times.name, *times.cells(done[0])[:-1], verdict])
+    return report.table(["peer", *HEAD[:-1], "result"], rows)
 
 
 def main() -> None:
     """Print a table for each point set."""
     arguments = options()
-    programs = [program for program in (build(), build_cgal()) if program]
-    print(f"Compiled peers, {arguments.runs} runs; {report.machine()}\n")
+    crates, cgal = build(), build_cgal()
+    print(f"Compiled peers; {report.machine()}\n")
     for name in sets.with_number(tuple(arguments.sets.split(",")), arguments.n):
-        print(f"{name}\n\n{measure(programs, name, arguments.runs)}\n", flush=True)
+        print(f"{name}\n\n{measure(crates, cgal, name, arguments)}\n", flush=True)
 
 
 if __name__ == "__main__":

@@ -1,16 +1,16 @@
 """Three dimensions side by side, delone, CGAL and SciPy: ``python benchmarks/space.py``.
 
-Each peer works in a process of its own, and they take turns run by run. Timed is the way from an
-array of points to `simplices` and `neighbors`; CGAL, built where Debian's libcgal-dev is installed,
-is timed to its own data structure. SciPy takes part where a run lasts some seconds.
-Every answer of delone is checked exactly, once.
+Each peer works in processes of its own, whose first call is cold and the others warm, and they take
+turns, round by round. Timed is the way from an array of points to `simplices` and `neighbors`;
+CGAL, built where Debian's libcgal-dev is installed, is timed to its own data structure. SciPy takes
+part where a run lasts some seconds. Every answer of delone is checked exactly, once.
 """
 
 from __future__ import annotations
 
 import argparse
-import subprocess
 import tempfile
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,10 +19,10 @@ import crates
 import numpy as np
 import report
 from numpy.typing import NDArray
-from worker import Peer
+from rounds import HEAD, Module, Program, compete
 
 if TYPE_CHECKING:
-    from delone import _core
+    from delone import Delaunay
 
 SEED = 2026
 SETS = (
@@ -65,25 +65,20 @@ def make(name: str) -> Points:
 
 
 def delone(workers: int) -> adapters.Adapter:
-    """Delone's core: arrays in, arrays out."""
+    """Delone: `simplices` and `neighbors` are there when the constructor returns."""
     import delone as library
-    from delone import _core
 
     return adapters.Adapter(
-        lambda points: _core.triangulate3(points, workers),
-        _verdict,
-        library.__version__,
+        lambda points: library.Delaunay(points, workers=workers), _verdict, library.__version__
     )
 
 
-def _verdict(points: NDArray[np.float64], answer: _core.Triangulation) -> NDArray[np.int32]:
-    """The number of tetrahedra, and how many things are wrong with them."""
-    from delone import _core
-
-    found = _core.validate3(points, answer.simplices, answer.neighbors)
-    single = (found.orientation, found.neighbors, found.missing, found.repeats)
-    wrong = (*single, found.facets, found.hull, found.delaunay, found.ties)
-    return np.array([len(answer.simplices), sum(map(len, wrong))], np.int32)
+def _verdict(points: NDArray[np.float64], answer: Delaunay) -> NDArray[np.int32]:
+    """The number of tetrahedra, and how many faults they have."""
+    del points
+    report = answer.validate()
+    faults = sum(getattr(report, each.name).size for each in fields(report))
+    return np.array([answer.nsimplex, faults], np.int32)
 
 
 def scipy() -> adapters.Adapter:
@@ -101,77 +96,31 @@ PEERS = {
 }
 
 
-class Program:
-    """CGAL at work on one file of points: a process a run."""
-
-    def __init__(self, program: Path, points_file: Path) -> None:
-        self.command = [str(program), "1", str(points_file)]
-        self.seconds: list[float] = []
-        self.count = 0
-
-    def run(self) -> None:
-        """Do one run."""
-        output = subprocess.run(
-            self.command, capture_output=True, text=True, check=True, timeout=LIMIT
-        ).stdout
-        _, seconds, _, count = output.split()
-        self.seconds.append(float(seconds))
-        self.count = int(count)
-
-
-def rows(name: str, runs: int, cgal: Path | None) -> list[list[str]]:
+def rows(name: str, given: argparse.Namespace, cgal: Path | None) -> list[list[str]]:
     """Return the lines of one point set."""
     points = make(name)
     with tempfile.TemporaryDirectory() as folder:
-        points_file = Path(folder) / "points.npy"
-        np.save(points_file, points)
-        raw = Path(folder) / "points"
+        file, raw = Path(folder) / "points.npy", Path(folder) / "points"
+        np.save(file, points)
         points.tofile(raw)
         bearable = name.startswith("uniform") and len(points) <= FEW
         names = [peer for peer in PEERS if peer != "SciPy" or bearable]
-        peers = [Peer(p, points_file, points_file.with_name(f"{p}.npy"), "space") for p in names]
-        program = Program(cgal, raw) if cgal else None
-        for turn in range(runs):
-            for peer in peers:
-                if peer.name != "SciPy" or turn == 0:
-                    peer.run(LIMIT)
-            if program:
-                program.run()
-        for peer in peers:
-            peer.stop()
-        table = []
-        base = report.median(run.seconds for run in peers[0].runs)
-        for peer in peers:
-            if not peer.runs:
-                table.append([name, peer.name, peer.ended, "", "", "", ""])
-                continue
-            middle = report.median(run.seconds for run in peer.runs)
-            count, wrong = np.load(peer.answer_file)
-            verdict = "" if wrong < 0 else "exact" if wrong == 0 else f"{wrong} faults"
-            memory = f"{1e6 * peer.runs[0].megabytes / len(points):.0f}"
-            table.append(
-                _row(name, f"{peer.name} {peer.version}", middle, base, (int(count), verdict))
-            )
-            table[-1].append(memory)
-        if program:
-            middle = report.median(program.seconds)
-            table.append([*_row(name, "CGAL 1 thread", middle, base, (program.count, "")), ""])
-    return table
+        modules = [Module(peer, file, module="space", limit=LIMIT) for peer in names]
+        programs = [Program(cgal, raw, "CGAL 1 thread", limit=LIMIT)] if cgal else []
+        compete([*modules, *programs], given.rounds, given.warm)
+        base = modules[0].times
+        table = [
+            [name, peer.times.name, *peer.times.cells(base), *_found(peer)] for peer in modules
+        ]
+        return table + [[name, peer.times.name, *peer.times.cells(base), ""] for peer in programs]
 
 
-def _row(name: str, peer: str, middle: float, base: float, found: tuple[int, str]) -> list[str]:
-    number = int(name.partition(":")[2])
-    each = f"{1e9 * middle / number:.0f}"
-    count, verdict = found
-    return [
-        name,
-        peer,
-        report.seconds(middle),
-        each,
-        report.ratio(middle / base),
-        str(count),
-        verdict,
-    ]
+def _found(peer: Module) -> list[str]:
+    """Return what is wrong with a peer's answer."""
+    if not peer.answer.exists():
+        return [""]
+    _, wrong = np.load(peer.answer)
+    return ["" if wrong < 0 else "exact" if wrong == 0 else f"{wrong} faults"]
 
 
 def main() -> None:
@@ -179,7 +128,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sets", default=",".join(SETS), help="such as uniform:1000000")
     parser.add_argument("--n", type=int, help="take this number of points for every set")
-    parser.add_argument("--runs", type=int, default=5, help="runs for each peer (default 5)")
+    parser.add_argument("--rounds", type=int, default=3, help="processes of each peer (default 3)")
+    parser.add_argument("--warm", type=int, default=1, help="warm runs in each (default 1)")
     # `make bench` gives all programs the same options.
     arguments = parser.parse_known_args()[0]
     names = [n for n in arguments.sets.split(",") if n.partition(":")[0] in _kinds()] or list(SETS)
@@ -187,17 +137,8 @@ def main() -> None:
         names = list(dict.fromkeys(f"{n.partition(':')[0]}:{arguments.n}" for n in names))
     print(f"Three dimensions; {report.machine()}\n")
     cgal = crates.build_cgal("cgal_space")
-    head = [
-        "set",
-        "peer",
-        "seconds",
-        "ns a point",
-        "times delone",
-        "tetrahedra",
-        "result",
-        "B a point",
-    ]
-    print(report.table(head, [row for n in names for row in rows(n, arguments.runs, cgal)]))
+    found = [row for name in names for row in rows(name, arguments, cgal)]
+    print(report.table(["set", "peer", *HEAD, "result"], found))
 
 
 def _kinds() -> set[str]:

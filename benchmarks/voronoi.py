@@ -1,41 +1,36 @@
 """Voronoi diagrams side by side: arrays of whole diagrams, and cells cut to an outline.
 
-    python benchmarks/voronoi.py [--n 1000000] [--cells 100000] [--outline FILE] [--runs 5]
+    python benchmarks/voronoi.py [--n 1000000] [--cells 100000] [--outline FILE] [--rounds 3]
 
-Whole diagrams: points in, arrays out, for delone, SciPy (vertices, ridges, regions as SciPy gives
-them) and, where its headers are installed, CGAL, in a process of its own, with its Voronoi adaptor
-and straight from its triangulation;
-shapely's ``voronoi_polygons`` gives geometries. Cut to an outline: delone's polygons
-in the order of the sites, against the usual way, ``voronoi_polygons`` and then ``intersection`` of
-each cell; of the latter a sample is timed and scaled, where the whole would take minutes. The
-outline is the largest polygon of a file of polygons, such as the land of Natural Earth (of which
-that is Afro-Eurasia), by default a star of 60,000 corners.
-Figures are medians, in seconds; the peers take turns, run by run.
+Each peer works in processes of its own, whose first call is cold and the others warm, and they take
+turns, round by round. Whole diagrams: points in, arrays out, for delone, SciPy (vertices, ridges,
+regions as SciPy gives them) and, where its headers are installed, CGAL, with its Voronoi adaptor
+and straight from its triangulation; shapely's ``voronoi_polygons`` gives geometries. Cut to an
+outline: delone's polygons in the order of the sites, against the usual way, ``voronoi_polygons``
+and then ``intersection`` of each cell. The outline is the largest polygon of a file of polygons,
+such as the land of Natural Earth (of which that is Afro-Eurasia), by default a star of 60,000
+corners.
 """
 
 from __future__ import annotations
 
 import argparse
-import statistics
-import subprocess
 import tempfile
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import crates
 import numpy as np
+import report
 import shapely
-
-import delone
+from adapters import Adapter
+from rounds import HEAD, Module, Program, compete
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
-# Intersections that are timed of the usual way.
-SAMPLE = 500
-# Peers slower than this, in seconds, run once.
-SLOW = 10.0
+# Seconds that a run may take.
+LIMIT = 300.0
 
 
 def star(corners: int = 60_000) -> shapely.Polygon:
@@ -70,71 +65,93 @@ def within(outline: shapely.Polygon, n: int) -> Any:
     return sites[:n]
 
 
-def delone_arrays(points: Any, workers: int) -> None:
-    diagram = delone.Voronoi(points, workers=workers)
-    _ = diagram.vertices, diagram.ridge_points, diagram.ridge_rows
-    _ = diagram.region_rows, diagram.point_region
+def delone(workers: int) -> Adapter:
+    """Delone's arrays."""
+    from delone import Voronoi, __version__
+
+    def call(points: Any) -> Any:
+        diagram = Voronoi(points, workers=workers)
+        arrays = diagram.vertices, diagram.ridge_points, diagram.ridge_rows
+        return *arrays, diagram.region_rows, diagram.point_region
+
+    return Adapter(call, _nothing, __version__)
 
 
-def scipy_lists(points: Any) -> None:
+def scipy() -> Adapter:
+    """SciPy's lists."""
     import scipy.spatial
 
-    diagram = scipy.spatial.Voronoi(points)
-    _ = diagram.regions, diagram.ridge_vertices
+    def call(points: Any) -> Any:
+        diagram = scipy.spatial.Voronoi(points)
+        return diagram.regions, diagram.ridge_vertices
+
+    return Adapter(call, _nothing, scipy.__version__)
 
 
-def shapely_polygons(points: Any) -> None:
-    shapely.get_parts(shapely.voronoi_polygons(shapely.multipoints(points)))
+def shapely_cells() -> Adapter:
+    """The geometries of shapely."""
+    return Adapter(
+        lambda points: shapely.get_parts(shapely.voronoi_polygons(shapely.multipoints(points))),
+        _nothing,
+        shapely.__version__,
+    )
 
 
-def delone_clipped(points: Any, outline: shapely.Polygon) -> None:
-    delone.Voronoi(points, clip=outline).polygons()
+def delone_cut() -> Adapter:
+    """Delone's polygons inside of the outline."""
+    from delone import Voronoi, __version__
+
+    def call(given: tuple[Any, Any]) -> Any:
+        sites, outline = given
+        return Voronoi(sites, clip=outline).polygons()
+
+    return Adapter(call, _nothing, __version__, _sites_and_outline)
 
 
-def usual_way(points: Any, outline: shapely.Polygon) -> float:
-    """Seconds of ``voronoi_polygons`` and ``intersection``, the latter scaled from a sample."""
-    start = time.perf_counter()
-    collected = shapely.voronoi_polygons(shapely.multipoints(points), extend_to=outline.envelope)
-    cells = shapely.get_parts(collected)
-    between = time.perf_counter()
-    chosen = np.random.default_rng(3).choice(len(cells), min(SAMPLE, len(cells)), replace=False)
-    shapely.intersection(cells[chosen], outline)
-    return between - start + (time.perf_counter() - between) * len(cells) / len(chosen)
+def usual_cut() -> Adapter:
+    """The usual way: all cells, and then the intersection of each with the outline."""
+
+    def call(given: tuple[Any, Any]) -> Any:
+        sites, outline = given
+        found = shapely.voronoi_polygons(shapely.multipoints(sites), extend_to=outline.envelope)
+        return shapely.intersection(shapely.get_parts(found), outline)
+
+    return Adapter(call, _nothing, shapely.__version__, _sites_and_outline)
 
 
-def seconds(call: Callable[[], object]) -> float:
-    start = time.perf_counter()
-    found = call()
-    return found if isinstance(found, float) else time.perf_counter() - start
+def _nothing(points: Any, answer: Any) -> Any:
+    """No judge reads the answers."""
+    del points, answer
+    return np.empty(0)
 
 
-def cgal(points: Any, runs: int) -> dict[str, list[float]]:
-    """Seconds of each run of CGAL's two ways; none where CGAL is not installed."""
-    program = crates.build_cgal("cgal_voronoi")
-    if program is None:
-        return {}
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "points"
-        points.astype("<f8").tofile(file)
-        command = [str(program), str(runs), str(file)]
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
-    return crates.runs_of(done.stdout)
+def _sites_and_outline(file: str) -> tuple[Any, Any]:
+    return np.load(file), shapely.from_wkb(Path(file).with_suffix(".wkb").read_bytes())
+
+
+WHOLE: dict[str, Callable[[], Adapter]] = {
+    "delone": lambda: delone(1),
+    "delone, 2 workers": lambda: delone(2),
+    "scipy": scipy,
+    "shapely voronoi_polygons": shapely_cells,
+}
+CUT: dict[str, Callable[[], Adapter]] = {
+    "delone, cut": delone_cut,
+    "voronoi_polygons, then intersection": usual_cut,
+}
+PEERS = WHOLE | CUT
+CGAL = ("CGAL Voronoi adaptor", "CGAL, dual by hand")
 
 
 def table(
-    title: str, peers: dict[str, Callable[[], object]], runs: int, apart: dict[str, list[float]]
+    title: str, names: Iterable[str], file: Path, programs: list[Program], given: Any
 ) -> None:
-    taken: dict[str, list[float]] = {name: [] for name in peers}
-    for run in range(runs):
-        for name, call in peers.items():
-            if run == 0 or taken[name][0] < SLOW:
-                taken[name].append(seconds(call))
-    taken |= apart
-    medians = {name: statistics.median(times) for name, times in taken.items()}
-    ours = next(iter(medians.values()))
-    print(f"\n{title}\n\n| peer | seconds | times delone | runs |\n|---|---|---|---|")
-    for name, median in medians.items():
-        print(f"| {name} | {median:.3g} | {median / ours:.3g} | {len(taken[name])} |")
+    """Print the table of one input."""
+    peers = [Module(name, file, module="voronoi", limit=LIMIT) for name in names]
+    compete([*peers, *programs], given.rounds, given.warm)
+    base = peers[0].times
+    rows = [[peer.times.name, *peer.times.cells(base)] for peer in [*peers, *programs]]
+    print(f"\n{title}\n\n{report.table(['peer', *HEAD], rows)}", flush=True)
 
 
 def main() -> None:
@@ -142,25 +159,25 @@ def main() -> None:
     options.add_argument("--n", type=int, default=1_000_000)
     options.add_argument("--cells", type=int, default=100_000)
     options.add_argument("--outline")
-    options.add_argument("--runs", type=int, default=5)
+    options.add_argument("--rounds", type=int, default=3, help="processes of each peer")
+    options.add_argument("--warm", type=int, default=1, help="warm runs in each")
     given = options.parse_known_args()[0]
+    print(report.machine())
     points = np.random.default_rng(0).random((given.n, 2))
-    whole = {
-        "delone": lambda: delone_arrays(points, 1),
-        "delone, 2 workers": lambda: delone_arrays(points, 2),
-        "scipy": lambda: scipy_lists(points),
-        "shapely voronoi_polygons": lambda: shapely_polygons(points),
-    }
-    apart = cgal(points, given.runs)
-    table(f"{given.n:,} uniform sites, whole diagram", whole, given.runs, apart)
     outline = largest(given.outline) if given.outline else star()
     sites = within(outline, given.cells)
-    corners = shapely.get_num_coordinates(outline)
-    cut = {
-        "delone": lambda: delone_clipped(sites, outline),
-        "voronoi_polygons, then intersection (scaled)": lambda: usual_way(sites, outline),
-    }
-    table(f"{given.cells:,} sites in an outline of {corners:,} corners", cut, given.runs, {})
+    cgal = crates.build_cgal("cgal_voronoi")
+    with tempfile.TemporaryDirectory() as folder:
+        raw, file, cut = (Path(folder) / name for name in ("points", "whole.npy", "cut.npy"))
+        points.astype("<f8").tofile(raw)
+        np.save(file, points)
+        np.save(cut, sites)
+        cut.with_suffix(".wkb").write_bytes(shapely.to_wkb(outline))
+        programs = [Program(cgal, raw, name, which=name) for name in CGAL] if cgal else []
+        table(f"{given.n:,} uniform sites, whole diagram", WHOLE, file, programs, given)
+        corners = shapely.get_num_coordinates(outline)
+        title = f"{given.cells:,} sites in an outline of {corners:,} corners"
+        table(title, CUT, cut, [], given)
 
 
 if __name__ == "__main__":

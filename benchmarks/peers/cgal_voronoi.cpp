@@ -1,4 +1,4 @@
-// CGAL's Voronoi adaptor on one file of points: `cgal_voronoi RUNS FILE`, with the input and the
+// CGAL's Voronoi adaptor on one file of points: `cgal_voronoi RUNS FILE [PEER]`, with the input and the
 // timing of the programs beside it. From points to arrays: the coordinates of vertices, for each
 // ridge its two sites and two ends, for each cell its vertices in order. Exact predicates and inexact
 // constructions, and the policy that leaves out ridges without length, as the manual recommends. Beside
@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -92,8 +93,8 @@ static Arrays arrays_of(Triangulation& triangulation) {
 }
 
 int main(int count, char** arguments) {
-    if (count != 3) {
-        std::fputs("usage: cgal_voronoi RUNS FILE\n", stderr);
+    if (count != 3 && count != 4) {
+        std::fputs("usage: cgal_voronoi RUNS FILE [PEER]\n", stderr);
         return 2;
     }
     std::ifstream input(arguments[2], std::ios::binary | std::ios::ate);
@@ -104,7 +105,12 @@ int main(int count, char** arguments) {
     for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) {
         points.emplace_back(Kernel::Point_2(numbers[i], numbers[i + 1]), static_cast<int>(i / 2));
     }
+    const std::string which = count == 4 ? arguments[3] : "";
     for (int run = 0; run < 2 * std::atoi(arguments[1]); ++run) {
+        const char* name = run % 2 == 0 ? "CGAL Voronoi adaptor" : "CGAL, dual by hand";
+        if (!which.empty() && which != name) {
+            continue;
+        }
         const auto start = std::chrono::steady_clock::now();
         Triangulation triangulation;
         triangulation.insert(points.begin(), points.end());
@@ -115,7 +121,6 @@ int main(int count, char** arguments) {
             out = arrays_of(triangulation);
         }
         const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-        const char* name = run % 2 == 0 ? "CGAL Voronoi adaptor" : "CGAL, dual by hand";
         std::printf("%s\t%.9f\t%zu\n", name, time.count(), out.vertices.size() / 2);
     }
     return 0;

@@ -1,7 +1,7 @@
 //! Delone's core, spade and delaunator on one file of points, in turns.
 //!
-//! `delone-peers RUNS FILE` reads the file's little-endian doubles, x and y in turn, and prints a line
-//! for each run: peer, seconds, triangles. Timed is the call from a slice of points to finished
+//! `delone-peers RUNS FILE [PEER]` reads the file's little-endian doubles, x and y in turn, and prints a
+//! line for each run: peer, seconds, triangles; all peers take turns unless one is named. Timed is the call from a slice of points to finished
 //! triangles: what each library asks for as input (its own point type, a vector that it may keep) is
 //! made before the clock starts. The corners of the first run's triangles go beside the file, as
 //! doubles, for the judge. `benchmarks/crates.py` makes the files and the table.
@@ -83,8 +83,10 @@ fn delaunator_triangulate(points: &Points) -> Result<Outcome, Failure> {
 
 fn main() -> Result<(), Failure> {
     let arguments: Vec<String> = env::args().collect();
-    let [_, runs, file] = &arguments[..] else {
-        return Err("usage: delone-peers RUNS FILE".into());
+    let [_, runs, file, which @ ..] = &arguments[..] else {
+        return Err("usage: delone-peers RUNS FILE [PEER]".into());
     };
-    compete(&PEERS, &points(file)?, runs.parse()?, file)
+    let wanted = |peer: &&Peer<Points>| which.is_empty() || which.iter().any(|name| name == peer.0);
+    let peers: Vec<_> = PEERS.iter().filter(wanted).copied().collect();
+    compete(&peers, &points(file)?, runs.parse()?, file)
 }
