@@ -127,6 +127,8 @@ def test_many_blocks(tmp_path, monkeypatch):
     ("text", "message"),
     [
         ("x,y\n1,2\n3,four\n", r"line 3 \(row 1\), column y is 'four', not a number"),
+        ("x,y\n1,2\n3,it's\n", r"line 3 \(row 1\), column y is \"it's\", not a number"),
+        ("x,y\n1,2\n3,a\\b\n", r"line 3 \(row 1\), column y is 'a\\\\b', not a number"),
         ("x,y\n1,2\n3,\n", r"line 3 \(row 1\), column y is empty"),
         ("x,y,z\n1,2,3\n3,4,5\n6,7", r"line 4 \(row 2\) has only 2 columns: is the file truncated"),
         ("3\n1 2 3\n4 5 6\n", r"declares 3 points and contains 2"),

@@ -11,6 +11,7 @@ from __future__ import annotations
 import io
 import itertools
 import re
+from ast import literal_eval
 from collections import Counter
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -265,9 +266,9 @@ def _place(row: int, layout: _Layout, path: Path) -> str:
 
 def _located(message: str, layout: _Layout, before: int, path: Path) -> str:
     """Convert NumPy's error message about a block to one about the file."""
-    bad = re.search(r"string '(.*)' to float64 at row (\d+), column (\d+)", message)
+    bad = re.search(r"string ('.*'|\".*\") to float64 at row (\d+), column (\d+)", message)
     if bad:
-        text, row, column = bad[1], int(bad[2]) + before, int(bad[3]) - 1
+        text, row, column = literal_eval(bad[1]), int(bad[2]) + before, int(bad[3]) - 1
         name = layout.names[column] if layout.named and column < len(layout.names) else str(column)
         what = "is empty" if not text else f"is {text!r}, not a number"
         return f"{_place(row, layout, path)}, column {name} {what}"
