@@ -124,6 +124,20 @@ def test_dem_of_a_file_of_points(folder, figures, what):
         assert np.allclose(values, 180)
 
 
+def test_dem_names_the_units_of_its_values(folder, figures):
+    import rasterio
+
+    out = folder / "out.tif"
+    for options, unit in (
+        ([], None),
+        (["--crs", "EPSG:7415"], "m"),
+        (["--crs", "EPSG:7415", "--slope"], "degrees"),
+    ):
+        figures("dem", folder / "the points.csv", "-r", 5, "-o", out, *options)
+        with rasterio.open(out) as file:
+            assert file.units == (unit,)
+
+
 def test_dem_with_light_bounds_and_lines(folder, figures):
     out = folder / "shade.tif"
     figures(

@@ -135,7 +135,7 @@ def dem(
         tin = surface(source, options, watch, say)
         with watch.stage(what):
             found = _raster(tin, what, {"resolution": size, "bounds": box} | light, say)
-        unit = "degrees" if what in ("slope", "aspect") else None
+        unit = {"height": tin.units, "slope": "degrees", "aspect": "degrees"}.get(what)
         write_all(writers, found, watch, say, name=what, crs=tin.crs, units=unit)
     figures = figures_of(source, tin, [output]) | _figures(found, what)
     figures["stages"] = watch.rows(tin.npoints)
