@@ -1,35 +1,69 @@
-"""Exact validation of a mesh file: the figures of ``delone check``."""
+"""Exact validation of a mesh file: the command ``delone check``."""
 
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
+import typer
 
 from delone import ConstrainedDelaunay, ConstrainedReport
 from delone.cli.exits import Exit, Failure, reading
+from delone.cli.options import Json, Quiet
 from delone.cli.report import Stopwatch, geometry
+from delone.cli.show import print_json, print_rows, print_text, spinner
 from delone.cli.solid import space_measures
 from delone.errors import InputError
 from delone.io import read_mesh
 from delone.io.arrays import is_constrained
+from delone.io.registry import mesh_suffixes
 from delone.validation import SpaceReport, ValidationReport, validate
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from numpy.typing import NDArray
 
     from delone.io import MeshFile
 
-__all__ = ["check_mesh"]
+__all__ = ["check"]
 
 _FIRST = 10
 
 
-def check_mesh(
+def check(
+    mesh: Annotated[
+        Path,
+        typer.Argument(
+            metavar="MESH", help="File of triangles or tetrahedra: " + " ".join(mesh_suffixes())
+        ),
+    ],
+    *,
+    canonical: Annotated[
+        bool,
+        typer.Option(
+            "--canonical", help="Require delone's choice of diagonals among cocircular points."
+        ),
+    ] = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Prove exactly that triangles are Delaunay, or name the faults and exit with 1."""
+    with spinner(quiet or as_json) as say:
+        figures, lines = _figures(mesh, canonical=canonical, say=say)
+    if as_json:
+        print_json(figures)
+    elif not quiet:
+        names = [name for name in ("points", "triangles", "tetrahedra") if name in figures]
+        print_rows(str(mesh), [(name, f"{figures[name]:,}") for name in names])
+        print_text("\n".join(lines))
+    if not figures["ok"]:
+        raise typer.Exit(Exit.NOT_DELAUNAY)
+
+
+def _figures(
     path: Path, *, canonical: bool, say: Callable[[str], None]
 ) -> tuple[dict[str, Any], list[str]]:
     """Prove that triangles are Delaunay, or name the faults: figures, with ``ok``, and lines.

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import functools
 import os
 import re
 import warnings
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from enum import IntEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, ParamSpec
 
-import numpy as np
-
-from delone.counting import agreed
 from delone.errors import (
     BudgetExceededError,
     BusyError,
@@ -27,10 +23,9 @@ from delone.errors import (
     NonFiniteError,
     OutputError,
 )
-from delone.io.registry import is_text, line_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Iterable, Iterator
 
 Given = ParamSpec("Given")
 # Number of pairs of rows whose lines are named; for single rows errors list ten.
@@ -42,7 +37,6 @@ __all__ = [
     "Failure",
     "as_options",
     "code_of",
-    "naming_lines",
     "os_message",
     "protect_inputs",
     "reading",
@@ -145,31 +139,6 @@ def os_message(error: OSError) -> str:
         # delone's own messages already contain the name.
         return str(error)
     return ": ".join(str(part) for part in (error.filename, error.strerror) if part is not None)
-
-
-def naming_lines(command: Callable[Given, None]) -> Callable[Given, None]:
-    """Make a command add the lines of its text file to errors that name rows.
-
-    The file is its argument ``source`` or ``sources``.
-    """
-
-    @functools.wraps(command)
-    def called(*args: Given.args, **kwargs: Given.kwargs) -> None:
-        try:
-            command(*args, **kwargs)
-        except (NonFiniteError, ConflictingValuesError) as error:
-            given = kwargs.get("source", kwargs.get("sources"))
-            files = given if isinstance(given, list | tuple) else [given]
-            rows = np.ravel(error.rows[:_FIRST]).tolist()
-            if rows and len(files) == 1 and isinstance(files[0], str | Path) and is_text(files[0]):
-                # The message is also correct without lines.
-                with suppress(FileFormatError, OSError):
-                    lines = ", ".join(map(str, line_numbers(files[0], rows)))
-                    noun = agreed(len(rows), "line", "lines")
-                    error.add_note(f"{noun} {lines} of {files[0]}")
-            raise
-
-    return called
 
 
 @contextmanager

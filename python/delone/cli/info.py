@@ -1,4 +1,4 @@
-"""The contents of a file of points or other geometries: the figures of ``delone info``."""
+"""The contents of a file of points or other geometries: the command ``delone info``."""
 
 from __future__ import annotations
 
@@ -10,8 +10,21 @@ import numpy as np
 
 from delone.cli.constraints import read_input
 from delone.cli.exits import reading
-from delone.cli.referenced import referenced
+from delone.cli.options import (
+    Classes,
+    Columns,
+    Flat,
+    Input,
+    Json,
+    Layer,
+    Solid,
+    class_numbers,
+    space_or_plane,
+    split,
+)
+from delone.cli.referenced import Crs, referenced, require_known
 from delone.cli.report import finite_or_none
+from delone.cli.show import print_json, print_rows, spinner
 from delone.cli.solid import is_space
 from delone.counting import agreed
 from delone.io import GeometrySet
@@ -24,7 +37,7 @@ if TYPE_CHECKING:
     from delone.cli.show import Row
     from delone.io import PointSet
 
-__all__ = ["describe"]
+__all__ = ["info"]
 
 _CLASSES = {
     0: "never classified",
@@ -43,7 +56,37 @@ _CLASSES = {
 }
 
 
-def describe(
+def info(
+    source: Input,
+    *,
+    classes: Classes = None,
+    columns: Columns = None,
+    layer: Layer = None,
+    in_space: Solid = False,
+    in_plane: Flat = False,
+    crs: Crs = None,
+    as_json: Json = False,
+) -> None:
+    """Describe the contents of a file without triangulating it."""
+    space = space_or_plane(in_space, in_plane)
+    require_known(crs)
+    with spinner(as_json) as say:
+        say(f"reading {source.name}")
+        figures, rows = _described(
+            source,
+            columns=split(columns),
+            classes=class_numbers(classes),
+            layer=layer,
+            space=space,
+            crs=crs,
+        )
+    if as_json:
+        print_json(figures)
+    else:
+        print_rows(str(source), rows)
+
+
+def _described(
     source: Path,
     *,
     columns: list[str] | None,

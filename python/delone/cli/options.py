@@ -8,11 +8,13 @@ from typing import Annotated
 import typer
 
 from delone.cli.exits import Exit, Failure
-from delone.io import output_suffixes
+from delone.io import input_suffixes, output_suffixes
 
 __all__ = [
     "Classes",
+    "Columns",
     "Flat",
+    "Input",
     "Json",
     "Layer",
     "MeshOutput",
@@ -24,6 +26,19 @@ __all__ = [
     "split",
 ]
 
+Input = Annotated[
+    Path,
+    typer.Argument(
+        metavar="INPUT",
+        help="File of points, lines or polygons: " + " ".join(input_suffixes()),
+    ),
+]
+Columns = Annotated[
+    str | None,
+    typer.Option(
+        help="Columns of x, y and z, by name or by number from 0: lon,lat,depth or 0,1,2."
+    ),
+]
 Classes = Annotated[
     str | None, typer.Option(help="Keep the points of these classes (LAS, LAZ): 2 or 2,6.")
 ]

@@ -1,0 +1,141 @@
+"""The list of commands: a command's module is imported when the command is called.
+
+The list itself needs none of the modules, so that ``delone --help`` is quick, and a command does
+not wait for the libraries of others.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+if TYPE_CHECKING:
+    from click import Context, HelpFormatter
+
+__all__ = ["COMMANDS", "Commands"]
+
+_EPILOG = "The table of exit codes is in: delone --help"
+
+
+class Listed(NamedTuple):
+    """Where a command is, and the first sentence of its help."""
+
+    module: str
+    function: str
+    summary: str
+    # Whether its rows are those of the file, so that errors can name lines.
+    on_rows: bool = True
+
+
+COMMANDS = {
+    "triangulate": Listed(
+        "triangulating",
+        "triangulate",
+        "Triangulate the points of a file, report, and write meshes and plots.",
+    ),
+    "check": Listed(
+        "check",
+        "check",
+        "Prove exactly that triangles are Delaunay, or name the faults and exit with 1.",
+    ),
+    "info": Listed("info", "info", "Describe the contents of a file without triangulating it."),
+    "explore": Listed(
+        "exploring",
+        "explore",
+        "Show the triangulation of a file in the browser, where points can be moved.",
+    ),
+    "graph": Listed(
+        "graph",
+        "graph",
+        "Compute a graph of neighbors, such as a spanning tree, and write its edges as lines.",
+    ),
+    "interpolate": Listed(
+        "field",
+        "interpolate",
+        "Interpolate the values of points to a raster, and write it to files and plots.",
+    ),
+    "crossval": Listed(
+        "field",
+        "crossval",
+        "Predict each value from the others, and report the error of each method.",
+    ),
+    "voronoi": Listed(
+        "cells",
+        "voronoi",
+        "Clip the Voronoi cells of sites to an outline, and write them with their attributes.",
+    ),
+    "tile": Listed(
+        "tiles",
+        "tile",
+        "Triangulate more points than fit into memory, in tiles that form one triangulation.",
+    ),
+    "dem": Listed(
+        "dem",
+        "dem",
+        "Make a raster of the surface of points: its heights, slope, aspect or hillshade.",
+    ),
+    "contours": Listed(
+        "terrain",
+        "contours",
+        "Compute contour lines, or the polygons between them, of points with heights.",
+    ),
+    "profile": Listed(
+        "terrain",
+        "profile",
+        "Compute the heights along a line: a table of distances and heights, or a plot of them.",
+    ),
+    "volume": Listed(
+        "terrain",
+        "volume",
+        "Compute the volumes to cut and to fill between a surface and a height or another surface.",
+    ),
+    "hull": Listed("outline", "hull", "Compute the outline of points, and write its polygons."),
+    "mesh": Listed(
+        "meshing", "make_mesh", "Mesh polygons with triangles without small angles.", on_rows=False
+    ),
+    "cluster": Listed(
+        "cluster",
+        "cluster_points",
+        "Find clusters of points, and write the points with their labels; noise is -1.",
+    ),
+}
+
+
+class _Loading(dict[str, Any]):
+    """The commands by name, each loaded when it is asked for."""
+
+    def __getitem__(self, name: str) -> Any:
+        if super().__getitem__(name) is None:
+            self[name] = _loaded(name)
+        return super().__getitem__(name)
+
+    def get(self, name: str, default: Any = None) -> Any:
+        return self[name] if name in self else default  # noqa: SIM401
+
+
+class Commands(TyperGroup):  # type: ignore[misc]
+    """The commands, each loaded when it is needed."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self.commands = _Loading.fromkeys(COMMANDS)
+
+    def format_commands(self, ctx: Context, formatter: HelpFormatter) -> None:
+        """Write the list of commands, for which none of them is loaded."""
+        named: dict[str, Any] = {
+            name: TyperCommand(name, help=listed.summary) for name, listed in COMMANDS.items()
+        }
+        TyperGroup(name=self.name, commands=named).format_commands(ctx, formatter)
+
+
+def _loaded(name: str) -> Any:
+    from delone.cli.lines import naming_lines
+
+    listed = COMMANDS[name]
+    function = getattr(import_module(f"delone.cli.{listed.module}"), listed.function)
+    alone = typer.Typer(add_completion=False, rich_markup_mode=None)
+    alone.command(name=name, epilog=_EPILOG)(naming_lines(function) if listed.on_rows else function)
+    return typer.main.get_command(alone)
