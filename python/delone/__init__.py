@@ -32,6 +32,7 @@ from delone.errors import (
     BudgetExceededError,
     BusyError,
     ConflictingValuesError,
+    CrossingFacesError,
     CrossingSegmentsError,
     DegenerateInputError,
     DeloneError,
@@ -44,6 +45,7 @@ from delone.errors import (
     LimitError,
     MissingExtraError,
     NonFiniteError,
+    OpenSurfaceError,
     OutputError,
     OutsideError,
     ShapeError,
@@ -86,6 +88,9 @@ if TYPE_CHECKING:
     from delone.refine.refine import mesh
     from delone.refine.report import MeshReport
     from delone.regular import RegularTriangulation
+    from delone.surface.check import check_surface
+    from delone.surface.report import SurfaceCheck
+    from delone.surface.resolve import resolve_touches
     from delone.tetmesh.improvement import improve
     from delone.tetmesh.report import ImproveReport
     from delone.tetmesh.tetmesh import TetMesh
@@ -104,6 +109,7 @@ __all__ = [
     "ConstrainedDelaunay",
     "ConstrainedReport",
     "ConvexHull",
+    "CrossingFacesError",
     "CrossingSegmentsError",
     "DegenerateInputError",
     "Delaunay",
@@ -125,6 +131,7 @@ __all__ = [
     "MeshReport",
     "MissingExtraError",
     "NonFiniteError",
+    "OpenSurfaceError",
     "OutputError",
     "OutsideError",
     "PeriodicDelaunay",
@@ -133,12 +140,14 @@ __all__ = [
     "RegularTriangulation",
     "SegmentReport",
     "ShapeError",
+    "SurfaceCheck",
     "TetMesh",
     "TetQuality",
     "UnitsWarning",
     "ValidationReport",
     "Voronoi",
     "__version__",
+    "check_surface",
     "cluster",
     "compat",
     "concave_hull",
@@ -155,6 +164,7 @@ __all__ = [
     "plot",
     "predicates",
     "reference",
+    "resolve_touches",
     "sphere",
     "terrain",
     "testing",
@@ -184,6 +194,7 @@ _MODULES = {
     "refine",
     "regular",
     "sphere",
+    "surface",
     "terrain",
     "testing",
     "tetmesh",
@@ -207,8 +218,10 @@ _HOMES = {
     "PolygonTriangles": "constrained.polygons",
     "RegularTriangulation": "regular",
     "SegmentReport": "constrained.segments",
+    "SurfaceCheck": "surface.report",
     "TetMesh": "tetmesh.tetmesh",
     "Voronoi": "voronoi.diagram",
+    "check_surface": "surface.check",
     "concave_hull": "alpha.concave",
     "explore": "explorer.widget",
     "from_geometry": "constrained.polygons",
@@ -216,6 +229,7 @@ _HOMES = {
     "lawson": "flips",
     "lloyd": "voronoi.centroidal",
     "mesh": "refine.refine",
+    "resolve_touches": "surface.resolve",
     "triangulate_polygon": "constrained.polygons",
 }
 

@@ -533,6 +533,79 @@ class ImprovementCounts:
         """Changes rejected."""
 
 @final
+class FacePairs:
+    """Pairs of faces that cross or touch."""
+
+    @property
+    def faces(self) -> NDArray[np.int32]:
+        """Rows of both faces, the smaller first, (p, 2)."""
+    @property
+    def kinds(self) -> NDArray[np.uint8]:
+        """The kind of each pair, (p,)."""
+    @property
+    def crossing(self) -> NDArray[np.bool_]:
+        """Whether they cross, (p,)."""
+    @property
+    def counts(self) -> NDArray[np.uint64]:
+        """The number of all pairs of each kind, (6,)."""
+    @property
+    def ncrossing(self) -> int:
+        """The number of all pairs that cross."""
+
+@final
+class CheckedSurface:
+    """What a surface is."""
+
+    @property
+    def duplicate_points(self) -> NDArray[np.int32]:
+        """Rows of points with the first rows of the same coordinates, (k, 2)."""
+    @property
+    def repeats(self) -> NDArray[np.int32]:
+        """Faces that use a vertex twice, (k,)."""
+    @property
+    def collinear(self) -> NDArray[np.int32]:
+        """Other faces without area, (k,)."""
+    @property
+    def duplicate_faces(self) -> NDArray[np.int32]:
+        """Rows of faces with the first rows of the same vertices, (k, 2)."""
+    @property
+    def pairs(self) -> FacePairs:
+        """Pairs that cross or touch."""
+    @property
+    def nedges(self) -> int:
+        """The number of edges."""
+    @property
+    def boundary(self) -> NDArray[np.int32]:
+        """Edges of one face, (k, 2)."""
+    @property
+    def many(self) -> NDArray[np.int32]:
+        """Edges of three faces or more, (k, 2)."""
+    @property
+    def unbalanced(self) -> NDArray[np.int32]:
+        """Edges that are not passed equally often in both directions, (k, 2)."""
+    @property
+    def not_fans(self) -> NDArray[np.int32]:
+        """Vertices whose faces do not form one fan, (k,)."""
+    @property
+    def component(self) -> NDArray[np.int32]:
+        """The component of each face, -1 of degenerate ones, (m,)."""
+    @property
+    def ncomponents(self) -> int:
+        """The number of components."""
+    @property
+    def nregions(self) -> int | None:
+        """The number of regions that are separated from the outside; None if faces cross."""
+    @property
+    def dangling(self) -> NDArray[np.int32]:
+        """Faces with the same region on both sides, (k,)."""
+    @property
+    def volume(self) -> float:
+        """The signed volume."""
+    @property
+    def sign(self) -> int:
+        """The exact sign of the volume."""
+
+@final
 class ImprovedMesh:
     """Improved tetrahedra."""
 
@@ -1483,6 +1556,12 @@ def refine2(
 def judge2(
     points: NDArray[np.float64], simplices: NDArray[np.int32], cos2: float
 ) -> JudgedTriangles: ...
+def check_surface3(
+    points: NDArray[np.float64], faces: NDArray[np.int32], limit: int, workers: int
+) -> CheckedSurface: ...
+def resolve_touches3(
+    points: NDArray[np.float64], faces: NDArray[np.int32], limit: int, workers: int
+) -> tuple[tuple[NDArray[np.int32], NDArray[np.int32]] | None, FacePairs]: ...
 def improve3(
     points: NDArray[np.float64],
     simplices: NDArray[np.int32],

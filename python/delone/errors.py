@@ -21,6 +21,7 @@ __all__ = [
     "BudgetExceededError",
     "BusyError",
     "ConflictingValuesError",
+    "CrossingFacesError",
     "CrossingSegmentsError",
     "DegenerateInputError",
     "DeloneError",
@@ -33,6 +34,7 @@ __all__ = [
     "LimitError",
     "MissingExtraError",
     "NonFiniteError",
+    "OpenSurfaceError",
     "OutputError",
     "OutsideError",
     "ShapeError",
@@ -299,6 +301,96 @@ class CrossingSegmentsError(InputError):
         self.points = np.array(points, dtype=np.float64).reshape(-1, 2)
         self.pairs.flags.writeable = False
         self.points.flags.writeable = False
+
+
+class CrossingFacesError(InputError):
+    """Faces of a surface cross, or overlap so that no subdivision at vertices separates them.
+
+    Parameters
+    ----------
+    message : str
+        The message.
+    pairs : array_like of int, shape (c, 2), optional
+        Rows of the crossing faces.
+    kinds : array_like of str, shape (c,), optional
+        How the faces of each pair cross.
+    count : int, optional
+        The number of all such pairs. By default the length of `pairs`.
+
+    Attributes
+    ----------
+    pairs : ndarray of int64, shape (c, 2)
+        Rows of the crossing faces, each pair once.
+    kinds : ndarray of str, shape (c,)
+        ``"crossing"``, ``"edge on edge"``, ``"coplanar overlap"`` or ``"folded"``.
+    count : int
+        The number of all such pairs, of which `pairs` are the first.
+
+    Examples
+    --------
+    >>> import delone
+    >>> points = [(0, 0, 0), (4, 0, 0), (0, 4, 0), (1, 1, -1), (1, 1, 1), (9, 9, 0)]
+    >>> try:
+    ...     delone.check_surface(points, [(0, 1, 2), (3, 4, 5)]).raise_if_bad()
+    ... except delone.CrossingFacesError as error:
+    ...     print(error.pairs, error.kinds)
+    [[0 1]] ['crossing']
+    """
+
+    pairs: NDArray[np.int64]
+    kinds: NDArray[np.str_]
+    count: int
+
+    def __init__(
+        self,
+        message: str = "faces cross",
+        *,
+        pairs: ArrayLike = (),
+        kinds: ArrayLike = (),
+        count: int | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.pairs = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+        self.kinds = np.array(kinds, dtype=np.str_).reshape(-1)
+        self.count = len(self.pairs) if count is None else int(count)
+        self.pairs.flags.writeable = False
+        self.kinds.flags.writeable = False
+
+
+class OpenSurfaceError(InputError):
+    """A surface encloses nothing, because it has a boundary.
+
+    Parameters
+    ----------
+    message : str
+        The message.
+    edges : array_like of int, shape (k, 2), optional
+        Rows of the ends of the boundary edges.
+
+    Attributes
+    ----------
+    edges : ndarray of int64, shape (k, 2)
+        Rows of the ends of the boundary edges.
+
+    Examples
+    --------
+    >>> import delone
+    >>> points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    >>> try:
+    ...     delone.check_surface(points, [(0, 2, 1), (0, 1, 3), (1, 2, 3)]).raise_if_bad()
+    ... except delone.OpenSurfaceError as error:
+    ...     print(error.edges.tolist())
+    [[0, 2], [0, 3], [2, 3]]
+    """
+
+    edges: NDArray[np.int64]
+
+    def __init__(
+        self, message: str = "the surface has a boundary", *, edges: ArrayLike = ()
+    ) -> None:
+        super().__init__(message)
+        self.edges = np.array(edges, dtype=np.int64).reshape(-1, 2)
+        self.edges.flags.writeable = False
 
 
 class ConflictingValuesError(InputError):

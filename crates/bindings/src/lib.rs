@@ -3,7 +3,7 @@
 //!
 //! They use the public crate `delone`, and the core only where that crate has nothing: weights,
 //! periodic sets, tiles, interpolation and location with a shared index, hulls, measures, proofs,
-//! clipped cells, terrain, tetrahedral improvement, and the sphere.
+//! clipped cells, terrain, tetrahedral improvement, surfaces, and the sphere.
 
 mod alpha;
 mod arrays;
@@ -32,6 +32,7 @@ mod results;
 mod signals;
 mod space;
 mod sphere;
+mod surface;
 mod terrain;
 mod triangulation;
 mod voronoi;
@@ -86,6 +87,10 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<sphere::SphereLocator>()?;
     m.add_class::<improve::ImprovedMesh>()?;
     m.add_class::<improve::ImprovementCounts>()?;
+    m.add_class::<surface::CheckedSurface>()?;
+    m.add_class::<surface::FacePairs>()?;
+    m.add_function(wrap_pyfunction!(surface::check_surface3, m)?)?;
+    m.add_function(wrap_pyfunction!(surface::resolve_touches3, m)?)?;
     m.add_function(wrap_pyfunction!(sphere::sphere_delaunay, m)?)?;
     m.add_function(wrap_pyfunction!(sphere::sphere_directions, m)?)?;
     m.add_function(wrap_pyfunction!(sphere::sphere_units, m)?)?;

@@ -34,6 +34,7 @@ pub mod refine;
 pub mod regular;
 pub mod regular3;
 pub mod sphere;
+pub mod surface;
 pub mod voronoi;
 pub mod voronoi3;
 pub mod watch;
