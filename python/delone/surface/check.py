@@ -107,9 +107,7 @@ def check_surface(
     return _report(given, rows, found)
 
 
-def as_faces(
-    points: ArrayLike, faces: ArrayLike
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+def as_faces(points: ArrayLike, faces: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Return points (n, 3) and faces (m, 3) for the core."""
     given = as_points(points, ndim=3)
     return given, as_simplices(faces, len(given), 2, name="faces")
@@ -160,9 +158,7 @@ def _rows(rows: NDArray[np.int32]) -> NDArray[np.int64]:
     return rows.astype(np.int64)
 
 
-def _is_flat(
-    points: NDArray[np.float64], faces: NDArray[np.int32], found: CheckedSurface
-) -> bool:
+def _is_flat(points: NDArray[np.float64], faces: NDArray[np.int32], found: CheckedSurface) -> bool:
     """Return whether all faces are in one plane; checked only if nothing is enclosed."""
     if found.nregions or not len(faces):
         return False

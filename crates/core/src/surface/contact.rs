@@ -7,6 +7,7 @@
 //! `orient3d`, or by `orient2d` in a projection along an axis, which keeps what lies in one plane
 //! in order.
 
+use delone_predicates::stages;
 use delone_predicates::{Point2, Point3, Sign, orient2d, orient3d};
 
 /// The kinds of contacts.
@@ -70,7 +71,8 @@ pub struct Contact {
 #[derive(Debug, Clone, Copy, Default)]
 struct Events {
     pierced: bool,
-    edges: bool,
+    /// The number of crossings of two edges.
+    edges: usize,
     inside: bool,
     on_edge: bool,
 }
@@ -88,7 +90,7 @@ impl Events {
     fn kind(self) -> Option<Kind> {
         let kinds = [
             (self.pierced, Kind::Crossing),
-            (self.edges, Kind::EdgeOnEdge),
+            (self.edges > 0, Kind::EdgeOnEdge),
             (self.inside, Kind::VertexInFace),
             (self.on_edge, Kind::VertexOnEdge),
         ];
@@ -112,7 +114,7 @@ impl Projection {
     /// The first projection along an axis in which the triangle is not flat: the same for all
     /// triangles of one plane. `None` if the corners are collinear.
     pub fn of([a, b, c]: [Point3; 3]) -> Option<Self> {
-        [(0, 1), (2, 0), (1, 2)].into_iter().find_map(|(j, k)| {
+        PROJECTIONS.into_iter().find_map(|(j, k)| {
             let turn = orient2d([a[j], a[k]], [b[j], b[k]], [c[j], c[k]]);
             (!turn.is_zero()).then_some(Self { axes: (j, k), turn })
         })
@@ -129,6 +131,9 @@ impl Projection {
     }
 }
 
+/// The axes of the projections along an axis.
+const PROJECTIONS: [(usize, usize); 3] = [(0, 1), (2, 0), (1, 2)];
+
 /// The corners of each edge.
 const EDGES: [(usize, usize); 3] = [(0, 1), (1, 2), (2, 0)];
 
@@ -136,6 +141,9 @@ const EDGES: [(usize, usize); 3] = [(0, 1), (1, 2), (2, 0)];
 /// nothing in common but shared vertices or a shared edge.
 pub fn contact(a: &Triangle, b: &Triangle) -> Option<Contact> {
     let shared_a = a.ids.map(|v| b.ids.contains(&v));
+    if !is_clear(a, shared_a, b) && (is_beside(a, b) || is_beside(b, a)) {
+        return None;
+    }
     let of_a = sides(a, shared_a, b);
     if apart(of_a, shared_a) {
         return None;
@@ -149,6 +157,36 @@ pub fn contact(a: &Triangle, b: &Triangle) -> Option<Contact> {
         return None;
     }
     in_two_planes(a, b, of_a, of_b)
+}
+
+/// Whether the filter of `orient3d` decides on which sides of the plane of `b` the vertices of `a`
+/// are. Exact answers for coplanar points take a hundred times as long.
+fn is_clear(a: &Triangle, shared: [bool; 3], b: &Triangle) -> bool {
+    let [p, q, r] = b.at;
+    let decided = |i: usize| stages::orient3d::filter(p, q, r, a.at[i]).is_some();
+    (0..3).all(|i| shared[i] || decided(i))
+}
+
+/// Whether filters prove, in a projection along an axis, that the line along an edge of `a`
+/// separates `b` from it: all vertices of `b` are strictly beyond, except for common ends of the
+/// edge. Then `b` has only these, and what is between them, above the line.
+fn is_beside(a: &Triangle, b: &Triangle) -> bool {
+    PROJECTIONS.into_iter().any(|(j, k)| {
+        let flat_a = a.at.map(|p| [p[j], p[k]]);
+        let [p, q, r] = flat_a;
+        let Some(turn) = stages::orient2d::filter(p, q, r) else {
+            return false;
+        };
+        EDGES.iter().any(|&(x, y)| {
+            (0..3).all(|i| match a.ids.iter().position(|&v| v == b.ids[i]) {
+                Some(at) => at == x || at == y,
+                None => {
+                    let point = [b.at[i][j], b.at[i][k]];
+                    stages::orient2d::filter(flat_a[x], flat_a[y], point) == Some(-turn)
+                }
+            })
+        })
+    })
 }
 
 /// The sides of the plane of `b` on which the vertices of `a` are.
@@ -181,8 +219,9 @@ fn in_one_plane(a: &Triangle, b: &Triangle) -> Option<Contact> {
     let mut events = Events::default();
     first.iter().chain(&second).for_each(|&p| events.note(p));
     let mut crossed = EDGES.iter().flat_map(|e| EDGES.map(|f| (e, f)));
-    events.edges = overlap
+    let crosses = overlap
         && crossed.any(|(e, f)| cross([flat_a[e.0], flat_a[e.1]], [flat_b[f.0], flat_b[f.1]]));
+    events.edges = usize::from(crosses);
     let shared = first.iter().filter(|p| **p == Place::Corner).count();
     let kind = match (overlap, shared) {
         (true, 2) => Kind::Folded,
@@ -191,7 +230,7 @@ fn in_one_plane(a: &Triangle, b: &Triangle) -> Option<Contact> {
     };
     Some(Contact {
         kind,
-        crossing: events.edges,
+        crossing: crosses,
         first,
         second,
     })
@@ -247,21 +286,23 @@ fn cross([p, q]: [Point2; 2], [r, s]: [Point2; 2]) -> bool {
 
 /// The contact of triangles in different planes, whose vertices are on these sides of the other's.
 fn in_two_planes(a: &Triangle, b: &Triangle, of_a: [Sign; 3], of_b: [Sign; 3]) -> Option<Contact> {
-    let mut events = Events::default();
+    let (mut events, mut others) = (Events::default(), Events::default());
     let first = meet(a, of_a, b, &mut events)?;
-    let second = meet(b, of_b, a, &mut events)?;
+    let second = meet(b, of_b, a, &mut others)?;
+    // Both have seen the same crossings of edges.
+    events.pierced |= others.pierced;
     first.iter().chain(&second).for_each(|&p| events.note(p));
     // The line of both planes passes through both interiors, and a part of it is in both triangles:
-    // they cross even if the ends of this part are vertices.
+    // they cross even if the ends of this part are on edges.
     let straddles = |of: [Sign; 3]| of.contains(&Sign::Positive) && of.contains(&Sign::Negative);
     let on = |p: &&Place| matches!(p, Place::Edge(_) | Place::Inside);
     let corners = first.iter().filter(|p| **p == Place::Corner).count();
-    let ends = corners + first.iter().chain(&second).filter(on).count();
+    let ends = events.edges + corners + first.iter().chain(&second).filter(on).count();
     events.pierced |= ends >= 2 && straddles(of_a) && straddles(of_b);
     let kind = events.kind()?;
     Some(Contact {
         kind,
-        crossing: events.pierced || events.edges,
+        crossing: events.pierced || events.edges > 0,
         first,
         second,
     })
@@ -285,7 +326,7 @@ fn meet(a: &Triangle, of: [Sign; 3], b: &Triangle, events: &mut Events) -> Optio
         if in_plane[i] && in_plane[j] {
             let crosses =
                 |&(k, l): &(usize, usize)| cross([flat_a[i], flat_a[j]], [flat_b[k], flat_b[l]]);
-            events.edges |= EDGES.iter().any(crosses);
+            events.edges += EDGES.iter().filter(|&e| crosses(e)).count();
         }
     }
     Some(places(a, flat_a, b, flat_b, plane.turn, in_plane))
@@ -300,7 +341,7 @@ fn pierce(p: Point3, q: Point3, b: &Triangle, events: &mut Events) {
     }
     match turns.iter().filter(|s| s.is_zero()).count() {
         0 => events.pierced = true,
-        1 => events.edges = true,
+        1 => events.edges += 1,
         _ => {}
     }
 }
