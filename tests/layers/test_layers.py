@@ -35,7 +35,7 @@ PYTHON: tuple[set[str], ...] = (
     {"_values", "immutable", "predicates"},
     # Rooms that take plain arrays and protocols, and no class.
     {"exchange", "plot"},
-    {"measures", "flips"},
+    {"measures", "flips", "surface"},
     {"dimension"},
     {"location"},
     {"plane"},
@@ -144,6 +144,19 @@ CORE: dict[str, set[str]] = {
         "delone_predicates",
     }
     | GROUND,
+    "surface": {
+        "constrained",
+        "delaunay2",
+        "graphs",
+        "locate",
+        "order",
+        "parallel",
+        "points",
+        "wide",
+        "num_bigint",
+        "delone_predicates",
+    }
+    | GROUND,
     "contour": {"delone_predicates"} | GROUND,
     "overlay": {"locate", "order", "parallel", "points", "delone_predicates"} | GROUND,
     "interpolate": {"locate", "delaunay2", "parallel", "wide", "delone_predicates"} | GROUND,
@@ -187,6 +200,7 @@ BINDINGS = {
     "regular",
     "regular3",
     "sphere",
+    "surface",
     "voronoi",
     "voronoi3",
     "watch",

@@ -139,12 +139,13 @@ def test_the_volume_is_rounded_correctly(scale: float) -> None:
 def test_a_volume_of_zero_is_exact() -> None:
     # Two tetrahedra, one turned: their volumes cancel, up to one ulp of a coordinate or not.
     points = np.array([*TETRAHEDRON[0]], dtype=float) / 3
-    both = joined((points, TETRAHEDRON[1]), (points + [5, 0, 0], np.array(TETRAHEDRON[1])[:, ::-1]))
+    apart, turned = points + np.array([5, 0, 0]), np.array(TETRAHEDRON[1])[:, ::-1]
+    both = joined((points, TETRAHEDRON[1]), (apart, turned))
     check = delone.check_surface(*both)
     exact = volume(*both)
     assert check.volume_sign == (exact > Fraction(0)) - (exact < 0)
     assert check.volume == float(exact)
-    turned = joined((points, TETRAHEDRON[1]), (points + [4, 0, 0], TETRAHEDRON[1]))
+    turned = joined((points, TETRAHEDRON[1]), (points + np.array([4, 0, 0]), TETRAHEDRON[1]))
     assert delone.check_surface(*turned).volume_sign == 1
 
 

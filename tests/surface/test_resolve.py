@@ -13,7 +13,6 @@ import delone
 from rational import exact
 from surfaces import box, brute_pairs, joined, normal, sphere
 
-
 TETRAHEDRON = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]
 
 
@@ -129,8 +128,8 @@ def test_many_vertices_on_one_face() -> None:
     # All vertices of one row of needles stand on one large triangle below.
     rng = np.random.default_rng(5)
     feet = np.column_stack((rng.integers(1, 40, (900, 2)), np.zeros(900))).astype(float)
-    tops = feet + [0, 0, 1.0]
-    sides = tops + [0.25, 0, 0]
+    tops = feet + np.array([0, 0, 1.0])
+    sides = tops + np.array([0.25, 0, 0])
     corners = np.array([(-100.0, -100, 0), (300, -100, 0), (-100, 300, 0)])
     points = np.concatenate((corners, feet, tops, sides))
     rows = np.unique(feet, axis=0, return_index=True)[1]

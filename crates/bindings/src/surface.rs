@@ -1,7 +1,6 @@
 //! Checks of surfaces of triangles in 3-D as arrays.
 
-use delone::{Error, Result};
-use delone_core::Point3;
+use delone::{Error, Point3, Result};
 use delone_core::surface::{self, Checked, Options, Pairs, Resolved};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;

@@ -17,6 +17,59 @@ import typer
 from delone import __version__
 from delone.cli.commands import Commands
 from delone.cli.exits import MEANINGS, Exit, Failure, as_options, code_of, os_message
+from delone import ConstrainedDelaunay, Delaunay, __version__
+from delone.cli import cells, cluster, dem, field, graph, outline, terrain, tiles
+from delone.cli.check import check_mesh
+from delone.cli.constraints import Constraints, constraint_figures, read_input, triangulated
+from delone.cli.exits import (
+    MEANINGS,
+    Exit,
+    Failure,
+    as_options,
+    code_of,
+    naming_lines,
+    os_message,
+    protect_inputs,
+    reading,
+    writing,
+)
+from delone.cli.exploring import explore
+from delone.cli.faces import check_faces
+from delone.cli.info import describe
+from delone.cli.meshing import make_mesh
+from delone.cli.options import (
+    Classes,
+    Flat,
+    Json,
+    Layer,
+    MeshOutput,
+    Quiet,
+    Solid,
+    Workers,
+    class_numbers,
+    space_or_plane,
+    split,
+)
+from delone.cli.outputs import ready, write_all
+from delone.cli.referenced import Crs, Planar, note, referenced, require_known
+from delone.cli.report import Stopwatch, peak_memory, summary
+from delone.cli.show import (
+    print_json,
+    print_report,
+    print_rows,
+    print_text,
+    space_rows,
+    spinner,
+    triangulation_rows,
+)
+from delone.cli.solid import (
+    improved,
+    improvement_figures,
+    improvement_rows,
+    is_space,
+    space_summary,
+    triangulated_space,
+)
 from delone.counting import agreed
 from delone.errors import MissingExtraError, NonFiniteError, OutputError
 
@@ -58,6 +111,209 @@ def _options(
 
 
 # Called, not used as a decorator: the function above remains a plain function.
+def triangulate(
+    source: Input,
+    *,
+    output: MeshOutput = None,
+    classes: Classes = None,
+    columns: Columns = None,
+    layer: Layer = None,
+    method: Annotated[
+        str, typer.Option(help="Algorithm; the result does not depend on it.")
+    ] = "auto",
+    workers: Workers = None,
+    edges: Annotated[
+        bool, typer.Option("--edges", help="Write edges instead of triangles.")
+    ] = False,
+    crossing: Annotated[
+        str | None,
+        typer.Option(
+            help="Where lines cross: split (add a vertex, the default) or raise (an error)."
+        ),
+    ] = None,
+    outline: Annotated[
+        bool,
+        typer.Option(
+            "--outline", help="Remove triangles outside polygons, or outside closed lines."
+        ),
+    ] = False,
+    conforming: Annotated[
+        bool,
+        typer.Option("--conforming", help="Add vertices until all segments are Delaunay edges."),
+    ] = False,
+    max_points: Annotated[
+        int | None, typer.Option(help="Maximum number of vertices added to lines and polygons.")
+    ] = None,
+    in_space: Solid = False,
+    in_plane: Flat = False,
+    better: Annotated[
+        bool,
+        typer.Option("--improve", help="3-D: remove slivers; points inside may move."),
+    ] = False,
+    min_angle: Annotated[
+        float | None,
+        typer.Option(
+            metavar="DEGREES", help="Goal of --improve for dihedral angles; 20 by default."
+        ),
+    ] = None,
+    crs: Crs = None,
+    planar: Planar = False,
+    max_iter: Annotated[
+        int | None,
+        typer.Option(
+            min=0,
+            metavar="N",
+            help="Maximum number of passes of --improve over the tetrahedra; 30 by default.",
+        ),
+    ] = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Triangulate the points of a file, report, and write meshes and plots.
+
+    Lines and the sides of polygons become edges of the triangulation. Heights are values at the
+    points; with --3d they are the third coordinate, and tetrahedra are written to .vtu, .msh, .npz,
+    .xdmf, .inp, .su2 and .png.
+    """
+    space = space_or_plane(in_space, in_plane)
+    if min_angle is not None and not better:
+        raise Failure("--min-angle is the goal of --improve: give --improve as well", Exit.USAGE)
+    require_known(crs)
+    if max_iter is not None and not better:
+        raise Failure("--max-iter is the limit of --improve: give --improve as well", Exit.USAGE)
+    with writing():
+        protect_inputs(output or (), source)
+        writers = {path: ready(path) for path in output or ()}
+    watch = Stopwatch()
+    with spinner(quiet or as_json) as say:
+        say(f"reading {source.name}")
+        with reading(), watch.stage("read"):
+            survey = read_input(
+                source, columns=split(columns), classes=class_numbers(classes), layer=layer
+            )
+        survey = referenced(
+            survey, crs, planar=planar, quiet=quiet, outputs=writers, known=WITH_CRS
+        )
+        say(f"triangulating {len(survey):,} {_what(survey)}")
+        constraints = Constraints(crossing, outline, conforming, max_points)
+        solid = is_space(source, space, survey)
+        if solid and isinstance(survey, PointSet):
+            constraints.require_none(survey.source)
+            with writing():
+                writers = {path: writer(path, space=True) for path in writers}
+            mesh: Mesh = triangulated_space(survey, method=method, workers=workers)
+            z = None
+            if space is None and not better:
+                note(
+                    f"{source}: three columns: 3-D tetrahedra; --2d triangulates the surface",
+                    quiet=quiet,
+                )
+        else:
+            mesh, z = triangulated(survey, constraints, method=method, workers=workers)
+        watch.seconds |= mesh.stages
+        written: Mesh | TetMesh = mesh
+        gained: dict[str, Any] = {}
+        if better:
+            if not (solid and isinstance(mesh, Delaunay)):
+                raise Failure("--improve is for tetrahedra: give --3d", Exit.USAGE)
+            with watch.stage("improve"):
+                tetrahedra = improved(mesh, writers, say, min_angle=min_angle, passes=max_iter)
+            written, gained = tetrahedra, {"improvement": improvement_figures(tetrahedra.report)}
+        write_all(writers, written, watch, say, z=z, crs=survey.crs, edges=edges)
+        say("reporting")
+        figures: dict[str, Any] = {
+            "delone": __version__,
+            "input": str(source),
+            "crs": survey.crs,
+            **(space_summary(mesh) if isinstance(mesh, Delaunay) and solid else summary(mesh)),
+            **_of_constraints(mesh, survey),
+            **gained,
+            "stages": watch.rows(mesh.npoints),
+            "outputs": [str(path) for path in writers],
+            "peak_memory_bytes": peak_memory(),
+        }
+    if as_json:
+        print_json(figures)
+    elif not quiet:
+        rows = space_rows(figures) if solid else triangulation_rows(figures)
+        rows += improvement_rows(figures["improvement"]) if better else []
+        print_report(str(source), rows, figures)
+
+
+def check(
+    mesh: Annotated[
+        Path,
+        typer.Argument(
+            metavar="MESH", help="File of triangles or tetrahedra: " + " ".join(mesh_suffixes())
+        ),
+    ],
+    *,
+    canonical: Annotated[
+        bool,
+        typer.Option(
+            "--canonical", help="Require delone's choice of diagonals among cocircular points."
+        ),
+    ] = False,
+    surface: Annotated[
+        bool,
+        typer.Option(
+            "--surface",
+            help="3-D: check instead that triangles do not cross and enclose a region.",
+        ),
+    ] = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Prove exactly that triangles are Delaunay, or name the faults and exit with 1."""
+    if surface and canonical:
+        raise Failure("--canonical is for triangulations, not for --surface", Exit.USAGE)
+    with spinner(quiet or as_json) as say:
+        if surface:
+            figures, lines = check_faces(mesh, say=say)
+        else:
+            figures, lines = check_mesh(mesh, canonical=canonical, say=say)
+    if as_json:
+        print_json(figures)
+    elif not quiet:
+        counts = ("points", "triangles", "tetrahedra", "faces")
+        names = [name for name in counts if name in figures]
+        print_rows(str(mesh), [(name, f"{figures[name]:,}") for name in names])
+        print_text("\n".join(lines))
+    if not figures["ok"]:
+        raise typer.Exit(Exit.NOT_DELAUNAY)
+
+
+def info(
+    source: Input,
+    *,
+    classes: Classes = None,
+    columns: Columns = None,
+    layer: Layer = None,
+    in_space: Solid = False,
+    in_plane: Flat = False,
+    crs: Crs = None,
+    as_json: Json = False,
+) -> None:
+    """Describe the contents of a file without triangulating it."""
+    space = space_or_plane(in_space, in_plane)
+    require_known(crs)
+    with spinner(as_json) as say:
+        say(f"reading {source.name}")
+        figures, rows = describe(
+            source,
+            columns=split(columns),
+            classes=class_numbers(classes),
+            layer=layer,
+            space=space,
+            crs=crs,
+        )
+    if as_json:
+        print_json(figures)
+    else:
+        print_rows(str(source), rows)
+
+
+# Called, not used as decorators: the functions above remain plain functions.
 app.callback()(_options)
 
 

@@ -14,6 +14,7 @@ from delone.errors import (
     BudgetExceededError,
     BusyError,
     ConflictingValuesError,
+    CrossingFacesError,
     CrossingSegmentsError,
     DegenerateInputError,
     FileFormatError,
@@ -21,6 +22,7 @@ from delone.errors import (
     InternalError,
     MissingExtraError,
     NonFiniteError,
+    OpenSurfaceError,
     OutputError,
 )
 
@@ -63,7 +65,7 @@ class Exit(IntEnum):
 
 MEANINGS = {
     Exit.OK: "success",
-    Exit.NOT_DELAUNAY: "check: the mesh is not a Delaunay triangulation",
+    Exit.NOT_DELAUNAY: "check: the mesh is not a Delaunay triangulation, or the surface is invalid",
     Exit.USAGE: "the command line is wrong",
     Exit.INPUT: "the input is missing, truncated or of unknown format",
     Exit.DEGENERATE: "no triangulation: too few points, collinear points, NaN or infinity, "
@@ -106,7 +108,9 @@ def code_of(error: BaseException) -> Exit:
         (DegenerateInputError, Exit.DEGENERATE),
         (NonFiniteError, Exit.DEGENERATE),
         (ConflictingValuesError, Exit.DEGENERATE),
+        (CrossingFacesError, Exit.DEGENERATE),
         (CrossingSegmentsError, Exit.DEGENERATE),
+        (OpenSurfaceError, Exit.DEGENERATE),
         (BudgetExceededError, Exit.DEGENERATE),
         (BusyError, Exit.OUTPUT),
         (OutputError, Exit.OUTPUT),

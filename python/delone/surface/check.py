@@ -25,7 +25,7 @@ def check_surface(
     limit: int | None = 100_000,
     workers: int | None = None,
 ) -> SurfaceCheck:
-    """Check a surface of triangles in 3-D exactly: is it closed, oriented, free of crossings?
+    """Check exactly what a surface of triangles in 3-D encloses, and which faces cross or touch.
 
     Parameters
     ----------
