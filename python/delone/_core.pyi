@@ -41,6 +41,7 @@ __all__ = [
     "PeriodicFaults",
     "PeriodicTriangulation",
     "RefinedMesh",
+    "Refinement2",
     "RegularFaults2",
     "RegularFaults3",
     "RegularTriangulation",
@@ -491,6 +492,37 @@ class RefinedMesh:
     @property
     def exhausted(self) -> bool:
         """Whether the limit on vertices was reached."""
+
+@final
+class Refinement2:
+    """A refinement in rounds, between which areas are sampled."""
+
+    def __new__(
+        cls,
+        domain: tuple[
+            NDArray[np.float64],
+            NDArray[np.int32],
+            NDArray[np.int32],
+            NDArray[np.int32],
+            NDArray[np.bool_],
+        ],
+        lines: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
+        samples: tuple[NDArray[np.float64], NDArray[np.float64]],
+        min_angle: float,
+        circles: bool,
+        sizes_yield: bool,
+    ) -> Refinement2:
+        """A domain (points, simplices, labels, segments, frozen), lines, and areas at positions."""
+    def fresh(self, workers: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+        """The centers, (k, 2), and labels, (k,), of triangles that are new since the last call."""
+    def comply(self, wanted: NDArray[np.float64]) -> bool:
+        """Set the areas wanted at these centers; return whether all triangles comply."""
+    def refine(
+        self, max_vertices: int, progress: Callable[[int, float], object] | None
+    ) -> tuple[bool, int]:
+        """One round; return whether the limit was enough, and the vertices added in all rounds."""
+    def export(self) -> RefinedMesh:
+        """The triangulation, with the vertices of all rounds."""
 
 @final
 class JudgedTriangles:

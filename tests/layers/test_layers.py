@@ -82,7 +82,8 @@ CORE: dict[str, set[str]] = {
     "measure": {"parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "delaunay3": {"mesh3", "order", "points", "parallel", "proof", "delone_predicates"} | GROUND,
     "constrained": {"delaunay2", "mesh2", "order", "points", "delone_predicates"} | GROUND,
-    "refine": {"constrained", "delaunay2", "mesh2", "wide", "delone_predicates"} | GROUND,
+    "refine": {"constrained", "delaunay2", "measure", "mesh2", "wide", "delone_predicates"}
+    | GROUND,
     "improve": {"delone_predicates"} | GROUND,
     "locate": {"order", "points", "parallel", "wide", "delone_predicates"} | GROUND,
     "alpha": {"measure", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,

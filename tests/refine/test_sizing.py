@@ -177,3 +177,50 @@ def test_no_domain_and_no_inside() -> None:
     whole = delone.ConstrainedDelaunay(square, [(0, 2)])
     with pytest.raises(InputError, match="without triangles"):
         delone.mesh(whole, size=(empty, [1, 1, 1, 1]))
+
+
+def test_a_function_is_asked_about_new_triangles() -> None:
+    asked: list[np.ndarray] = []
+
+    def size(xy: np.ndarray) -> np.ndarray:
+        asked.append(xy.copy())
+        return 0.03 + 0.2 * np.hypot(*(xy - 0.7).T)
+
+    mesh = delone.mesh(SQUARE, size=size)
+    # After the lattice and the estimate, each round asks about its new triangles.
+    rounds = asked[2:]
+    assert kept(mesh, size)
+    assert len(rounds) > 3
+    together = np.concatenate(rounds)
+    # The others are where a triangle came back, or was left with its corners in another order.
+    assert len(np.unique(together, axis=0)) > 0.95 * len(together)
+    centers = (mesh.points[mesh.simplices] / 3).sum(axis=1)
+    assert {tuple(xy) for xy in centers.tolist()} <= {tuple(xy) for xy in together.tolist()}
+
+
+def test_an_exception_of_a_function_ends_the_rounds() -> None:
+    calls = 0
+
+    def size(xy: np.ndarray) -> np.ndarray:
+        nonlocal calls
+        calls += 1
+        if calls == 5:
+            raise ZeroDivisionError
+        return np.full(len(xy), 0.05)
+
+    with pytest.raises(ZeroDivisionError):
+        delone.mesh(SQUARE, size=size)
+    assert calls == 5
+
+
+@pytest.mark.parametrize("gap", [1e-5, 1e-7])
+def test_needles_stay_closed_while_sizes_vary(gap: float) -> None:
+    hole = [(0.2, 0.5), (0.8, 0.5), (0.8, 0.5 + 1e-7), (0.2, 0.5 + 2e-7)]
+    below = [(0.3, 0.5 - gap), (0.7, 0.5 - gap), (0.5, 0.3)]
+    ends = [[(i, (i + 1) % n) for i in range(n)] for n in (4, 4, 3)]
+    segments = [(i + k, j + k) for k, ring in zip((0, 4, 8), ends, strict=True) for i, j in ring]
+    domain = [*SQUARE[0], *hole, *below], segments
+    mesh = delone.mesh(domain, size=lambda xy: 0.07 + 0.1 * xy[:, 0], max_points=200_000)
+    # With angles of 20 degrees everywhere in the gap, there would be hundreds of thousands.
+    assert mesh.nsimplex < 3000
+    assert not mesh.report.exhausted

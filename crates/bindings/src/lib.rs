@@ -67,6 +67,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<live3::LiveArrays3>()?;
     m.add_class::<constrained::ConstrainedTriangulation>()?;
     m.add_class::<refine::RefinedMesh>()?;
+    m.add_class::<refine::Refinement2>()?;
     m.add_class::<refine::JudgedTriangles>()?;
     m.add_class::<voronoi::Diagram2>()?;
     m.add_class::<voronoi::ClippedCells2>()?;

@@ -113,7 +113,7 @@ fn faults_of(handles: &[i64], is_there: impl Fn(i64) -> bool) -> [Vec<i64>; 2] {
 }
 
 /// The error of a triangulation in which a panic left something behind.
-fn broken() -> Error {
+pub fn broken() -> Error {
     Error::Internal("an edit did not end".into())
 }
 

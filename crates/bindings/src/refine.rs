@@ -3,23 +3,78 @@
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
-use delone::arrays::{Domain, Lines, Refined};
+use delone::arrays::{Domain, Lines, Refined, Rounds, Samples};
 use delone::{Options, Result};
 use delone_core::refine::judge;
+use delone_core::watch::Watch;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, flat, in_range, numbers, rows, table};
 use crate::errors::{attached, raise};
 use crate::given::pairs;
+use crate::live::{broken, locked};
 use crate::signals::{stoppable, watched};
 
 /// `(of, ends, on)`: the line of each segment, the ends of lines, the line of each point or -1.
-type Given<'py> = (
+type OfLines<'py> = (
     PyReadonlyArray1<'py, i32>,
     PyReadonlyArray2<'py, i32>,
     PyReadonlyArray1<'py, i32>,
 );
+
+/// `(points, simplices, labels, segments, frozen)`.
+type OfDomain<'py> = (
+    PyReadonlyArray2<'py, f64>,
+    PyReadonlyArray2<'py, i32>,
+    PyReadonlyArray1<'py, i32>,
+    PyReadonlyArray2<'py, i32>,
+    PyReadonlyArray1<'py, bool>,
+);
+
+/// The arrays of a domain.
+struct Given<'py> {
+    points: PyReadonlyArray2<'py, f64>,
+    simplices: PyReadonlyArray2<'py, i32>,
+    labels: PyReadonlyArray1<'py, i32>,
+    segments: PyReadonlyArray2<'py, i32>,
+    frozen: PyReadonlyArray1<'py, bool>,
+    lines: Option<OfLines<'py>>,
+}
+
+/// Pairs of vertices: the segments, and the ends of lines.
+type Pairs = (Vec<[u32; 2]>, Option<Vec<[u32; 2]>>);
+
+impl Given<'_> {
+    fn pairs(&self, py: Python<'_>) -> PyResult<Pairs> {
+        attached(py, || {
+            let n = rows::<f64, 2>(&self.points, "points")?.len();
+            let ends = self.lines.as_ref().map(|l| pairs(&l.1, n, "ends"));
+            Ok((pairs(&self.segments, n, "segments")?, ends.transpose()?))
+        })
+    }
+
+    /// The domain, without areas.
+    fn domain<'a>(&'a self, (segments, ends): &'a Pairs) -> Result<Domain<'a>> {
+        let lines = match (&self.lines, ends) {
+            (Some((of, _, on)), Some(ends)) => Some(Lines {
+                of: flat(of, "of")?,
+                ends,
+                on: flat(on, "on")?,
+            }),
+            _ => None,
+        };
+        Ok(Domain {
+            points: rows(&self.points, "points")?,
+            simplices: rows(&self.simplices, "simplices")?,
+            labels: flat(&self.labels, "labels")?,
+            segments,
+            lines,
+            frozen: flat(&self.frozen, "frozen")?,
+            ..Domain::default()
+        })
+    }
+}
 
 /// Minimum time between two calls of `progress`.
 const BETWEEN: Duration = Duration::from_millis(100);
@@ -67,35 +122,26 @@ pub fn refine2<'py>(
     frozen: PyReadonlyArray1<'py, bool>,
     min_angle: f64,
     max_vertices: usize,
-    lines: Option<Given<'py>>,
+    lines: Option<OfLines<'py>>,
     circles: bool,
     sizes_yield: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<RefinedMesh> {
-    let (pieces, ends) = attached(py, || {
-        let n = rows::<f64, 2>(&points, "points")?.len();
-        let ends = lines.as_ref().map(|l| pairs(&l.1, n, "ends"));
-        Ok((pairs(&segments, n, "segments")?, ends.transpose()?))
-    })?;
+    let given = Given {
+        points,
+        simplices,
+        labels,
+        segments,
+        frozen,
+        lines,
+    };
+    let pairs = given.pairs(py)?;
     let domain = attached(py, || {
-        let lines = match (&lines, &ends) {
-            (Some((of, _, on)), Some(ends)) => Some(Lines {
-                of: flat(of, "of")?,
-                ends,
-                on: flat(on, "on")?,
-            }),
-            _ => None,
-        };
         Ok(Domain {
-            points: rows(&points, "points")?,
-            simplices: rows(&simplices, "simplices")?,
-            labels: flat(&labels, "labels")?,
             areas: flat(&areas, "areas")?,
-            segments: &pieces,
-            lines,
-            frozen: flat(&frozen, "frozen")?,
             circles,
             sizes_yield,
+            ..given.domain(&pairs)?
         })
     })?;
     let reporter = progress.map(Reporter::new);
@@ -114,6 +160,104 @@ pub fn refine2<'py>(
         return Err(error);
     }
     arrays_of(py, outcome?)
+}
+
+/// A refinement in rounds, between which areas are sampled.
+#[pyclass(frozen, module = "delone._core")]
+pub struct Refinement2(Mutex<Rounds>);
+
+#[pymethods]
+impl Refinement2 {
+    /// A domain `(points, simplices, labels, segments, frozen)` with lines; `samples` are positions
+    /// in it and the largest areas of triangles there.
+    #[new]
+    #[pyo3(signature = (domain, lines, samples, min_angle, circles, sizes_yield))]
+    fn new(
+        py: Python<'_>,
+        domain: OfDomain<'_>,
+        lines: OfLines<'_>,
+        samples: (PyReadonlyArray2<'_, f64>, PyReadonlyArray1<'_, f64>),
+        min_angle: f64,
+        circles: bool,
+        sizes_yield: bool,
+    ) -> PyResult<Self> {
+        let (points, simplices, labels, segments, frozen) = domain;
+        let given = Given {
+            points,
+            simplices,
+            labels,
+            segments,
+            frozen,
+            lines: Some(lines),
+        };
+        let pairs = given.pairs(py)?;
+        let (domain, samples) = attached(py, || {
+            let domain = Domain {
+                circles,
+                sizes_yield,
+                ..given.domain(&pairs)?
+            };
+            let samples = Samples {
+                positions: rows(&samples.0, "positions")?,
+                areas: flat(&samples.1, "areas")?,
+            };
+            Ok((domain, samples))
+        })?;
+        let rounds = stoppable(py, |stop| {
+            let options = Options::new().interrupt(stop).min_angle(min_angle);
+            options.rounds(domain, samples)
+        })?;
+        Ok(Self(Mutex::new(rounds)))
+    }
+
+    /// The centers, (k, 2), and the labels, (k,), of triangles that are new since the last call.
+    fn fresh(&self, py: Python<'_>, workers: usize) -> PyResult<(Table<f64>, Column<i32>)> {
+        let found = locked(&self.0, py, usize::MAX, |rounds, watch| {
+            rounds.fresh(workers, watch)
+        })?;
+        Ok((table(py, found.centers)?, column(py, found.labels)))
+    }
+
+    /// Sets the areas wanted at these centers; returns whether all triangles comply.
+    fn comply(&self, py: Python<'_>, wanted: PyReadonlyArray1<'_, f64>) -> PyResult<bool> {
+        let wanted = attached(py, || flat(&wanted, "wanted"))?;
+        locked(&self.0, py, usize::MAX, |rounds, watch| {
+            rounds.comply(wanted, watch)
+        })
+    }
+
+    /// One round; returns whether `max_vertices`, the number of vertices to add, was enough, and
+    /// the number of vertices added in all rounds.
+    fn refine(
+        &self,
+        py: Python<'_>,
+        max_vertices: usize,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<(bool, usize)> {
+        let reporter = progress.map(Reporter::new);
+        let outcome = stoppable(py, |stop| -> Result<_> {
+            let mut tell = |added: usize, smallest: &mut dyn FnMut() -> f64| {
+                if let Some(reporter) = &reporter {
+                    reporter.tell(added, smallest);
+                }
+                Ok(())
+            };
+            let stop = || reporter.as_ref().is_some_and(Reporter::failed) || stop();
+            let mut rounds = self.0.lock().map_err(|_| broken())?;
+            let done = rounds.refine(max_vertices, &Watch::new(&stop), &mut tell)?;
+            Ok((done, rounds.added()))
+        });
+        match reporter.and_then(Reporter::exception) {
+            Some(error) => Err(error),
+            None => outcome,
+        }
+    }
+
+    /// The triangulation, with the vertices of all rounds.
+    fn export(&self, py: Python<'_>) -> PyResult<RefinedMesh> {
+        let made = locked(&self.0, py, usize::MAX, Rounds::export)?;
+        arrays_of(py, made)
+    }
 }
 
 /// Calls a Python function from time to time, until it raises an exception.

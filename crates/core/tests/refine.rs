@@ -5,13 +5,41 @@ use std::collections::BTreeMap;
 use delone_core::Point2;
 use delone_core::constrained::{Options, components, constrain};
 use delone_core::delaunay2::Method;
-use delone_core::refine::{Refined, Task, refine};
+use delone_core::measure;
+use delone_core::refine::{Lines, Refined, Rounds, Samples, Task, refine};
 use delone_core::watch::Watch;
 use delone_predicates::{Sign, incircle_canonical, orient2d};
 
-/// The mesh inside rings, each its own loop of segments; triangles that a ray from outside reaches
-/// are outside.
-fn meshed(rings: &[Vec<Point2>], min_angle: f64, area: f64) -> (Vec<Point2>, Refined) {
+/// A triangulation with labels.
+struct Domain {
+    points: Vec<Point2>,
+    simplices: Vec<[i32; 3]>,
+    labels: Vec<i32>,
+    segments: Vec<[u32; 2]>,
+    frozen: Vec<bool>,
+}
+
+impl Domain {
+    fn task<'a>(&'a self, areas: &'a [f64], min_angle: f64) -> Task<'a> {
+        Task {
+            points: &self.points,
+            simplices: &self.simplices,
+            labels: &self.labels,
+            areas,
+            segments: &self.segments,
+            lines: None,
+            frozen: &self.frozen,
+            min_angle,
+            circles: false,
+            sizes_yield: false,
+            max_vertices: 200_000,
+        }
+    }
+}
+
+/// The inside of rings, each its own loop of segments; triangles that a ray from outside reaches are
+/// outside.
+fn domain(rings: &[Vec<Point2>]) -> Domain {
     let mut points = Vec::new();
     let mut segments = Vec::new();
     for ring in rings {
@@ -55,30 +83,25 @@ fn meshed(rings: &[Vec<Point2>], min_angle: f64, area: f64) -> (Vec<Point2>, Ref
         .iter()
         .map(|l| if depth[l] % 2 == 1 { *l } else { -1 })
         .collect();
-    let areas = vec![area; labels.len()];
-    let segments: Vec<[u32; 2]> = base
-        .subsegments
-        .ends
-        .iter()
-        .map(|e| e.map(|v| v as u32))
-        .collect();
-    let frozen = vec![false; segments.len()];
-    let task = Task {
-        points: &points,
-        simplices: &base.arrays.simplices,
-        labels: &labels,
-        areas: &areas,
-        segments: &segments,
-        lines: None,
-        frozen: &frozen,
-        min_angle,
-        circles: false,
-        sizes_yield: false,
-        max_vertices: 200_000,
-    };
+    let ends = &base.subsegments.ends;
+    let segments: Vec<[u32; 2]> = ends.iter().map(|e| e.map(|v| v as u32)).collect();
+    Domain {
+        points,
+        simplices: base.arrays.simplices,
+        labels,
+        frozen: vec![false; segments.len()],
+        segments,
+    }
+}
+
+/// The mesh inside rings.
+fn meshed(rings: &[Vec<Point2>], min_angle: f64, area: f64) -> (Vec<Point2>, Refined) {
+    let domain = domain(rings);
+    let areas = vec![area; domain.labels.len()];
+    let task = domain.task(&areas, min_angle);
     let mut made = refine(task, &Watch::idle()).unwrap();
     keep_inside(&mut made);
-    (points, made)
+    (domain.points, made)
 }
 
 /// Drops triangles outside the domain.
@@ -187,4 +210,174 @@ fn refinement_terminates_at_sharp_corners() {
     let (points, made) = meshed(&[star], 30.0, 0.01);
     assert!(!made.exhausted);
     check(&points, &made);
+}
+
+/// The most rounds: where no triangle may be split, sizes are never met.
+const MOST: usize = 6;
+
+/// Refinements one after the other, each from the arrays of the one before.
+fn separately(
+    domain: &Domain,
+    samples: Samples,
+    wanted: impl Fn(Point2) -> f64,
+) -> (Refined, usize) {
+    let watch = Watch::idle();
+    let mut points = domain.points.clone();
+    let areas = vec![f64::INFINITY; domain.labels.len()];
+    let task = Task {
+        max_vertices: 0,
+        ..domain.task(&areas, 20.0)
+    };
+    let ends = &domain.segments;
+    let mut on = vec![-1; points.len()];
+    let (mut made, mut all, mut rounds) = (refine(task, &watch).unwrap(), Vec::new(), 0);
+    loop {
+        let areas = measure::areas(&points, &made.simplices, 1, &watch).unwrap();
+        let at = |s: &[i32; 3]| s.map(|v| points[v as usize]);
+        let mut least: Vec<f64> = (made.simplices.iter())
+            .map(|s| {
+                let [a, b, c] = at(s).map(|p| p.map(|x| x / 3.0));
+                wanted([0, 1].map(|k| a[k] + b[k] + c[k]))
+            })
+            .collect();
+        for (&p, &area) in samples.positions.iter().zip(samples.areas) {
+            let inside = |s: &[i32; 3]| {
+                let [a, b, c] = at(s);
+                [[a, b], [b, c], [c, a]]
+                    .iter()
+                    .all(|[u, v]| orient2d(*u, *v, p) != Sign::Negative)
+            };
+            if let Some(t) = made.simplices.iter().position(inside) {
+                least[t] = least[t].min(area);
+            }
+        }
+        let large = |t: usize| made.labels[t] >= 0 && areas[t] > least[t];
+        let caps: Vec<f64> = (0..areas.len())
+            .map(|t| match large(t) {
+                true => least[t].max(areas[t] / 4.0),
+                false => f64::INFINITY,
+            })
+            .collect();
+        if rounds == MOST || rounds > 0 && caps.iter().all(|cap| cap.is_infinite()) {
+            made.added = all;
+            return (made, rounds);
+        }
+        let (mut segments, mut of) = (Vec::new(), Vec::new());
+        for (t, s) in made.simplices.iter().enumerate() {
+            for k in (0..3).filter(|&k| made.sides[t][k] >= 0 && made.neighbors[t][k] < t as i32) {
+                segments.push([s[(k + 1) % 3] as u32, s[(k + 2) % 3] as u32]);
+                of.push(made.sides[t][k]);
+            }
+        }
+        let task = Task {
+            points: &points,
+            simplices: &made.simplices,
+            labels: &made.labels,
+            areas: &caps,
+            segments: &segments,
+            lines: Some(Lines {
+                of: &of,
+                ends,
+                on: &on,
+            }),
+            ..domain.task(&caps, 20.0)
+        };
+        let next = refine(task, &watch).unwrap();
+        points.extend(&next.added);
+        all.extend(&next.added);
+        on.extend(&next.on);
+        (made, rounds) = (next, rounds + 1);
+    }
+}
+
+/// A refinement in rounds; the number of rounds, of triangles asked about, and of vertices added.
+fn in_rounds(
+    domain: &Domain,
+    samples: Samples,
+    wanted: impl Fn(Point2) -> f64,
+) -> (Refined, [usize; 3]) {
+    let watch = Watch::idle();
+    let mut rounds = Rounds::new(domain.task(&[], 20.0), samples, &watch).unwrap();
+    let (mut turns, mut seen) = (0, 0);
+    loop {
+        let fresh = rounds.fresh(2, &watch).unwrap();
+        seen += fresh.centers.len();
+        let areas: Vec<f64> = fresh.centers.iter().map(|p| wanted(*p)).collect();
+        if rounds.comply(&areas, &watch).unwrap() && turns > 0 || turns == MOST {
+            break;
+        }
+        assert!(rounds.refine(200_000, &watch, &mut |_, _| Ok(())).unwrap());
+        turns += 1;
+    }
+    (
+        rounds.export(&watch).unwrap(),
+        [turns, seen, rounds.added()],
+    )
+}
+
+fn square() -> Vec<Point2> {
+    vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+}
+
+/// A thin hole.
+fn notch(gap: f64) -> Vec<Point2> {
+    let (near, far) = (0.5 + gap, 0.5 + 2.0 * gap);
+    vec![[0.2, 0.5], [0.8, 0.5], [0.8, near], [0.2, far]]
+}
+
+/// A triangle below it.
+fn slit(gap: f64) -> Vec<Point2> {
+    vec![[0.3, 0.5 - gap], [0.7, 0.5 - gap], [0.5, 0.3]]
+}
+
+#[test]
+fn rounds_are_refinements_one_after_the_other() {
+    // Samples on edges and at vertices of the first triangles.
+    let lattice: Vec<Point2> = (0..289)
+        .map(|i| [i % 17, i / 17].map(|k| f64::from(k) / 16.0))
+        .collect();
+    let wanted = |p: Point2| 0.002 + 0.02 * (p[0] - p[1]).powi(2);
+    let areas: Vec<f64> = lattice.iter().map(|p| wanted(*p)).collect();
+    let samples = Samples {
+        positions: &lattice,
+        areas: &areas,
+    };
+    let domains = [
+        vec![square()],
+        vec![square(), notch(1e-3)],
+        vec![square(), notch(1e-7)],
+        vec![square(), notch(1e-3), slit(1e-2)],
+    ];
+    for rings in domains {
+        let domain = domain(&rings);
+        let (expected, count) = separately(&domain, samples, wanted);
+        let (made, [turns, seen, added]) = in_rounds(&domain, samples, wanted);
+        assert_eq!(turns, count);
+        assert_eq!(added, made.added.len());
+        assert_eq!(made.added, expected.added);
+        assert_eq!(made.simplices, expected.simplices);
+        assert_eq!(made.neighbors, expected.neighbors);
+        assert_eq!(made.sides, expected.sides);
+        assert_eq!(made.labels, expected.labels);
+        assert_eq!(made.needles, expected.needles);
+        // Most triangles are known from an earlier round.
+        assert!(seen < turns * made.simplices.len());
+    }
+}
+
+#[test]
+fn needles_stay_closed_from_round_to_round() {
+    let wanted = |_: Point2| 0.002;
+    let nowhere = Samples {
+        positions: &[],
+        areas: &[],
+    };
+    for gap in [1e-5, 1e-7] {
+        let domain = domain(&[square(), notch(1e-7), slit(gap)]);
+        let (made, [turns, _, added]) = in_rounds(&domain, nowhere, wanted);
+        assert!(turns > 2);
+        assert!(made.needles.iter().any(|n| *n >= 0));
+        // To fill the gap takes hundreds of thousands.
+        assert!(added < 2000, "{gap}: {added}");
+    }
 }

@@ -8,6 +8,7 @@
 //! | [`Diagram2`], [`Diagram3`] | `from` a [`Voronoi`](crate::Voronoi) |
 //! | [`Filled`] | [`Options::fill`](crate::Options::fill) |
 //! | [`Refined`], for a [`Domain`] | [`Options::refine`](crate::Options::refine) |
+//! | [`Rounds`], for a [`Domain`] | [`Options::rounds`](crate::Options::rounds) |
 //!
 //! The other way, [`Tiling::from_arrays`](crate::Tiling::from_arrays) borrows such arrays.
 
@@ -19,7 +20,7 @@ use crate::checks::{has_length, in_range};
 use crate::{Options, Point2, Result};
 
 pub use delone_core::constrained::{Filled, Rule};
-pub use delone_core::refine::{Lines, Refined};
+pub use delone_core::refine::{Fresh, Lines, Refined, Rounds, Samples};
 pub use delone_core::voronoi::Diagram as Diagram2;
 pub use delone_core::voronoi3::Diagram as Diagram3;
 
@@ -76,7 +77,6 @@ impl Domain<'_> {
         let (points, triangles) = (self.points.len(), self.simplices.len());
         in_range(self.simplices, 0, points, "simplices")?;
         has_length(self.labels, triangles, "labels")?;
-        has_length(self.areas, triangles, "areas")?;
         in_range(self.segments, 0, points, "segments")?;
         let Some(lines) = self.lines else {
             return has_length(self.frozen, self.segments.len(), "frozen");
@@ -89,8 +89,8 @@ impl Domain<'_> {
         in_range(lines.ends, 0, points, "ends")
     }
 
-    pub(crate) fn refined(self, options: &Options, watch: &Watch) -> CoreResult<Refined> {
-        let task = Task {
+    pub(crate) fn task(&self, options: &Options) -> Task<'_> {
+        Task {
             points: self.points,
             simplices: self.simplices,
             labels: self.labels,
@@ -102,13 +102,16 @@ impl Domain<'_> {
             circles: self.circles,
             sizes_yield: self.sizes_yield,
             max_vertices: options.most_refined(),
-        };
+        }
+    }
+
+    pub(crate) fn refined(self, options: &Options, watch: &Watch) -> CoreResult<Refined> {
         let mut tell = |added: usize, smallest: &mut dyn FnMut() -> f64| {
             if let Some(progress) = options.progress {
                 progress(added, smallest);
             }
             watch.check()
         };
-        refine_telling(task, watch, &mut tell)
+        refine_telling(self.task(options), watch, &mut tell)
     }
 }

@@ -8,8 +8,8 @@ use std::thread::available_parallelism;
 use delone_core::constrained::polygon;
 use delone_core::watch::{IDLE, Watch};
 
-use crate::arrays::{Domain, Filled, Refined, Rule};
-use crate::checks::ascends;
+use crate::arrays::{Domain, Filled, Refined, Rounds, Rule, Samples};
+use crate::checks::{ascends, has_length};
 use crate::mesh::within;
 use crate::{Constrained, Dimension, Mesh, Method, Point2, Result, Triangulation, Voronoi};
 
@@ -244,7 +244,20 @@ impl<'o> Options<'o> {
     pub fn refine(&self, domain: Domain) -> Result<Refined> {
         within(self)?;
         domain.check()?;
+        has_length(domain.areas, domain.simplices.len(), "areas")?;
         self.watched(|watch| domain.refined(self, watch))
+    }
+
+    /// [`refine`](Self::refine) in rounds, if the largest area of a triangle depends on its position:
+    /// `areas` of the domain do not count.
+    ///
+    /// # Errors
+    /// Those of [`refine`](Self::refine).
+    pub fn rounds(&self, domain: Domain, samples: Samples) -> Result<Rounds> {
+        within(self)?;
+        domain.check()?;
+        has_length(samples.areas, samples.positions.len(), "areas")?;
+        self.watched(|watch| Rounds::new(domain.task(self), samples, watch))
     }
 
     /// [`Voronoi::new`] with these options.

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone.constrained.segmented import Segmented
+    from delone.refine.sizing import Samples
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
@@ -34,11 +35,13 @@ __all__ = [
     "Counts",
     "Domain",
     "Lines",
+    "extended",
     "needles_in",
     "of_constrained",
     "refined",
     "sides_at",
     "sides_of",
+    "started",
     "triangulated",
     "unit_of",
 ]
@@ -186,9 +189,28 @@ def refined(
     subsegments: all triangles become Delaunay. `sizes_yield` drops sizes that need points close to
     a frozen line.
     """
-    lines = domain.lines
     kinds = circles, sizes_yield
-    made = _made(domain, caps, (min_angle, max_points), kinds, progress)
+    return extended(domain, _made(domain, caps, (min_angle, max_points), kinds, progress))
+
+
+def started(
+    domain: Domain, samples: Samples, min_angle: float, kinds: tuple[bool, bool]
+) -> _core.Refinement2:
+    """Pass a domain to the core for a refinement in rounds; `kinds` are (circles, sizes_yield)."""
+    lines = domain.lines
+    segments, line = sides_of(domain.simplices, domain.neighbors, domain.sides)
+    return _core.Refinement2(
+        (domain.points, domain.simplices, domain.labels, segments, lines.frozen),
+        (line, lines.ends, domain.on),
+        (samples.positions, samples.areas),
+        min_angle,
+        *kinds,
+    )
+
+
+def extended(domain: Domain, made: _core.RefinedMesh) -> tuple[Domain, Counts]:
+    """Return the domain that the core made of another one, and the numbers of added points."""
+    lines = domain.lines
     added, on = made.added, made.on
     markers = np.where(on >= 0, lines.markers[on] if len(lines.markers) else 0, 0)
     new = domain._replace(

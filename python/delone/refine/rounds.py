@@ -1,7 +1,7 @@
 """Rounds of refinement, until no triangle is too large for its position.
 
-Varying sizes are sampled, passed to the core as maximum areas, and sampled again at the new
-triangles.
+Varying sizes are sampled, passed to the core as maximum areas, and sampled at the new triangles of
+each round.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_number
+from delone._arrays import as_number, as_workers
 from delone.errors import InputError
 from delone.refine import domains
 from delone.refine.domains import Counts, Domain
-from delone.refine.sizing import Sizing
+from delone.refine.sizing import Samples, Sizing
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -63,26 +63,36 @@ def _rounds(domain: Domain, sizing: Sizing, limits: Limits) -> tuple[Domain, Cou
     samples = sizing.samples(domain, limits.workers)
     if limits.refuse:
         sizing.require_within(domain, samples, limits.max_points)
-    counts = Counts()
+    if samples is not None:
+        return _sampled(domain, sizing, samples, limits)
+    return domains.refined(
+        domain,
+        sizing.caps(domain),
+        limits.min_angle,
+        limits.max_points,
+        circles=limits.circles,
+        sizes_yield=limits.sizes_yield,
+        progress=limits.progress,
+    )
+
+
+def _sampled(
+    domain: Domain, sizing: Sizing, samples: Samples, limits: Limits
+) -> tuple[Domain, Counts]:
+    """Refine by sizes that vary. The mesh stays in the core, which returns the new triangles."""
+    workers, progress = as_workers(limits.workers), limits.progress
+    kinds = limits.circles, limits.sizes_yield
+    refinement = domains.started(domain, samples, limits.min_angle, kinds)
+    added = 0
     for turn in range(_MOST_ROUNDS):
-        caps, done = sizing.caps(domain, samples)
-        if turn and done:
+        complies = refinement.comply(sizing.at(*refinement.fresh(workers)))
+        if turn and complies:
             break
-        before = counts.total
-        progress = limits.progress
-        domain, more = domains.refined(
-            domain,
-            caps,
-            limits.min_angle,
-            limits.max_points - before,
-            circles=limits.circles,
-            sizes_yield=limits.sizes_yield,
-            progress=None if progress is None else _continued(progress, before),
-        )
-        counts = counts.plus(more)
-        if counts.exhausted or not sizing.varies:
+        told = None if progress is None else _continued(progress, added)
+        enough, added = refinement.refine(limits.max_points - added, told)
+        if not enough:
             break
-    return domain, counts
+    return domains.extended(domain, refinement.export())
 
 
 def as_min_angle(min_angle: float) -> float:

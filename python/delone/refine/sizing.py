@@ -36,8 +36,6 @@ __all__ = ["EQUILATERAL", "Sizing"]
 EQUILATERAL = math.sqrt(3) / 4
 # Number of samples along the longer side of the domain's bounding box.
 _LATTICE = 128
-# Largest factor by which a triangle is made smaller in one round.
-_STEP = 4.0
 # Average area of triangles, as a fraction of the cap.
 _SHARE = 0.77
 
@@ -87,7 +85,7 @@ class Sizing:
         """Whether sizes vary within a region."""
         return self._evaluate is not None
 
-    def _at(self, positions: Floats, labels: Indices) -> Floats:
+    def at(self, positions: Floats, labels: Indices) -> Floats:
         """Return the areas allowed at positions with given labels."""
         caps = self._by_region[labels]
         if self._evaluate is None or not len(positions):
@@ -106,24 +104,12 @@ class Sizing:
         found: Floats = np.minimum(caps, areas)
         return found
 
-    def caps(self, domain: Domain, samples: Samples | None = None) -> tuple[Floats, bool]:
-        """Return the largest area of each triangle in the next round, and whether all comply now.
-
-        Infinite outside. Sizes are evaluated at the centers of triangles and at samples.
-        """
+    def caps(self, domain: Domain) -> Floats:
+        """Return the largest area of each triangle, infinite outside, if sizes do not vary."""
         inside = np.flatnonzero(domain.labels >= 0)
-        labels = domain.labels[inside]
         caps = np.full(len(domain.labels), math.inf)
-        if not self.varies:
-            caps[inside] = self._by_region[labels]
-            return caps, False
-        areas = geometry.areas(domain.points, domain.simplices[inside])
-        wanted = self._at(_centers(domain, inside), labels)
-        if samples is not None:
-            wanted = np.minimum(wanted, samples.least(domain)[inside])
-        large = areas > wanted
-        caps[inside[large]] = np.maximum(wanted, areas / _STEP)[large]
-        return caps, not large.any()
+        caps[inside] = self._by_region[domain.labels[inside]]
+        return caps
 
     def samples(self, domain: Domain, workers: int | None) -> Samples | None:
         """Evaluate sizes on a lattice over a domain; None if sizes do not vary."""
@@ -133,7 +119,7 @@ class Sizing:
         """Return an estimate of the number of triangles that the sizes alone require."""
         inside = np.flatnonzero(domain.labels >= 0)
         areas = geometry.areas(domain.points, domain.simplices[inside])
-        caps = self._at(_centers(domain, inside), domain.labels[inside])
+        caps = self.at(_centers(domain, inside), domain.labels[inside])
         if not np.isfinite(areas[np.isfinite(caps)]).all():
             raise LimitError(_out_of_range("the area of the domain"))
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
@@ -170,30 +156,23 @@ class Samples:
             for a, b in zip(low.tolist(), high.tolist(), strict=True)
         ]
         x, y = (grid.ravel() for grid in np.meshgrid(*axes))
-        self._positions = np.column_stack((x, y))
+        self.positions = np.column_stack((x, y))
         triangle = self._triangles(domain)
         kept = (triangle >= 0) & (domain.labels[triangle] >= 0)
-        self._positions = np.ascontiguousarray(self._positions[kept])
-        self._areas = sizing._at(self._positions, domain.labels[triangle[kept]])
+        self.positions = np.ascontiguousarray(self.positions[kept])
+        self.areas = sizing.at(self.positions, domain.labels[triangle[kept]])
 
     def _triangles(self, domain: Domain) -> Indices:
         return _core.find_simplex2(
-            domain.points, domain.simplices, domain.neighbors, self._positions, self._workers
+            domain.points, domain.simplices, domain.neighbors, self.positions, self._workers
         )
-
-    def least(self, domain: Domain) -> Floats:
-        """Return the smallest area allowed in each triangle, infinite where there is no sample."""
-        found = np.full(len(domain.simplices), math.inf)
-        if len(self._positions):
-            np.minimum.at(found, self._triangles(domain), self._areas)
-        return found
 
     def mean_inverse(self, domain: Domain, inside: NDArray[np.intp], own: Floats) -> Floats:
         """Return the mean inverse area in triangles, including the value at their centers."""
         total, count = np.zeros(len(domain.simplices)), np.zeros(len(domain.simplices))
-        if len(self._positions):
+        if len(self.positions):
             triangle = self._triangles(domain)
-            np.add.at(total, triangle, 1 / self._areas)
+            np.add.at(total, triangle, 1 / self.areas)
             np.add.at(count, triangle, 1)
         mean: Floats = (total[inside] + own) / (count[inside] + 1)
         return mean

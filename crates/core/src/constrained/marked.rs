@@ -164,7 +164,7 @@ impl Marked {
 
     /// The triangle whose closed area contains `p`, or a ghost whose hull edge has p strictly
     /// outside.
-    fn find(&mut self, p: Point2, from: u32) -> Result<u32> {
+    pub fn find(&mut self, p: Point2, from: u32) -> Result<u32> {
         let mesh = self.mesh.resume(2 * self.count as u32 - 2);
         let most = WALK + WALK_ACROSS * self.count.isqrt();
         if let Some((t, _)) = walk_within(&mesh, &self.points, from, p, most) {

@@ -44,9 +44,10 @@ struct Found {
     pairs: Vec<(u32, [i32; 2], f64)>,
 }
 
-impl Work<'_> {
+impl Work {
     /// Finds the needles and fences them off.
     pub fn fence(&mut self) -> Result<()> {
+        let kept: BTreeSet<u32> = self.needles.kept.iter().copied().collect();
         let found = self.find()?;
         if found.triangles.is_empty() {
             return Ok(());
@@ -59,16 +60,10 @@ impl Work<'_> {
                 self.enclose(t, needle, &found.triangles, &mut needle_of)?;
             }
         }
-        self.choose(found.pairs, &needle_of);
+        let kept = kept.iter().map(|t| needle_of[t]).collect();
+        self.choose(found.pairs, &needle_of, &kept);
         self.needles.settled = self.settled()?;
-        let mut pieces = Vec::new();
-        for e in (0..self.marked.triangles()).flat_map(|t| 8 * t..8 * t + 3) {
-            let mesh = self.marked.patch();
-            let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
-            if ends[0] < ends[1] && mesh.is_marked(e) {
-                push(&mut pieces, ends)?;
-            }
-        }
+        let pieces = self.pieces()?;
         // Most fences end at about a right angle, which must not count as a corner.
         let more = corners::sharp(&self.marked.points, &pieces, self.own, SHARP)?;
         for (sharp, more) in self.sharp.iter_mut().zip(more) {
@@ -121,8 +116,13 @@ impl Work<'_> {
     }
 
     /// Decides which needles the budget allows to open: the cheapest ones, all of one price or
-    /// none.
-    fn choose(&mut self, mut pairs: Vec<(u32, [i32; 2], f64)>, needle_of: &HashMap<u32, u32>) {
+    /// none. Those with triangles that were not opened in an earlier round stay closed.
+    fn choose(
+        &mut self,
+        mut pairs: Vec<(u32, [i32; 2], f64)>,
+        needle_of: &HashMap<u32, u32>,
+        kept: &BTreeSet<u32>,
+    ) {
         for pair in &mut pairs {
             pair.0 = needle_of.get(&pair.0).copied().unwrap_or(u32::MAX);
         }
@@ -135,9 +135,12 @@ impl Work<'_> {
                 *sum += price;
             }
         }
+        for &needle in kept {
+            prices[needle as usize] = f64::INFINITY;
+        }
         let mut order: Vec<usize> = (0..prices.len()).collect();
         order.sort_by(|&i, &j| prices[i].total_cmp(&prices[j]));
-        let most = self.task.max_vertices as f64 / SHARE;
+        let most = self.rules.max_vertices as f64 / SHARE;
         let mut spent = 0.0;
         self.needles.allowed = vec![false; prices.len()];
         for equal in order.chunk_by(|&i, &j| prices[i] == prices[j]) {
@@ -162,6 +165,13 @@ impl Work<'_> {
             let line = self.segment_of(ends);
             if self.may_be_expensive(e, line) {
                 push(&mut stack, (e, line))?;
+            }
+        }
+        for t in std::mem::take(&mut self.needles.kept) {
+            found.triangles.insert(t);
+            let mesh = self.marked.patch();
+            for e in (8 * t..8 * t + 3).filter(|&e| !mesh.is_marked(e)) {
+                push(&mut stack, (mesh.opposite(e), FENCE))?;
             }
         }
         if stack.is_empty() {
@@ -214,7 +224,7 @@ impl Work<'_> {
         let (step, edge) = (minus(b, a), self.base(e, FENCE));
         let edge = minus(edge[1], edge[0]);
         // Lines on both sides of a corner face the base, and so may a few more.
-        let least = EXPENSIVE / (RATE * self.task.min_angle) / 8.0;
+        let least = EXPENSIVE / (RATE * self.rules.min_angle) / 8.0;
         let (length, height) = (dot(step, step).sqrt(), area2 / dot(edge, edge).sqrt());
         height * least < length
     }
@@ -271,7 +281,7 @@ impl Work<'_> {
                 break;
             }
         }
-        let rate = RATE * self.task.min_angle;
+        let rate = RATE * self.rules.min_angle;
         let mut pairs = Vec::new();
         for (r, gap) in lines {
             let known = |p: &(i32, f64)| p.0 == r;
@@ -332,6 +342,11 @@ impl Work<'_> {
             return Ok(());
         }
         let first = self.needles.first;
+        let triangles = self.marked.triangles();
+        let mesh = self.marked.mesh.resume(triangles);
+        for t in (0..triangles).filter(|&t| mesh.label(t) >= first) {
+            push(&mut self.needles.kept, t)?;
+        }
         let mut left = filled(self.marked.triangles() as usize, -1)?;
         let settled = self.settled()?;
         for (left, label) in left.iter_mut().zip(self.labels()) {

@@ -19,6 +19,7 @@ mod judge;
 mod needles;
 mod place;
 mod queue;
+mod rounds;
 mod shape;
 mod task;
 mod work;
@@ -26,6 +27,8 @@ mod work;
 use delone_predicates::Point2;
 
 pub use self::judge::{Judged, judge};
+pub use self::rounds::{Fresh, Rounds, Samples};
+use self::task::Rules;
 pub use self::task::{Counts, Lines, Refined, Task, Tell};
 use self::work::Work;
 use crate::constrained::marked::Marked;
@@ -95,6 +98,16 @@ fn scale(points: &[Point2]) -> f64 {
 }
 
 fn refine_as_is(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> {
+    let (mut work, rows) = begin(task, watch)?;
+    for (cap, area) in work.caps.iter_mut().zip(task.areas) {
+        *cap = 2.0 * area;
+    }
+    let exhausted = !work.run(watch, tell)?;
+    export(&mut work, &rows, task.points.len(), exhausted, watch)
+}
+
+/// A refinement without limits on areas, and the row of each vertex.
+fn begin(task: Task, watch: &Watch) -> Result<(Work, Vec<u32>)> {
     let (rows, own) = compact(task.points, task.simplices, watch)?;
     let mut points = with_room(rows.len() + 1)?;
     points.extend(rows.iter().map(|&row| task.points[row as usize]));
@@ -119,13 +132,12 @@ fn refine_as_is(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> {
             *on = given.on[row as usize];
         }
     }
-    let mut caps = filled(marked.triangles() as usize, f64::INFINITY)?;
+    let caps = filled(marked.triangles() as usize, f64::INFINITY)?;
     let mut pace = Pace::new(watch, LOT);
-    for (t, (&label, &area)) in (0..).zip(task.labels.iter().zip(task.areas)) {
+    for (t, &label) in (0..).zip(task.labels) {
         pace.spend(1)?;
         // 0 is for ghosts and triangles outside the domain.
         marked.patch().set_label(t, (label + 1).max(0) as u32);
-        caps[t as usize] = 2.0 * area;
     }
     for &[u, v] in &pieces {
         pace.spend(1)?;
@@ -135,14 +147,21 @@ fn refine_as_is(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> {
         let e = marked.edge(u, v)?;
         marked.patch().mark(e, true);
     }
-    let mut work = Work::new(marked, caps, on, [&pieces, lines], task)?;
-    let exhausted = !work.run(watch, tell)?;
-    export(work, &rows, task.points.len(), exhausted, watch)
+    let rules = Rules {
+        frozen: copied(task.frozen)?,
+        min_angle: task.min_angle,
+        circles: task.circles,
+        sizes_yield: task.sizes_yield,
+        max_vertices: task.max_vertices,
+    };
+    let of = task.lines.map(|lines| lines.of);
+    let work = Work::new(marked, caps, on, [&pieces, lines], of, rules)?;
+    Ok((work, rows))
 }
 
 /// Converts everything to rows.
 fn export(
-    mut work: Work,
+    work: &mut Work,
     rows: &[u32],
     given: usize,
     exhausted: bool,

@@ -40,6 +40,10 @@
 //! whose price is not allowed, gets a number of steps of work in proportion to the triangles that
 //! it has by then. If they suffice it counts as a corner.
 //!
+//! In further rounds (see `rounds`) the triangles of needles that were closed to the end belong to
+//! needles again, which stay closed. Their fences have vertices by then, which are on no line, so
+//! that a line may not see any more what faces it beyond them.
+//!
 //! All others stay as they are: a finite triangulation of the vertices that were placed on their
 //! sides from outside. So all needles together use about that share, as far as the prices are
 //! right; if they are too low, the limit on vertices ends the work after everything else is done.
@@ -74,6 +78,8 @@ pub struct Needles {
     pub fences: HashMap<[u32; 2], Fence>,
     /// For each triangle the needle in which it was left, or -1; empty if there are no needles.
     pub left: Vec<i32>,
+    /// The triangles of needles that were closed to the end of the round before.
+    pub kept: Vec<u32>,
 }
 
 /// The key of an edge, regardless of its direction.

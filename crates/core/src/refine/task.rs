@@ -49,6 +49,21 @@ pub struct Task<'a> {
     pub max_vertices: usize,
 }
 
+/// The options of a [`Task`] that its refinement needs to the end.
+#[derive(Debug)]
+pub struct Rules {
+    /// For each line, whether splitting it is forbidden.
+    pub frozen: Vec<bool>,
+    /// See [`Task`].
+    pub min_angle: f64,
+    /// See [`Task`].
+    pub circles: bool,
+    /// See [`Task`].
+    pub sizes_yield: bool,
+    /// The limit on added vertices.
+    pub max_vertices: usize,
+}
+
 /// The number of vertices added for each reason.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counts {

@@ -22,7 +22,7 @@ use super::needles::Needles;
 use super::place::{Bend, Places};
 use super::queue::{Bad, Queue};
 use super::shape::{Reason, Seen, Shape, angle, dot, minus};
-use super::task::{Counts, Task, Tell};
+use super::task::{Counts, Rules, Tell};
 use crate::constrained::conforming::cut;
 use crate::constrained::marked::{Marked, turn};
 use crate::error::Result;
@@ -80,14 +80,15 @@ fn neighbors(x: Point2) -> impl Iterator<Item = Point2> {
 }
 
 /// The state of a refinement.
-pub struct Work<'a> {
+#[derive(Debug)]
+pub struct Work {
     pub marked: Marked,
     /// The limit on twice the area of each triangle.
-    caps: Vec<f64>,
+    pub caps: Vec<f64>,
     /// For each vertex the line on which it was placed, or -1.
     pub on: Vec<i32>,
     pub counts: Counts,
-    pub(super) task: Task<'a>,
+    pub(super) rules: Rules,
     /// The lines as pairs of vertices, followed by the fences.
     pub(super) ends: Vec<[u32; 2]>,
     /// The line between two vertices of the input.
@@ -103,36 +104,65 @@ pub struct Work<'a> {
     pub(super) own: usize,
 }
 
-impl<'a> Work<'a> {
+impl Work {
     pub fn new(
         marked: Marked,
         caps: Vec<f64>,
         on: Vec<i32>,
-        [pieces, ends]: [&'a [[u32; 2]]; 2],
-        task: Task<'a>,
+        [pieces, ends]: [&[[u32; 2]]; 2],
+        of: Option<&[i32]>,
+        rules: Rules,
     ) -> Result<Self> {
         let own = marked.count;
         let key = |&[u, v]: &[u32; 2]| [u.min(v), u.max(v)];
-        let line = |i: usize| task.lines.map_or(i as i32, |lines| lines.of[i]);
+        let line = |i: usize| of.map_or(i as i32, |of| of[i]);
         Ok(Self {
             caps,
             on,
             counts: Counts::default(),
-            task,
             needles: Needles::of(ends.len()),
             ends: copied(ends)?,
             between: (pieces.iter().enumerate())
                 .map(|(i, e)| (key(e), line(i)))
                 .collect(),
             sharp: corners::sharp(&marked.points, pieces, own, SHARP)?,
-            shape: Shape::new(task.min_angle, task.circles),
-            places: Places::new(task.min_angle),
+            shape: Shape::new(rules.min_angle, rules.circles),
+            places: Places::new(rules.min_angle),
+            rules,
             queue: Queue::default(),
             encroached: with_room(64)?,
             cavity: Cavity::default(),
             own,
             marked,
         })
+    }
+
+    /// Begins again with the vertices that there are by now, as if all were given.
+    pub fn begin_again(&mut self, max_vertices: usize) -> Result<()> {
+        self.own = self.marked.count;
+        self.rules.max_vertices = max_vertices;
+        self.ends.truncate(self.needles.lines);
+        self.needles = Needles {
+            kept: std::mem::take(&mut self.needles.kept),
+            ..Needles::of(self.ends.len())
+        };
+        let pieces = self.pieces()?;
+        self.sharp = corners::sharp(&self.marked.points, &pieces, self.own, SHARP)?;
+        Ok(())
+    }
+
+    /// The subsegments, each once.
+    pub(super) fn pieces(&mut self) -> Result<Vec<[u32; 2]>> {
+        let mut pieces = Vec::new();
+        let triangles = self.marked.triangles();
+        let mesh = self.marked.mesh.resume(triangles);
+        for e in (0..triangles).flat_map(|t| 8 * t..8 * t + 3) {
+            let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
+            if ends[0] < ends[1] && mesh.is_marked(e) {
+                push(&mut pieces, ends)?;
+            }
+        }
+        Ok(pieces)
     }
 
     /// Refines until nothing is bad, first outside of needles, then in those that the budget
@@ -164,7 +194,7 @@ impl<'a> Work<'a> {
                 tell(added, &mut || self.smallest())?;
                 until_watch = WATCH_EVERY;
             }
-            if self.marked.count - self.own >= self.task.max_vertices {
+            if self.marked.count - self.own >= self.rules.max_vertices {
                 return Ok(false);
             }
             if let Some(queued) = self.encroached.pop() {
@@ -289,7 +319,7 @@ impl<'a> Work<'a> {
         let [u, v] = [next(e), prev(e)].map(|c| mesh.vertex(c));
         let segment = self.segment_of([u, v]);
         let fence = self.needles.is_fence(segment);
-        if segment >= 0 && !fence && self.task.frozen[segment as usize] {
+        if segment >= 0 && !fence && self.rules.frozen[segment as usize] {
             return Ok(false);
         }
         let x = self.split_point(u, v);
@@ -451,7 +481,7 @@ impl<'a> Work<'a> {
         match self.find_cavity(t, p) {
             Site::Free => self.insert(p, reason),
             Site::Blocked(blockers) => {
-                if self.split_blockers(t, &blockers)? || seen.area2 <= cap || self.task.sizes_yield
+                if self.split_blockers(t, &blockers)? || seen.area2 <= cap || self.rules.sizes_yield
                 {
                     return Ok(());
                 }
