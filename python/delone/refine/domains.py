@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone.constrained.segmented import Segmented
-    from delone.refine.sizing import Samples
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
@@ -194,15 +193,18 @@ def refined(
 
 
 def started(
-    domain: Domain, samples: Samples, min_angle: float, kinds: tuple[bool, bool]
+    domain: Domain, samples: tuple[Floats, Floats], min_angle: float, kinds: tuple[bool, bool]
 ) -> _core.Refinement2:
-    """Pass a domain to the core for a refinement in rounds; `kinds` are (circles, sizes_yield)."""
+    """Pass a domain to the core for a refinement in rounds.
+
+    `samples` are positions and the largest areas there, `kinds` are (circles, sizes_yield).
+    """
     lines = domain.lines
     segments, line = sides_of(domain.simplices, domain.neighbors, domain.sides)
     return _core.Refinement2(
         (domain.points, domain.simplices, domain.labels, segments, lines.frozen),
         (line, lines.ends, domain.on),
-        (samples.positions, samples.areas),
+        samples,
         min_angle,
         *kinds,
     )

@@ -82,7 +82,8 @@ def _sampled(
     """Refine by sizes that vary. The mesh stays in the core, which returns the new triangles."""
     workers, progress = as_workers(limits.workers), limits.progress
     kinds = limits.circles, limits.sizes_yield
-    refinement = domains.started(domain, samples, limits.min_angle, kinds)
+    at = samples.positions, samples.areas
+    refinement = domains.started(domain, at, limits.min_angle, kinds)
     added = 0
     for turn in range(_MOST_ROUNDS):
         complies = refinement.comply(sizing.at(*refinement.fresh(workers)))
