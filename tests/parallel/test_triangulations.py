@@ -1,7 +1,7 @@
 """Triangulations larger than what one task of any loop takes, checked by integers in NumPy.
 
-Blocks begin at 2^17 points, the arrays of a mesh are written in tasks of 2^14 triangles, and the
-loops of the methods look at the watch every few thousand steps.
+There are two blocks from 2^13 points on, and more from 2^15; the arrays of a mesh are written in
+tasks of 2^12 triangles, and the loops of the methods look at the watch every few thousand steps.
 """
 
 from __future__ import annotations

@@ -6,8 +6,8 @@
 
 use crate::error::{Error, Result};
 
-/// Arrays smaller than this, two huge pages, do not ask for huge pages.
-const HUGE_FROM: usize = 2 << 21;
+/// Arrays smaller than this, a huge page, do not ask for huge pages.
+const HUGE_FROM: usize = 1 << 21;
 
 /// An empty vector with room for `n` items.
 pub fn with_room<T>(n: usize) -> Result<Vec<T>> {
@@ -83,6 +83,8 @@ pub unsafe trait Zero: Copy {}
 #[allow(unsafe_code)]
 mod zero {
     // SAFETY: an integer.
+    unsafe impl super::Zero for u16 {}
+    // SAFETY: an integer.
     unsafe impl super::Zero for u32 {}
     // SAFETY: an integer.
     unsafe impl super::Zero for u64 {}
@@ -116,6 +118,16 @@ pub fn zeroed<T: Zero>(n: usize) -> Result<Vec<T>> {
         huge::advise(&mut v);
     }
     Ok(v)
+}
+
+/// The same rows in the same memory, as signed numbers with the same bits.
+#[allow(unsafe_code)]
+pub fn signed<const N: usize>(rows: Vec<[u32; N]>) -> Vec<[i32; N]> {
+    let mut rows = std::mem::ManuallyDrop::new(rows);
+    let (start, length, capacity) = (rows.as_mut_ptr(), rows.len(), rows.capacity());
+    // SAFETY: u32 and i32 have the same size and alignment, and each bit pattern of one is a value
+    // of the other; so a vector of one is a vector of the other. The first one is never dropped.
+    unsafe { Vec::from_raw_parts(start.cast(), length, capacity) }
 }
 
 #[cfg(target_os = "linux")]
@@ -156,6 +168,17 @@ mod tests {
                 .all(|&x: &u32| x == 0)
         );
         assert!(zeroed::<u64>(0).unwrap().is_empty());
+    }
+
+    #[test]
+    fn signed_rows_have_the_same_bits() {
+        let mut rows = with_room(9).unwrap();
+        rows.extend([[0, 1], [u32::MAX, 1 << 31]]);
+        let start = rows.as_ptr().addr();
+        let rows = signed(rows);
+        assert_eq!(rows, [[0, 1], [-1, i32::MIN]]);
+        assert_eq!((rows.as_ptr().addr(), rows.capacity()), (start, 9));
+        assert!(signed::<3>(Vec::new()).is_empty());
     }
 
     #[test]

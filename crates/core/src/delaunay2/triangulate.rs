@@ -99,13 +99,20 @@ pub fn triangulate(
     watch: &Watch,
 ) -> Result<Triangulation> {
     let mut clock = Clock::start();
-    let built = mesh(input, method, workers, watch, &mut clock)?;
+    let Built {
+        mesh,
+        ghost,
+        points,
+        rows,
+        duplicates,
+    } = mesh(input, method, workers, watch, &mut clock)?;
     watch.check()?;
-    let arrays = export::arrays(built.mesh, built.ghost, &built.rows, workers, watch)?;
+    drop(points);
+    let arrays = export::arrays(mesh, ghost, &rows, workers, watch)?;
     clock.lap("export");
     Ok(Triangulation {
         arrays,
-        duplicates: built.duplicates,
+        duplicates,
         stages: clock.stages,
     })
 }
@@ -151,6 +158,10 @@ pub fn mesh(
     })
 }
 
+/// Meshes with fewer vertices are merged by one thread: starting another takes about as long as all
+/// merges of two blocks.
+const MERGED_ALONE: usize = 1 << 18;
+
 /// Triangulates each block, then merges pairs of blocks.
 fn build(
     mesh: &mut Mesh2,
@@ -175,11 +186,16 @@ fn build(
             watch,
         )
     })?;
+    let merging = if points.len() < MERGED_ALONE {
+        1
+    } else {
+        workers
+    };
     let mut width = 2;
     while ghosts.len() > 1 {
         watch.check()?;
         let tasks = patches(mesh, starts, width);
-        ghosts = parallel::map_watched(workers, tasks, watch, |(i, mut mesh)| {
+        ghosts = parallel::map_watched(merging, tasks, watch, |(i, mut mesh)| {
             let spare = mesh.spare(starts[i * width + width / 2] - starts[i * width]);
             let sides = [ghosts[2 * i], ghosts[2 * i + 1]];
             let axis = arranged.cuts.axis(i, width);

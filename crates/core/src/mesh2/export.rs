@@ -1,12 +1,13 @@
 //! Exports the mesh as arrays: ghosts are dropped, and triangles from the end take their records.
 //!
-//! The remaining records are then written in order, by all workers.
+//! The corners of triangles stay in the memory of the mesh, where they move together. So less memory
+//! is touched for the first time, which takes longer than moving them, and less is in use.
 
 use super::storage::{OPPOSITE, RECORD};
 use super::{Code, Mesh2, triangle};
 use crate::arrays::Arrays;
 use crate::error::{Error, Result};
-use crate::memory::{with_room, zeroed};
+use crate::memory::{signed, with_room, zeroed};
 use crate::parallel;
 use crate::watch::Watch;
 
@@ -15,29 +16,28 @@ use crate::watch::Watch;
 pub(super) const OUTSIDE: Code = Code::MAX;
 
 /// Triangles per task.
-const SHARE: usize = 1 << 14;
+const SHARE: usize = 1 << 12;
 /// Triangles whose marks are read between two checks for interruption.
 const LOT: usize = 1 << 16;
 
 /// Like [`arrays`], and for each triangle and corner whether the opposite edge is marked.
 pub fn marked_arrays(
-    mesh: Mesh2,
+    mut mesh: Mesh2,
     ghost: Code,
     rows: &[u32],
     workers: usize,
     watch: &Watch,
 ) -> Result<(Arrays<3>, Vec<[bool; 3]>)> {
     let all = 2 * mesh.vertices() - 2;
-    let (mut mesh, out) = write(mesh, Some(ghost), all, rows, workers, watch)?;
+    let count = drop_ghosts(&mut mesh, ghost, all)?;
     let patch = mesh.patch();
-    let count = out.simplices.len();
     let mut marks = with_room(count)?;
     for first in (0..count).step_by(LOT) {
         watch.check()?;
         let lot = first..count.min(first + LOT);
         marks.extend(lot.map(|t| patch.marks(t as u32)));
     }
-    Ok((out, marks))
+    Ok((write(mesh, count, rows, workers, watch)?, marks))
 }
 
 /// Exports `mesh`, one of whose ghosts is `ghost`; vertex v becomes `rows[v]`.
@@ -54,60 +54,63 @@ pub fn arrays(
 
 /// The same for the first `all` records of a mesh, which may lack vertices, or ghosts.
 pub fn partial_arrays(
-    mesh: Mesh2,
-    ghost: Option<Code>,
-    all: usize,
-    rows: &[u32],
-    workers: usize,
-    watch: &Watch,
-) -> Result<Arrays<3>> {
-    write(mesh, ghost, all, rows, workers, watch).map(|(_, arrays)| arrays)
-}
-
-/// The arrays, and the mesh without ghosts.
-fn write(
     mut mesh: Mesh2,
     ghost: Option<Code>,
     all: usize,
     rows: &[u32],
     workers: usize,
     watch: &Watch,
-) -> Result<(Mesh2, Arrays<3>)> {
+) -> Result<Arrays<3>> {
     let count = match ghost {
         Some(ghost) => drop_ghosts(&mut mesh, ghost, all)?,
         None => all,
     };
-    let mut out = Arrays {
-        simplices: zeroed(count)?,
-        neighbors: zeroed(count)?,
-    };
-    let shares = out
-        .simplices
-        .chunks_mut(SHARE)
-        .zip(out.neighbors.chunks_mut(SHARE));
-    let tasks = mesh.records[..RECORD * count]
-        .chunks(RECORD * SHARE)
-        .zip(shares)
+    write(mesh, count, rows, workers, watch)
+}
+
+/// The first `count` records as arrays.
+fn write(
+    mesh: Mesh2,
+    count: usize,
+    rows: &[u32],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Arrays<3>> {
+    let mut corners = mesh.into_words();
+    let words = corners.as_flattened_mut();
+    let mut neighbors = zeroed(count)?;
+    let tasks = words[..RECORD * count]
+        .chunks_mut(RECORD * SHARE)
+        .zip(neighbors.chunks_mut(SHARE))
         .collect();
-    parallel::map_watched(
-        workers,
-        tasks,
-        watch,
-        |(records, (simplices, neighbors))| {
-            for ((r, s), n) in records
-                .as_chunks::<RECORD>()
-                .0
-                .iter()
-                .zip(simplices)
-                .zip(neighbors)
-            {
-                *s = [r[0], r[1], r[2]].map(|v| rows[v as usize] as i32);
-                *n = [r[OPPOSITE], r[OPPOSITE + 1], r[OPPOSITE + 2]].map(|e| e as i32 >> 3);
-            }
-            Ok(())
-        },
-    )?;
-    Ok((mesh, out))
+    parallel::map_watched(workers, tasks, watch, |(records, neighbors)| {
+        pack(records, neighbors, rows);
+        Ok(())
+    })?;
+    for first in (SHARE..count).step_by(SHARE) {
+        watch.check()?;
+        let from = RECORD * first;
+        words.copy_within(from..from + 3 * SHARE.min(count - first), 3 * first);
+    }
+    corners.truncate(count);
+    corners.shrink_to_fit();
+    Ok(Arrays {
+        simplices: signed(corners),
+        neighbors,
+    })
+}
+
+/// Writes the neighbors of the triangles in `records`, and moves their corners, as rows, to the front
+/// of `records`: those of triangle i end before record i + 1 begins.
+fn pack(records: &mut [u32], neighbors: &mut [[i32; 3]], rows: &[u32]) {
+    for (i, n) in neighbors.iter_mut().enumerate() {
+        let Some(&r) = records[RECORD * i..].first_chunk::<RECORD>() else {
+            break;
+        };
+        let corners = [r[0], r[1], r[2]].map(|v| rows[v as usize]);
+        records[3 * i..3 * i + 3].copy_from_slice(&corners);
+        *n = [r[OPPOSITE], r[OPPOSITE + 1], r[OPPOSITE + 2]].map(|e| e as i32 >> 3);
+    }
 }
 
 /// Moves the finite triangles among the first `all` records of `mesh` to its first records and returns

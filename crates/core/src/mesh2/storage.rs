@@ -38,16 +38,16 @@ pub fn triangle(e: Code) -> u32 {
 /// The memory of a mesh over vertices `0..infinite`.
 #[derive(Debug)]
 pub struct Mesh2 {
-    pub(super) records: Vec<u32>,
+    /// The words of the records, in threes: the export leaves the corners of triangles there.
+    words: Vec<[u32; 3]>,
     infinite: u32,
 }
 
 impl Mesh2 {
     /// Capacity for the triangles of `vertices` vertices.
     pub fn with_vertices(vertices: usize) -> Result<Self> {
-        let records = zeroed(RECORD * PER_VERTEX * vertices)?;
         Ok(Self {
-            records,
+            words: zeroed((RECORD * PER_VERTEX * vertices).div_ceil(3))?,
             infinite: vertices as u32,
         })
     }
@@ -55,7 +55,7 @@ impl Mesh2 {
     /// All records as one patch.
     pub fn patch(&mut self) -> Patch<'_> {
         Patch {
-            records: &mut self.records,
+            records: self.words.as_flattened_mut(),
             base: 0,
             used: 0,
             infinite: self.infinite,
@@ -71,6 +71,11 @@ impl Mesh2 {
         }
     }
 
+    /// The words of the records, in threes.
+    pub(super) fn into_words(self) -> Vec<[u32; 3]> {
+        self.words
+    }
+
     /// The number of vertices.
     pub fn vertices(&self) -> usize {
         self.infinite as usize
@@ -80,11 +85,11 @@ impl Mesh2 {
     /// the number of the infinite vertex changes with it.
     pub fn resize(&mut self, vertices: usize, used: u32, watch: &Watch) -> Result<()> {
         let (before, after) = (self.infinite, vertices as u32);
-        let mut records = zeroed(RECORD * PER_VERTEX * vertices)?;
+        let mut words = zeroed((RECORD * PER_VERTEX * vertices).div_ceil(3))?;
         let kept = RECORD * used as usize;
-        let lots = records[..kept]
+        let lots = words.as_flattened_mut()[..kept]
             .chunks_mut(LOT)
-            .zip(self.records[..kept].chunks(LOT));
+            .zip(self.words.as_flattened()[..kept].chunks(LOT));
         for (lot, old) in lots {
             watch.check()?;
             lot.copy_from_slice(old);
@@ -94,7 +99,7 @@ impl Mesh2 {
                 }
             }
         }
-        (self.records, self.infinite) = (records, after);
+        (self.words, self.infinite) = (words, after);
         Ok(())
     }
 }

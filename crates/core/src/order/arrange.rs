@@ -42,11 +42,15 @@ pub fn arrange(points: &[Point2], workers: usize, watch: &Watch) -> Result<Arran
         tasks.push((p, r));
         (rest_points, rest_rows) = (q, s);
     }
-    // At most one block per worker is in progress, and its buffer is reused.
+    // At most one block per worker is in progress, and its buffers are reused.
+    let largest = tasks.iter().map(|(points, _)| points.len()).max();
     let rooms = Mutex::new(Vec::new());
     let ordered = parallel::map_watched(workers, tasks, watch, |(points, rows)| {
         let room = rooms.lock().ok().and_then(|mut rooms| rooms.pop());
-        let mut room: Scratch = room.unwrap_or_default();
+        let mut room = match room {
+            Some(room) => room,
+            None => Scratch::with_room(largest.unwrap_or(0))?,
+        };
         let ordered = along_curve(points, rows, &mut room, watch);
         if let Ok(mut rooms) = rooms.lock() {
             rooms.push(room);

@@ -8,7 +8,7 @@ use delone_predicates::Point2;
 use super::cells::{Cells, fine_bits, order_runs, row};
 use super::radix;
 use crate::error::Result;
-use crate::memory::clear_with_room;
+use crate::memory::{clear_with_room, with_room};
 use crate::points::Extent;
 use crate::watch::Watch;
 
@@ -19,6 +19,18 @@ pub struct Scratch {
     other: Vec<u64>,
     points: Vec<Point2>,
     rows: Vec<u32>,
+}
+
+impl Scratch {
+    /// Buffers for blocks of up to `points` points,.
+    pub fn with_room(points: usize) -> Result<Self> {
+        Ok(Self {
+            items: with_room(points)?,
+            other: with_room(points)?,
+            points: with_room(points)?,
+            rows: with_room(points)?,
+        })
+    }
 }
 
 /// Sorts the `points` of a block and their `rows`, which are ascending: the distinct points come

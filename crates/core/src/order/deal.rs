@@ -2,12 +2,15 @@
 //! task.
 
 use crate::error::Result;
-use crate::memory::{Zero, zeroed};
+use crate::memory::{Zero, filled, zeroed};
 use crate::parallel;
 use crate::watch::Watch;
 
-/// Points per task.
-const SHARE: usize = 1 << 16;
+/// The fewest points per task.
+const SHARE: usize = 1 << 12;
+
+/// The most tasks: each has counts for all blocks.
+const TASKS: usize = 1 << 8;
 
 /// Points between two checks for interruption: each may be the first to touch a huge page, which
 /// takes a millisecond.
@@ -44,17 +47,19 @@ pub fn deal<const D: usize>(
 where
     [f64; D]: Zero,
 {
-    let shares: Vec<&[[f64; D]]> = points.chunks(SHARE).collect();
-    let classified = parallel::map_watched(workers, shares, watch, |share| {
-        let mut counts = vec![0usize; blocks];
-        let mut block_of = Vec::with_capacity(share.len());
-        for &p in share {
-            let b = block(p);
-            counts[b] += 1;
-            block_of.push(b as u16);
-        }
-        Ok((block_of, counts))
-    })?;
+    let share = points.len().div_ceil(TASKS).max(SHARE);
+    let mut block_of = zeroed::<u16>(points.len())?;
+    let tasks = points.chunks(share).zip(block_of.chunks_mut(share));
+    let classified =
+        parallel::map_watched(workers, tasks.collect(), watch, |(share, block_of)| {
+            let mut counts = filled(blocks, 0usize)?;
+            for (&p, b) in share.iter().zip(block_of) {
+                let i = block(p);
+                counts[i] += 1;
+                *b = i as u16;
+            }
+            Ok(counts)
+        })?;
     let mut out = Blocks {
         points: zeroed(points.len() + 1)?,
         rows: zeroed(points.len())?,
@@ -69,7 +74,7 @@ where
     let (mut rest_points, mut rest_rows) = (&mut out.points[..], &mut out.rows[..]);
     for b in 0..blocks {
         let mut size = 0;
-        for ((_, counts), part) in classified.iter().zip(&mut parts) {
+        for (counts, part) in classified.iter().zip(&mut parts) {
             let (p, q) = rest_points.split_at_mut(counts[b]);
             let (r, s) = rest_rows.split_at_mut(counts[b]);
             part.push((p, r));
@@ -78,14 +83,14 @@ where
         }
         out.starts.push(out.starts[b] + size);
     }
-    let tasks = points.chunks(SHARE).zip(&classified).zip(parts).enumerate();
+    let shares = points.chunks(share).zip(block_of.chunks(share));
+    let tasks = (0u32..).step_by(share).zip(shares).zip(parts);
     parallel::map_watched(
         workers,
         tasks.collect(),
         watch,
-        |(i, ((share, (block_of, _)), mut part))| {
-            let mut filled = vec![0usize; blocks];
-            let first_row = (i * SHARE) as u32;
+        |((first_row, (share, block_of)), mut part)| {
+            let mut filled = filled(blocks, 0usize)?;
             let lots = share.chunks(LOT).zip(block_of.chunks(LOT));
             for ((share, block_of), first_row) in lots.zip((first_row..).step_by(LOT)) {
                 watch.check()?;
