@@ -11,6 +11,7 @@ import typer
 
 from delone import ConstrainedDelaunay, ConstrainedReport
 from delone.cli.exits import Exit, Failure, reading
+from delone.cli.faces import check_faces
 from delone.cli.options import Json, Quiet
 from delone.cli.report import Stopwatch, geometry
 from delone.cli.show import print_json, print_rows, print_text, spinner
@@ -47,16 +48,29 @@ def check(
             "--canonical", help="Require delone's choice of diagonals among cocircular points."
         ),
     ] = False,
+    surface: Annotated[
+        bool,
+        typer.Option(
+            "--surface",
+            help="3-D: check instead that triangles do not cross and enclose a region.",
+        ),
+    ] = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
     """Prove exactly that triangles are Delaunay, or name the faults and exit with 1."""
+    if surface and canonical:
+        raise Failure("--canonical is for triangulations, not for --surface", Exit.USAGE)
     with spinner(quiet or as_json) as say:
-        figures, lines = _figures(mesh, canonical=canonical, say=say)
+        if surface:
+            figures, lines = check_faces(mesh, say=say)
+        else:
+            figures, lines = _figures(mesh, canonical=canonical, say=say)
     if as_json:
         print_json(figures)
     elif not quiet:
-        names = [name for name in ("points", "triangles", "tetrahedra") if name in figures]
+        counts = ("points", "triangles", "tetrahedra", "faces")
+        names = [name for name in counts if name in figures]
         print_rows(str(mesh), [(name, f"{figures[name]:,}") for name in names])
         print_text("\n".join(lines))
     if not figures["ok"]:
