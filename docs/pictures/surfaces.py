@@ -27,7 +27,7 @@ def crossing() -> None:
         1, 2, figsize=(11, 4.6), layout="constrained", subplot_kw={"projection": "3d"}
     )
     for ax, shift in zip(row, (1.0, 0.55), strict=True):
-        both = np.concatenate((points, upright + (shift, 0.0, 0.0)))
+        both = np.concatenate((points, upright + np.array((shift, 0, 0))))
         rows = np.concatenate((faces, faces + len(points)))
         check = delone.check_surface(both, rows)
         colors = np.repeat(np.array([_PLAIN, _OTHER]), len(faces))
@@ -37,7 +37,7 @@ def crossing() -> None:
         )
         low, high = both.min(axis=0), both.max(axis=0)
         ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-        ax.set_box_aspect(high - low, zoom=1.5)
+        ax.set_box_aspect(high - low, zoom=1.3)
         ax.view_init(elev=28, azim=-62)
         ax.set_axis_off()
         what = f"{check.nregions} regions, volume {check.volume:.2f}" if check else "not valid"

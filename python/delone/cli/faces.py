@@ -71,10 +71,9 @@ def check_faces(path: Path, *, say: Callable[[str], None]) -> tuple[dict[str, An
         "volume": finite_or_none(found.volume),
         "volume_sign": found.volume_sign,
         "pairs": _pairs(found),
-        "faults": {name: _fault(getattr(found, name)) for name in _FAULTS},
+        "faults": {name: _fault(rows) for name in _FAULTS if len(rows := getattr(found, name))},
         "stages": watch.rows(len(points)),
     }
-    figures["faults"] = {name: fault for name, fault in figures["faults"].items() if fault["count"]}
     return figures, str(found).splitlines()
 
 

@@ -168,5 +168,5 @@ def _is_flat(points: NDArray[np.float64], faces: NDArray[np.int32], found: Check
         return True
     corners = points[faces[np.argmax(proper)]]
     others = points[np.unique(faces)]
-    plane = (np.tile(corner, (len(others), 1)) for corner in corners)
-    return not _core.orient3d(*plane, others).any()
+    a, b, c = (np.tile(corner, (len(others), 1)) for corner in corners)
+    return not _core.orient3d(a, b, c, others).any()

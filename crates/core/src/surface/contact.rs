@@ -8,7 +8,7 @@
 //! in order.
 
 use delone_predicates::stages;
-use delone_predicates::{Point2, Point3, Sign, orient2d, orient3d};
+use delone_predicates::{Point2, Point3, Sign, orient2d, orient3d, orient3d_exact};
 
 /// The kinds of contacts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -140,31 +140,46 @@ const EDGES: [(usize, usize); 3] = [(0, 1), (1, 2), (2, 0)];
 /// How two triangles that do not have all vertices in common cross or touch; `None` if they have
 /// nothing in common but shared vertices or a shared edge.
 pub fn contact(a: &Triangle, b: &Triangle) -> Option<Contact> {
-    let shared_a = a.ids.map(|v| b.ids.contains(&v));
-    if !is_clear(a, shared_a, b) && (is_beside(a, b) || is_beside(b, a)) {
+    let shared_a = shared(a, b);
+    let rough = rough_sides(a, shared_a, b);
+    if rough.contains(&None) && (is_beside(a, b) || is_beside(b, a)) {
         return None;
     }
-    let of_a = sides(a, shared_a, b);
+    let of_a = sides(a, rough, b);
     if apart(of_a, shared_a) {
         return None;
     }
     if of_a == [Sign::Zero; 3] {
         return in_one_plane(a, b);
     }
-    let shared_b = b.ids.map(|v| a.ids.contains(&v));
-    let of_b = sides(b, shared_b, a);
+    let shared_b = shared(b, a);
+    let of_b = sides(b, rough_sides(b, shared_b, a), a);
     if apart(of_b, shared_b) {
         return None;
     }
     in_two_planes(a, b, of_a, of_b)
 }
 
-/// Whether the filter of `orient3d` decides on which sides of the plane of `b` the vertices of `a`
-/// are. Exact answers for coplanar points take a hundred times as long.
-fn is_clear(a: &Triangle, shared: [bool; 3], b: &Triangle) -> bool {
+/// Which vertices of `a` are also vertices of `b`.
+#[inline]
+fn shared(a: &Triangle, b: &Triangle) -> [bool; 3] {
+    let [p, q, r] = b.ids;
+    let [x, y, z] = a.ids;
+    let is = |v: u32| v == p || v == q || v == r;
+    [is(x), is(y), is(z)]
+}
+
+/// The sides of the plane of `b` on which the vertices of `a` are, where a filter decides. Exact
+/// answers for coplanar points take a hundred times as long.
+fn rough_sides(a: &Triangle, shared: [bool; 3], b: &Triangle) -> [Option<Sign>; 3] {
     let [p, q, r] = b.at;
-    let decided = |i: usize| stages::orient3d::filter(p, q, r, a.at[i]).is_some();
-    (0..3).all(|i| shared[i] || decided(i))
+    let mut found = [Some(Sign::Zero); 3];
+    for i in 0..3 {
+        if !shared[i] {
+            found[i] = stages::orient3d::filter(p, q, r, a.at[i]);
+        }
+    }
+    found
 }
 
 /// Whether filters prove, in a projection along an axis, that the line along an edge of `a`
@@ -189,16 +204,11 @@ fn is_beside(a: &Triangle, b: &Triangle) -> bool {
     })
 }
 
-/// The sides of the plane of `b` on which the vertices of `a` are.
-fn sides(a: &Triangle, shared: [bool; 3], b: &Triangle) -> [Sign; 3] {
+/// All of them, exactly.
+fn sides(a: &Triangle, rough: [Option<Sign>; 3], b: &Triangle) -> [Sign; 3] {
     let [p, q, r] = b.at;
-    [0, 1, 2].map(|i| {
-        if shared[i] {
-            Sign::Zero
-        } else {
-            orient3d(p, q, r, a.at[i])
-        }
-    })
+    let exact = |i: usize| rough[i].unwrap_or_else(|| orient3d_exact(p, q, r, a.at[i]));
+    [exact(0), exact(1), exact(2)]
 }
 
 /// Whether all vertices that are not shared are strictly on one side.

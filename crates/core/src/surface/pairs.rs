@@ -166,9 +166,11 @@ impl<'a> Along<'a> {
 
     fn triangle(&self, place: usize) -> Triangle {
         let ids = self.faces[self.rows[place] as usize];
+        let [a, b, c] = ids;
+        let at = |v: u32| self.points[v as usize];
         Triangle {
             ids,
-            at: ids.map(|v| self.points[v as usize]),
+            at: [at(a), at(b), at(c)],
         }
     }
 
