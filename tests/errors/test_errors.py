@@ -24,6 +24,8 @@ CASES = [
     errors.DirectionError("m", rows=[1, 4], count=11),
     errors.ConflictingValuesError("m", rows=[(2, 0)]),
     errors.CrossingSegmentsError("m", pairs=[(0, 2)], points=[(0.5, 1.5)]),
+    errors.CrossingFacesError("m", pairs=[(0, 2)], kinds=["crossing"], count=4),
+    errors.OpenSurfaceError("m", edges=[(0, 2), (2, 3)]),
     errors.BudgetExceededError("m", limit=10, found=12, segments=[3, 1], place=(0.5, 2.0)),
     errors.BusyError("m", pid=7, host="here"),
     errors.LimitError("m"),

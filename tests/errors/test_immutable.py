@@ -50,6 +50,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "ConvexHull": lambda: delone.ConvexHull(FLAT),
     "MeshReport": lambda: delone.mesh(NEEDLE).report,
     "ImproveReport": lambda: delone.improve(delone.Delaunay(SOLID)).report,
+    "SurfaceCheck": lambda: delone.check_surface(SOLID, [(0, 1, 2), (2, 3, 4)]),
     "SegmentReport": lambda: segments().report,
     "ValidationReport": lambda: delone.Delaunay(FLAT).validate(),
     "SpaceReport": lambda: delone.Delaunay(SOLID).validate(),
