@@ -12,6 +12,7 @@ PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11 p
 RUST_MINOR := 89
 FUZZ_SECONDS ?= 20
 BENCH ?=
+COUNTS ?=
 MUTANTS ?=
 # The order of the tests; any number, at random by default.
 SEED ?=
@@ -39,7 +40,7 @@ NEEDS_test := -E $(EXTRAS) -G test
 NEEDS_docs := -E $(EXTRAS) -G test,docs
 NEEDS_bench := --release -E $(EXTRAS) -G bench
 
-.PHONY: help need need-python build demo demo-says wheel web test lint docs linkcheck bench fuzz mutants map clean
+.PHONY: help need need-python build demo demo-says wheel web test lint docs linkcheck bench counts fuzz mutants map clean
 .DEFAULT_GOAL := help
 
 help:
@@ -49,6 +50,7 @@ help:
 	@echo 'make docs    the documentation, into docs/_build/html'
 	@echo 'make linkcheck  the links of the documentation to other sites (needs a network)'
 	@echo 'make bench   the tables of benchmarks/README.md (BENCH="--n 100000 --runs 3")'
+	@echo 'make counts  instructions of fixed jobs beside the stored counts (COUNTS=--update stores them)'
 	@echo 'make fuzz    each fuzz target for FUZZ_SECONDS ($(FUZZ_SECONDS)) seconds'
 	@echo 'make mutants seed bugs, each of which the tests must find (MUTANTS="proof-*" for some)'
 	@echo 'make wheel   a wheel for this machine, optimized as in a release, into dist'
@@ -181,6 +183,10 @@ bench: $(STAMPS)/bench
 	$(BIN)/python benchmarks/tiles.py
 	$(BIN)/python benchmarks/voronoi3.py $(BENCH)
 	@if [ -n "$$DELONE_LIDAR" ]; then $(BIN)/python benchmarks/lidar.py; fi
+
+# No time, but nearly the same number on every machine; needs valgrind, and passes without.
+counts: need
+	@$(PYTHON) benchmarks/counts.py $(COUNTS)
 
 mutants: $(STAMPS)/test
 	$(BIN)/python tests/mutants/run.py $(foreach name,$(MUTANTS),'$(name)')

@@ -25,7 +25,7 @@ CRATES = ROOT / "crates"
 
 # Files that may hold `unsafe`, each with what it is for.
 UNSAFE = {
-    "crates/core/src/memory.rs": "prefetching, zeroed pages, large pages",
+    "crates/core/src/memory.rs": "zeroed pages, large pages, signed rows",
     "crates/core/src/delaunay3/dispatch.rs": "code for features found at run time",
 }
 
