@@ -47,6 +47,7 @@ __all__ = [
     "RegularFaults2",
     "RegularFaults3",
     "RegularTriangulation",
+    "SphereDual",
     "SphereLocator",
     "SphereTriangulation",
     "Triangulation",
@@ -141,6 +142,8 @@ __all__ = [
     "sphere_circumcenters",
     "sphere_delaunay",
     "sphere_directions",
+    "sphere_dual",
+    "sphere_spans",
     "sphere_units",
     "touched2",
     "transforms2",
@@ -380,6 +383,41 @@ class SphereTriangulation:
     @property
     def duplicates(self) -> NDArray[np.int32]:
         """Rows that repeat the direction of earlier rows, and the first of these, (d, 2)."""
+
+@final
+class SphereDual:
+    """The Voronoi diagram of directions."""
+
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Facets of the convex hull: the triangles, and those across a void, (f, 3)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The facet opposite each corner, (f, 3)."""
+    @property
+    def vertex(self) -> NDArray[np.int32]:
+        """The vertex of each facet, (f,)."""
+    @property
+    def facet(self) -> NDArray[np.int32]:
+        """The first facet of each vertex, (k,)."""
+    @property
+    def around(self) -> NDArray[np.int32]:
+        """The edge of each ridge, and the corners to its left and right, (r, 4)."""
+    @property
+    def ends(self) -> NDArray[np.int32]:
+        """The vertices of each ridge, to the left and right of its edge, (r, 2)."""
+    @property
+    def cell(self) -> NDArray[np.int32]:
+        """The cell of each row, -1 if it is not a corner, (n,)."""
+    @property
+    def starts(self) -> NDArray[np.int32]:
+        """Where the entries of each cell begin."""
+    @property
+    def vertices(self) -> NDArray[np.int32]:
+        """The vertices of cells, counter-clockwise."""
+    @property
+    def ridges(self) -> NDArray[np.int32]:
+        """The ridges that follow them."""
 
 @final
 class FlippedTriangulation:
@@ -1574,6 +1612,15 @@ def sphere_areas(
 ) -> NDArray[np.float64]: ...
 def sphere_circumcenters(
     vectors: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]: ...
+def sphere_dual(
+    vectors: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    workers: int,
+) -> SphereDual: ...
+def sphere_spans(
+    vectors: NDArray[np.float64], around: NDArray[np.int32], workers: int
 ) -> NDArray[np.float64]: ...
 def refine2(
     points: NDArray[np.float64],

@@ -86,6 +86,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<terrain::ContourBands>()?;
     m.add_class::<sphere::SphereTriangulation>()?;
     m.add_class::<sphere::SphereLocator>()?;
+    m.add_class::<sphere::SphereDual>()?;
     m.add_class::<improve::ImprovedMesh>()?;
     m.add_class::<improve::ImprovementCounts>()?;
     m.add_class::<surface::CheckedSurface>()?;
@@ -97,6 +98,8 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(sphere::sphere_units, m)?)?;
     m.add_function(wrap_pyfunction!(sphere::sphere_areas, m)?)?;
     m.add_function(wrap_pyfunction!(sphere::sphere_circumcenters, m)?)?;
+    m.add_function(wrap_pyfunction!(sphere::sphere_dual, m)?)?;
+    m.add_function(wrap_pyfunction!(sphere::sphere_spans, m)?)?;
     m.add_function(wrap_pyfunction!(terrain::contour_lines2, m)?)?;
     m.add_function(wrap_pyfunction!(terrain::contour_bands2, m)?)?;
     m.add_function(wrap_pyfunction!(terrain::volumes2, m)?)?;

@@ -5,7 +5,7 @@ use delone_core::arrays::Arrays;
 use delone_core::memory::copied;
 use delone_core::sphere::angles::{Measure, directions};
 use delone_core::sphere::locate::Index;
-use delone_core::sphere::{directions as rays, measure, triangulate};
+use delone_core::sphere::{directions as rays, dual, measure, span, triangulate, void};
 use delone_core::watch::Watch;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
@@ -101,6 +101,90 @@ pub fn sphere_circumcenters(
     let found = watched(py, |watch| {
         measure::circumcenters(vectors, simplices, workers, watch)
     })?;
+    table(py, found)
+}
+
+/// The Voronoi diagram of directions.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct SphereDual {
+    /// Facets of the convex hull: the triangles, and those across a void, (f, 3).
+    pub simplices: Table<i32>,
+    /// The facet opposite each corner, (f, 3).
+    pub neighbors: Table<i32>,
+    /// The vertex of each facet, (f,).
+    pub vertex: Column<i32>,
+    /// The first facet of each vertex, (k,).
+    pub facet: Column<i32>,
+    /// The edge of each ridge, and the corners to its left and right, (r, 4).
+    pub around: Table<i32>,
+    /// The vertices of each ridge, to the left and right of its edge, (r, 2).
+    pub ends: Table<i32>,
+    /// The cell of each row, -1 if it is not a corner, (n,).
+    pub cell: Column<i32>,
+    /// Where the entries of each cell begin.
+    pub starts: Column<i32>,
+    /// The vertices of cells, counter-clockwise.
+    pub vertices: Column<i32>,
+    /// The ridges that follow them.
+    pub ridges: Column<i32>,
+}
+
+/// Returns the dual of a triangulation of at least four directions.
+#[pyfunction]
+pub fn sphere_dual(
+    py: Python<'_>,
+    vectors: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> PyResult<SphereDual> {
+    let (vectors, simplices) = given(&vectors, &simplices).map_err(|e| raise(py, &e))?;
+    let neighbors: &[[i32; 3]] = rows(&neighbors, "neighbors").map_err(|e| raise(py, &e))?;
+    if neighbors.len() != simplices.len() {
+        let error = Error::Shape("simplices and neighbors must be equally many".into());
+        return Err(raise(py, &error));
+    }
+    in_range(neighbors, -1, simplices.len(), "neighbors").map_err(|e| raise(py, &e))?;
+    let (facets, made) = watched(py, |watch| {
+        let facets = void::complete(vectors, simplices, neighbors, watch)?;
+        let made = dual::dual(
+            vectors,
+            &facets.simplices,
+            &facets.neighbors,
+            workers,
+            watch,
+        )?;
+        delone_core::error::Result::Ok((facets, made))
+    })?;
+    Ok(SphereDual {
+        simplices: table(py, facets.simplices)?,
+        neighbors: table(py, facets.neighbors)?,
+        vertex: column(py, made.vertex),
+        facet: column(py, made.facet),
+        around: table(py, made.around)?,
+        ends: table(py, made.ends)?,
+        cell: column(py, made.cell),
+        starts: column(py, made.starts),
+        vertices: column(py, made.vertices),
+        ridges: column(py, made.ridges),
+    })
+}
+
+/// Returns the length of each ridge, and the area between it and either of its sites, (r, 2).
+#[pyfunction]
+pub fn sphere_spans(
+    py: Python<'_>,
+    vectors: PyReadonlyArray2<'_, f64>,
+    around: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> PyResult<Table<f64>> {
+    let checked = (|| {
+        let (vectors, around) = (rows(&vectors, "vectors")?, rows(&around, "around")?);
+        in_range(around, 0, vectors.len(), "around")?;
+        Ok((vectors, around))
+    })();
+    let (vectors, around): (&[Point3], &[[i32; 4]]) = checked.map_err(|e| raise(py, &e))?;
+    let found = watched(py, |watch| span::spans(vectors, around, workers, watch))?;
     table(py, found)
 }
 

@@ -13,5 +13,6 @@ from __future__ import annotations
 from delone.sphere.coordinates import LongitudeWarning
 from delone.sphere.delaunay import Delaunay
 from delone.sphere.interpolation import Linear, Nearest
+from delone.sphere.voronoi import Voronoi
 
-__all__ = ["Delaunay", "Linear", "LongitudeWarning", "Nearest"]
+__all__ = ["Delaunay", "Linear", "LongitudeWarning", "Nearest", "Voronoi"]

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Rows = NDArray[np.bool_]
 
-__all__ = ["LongitudeWarning", "directions_of", "lonlat_of", "queries_of"]
+__all__ = ["LongitudeWarning", "directions_of", "lonlat_of", "queries_of", "units_of"]
 
 # Longitudes of more turns are a mistake, such as a wrong unit.
 _TURNS = 3
@@ -79,6 +79,11 @@ def queries_of(xi: ArrayLike, *, degrees: bool, workers: int | None) -> Floats:
     _refuse_angles(flat, degrees=degrees, name="xi")
     vectors = _core.sphere_directions(flat, degrees, as_workers(workers))
     return vectors.reshape((*angles.shape[:-1], 3))
+
+
+def units_of(vectors: Floats, workers: int | None) -> Floats:
+    """Return the unit vectors of vectors, rounded, (n, 3)."""
+    return _core.sphere_units(vectors, as_workers(workers))
 
 
 def lonlat_of(vectors: Floats) -> Floats:

@@ -12,7 +12,7 @@ from delone.counting import counted
 from delone.errors import InternalError
 from delone.immutable import Immutable, kept, sealed
 from delone.plane import topology
-from delone.sphere.coordinates import directions_of, lonlat_of, queries_of
+from delone.sphere.coordinates import directions_of, lonlat_of, queries_of, units_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -148,6 +148,10 @@ class Delaunay(Immutable):
     ) -> None:
         as_flag(degrees, name="degrees")
         vectors = directions_of(lonlat, xyz, degrees=degrees, workers=workers)
+        self._build(vectors, degrees, workers)
+
+    def _build(self, vectors: Floats, degrees: bool, workers: int | None) -> None:
+        """Triangulate vectors, which nobody else can change."""
         threads = 1 if workers is None and len(vectors) < _FEW else as_workers(workers)
         try:
             made = _core.sphere_delaunay(vectors, threads)
@@ -164,6 +168,12 @@ class Delaunay(Immutable):
             degrees,
             workers,
         )
+
+    @classmethod
+    def _of_vectors(cls, vectors: Floats, degrees: bool, workers: int | None) -> Self:
+        made = cls.__new__(cls)
+        made._build(vectors, degrees, workers)
+        return made
 
     def _fill(self, arrays: dict[str, NDArray[Any]], degrees: bool, workers: int | None) -> None:
         held = {name: sealed(array) for name, array in arrays.items()}
@@ -199,7 +209,7 @@ class Delaunay(Immutable):
     @kept
     def points(self) -> Floats:
         """The unit vectors, rounded, (n, 3)."""
-        return sealed(_core.sphere_units(self._vectors, as_workers(self._workers)))
+        return sealed(units_of(self._vectors, self._workers))
 
     @property
     @kept

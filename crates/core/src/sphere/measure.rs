@@ -55,20 +55,28 @@ fn mapped<T: Copy + Default + Send>(
     Ok(values)
 }
 
-fn pairs(unit: &Unit) -> [Pair; 3] {
+/// The coordinates of a direction.
+pub(super) fn pairs(unit: &Unit) -> [Pair; 3] {
     [0, 1, 2].map(|k| Pair {
         hi: unit.hi[k],
         lo: unit.lo[k],
     })
 }
 
-fn minus(a: [Pair; 3], b: [Pair; 3]) -> [Pair; 3] {
+/// The difference.
+pub(super) fn minus(a: [Pair; 3], b: [Pair; 3]) -> [Pair; 3] {
     [0, 1, 2].map(|k| a[k] - b[k])
 }
 
-fn cross(a: [Pair; 3], b: [Pair; 3]) -> [Pair; 3] {
+/// The cross product.
+pub(super) fn cross(a: [Pair; 3], b: [Pair; 3]) -> [Pair; 3] {
     let minor = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
     [minor(1, 2), minor(2, 0), minor(0, 1)]
+}
+
+/// The sum of the absolute coordinates.
+pub(super) fn size(p: [Pair; 3]) -> f64 {
+    p.iter().map(|x| x.hi.abs()).sum()
 }
 
 fn dot(a: Point3, b: Point3) -> f64 {
@@ -84,7 +92,6 @@ fn area(corners: [Point3; 3]) -> f64 {
     let (p, q) = (minus(a, c), minus(b, c));
     let normal = cross(p, q);
     let det = (normal[0] * c[0] + normal[1] * c[1] + normal[2] * c[2]).hi;
-    let size = |p: [Pair; 3]| p.iter().map(|x| x.hi.abs()).sum::<f64>();
     // The error of 2^-98 (|P| + |Q|), see `delone_predicates::sphere`, and 2^50 times that.
     let det = if det.abs() > UNSURE * (size(p) * size(q) + (size(p) + size(q)) * UNSURE) {
         det

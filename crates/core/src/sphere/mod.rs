@@ -11,17 +11,21 @@
 //! | `kernel`, `close`, `walk` | insertion; the one that covers the rest of the sphere; the walk |
 //! | `angles`, `sines` | longitudes and latitudes to vectors |
 //! | `locate`, `measure` | queries on arrays; areas and circumcenters |
+//! | `void`, `dual`, `span` | the facets beyond a hull; the Voronoi diagram; its ridges and areas |
 //! | `triangulate`, `degenerate` | rows to arrays; what exists where there is no triangle |
 
 pub mod angles;
 mod close;
 mod degenerate;
 pub mod directions;
+pub mod dual;
 mod kernel;
 pub mod locate;
 pub mod measure;
 mod sines;
+pub mod span;
 mod triangulate;
+pub mod void;
 mod walk;
 
 pub use triangulate::{Triangulation, triangulate};

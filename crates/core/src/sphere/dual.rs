@@ -1,0 +1,217 @@
+//! The Voronoi diagram of directions as the dual of all facets of their convex hull.
+//!
+//! Facets of one circle share a vertex: exact in-circle tests say across which edges, and a ridge is
+//! dual to each of the others, so that no ridge has length zero.
+
+use delone_predicates::sphere::{Unit, incircle_of};
+use delone_predicates::{Point3, Sign};
+
+use super::directions::units;
+use crate::error::{Error, Result};
+use crate::memory::{filled, push, with_room};
+use crate::parallel;
+use crate::watch::{Pace, Watch};
+
+/// Facets that are compared together.
+const SHARE: usize = 1 << 12;
+/// Units of work between two checks for interruption.
+const WATCH_EVERY: usize = 1 << 16;
+/// No ridge.
+const NONE: u32 = u32::MAX;
+
+/// Vertices, ridges and cells.
+#[derive(Debug, Default)]
+pub struct Dual {
+    /// The vertex of each facet.
+    pub vertex: Vec<i32>,
+    /// The first facet of each vertex.
+    pub facet: Vec<i32>,
+    /// The directions of the edge of each ridge, and those opposite in the facets to its left and right.
+    pub around: Vec<[i32; 4]>,
+    /// The vertices of each ridge: of the facets to the left and to the right of its edge.
+    pub ends: Vec<[i32; 2]>,
+    /// The cell of each row, -1 if it is not a vertex of facets; rows ascend with cells.
+    pub cell: Vec<i32>,
+    /// The entries of cell i are `starts[i]..starts[i + 1]`.
+    pub starts: Vec<i32>,
+    /// Entry: a vertex, counterclockwise.
+    pub vertices: Vec<i32>,
+    /// Entry: the ridge from that vertex to the next.
+    pub ridges: Vec<i32>,
+}
+
+/// Facets and their neighbors, without a boundary.
+struct Facets<'a> {
+    simplices: &'a [[i32; 3]],
+    neighbors: &'a [[i32; 3]],
+}
+
+/// The dual of facets of at least four directions.
+pub fn dual(
+    vectors: &[Point3],
+    simplices: &[[i32; 3]],
+    neighbors: &[[i32; 3]],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Dual> {
+    let facets = Facets {
+        simplices,
+        neighbors,
+    };
+    let tied = facets.tied(vectors, workers, watch)?;
+    let mut pace = Pace::new(watch, WATCH_EVERY);
+    let (vertex, facet) = facets.vertices(&tied, &mut pace)?;
+    let mut made = Dual {
+        vertex,
+        facet,
+        ..Dual::default()
+    };
+    let numbers = facets.ridges(&tied, &mut made, &mut pace)?;
+    facets.cells(vectors.len(), &numbers, &mut made, &mut pace)?;
+    Ok(made)
+}
+
+impl Facets<'_> {
+    /// The corner of `other` that is opposite the edge it shares with `t`.
+    fn back(&self, t: usize, other: usize) -> Result<usize> {
+        self.neighbors[other]
+            .iter()
+            .position(|&x| x == t as i32)
+            .ok_or_else(|| Error::Shape(format!("facets {t} and {other} are not neighbors")))
+    }
+
+    /// The edge opposite corner k of facet t, and the corners to its left and right.
+    fn around(&self, t: usize, k: usize) -> Result<[i32; 4]> {
+        let other = self.neighbors[t][k] as usize;
+        let corners = self.simplices[t];
+        let apex = self.simplices[other][self.back(t, other)?];
+        Ok([corners[(k + 1) % 3], corners[(k + 2) % 3], corners[k], apex])
+    }
+
+    /// For each facet a mask of the edges, among those to facets of larger numbers, across which its
+    /// circle goes on.
+    fn tied(&self, vectors: &[Point3], workers: usize, watch: &Watch) -> Result<Vec<u8>> {
+        let (heads, tails) = units(vectors, workers, watch)?;
+        let mut masks = filled(self.simplices.len(), 0_u8)?;
+        let tasks = masks.chunks_mut(SHARE).enumerate().collect();
+        parallel::map_watched(workers, tasks, watch, |(i, masks): (usize, &mut [u8])| {
+            for (t, mask) in (i * SHARE..).zip(masks) {
+                for k in (0..3).filter(|&k| self.neighbors[t][k] as usize > t) {
+                    let [a, b, c, d] = self.around(t, k)?.map(|v| v as usize);
+                    let numbers = [a, b, c, d];
+                    let units = numbers.map(|v| Unit {
+                        hi: heads[v],
+                        lo: tails[v],
+                    });
+                    let sign = incircle_of(numbers.map(|v| vectors[v]), units.each_ref());
+                    *mask |= u8::from(sign == Sign::Zero) << k;
+                }
+            }
+            Ok(())
+        })?;
+        Ok(masks)
+    }
+
+    /// The vertex of each facet, and the first facet of each vertex.
+    fn vertices(&self, tied: &[u8], pace: &mut Pace) -> Result<(Vec<i32>, Vec<i32>)> {
+        let mut parent: Vec<u32> = with_room(tied.len())?;
+        parent.extend(0..tied.len() as u32);
+        for t in (0..tied.len()).filter(|&t| tied[t] != 0) {
+            pace.spend(1)?;
+            for k in (0..3).filter(|k| tied[t] >> k & 1 == 1) {
+                let a = root(&mut parent, t as u32);
+                let b = root(&mut parent, self.neighbors[t][k] as u32);
+                // The smallest facet represents them.
+                parent[a.max(b) as usize] = a.min(b);
+            }
+        }
+        let mut vertex: Vec<i32> = with_room(tied.len())?;
+        let mut facet = with_room(tied.len())?;
+        for t in 0..tied.len() as u32 {
+            pace.spend(1)?;
+            let first = root(&mut parent, t);
+            if first == t {
+                vertex.push(facet.len() as i32);
+                facet.push(t as i32);
+            } else {
+                vertex.push(vertex[first as usize]);
+            }
+        }
+        Ok((vertex, facet))
+    }
+
+    /// Adds the ridges; returns the ridge of each edge of facets.
+    fn ridges(&self, tied: &[u8], made: &mut Dual, pace: &mut Pace) -> Result<Vec<[u32; 3]>> {
+        let mut numbers = filled(tied.len(), [NONE; 3])?;
+        let most = self.simplices.len() / 2 * 3;
+        made.around = with_room(most)?;
+        made.ends = with_room(most)?;
+        for t in 0..tied.len() {
+            pace.spend(1)?;
+            for k in 0..3 {
+                let other = self.neighbors[t][k] as usize;
+                if other < t || tied[t] >> k & 1 == 1 {
+                    continue;
+                }
+                let number = made.around.len() as u32;
+                numbers[t][k] = number;
+                numbers[other][self.back(t, other)?] = number;
+                push(&mut made.around, self.around(t, k)?)?;
+                push(&mut made.ends, [made.vertex[t], made.vertex[other]])?;
+            }
+        }
+        Ok(numbers)
+    }
+
+    /// Adds the cells.
+    fn cells(
+        &self,
+        rows: usize,
+        numbers: &[[u32; 3]],
+        made: &mut Dual,
+        pace: &mut Pace,
+    ) -> Result<()> {
+        // The first corner of each row, 4 t + k.
+        let mut corner = filled(rows, NONE)?;
+        for (t, corners) in self.simplices.iter().enumerate().rev() {
+            for (k, &v) in corners.iter().enumerate() {
+                corner[v as usize] = (4 * t + k) as u32;
+            }
+        }
+        made.cell = filled(rows, -1)?;
+        made.starts = with_room(rows + 1)?;
+        made.starts.push(0);
+        made.vertices = with_room(2 * made.around.len())?;
+        made.ridges = with_room(2 * made.around.len())?;
+        for (row, &code) in corner.iter().enumerate().filter(|x| *x.1 != NONE) {
+            made.cell[row] = made.starts.len() as i32 - 1;
+            let first = (code as usize / 4, code as usize % 4);
+            let (mut t, mut k) = first;
+            // A turn visits each facet once.
+            for _ in 0..self.simplices.len() {
+                pace.spend(1)?;
+                let edge = (k + 1) % 3;
+                if numbers[t][edge] != NONE {
+                    push(&mut made.vertices, made.vertex[t])?;
+                    push(&mut made.ridges, numbers[t][edge] as i32)?;
+                }
+                let next = self.neighbors[t][edge] as usize;
+                (t, k) = (next, (self.back(t, next)? + 1) % 3);
+                if (t, k) == first {
+                    break;
+                }
+            }
+            push(&mut made.starts, made.vertices.len() as i32)?;
+        }
+        Ok(())
+    }
+}
+
+/// The representative of a facet.
+fn root(parent: &mut [u32], mut t: u32) -> u32 {
+    while parent[t as usize] != t {
+        parent[t as usize] = parent[parent[t as usize] as usize];
+        t = parent[t as usize];
+    }
+    t
+}

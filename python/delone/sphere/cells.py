@@ -1,0 +1,129 @@
+"""The arrays of a Voronoi diagram on the sphere, from a triangulation or from one great circle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_workers
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.sphere.delaunay import Delaunay
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Cells", "around_circle", "cells_of", "lunes"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cells:
+    """Vertices, ridges and cells; cells are in the order of the rows of their sites."""
+
+    vertices: Floats
+    # The site to the left of each ridge, from its first vertex to its second, and to the right.
+    sites: Indices
+    ends: Indices
+    # The cell of each row that is not a duplicate; others have -1.
+    cell: Indices
+    starts: Indices
+    entries: Indices
+    # The edges of ridges with the corners beside them, (r, 4); or, for lunes, lengths and areas.
+    around: Indices | None
+    measures: tuple[Floats, Floats] | None
+    simplex_vertex: Indices
+
+    def spans(self, vectors: Floats, workers: int) -> tuple[Floats, Floats]:
+        """Return the length of each ridge, and the areas from its two sites to it, (r, 2)."""
+        if self.measures is not None:
+            return self.measures
+        assert self.around is not None
+        found = _core.sphere_spans(vectors, self.around, workers)
+        return found[:, 0].copy(), np.repeat(found[:, 1:], 2, axis=1)
+
+
+def cells_of(mesh: Delaunay) -> Cells:
+    """Return the cells of the vertices of a triangulation."""
+    if mesh.npoints - len(mesh.duplicates) > 3:
+        workers = as_workers(mesh.workers)
+        cells = _dual_cells(mesh.vectors, mesh.simplices, mesh.neighbors, workers)
+        if len(cells.vertices) > 1:
+            return cells
+    # All sites are on one circle.
+    after = dict(mesh.boundary.tolist())
+    chain = [int(mesh.boundary[0, 0])]
+    while len(chain) < len(after):
+        chain.append(after[chain[-1]])
+    rows = np.array(chain, dtype=np.int32)
+    return lunes(rows, mesh.points, mesh.circumcenters[0], mesh.nsimplex)
+
+
+def _dual_cells(vectors: Floats, simplices: Indices, neighbors: Indices, workers: int) -> Cells:
+    """Return the dual of a triangulation of at least four directions."""
+    made = _core.sphere_dual(vectors, simplices, neighbors, workers)
+    corners = made.simplices[made.facet]
+    return Cells(
+        vertices=_core.sphere_circumcenters(vectors, corners, workers),
+        # Across its edge a ridge goes from left to right, with the head of the edge to its left.
+        sites=np.ascontiguousarray(made.around[:, 1::-1]),
+        ends=made.ends,
+        cell=made.cell,
+        starts=made.starts,
+        entries=made.vertices,
+        around=made.around,
+        measures=None,
+        simplex_vertex=made.vertex[: len(simplices)],
+    )
+
+
+def lunes(chain: Indices, points: Floats, axis: Floats, simplices: int) -> Cells:
+    """Return the cells of at least three sites on one circle: lunes from pole to pole.
+
+    `chain` has the rows of the sites, counter-clockwise around the axis, a unit vector, and
+    `points` the unit vectors of all rows. The axis is vertex 0 and the opposite direction vertex 1.
+    All `simplices` triangles are around vertex 0.
+    """
+    count = len(chain)
+    after = np.roll(chain, -1)
+    steps = points[after] - points[chain]
+    before = np.roll(steps, 1, axis=0)
+    # At the poles a lune has the angle between its bisectors, which is that between the chords.
+    turns = np.arctan2(
+        np.linalg.norm(np.cross(before, steps), axis=1), np.einsum("ij,ij->i", before, steps)
+    )
+    # Down from the axis, the next site is to the left. Each cell is counted at one of its ridges.
+    sites = np.column_stack((after, chain)).astype(np.int32)
+    cell = np.full(len(points), -1, dtype=np.int32)
+    cell[np.sort(chain)] = np.arange(count)
+    ends = np.tile(np.array([0, 1], dtype=np.int32), (count, 1))
+    return Cells(
+        vertices=np.stack((axis, -axis)),
+        sites=sites,
+        ends=ends,
+        cell=cell,
+        starts=np.arange(0, 2 * count + 1, 2, dtype=np.int32),
+        # Down the western side and up the eastern one.
+        entries=ends.ravel(),
+        around=None,
+        measures=(np.full(count, np.pi), np.column_stack((np.zeros(count), 2 * turns))),
+        simplex_vertex=np.zeros(simplices, dtype=np.int32),
+    )
+
+
+def around_circle(chain: Indices, points: Floats) -> Floats:
+    """Return the unit normal of a great circle from which sites in order are counter-clockwise."""
+    circle = points[chain]
+    normals = np.cross(circle[0], circle)
+    normal = normals[np.einsum("ij,ij->i", normals, normals).argmax()]
+    normal /= np.linalg.norm(normal)
+    ahead = np.roll(circle, -1, axis=0)
+    sines = np.cross(circle, ahead) @ normal
+    angles = np.arctan2(sines, np.einsum("ij,ij->i", circle, ahead)) % (2 * np.pi)
+    # Once around in this sense, or nearly once for each step in the other.
+    found: Floats = normal if angles.sum() < 3 * np.pi else -normal
+    return found + 0.0

@@ -1,0 +1,437 @@
+"""The class Voronoi of directions: cells on the sphere, whole or clipped."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from delone._arrays import as_workers
+from delone.counting import counted
+from delone.errors import DegenerateInputError, DtypeError, InputError
+from delone.immutable import Immutable, kept, sealed
+from delone.sphere.cells import Cells, around_circle, cells_of, lunes
+from delone.sphere.coordinates import directions_of, lonlat_of, units_of
+from delone.sphere.delaunay import Delaunay
+from delone.voronoi.results import Neighbors
+from delone.voronoi.rows import as_lists, of_pairs
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Voronoi"]
+
+
+class Voronoi(Immutable):
+    """The Voronoi diagram of directions: which site is nearest on a sphere.
+
+    Parameters
+    ----------
+    lonlat : array_like, shape (n, 2), optional
+        Longitudes and latitudes of the sites, in degrees unless `degrees` is false.
+    xyz : array_like, shape (n, 3), optional
+        Vectors from the center of the sphere. Their lengths do not matter: a vector means its
+        direction, exactly. Give either this or `lonlat`.
+    radius : float, optional
+        Radius of the sphere, for areas and lengths; by default 1, so that areas are steradians. The
+        mean radius of the Earth is 6371.0088 km.
+    degrees : bool, optional
+        Whether `lonlat`, and longitudes and latitudes of queries, are in degrees (the default) or
+        in radians.
+    workers : int, optional
+        Maximum number of threads; by default one per core. The result does not depend on it.
+
+    Attributes
+    ----------
+    points : ndarray of float64, shape (n, 3)
+        The unit vectors of the sites, rounded.
+    radius : float
+        As given.
+    vertices : ndarray of float64, shape (k, 3)
+        The unit vectors of the vertices: of points equally far from three or more nearest sites.
+    ridge_points : ndarray of int32, shape (r, 2)
+        The two sites of each ridge, an arc of a great circle between two cells.
+    ridge_vertices : ndarray of int32, shape (r, 2)
+        Its two vertices.
+    regions : list of list of int
+        The vertices of each cell, counter-clockwise seen from outside.
+    point_region : ndarray of int32, shape (n,)
+        The cell of each site, as an index of `regions`. Sites in one direction share their cell;
+        without such duplicates it is the row itself.
+
+    Raises
+    ------
+    DegenerateInputError
+        Fewer than three directions are distinct; ``error.chain`` has the first row of each.
+    InputError
+        `radius` is not positive and finite.
+    DirectionError
+        A vector is zero, a latitude is beyond a pole, or a longitude has more than three turns;
+        ``error.rows`` has the first such rows.
+    NonFiniteError, ShapeError, DtypeError, LimitError, MemoryError
+        As for `delone.sphere.Delaunay`.
+
+    Warns
+    -----
+    LongitudeWarning
+        Longitudes span more than one turn: two conventions seem to be mixed.
+
+    Notes
+    -----
+    The diagram is the dual of the convex hull of the directions, with exact predicates: any number
+    of sites on one circle share one vertex, and no ridge has length zero. Only coordinates of
+    vertices and measures are rounded. If all sites lie in one hemisphere, the facets of the hull
+    that face away from the center, which are not triangles of the triangulation, are vertices on
+    the other side, more than a quarter of a turn from their sites. They are found by random
+    insertion into the boundary of the triangulation (Chew, 1990) in expected linear time.
+
+    Three sites, and any number on one circle, have lunes as cells: all ridges lead from one vertex
+    to the opposite one. `triangulation` is None on a great circle.
+
+    The area of a cell is the sum of the triangles between its site and its ridges, each from a
+    formula in which nothing cancels, so that the areas of cells a millimeter wide on the Earth, and
+    of slivers, have relative errors of about 1e-11, too. They sum to the whole sphere. Lunes are
+    measured from rounded unit vectors.
+
+    See Also
+    --------
+    delone.sphere.Delaunay : The dual.
+    delone.Voronoi : Diagrams in the plane and in 3-D.
+    delone.compat.scipy.SphericalVoronoi : The same diagram with SciPy's interface.
+
+    References
+    ----------
+    L. P. Chew, "Building Voronoi diagrams for convex polygons in linear expected time", technical
+    report PCS-TR90-147, Dartmouth College (1990).
+
+    A. Van Oosterom and J. Strackee, "The solid angle of a plane triangle", IEEE Transactions on
+    Biomedical Engineering 30 (1983).
+
+    Examples
+    --------
+    >>> from delone import sphere
+    >>> sites = [(0, 90), (0, 0), (90, 0), (180, 0), (270, 0), (0, -90)]
+    >>> diagram = sphere.Voronoi(lonlat=sites)
+    >>> diagram
+    <Voronoi of 6 directions: 8 vertices, 12 ridges>
+    >>> (diagram.cell_areas / 3.141592653589793).round(9)
+    array([0.66666667, 0.66666667, 0.66666667, 0.66666667, 0.66666667,
+           0.66666667])
+    >>> len(diagram.regions[0]), abs(diagram.vertices_lonlat[diagram.regions[0]]).round(4)[0]
+    (4, array([135.    ,  35.2644]))
+
+    On the Earth, in square kilometers:
+
+    >>> stations = [(10, 50), (12, 48), (8, 47), (11, 52)]
+    >>> sphere.Voronoi(lonlat=stations, radius=6371.0088).cell_areas.sum().round(-6)
+    np.float64(510000000.0)
+    """
+
+    __slots__ = ("_cells", "_degrees", "_mesh", "_radius", "_vectors", "_workers")
+
+    _cells: Cells
+    _degrees: bool
+    _mesh: Delaunay | None
+    _radius: float
+    _vectors: Floats
+    _workers: int | None
+
+    def __init__(
+        self,
+        *,
+        lonlat: ArrayLike | None = None,
+        xyz: ArrayLike | None = None,
+        radius: float = 1.0,
+        degrees: bool = True,
+        workers: int | None = None,
+    ) -> None:
+        length = _as_radius(radius)
+        vectors = directions_of(lonlat, xyz, degrees=degrees, workers=workers)
+        self._fill(vectors, length, degrees, workers)
+
+    @classmethod
+    def from_delaunay(cls, mesh: Delaunay, *, radius: float = 1.0) -> Self:
+        """Return the diagram of the points of a triangulation.
+
+        Parameters
+        ----------
+        mesh : Delaunay
+            A triangulation of directions.
+        radius : float, optional
+            Radius of the sphere.
+
+        Returns
+        -------
+        Voronoi
+            The diagram, with the unit of angles and the number of threads of the triangulation.
+
+        Raises
+        ------
+        DtypeError
+            `mesh` is not a `delone.sphere.Delaunay`.
+        InputError
+            `radius` is not positive and finite.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> mesh = sphere.Delaunay(lonlat=[(0, 0), (10, 0), (10, 10), (0, 10)])
+        >>> sphere.Voronoi.from_delaunay(mesh)
+        <Voronoi of 4 directions: 4 vertices, 6 ridges>
+        """
+        if not isinstance(mesh, Delaunay):
+            raise DtypeError(f"mesh must be a sphere.Delaunay, got {type(mesh).__name__}")
+        made = cls.__new__(cls)
+        made._hold_dual(mesh, _as_radius(radius))
+        return made
+
+    def _fill(self, vectors: Floats, radius: float, degrees: bool, workers: int | None) -> None:
+        try:
+            mesh = Delaunay._of_vectors(vectors, degrees, workers)
+        except DegenerateInputError as error:
+            if error.reason != "one great circle":
+                raise
+            points = units_of(vectors, workers)
+            chain = error.chain.astype(np.int32)
+            cells = lunes(chain, points, around_circle(chain, points), 0)
+        else:
+            self._hold_dual(mesh, radius)
+            return
+        held = sealed(vectors)
+        self._hold(
+            cells=cells, degrees=degrees, mesh=None, radius=radius, vectors=held, workers=workers
+        )
+
+    def _hold_dual(self, mesh: Delaunay, radius: float) -> None:
+        self._hold(
+            cells=cells_of(mesh),
+            degrees=mesh._degrees,
+            mesh=mesh,
+            radius=radius,
+            vectors=mesh.vectors,
+            workers=mesh.workers,
+        )
+
+    @classmethod
+    def _again(
+        cls, given: Delaunay | Floats, radius: float, degrees: bool, workers: int | None
+    ) -> Self:
+        made = cls.__new__(cls)
+        if isinstance(given, Delaunay):
+            made._hold_dual(given, radius)
+        else:
+            made._fill(given, radius, degrees, workers)
+        return made
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        given = self._vectors if self._mesh is None else self._mesh
+        return self._again, (given, self._radius, self._degrees, self._workers)
+
+    def __repr__(self) -> str:
+        if not hasattr(self, "_cache"):  # the constructor failed, or has not run
+            return f"<{type(self).__name__} of nothing yet>"
+        points = counted(self.npoints, "direction")
+        if duplicates := int((self._cells.cell < 0).sum()):
+            points += f" ({counted(duplicates, 'duplicate')})"
+        parts = [counted(len(self.vertices), "vertex"), counted(len(self.ridge_points), "ridge")]
+        return f"<{type(self).__name__} of {points}: {', '.join(parts)}>"
+
+    @property
+    def triangulation(self) -> Delaunay | None:
+        """The triangulation whose dual this is; None if all sites are on one great circle."""
+        return self._mesh
+
+    @property
+    def vectors(self) -> Floats:
+        """The vectors whose directions are the sites, (n, 3)."""
+        return self._vectors
+
+    @property
+    @kept
+    def points(self) -> Floats:
+        """The unit vectors of the sites, rounded, (n, 3)."""
+        return sealed(units_of(self._vectors, self._workers))
+
+    @property
+    @kept
+    def lonlat(self) -> Floats:
+        """Longitudes, -180 to 180, and latitudes of the sites in degrees, rounded, (n, 2)."""
+        return sealed(lonlat_of(self._vectors))
+
+    @property
+    def radius(self) -> float:
+        """The radius of the sphere."""
+        return self._radius
+
+    @property
+    def npoints(self) -> int:
+        """Number of rows, duplicates included."""
+        return len(self._vectors)
+
+    @property
+    def workers(self) -> int | None:
+        """Maximum number of threads; None for one per core. The result does not depend on it."""
+        return self._workers
+
+    @property
+    @kept
+    def vertices(self) -> Floats:
+        """The unit vectors of the vertices, rounded, (k, 3)."""
+        return sealed(self._cells.vertices)
+
+    @property
+    @kept
+    def vertices_lonlat(self) -> Floats:
+        """Longitudes, -180 to 180, and latitudes of the vertices in degrees, rounded, (k, 2)."""
+        return sealed(lonlat_of(self._cells.vertices))
+
+    @property
+    @kept
+    def simplex_vertices(self) -> Indices:
+        """The vertex of each triangle of `triangulation`, (m,)."""
+        return sealed(self._cells.simplex_vertex)
+
+    @property
+    @kept
+    def ridge_points(self) -> Indices:
+        """The two sites of each ridge, (r, 2).
+
+        The first lies to the left of the way from the first of its `ridge_vertices` to the second,
+        seen from outside.
+        """
+        return sealed(self._cells.sites)
+
+    @property
+    @kept
+    def ridge_vertices(self) -> Indices:
+        """The two vertices of each ridge, (r, 2)."""
+        return sealed(self._cells.ends)
+
+    @property
+    @kept
+    def ridge_lengths(self) -> Floats:
+        """The lengths of the ridges, (r,): angles times the radius."""
+        return sealed(self._spans[0] * self._radius)
+
+    @property
+    @kept
+    def region_rows(self) -> tuple[Indices, Indices]:
+        """`regions` as compressed rows (indptr, indices)."""
+        return sealed(self._cells.starts), sealed(self._cells.entries)
+
+    @property
+    @kept
+    def regions(self) -> list[list[int]]:
+        """The vertices of each cell, counter-clockwise seen from outside."""
+        return as_lists(*self.region_rows)
+
+    @property
+    @kept
+    def duplicate_of(self) -> Indices:
+        """The site of each row, (n,): the first row with the same direction."""
+        if self._mesh is not None:
+            return self._mesh.duplicate_of
+        return sealed(_first_rows(self._vectors, self._cells.cell))
+
+    @property
+    @kept
+    def point_region(self) -> Indices:
+        """The cell of each site, (n,), as an index of `regions`."""
+        return sealed(self._cells.cell[self.duplicate_of])
+
+    @property
+    @kept
+    def _spans(self) -> tuple[Floats, Floats]:
+        return self._cells.spans(self._vectors, as_workers(self._workers))
+
+    @property
+    @kept
+    def cell_areas(self) -> Floats:
+        """The areas of the cells, (n,), in steradians times the square of the radius.
+
+        Rows with the same direction share one cell, and each has its area. Those of the cells sum
+        to 4 pi times the square of the radius.
+        """
+        shares = self._spans[1].ravel()
+        found = np.bincount(self._cells.sites.ravel(), shares, minlength=self.npoints)
+        return sealed(found[self.duplicate_of] * self._radius**2)
+
+    @property
+    @kept
+    def neighbors(self) -> Neighbors:
+        """Sites whose cells share a ridge, with its length, as compressed rows.
+
+        A duplicate has no neighbors: those of its cell belong to the first row.
+        """
+        pairs = self.ridge_points.astype(np.int64)
+        indptr, indices, beside = of_pairs(pairs, self.ridge_lengths, self.npoints)
+        return Neighbors(sealed(indptr), sealed(indices), sealed(beside))
+
+    def nearest(self, xi: ArrayLike) -> Indices:
+        """Find the sites whose cells contain directions, which are the nearest sites.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2) or (..., 3)
+            Longitudes and latitudes, in the unit of the constructor, or vectors of any length.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            The site whose cell contains each, the smallest row of several; -1 for NaN and vectors
+            of length zero.
+
+        Raises
+        ------
+        InputError
+            All sites are on one great circle.
+        DirectionError
+            A latitude is beyond a pole, or a longitude has more than three turns.
+        ShapeError, DtypeError
+            `xi` is not a real array of shape (..., 2) or (..., 3).
+
+        Notes
+        -----
+        Exact, see `delone.sphere.Delaunay.nearest`.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> diagram = sphere.Voronoi(lonlat=[(170, 0), (-170, 0), (180, 10), (180, -10)])
+        >>> diagram.nearest([(175, 1), (-171, 1)])
+        array([0, 1], dtype=int32)
+        """
+        if self._mesh is None:
+            raise InputError(
+                "all sites are on one great circle, where nearest needs a triangulation: add a site"
+            )
+        return self._mesh.nearest(xi)
+
+
+def _as_radius(radius: Any) -> float:
+    """Return a radius, which must be positive and finite."""
+    try:
+        value = float(radius)
+    except (TypeError, ValueError):
+        raise DtypeError(f"radius must be a number, got {radius!r:.60}") from None
+    if not 0 < value < np.inf:
+        raise InputError(f"radius must be positive and finite, got {value!r}")
+    return value
+
+
+def _first_rows(vectors: Floats, cell: Indices) -> Indices:
+    """Return the first row of the direction of each row, on one great circle.
+
+    Rows without a cell repeat the direction of one that has a cell.
+    """
+    found = np.arange(len(vectors), dtype=np.int32)
+    firsts = np.flatnonzero(cell >= 0)
+    scaled = vectors / np.abs(vectors).max(axis=1, keepdims=True)
+    units = scaled / np.linalg.norm(scaled, axis=1, keepdims=True)
+    for row in np.flatnonzero(cell < 0):
+        away = np.abs(units[firsts] - units[row]).sum(axis=1)
+        found[row] = firsts[away.argmin()]
+    return found
