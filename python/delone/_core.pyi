@@ -140,6 +140,7 @@ __all__ = [
     "spanning_triangles2",
     "sphere_areas",
     "sphere_circumcenters",
+    "sphere_constrained",
     "sphere_delaunay",
     "sphere_directions",
     "sphere_dual",
@@ -1603,6 +1604,9 @@ class SphereLocator:
     def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
 
 def sphere_delaunay(vectors: NDArray[np.float64], workers: int) -> SphereTriangulation: ...
+def sphere_constrained(
+    vectors: NDArray[np.float64], segments: NDArray[np.int32], workers: int
+) -> ConstrainedTriangulation: ...
 def sphere_directions(
     lonlat: NDArray[np.float64], degrees: bool, workers: int
 ) -> NDArray[np.float64]: ...

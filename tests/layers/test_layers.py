@@ -136,6 +136,7 @@ CORE: dict[str, set[str]] = {
     }
     | GROUND,
     "sphere": {
+        "constrained",
         "mesh2",
         "order",
         "parallel",

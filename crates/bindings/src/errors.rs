@@ -140,6 +140,25 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
             details.set_item("points", table(py, points.clone())?)?;
             ("CrossingSegmentsError", crossing(pairs, points))
         }
+        Error::CrossingArcs { pairs, .. } => {
+            let narrow = pairs.iter().map(|pair| pair.map(|row| row as u32));
+            details.set_item("pairs", table(py, narrow.collect())?)?;
+            ("CrossingSegmentsError", error.to_string())
+        }
+        Error::OppositeEnds { rows, count, .. } => {
+            details.set_item("rows", rows)?;
+            details.set_item("count", count)?;
+            let row = rows.first().copied().unwrap_or_default();
+            let what = match count {
+                1 => format!("segment {row} joins"),
+                _ => format!("{count} segments join, first row {row},"),
+            };
+            let message = format!(
+                "{what} opposite directions, which no single shorter arc joins: add a point between \
+                 them"
+            );
+            ("DirectionError", message)
+        }
         Error::Budget {
             what,
             limit,

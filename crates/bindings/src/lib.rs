@@ -94,6 +94,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(surface::check_surface3, m)?)?;
     m.add_function(wrap_pyfunction!(surface::resolve_touches3, m)?)?;
     m.add_function(wrap_pyfunction!(sphere::sphere_delaunay, m)?)?;
+    m.add_function(wrap_pyfunction!(sphere::sphere_constrained, m)?)?;
     m.add_function(wrap_pyfunction!(sphere::sphere_directions, m)?)?;
     m.add_function(wrap_pyfunction!(sphere::sphere_units, m)?)?;
     m.add_function(wrap_pyfunction!(sphere::sphere_areas, m)?)?;

@@ -5,12 +5,13 @@ use delone_core::arrays::Arrays;
 use delone_core::memory::copied;
 use delone_core::sphere::angles::{Measure, directions};
 use delone_core::sphere::locate::Index;
-use delone_core::sphere::{directions as rays, dual, measure, span, triangulate, void};
+use delone_core::sphere::{constrain, directions as rays, dual, measure, span, triangulate, void};
 use delone_core::watch::Watch;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, in_range, number_rows, rows, table};
+use crate::arrays::{Column, Table, column, in_range, number_rows, numbers, rows, table};
+use crate::constrained::ConstrainedTriangulation;
 use crate::errors::raise;
 use crate::signals::watched;
 
@@ -38,6 +39,38 @@ pub fn sphere_delaunay(
         simplices: table(py, made.arrays.simplices)?,
         neighbors: table(py, made.arrays.neighbors)?,
         duplicates: number_rows(py, &made.duplicates)?,
+    })
+}
+
+/// Returns the constrained triangulation of the directions of vectors and arcs between them.
+#[pyfunction]
+pub fn sphere_constrained(
+    py: Python<'_>,
+    vectors: PyReadonlyArray2<'_, f64>,
+    segments: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> PyResult<ConstrainedTriangulation> {
+    let checked = (|| {
+        let (vectors, segments) = (rows(&vectors, "vectors")?, rows(&segments, "segments")?);
+        in_range::<2>(segments, 0, vectors.len(), "segments")?;
+        let own: Vec<[u32; 2]> = segments.iter().map(|s| s.map(|v| v as u32)).collect();
+        Ok((vectors, own))
+    })();
+    let (vectors, segments) = checked.map_err(|e| raise(py, &e))?;
+    let made = watched(py, |watch| constrain(vectors, &segments, workers, watch))?;
+    Ok(ConstrainedTriangulation {
+        added: table::<f64, 2>(py, Vec::new())?,
+        simplices: table(py, made.arrays.simplices)?,
+        neighbors: table(py, made.arrays.neighbors)?,
+        constrained: table(py, made.constrained)?,
+        duplicates: number_rows(py, &made.duplicates)?,
+        segments: table(py, made.subsegments.ends)?,
+        source_start: column(py, made.subsegments.start),
+        source: column(py, made.subsegments.source),
+        forward: column(py, made.subsegments.forward),
+        zero: numbers(py, made.zero),
+        through: number_rows(py, &made.through)?,
+        crossings: number_rows::<3>(py, &[])?,
     })
 }
 

@@ -76,6 +76,20 @@ pub enum Error {
         /// The crossing of each, rounded.
         points: Vec<Point2>,
     },
+    /// Arcs of great circles that cross: the pairs of their rows.
+    #[error("{} pairs of arcs cross", pairs.len())]
+    CrossingArcs {
+        /// Both rows of each pair, the smaller first; ascending.
+        pairs: Vec<[u32; 2]>,
+    },
+    /// Arcs between opposite directions, which many great circles join.
+    #[error("the ends of {count} arcs are opposite")]
+    OppositeEnds {
+        /// The first rows of such arcs.
+        rows: Vec<u32>,
+        /// How many there are.
+        count: usize,
+    },
     /// More vertices than the caller allows.
     #[error("found {found} {what}, more than the limit of {limit} vertices allows")]
     Budget {

@@ -93,6 +93,25 @@ pub enum Error {
         /// Where they cross, rounded.
         points: Vec<Point2>,
     },
+    /// Arcs on the sphere cross.
+    #[error("{} pairs of arcs cross, first {:?}", pairs.len(), pairs.first())]
+    #[non_exhaustive]
+    CrossingArcs {
+        /// The rows of the arcs of each pair, ascending.
+        pairs: Vec<[usize; 2]>,
+    },
+    /// The ends of arcs are opposite directions, which many great circles join.
+    #[error(
+        "the ends of {count} arcs are opposite; the first is row {}",
+        first(rows)
+    )]
+    #[non_exhaustive]
+    OppositeEnds {
+        /// The first of these rows, ascending.
+        rows: Vec<usize>,
+        /// How many rows there are.
+        count: usize,
+    },
     /// More points would have to be added than `max_points` allows.
     #[error(
         "found {found} {what}, more than the limit of {limit} vertices allows; most are on segments {segments:?}"
@@ -219,6 +238,13 @@ impl From<core::Error> for Error {
             core::Error::Crossing { pairs, points } => Self::Crossing {
                 pairs: pairs.iter().map(|p| p.map(|s| s as usize)).collect(),
                 points,
+            },
+            core::Error::CrossingArcs { pairs } => Self::CrossingArcs {
+                pairs: pairs.iter().map(|p| p.map(|s| s as usize)).collect(),
+            },
+            core::Error::OppositeEnds { rows, count } => Self::OppositeEnds {
+                rows: wide(rows),
+                count,
             },
             core::Error::Budget {
                 what,

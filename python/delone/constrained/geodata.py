@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone._masks import refuse_masks
-from delone.errors import DtypeError, InputError, ShapeError
+from delone.counting import agreed
+from delone.errors import DtypeError, InputError, NonFiniteError, ShapeError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -33,6 +34,8 @@ __all__ = [
     "Parts",
     "is_shapely",
     "parts_of",
+    "require_finite_parts",
+    "steps_of",
 ]
 
 POINTS, LINE, EXTERIOR, INTERIOR = range(4)
@@ -74,6 +77,38 @@ def parts_of(geometries: Any, *, name: str = "geometries") -> Parts:
     except NotImplementedError:  # raised by shapely for curves
         raise InputError(f"{name}: curves are not supported, only straight lines") from None
     return _joined(found)
+
+
+def require_finite_parts(parts: Parts) -> None:
+    """Reject NaN and infinity, and name the geometries that have them."""
+    wrong = ~np.isfinite(parts.coordinates).all(axis=1)
+    if wrong.any():
+        part = np.searchsorted(parts.starts, np.flatnonzero(wrong), side="right") - 1
+        bad = np.unique(parts.geometries[part])
+        first = ", ".join(map(str, bad[:10].tolist()))
+        raise NonFiniteError(
+            f"{len(bad)} {agreed(len(bad), 'geometry has', 'geometries have')} NaN or infinity; "
+            f"first: {first}",
+            rows=bad[:10],
+            count=len(bad),
+        )
+
+
+def steps_of(parts: Parts) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the segments of lines and rings as rows of coordinates, and the part of each."""
+    counts = np.diff(parts.starts)
+    part = np.repeat(np.arange(len(counts)), counts)
+    tail = np.arange(len(part))
+    head = tail + 1
+    # The last row of a ring continues to its first row, the last row of a line does not continue.
+    head[parts.starts[1:] - 1] = parts.starts[:-1]
+    ring = parts.kinds >= EXTERIOR
+    leads = np.repeat(parts.kinds != POINTS, counts)
+    last = parts.starts[1:] - 1
+    leads[last[~ring]] = False
+    # A ring of one point has no side.
+    leads[last[ring & (counts == 1)]] = False
+    return np.column_stack((tail, head))[leads], part[leads]
 
 
 def _batches(given: Any, name: str) -> Iterator[Any]:

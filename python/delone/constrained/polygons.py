@@ -16,9 +16,8 @@ from delone._arrays import as_choice, as_flag, as_points, require_finite
 from delone.constrained import geodata
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.segmented import Origin
-from delone.counting import agreed
 from delone.duplicates import first_rows
-from delone.errors import InputError, NonFiniteError
+from delone.errors import InputError
 from delone.exchange.parts import Parts
 from delone.georeference import as_known_crs, common_crs, is_geographic, warn_of_degrees
 
@@ -117,12 +116,12 @@ def from_geometry(
     [0, 0, 0, 0]
     """
     parts = geodata.parts_of(geometries)
-    _require_finite(parts)
+    geodata.require_finite_parts(parts)
     system = common_crs(geometries) if crs is None else as_known_crs(crs)
     by = system if system is not None and is_geographic(system) else None
     warn_of_degrees(None, parts.coordinates, planar=planar, name="geometries", by=by)
     points, vertex = _merged(parts.coordinates)
-    ends, part = _steps(parts)
+    ends, part = geodata.steps_of(parts)
     # Points have no segments, so they are not counted among the parts.
     number = np.cumsum(parts.kinds != geodata.POINTS) - 1
     origin = Origin(
@@ -146,43 +145,12 @@ def from_geometry(
     )
 
 
-def _require_finite(parts: geodata.Parts) -> None:
-    wrong = ~np.isfinite(parts.coordinates).all(axis=1)
-    if wrong.any():
-        part = np.searchsorted(parts.starts, np.flatnonzero(wrong), side="right") - 1
-        bad = np.unique(parts.geometries[part])
-        first = ", ".join(map(str, bad[:10].tolist()))
-        raise NonFiniteError(
-            f"{len(bad)} {agreed(len(bad), 'geometry has', 'geometries have')} NaN or infinity; "
-            f"first: {first}",
-            rows=bad[:10],
-            count=len(bad),
-        )
-
-
 def _merged(coordinates: Floats) -> tuple[Floats, Indices]:
     """Return the distinct points in the order of their first rows, and the point of each row."""
     first = first_rows(coordinates)
     distinct = first == np.arange(len(first))
     number = np.cumsum(distinct) - 1
     return coordinates[distinct], number[first].astype(np.int32)
-
-
-def _steps(parts: geodata.Parts) -> tuple[Rows, Rows]:
-    """Return the segments of lines and rings as rows of coordinates, and the part of each."""
-    counts = np.diff(parts.starts)
-    part = np.repeat(np.arange(len(counts)), counts)
-    tail = np.arange(len(part))
-    head = tail + 1
-    # The last row of a ring continues to its first row, the last row of a line does not continue.
-    head[parts.starts[1:] - 1] = parts.starts[:-1]
-    ring = parts.kinds >= geodata.EXTERIOR
-    leads = np.repeat(parts.kinds != geodata.POINTS, counts)
-    last = parts.starts[1:] - 1
-    leads[last[~ring]] = False
-    # A ring of one point has no side.
-    leads[last[ring & (counts == 1)]] = False
-    return np.column_stack((tail, head))[leads], part[leads]
 
 
 class PolygonTriangles(NamedTuple):

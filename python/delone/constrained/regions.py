@@ -88,11 +88,11 @@ def numbered(points: Floats, simplices: Indices, component: Indices) -> Indices:
     """Number components, so far numbered in any way, by their smallest triangles, in O(n log n).
 
     Triangles are compared by their smallest corners, then their middle ones, then their largest;
-    corners by x, then y. So the order depends on coordinates only.
+    corners by x, then y (then z). So the order depends on coordinates only.
     """
     count = int(component.max(initial=-1)) + 1
     rank = np.empty(len(points), dtype=np.int64)
-    rank[np.lexsort((points[:, 1], points[:, 0]))] = np.arange(len(points))
+    rank[np.lexsort(points.T[::-1])] = np.arange(len(points))
     ranks = np.sort(rank[simplices], axis=1)
     least = np.full(count, len(points), dtype=np.int64)
     np.minimum.at(least, component, ranks[:, 0])

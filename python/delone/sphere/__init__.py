@@ -10,9 +10,19 @@ are wrong at the date line and near the poles; here these are places like any ot
 
 from __future__ import annotations
 
+from delone.sphere.constrained import ConstrainedDelaunay
 from delone.sphere.coordinates import LongitudeWarning
 from delone.sphere.delaunay import Delaunay
+from delone.sphere.geometry import from_geometry
 from delone.sphere.interpolation import Linear, Nearest
 from delone.sphere.voronoi import Voronoi
 
-__all__ = ["Delaunay", "Linear", "LongitudeWarning", "Nearest", "Voronoi"]
+__all__ = [
+    "ConstrainedDelaunay",
+    "Delaunay",
+    "Linear",
+    "LongitudeWarning",
+    "Nearest",
+    "Voronoi",
+    "from_geometry",
+]

@@ -194,11 +194,16 @@ class Delaunay(Immutable):
     def __repr__(self) -> str:
         if not hasattr(self, "_cache"):  # the constructor failed, or has not run
             return f"<{type(self).__name__} of nothing yet>"
+        whole = ", the whole sphere" if self.covers_sphere else ""
+        count = counted(self.nsimplex, "triangle")
+        return f"<{type(self).__name__} of {self._counts()}: {count}{whole}>"
+
+    def _counts(self) -> str:
+        """What is triangulated, for the representation."""
         points = counted(self.npoints, "direction")
         if duplicates := len(self._duplicates):
             points += f" ({counted(duplicates, 'duplicate')})"
-        whole = ", the whole sphere" if self.covers_sphere else ""
-        return f"<{type(self).__name__} of {points}: {counted(self.nsimplex, 'triangle')}{whole}>"
+        return points
 
     @property
     def vectors(self) -> Floats:

@@ -1,11 +1,12 @@
 //! An incremental constrained Delaunay triangulation: points, mesh with marked edges, one corner
-//! per vertex.
+//! per vertex; of points in the plane, or of directions (see `sites`).
 //!
 //! Marked edges are constrained. Between edits all others are constrained Delaunay, with ties
 //! broken by coordinates.
 
-use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
+use delone_predicates::{Point2, Sign, orient2d};
 
+use super::sites::Sites;
 use crate::delaunay2::walk::walk_within;
 use crate::error::{Error, Result};
 use crate::memory::{filled, make_room};
@@ -21,15 +22,17 @@ pub const LOT: u32 = 1 << 16;
 const WALK: usize = 256;
 const WALK_ACROSS: usize = 4;
 
-/// A constrained Delaunay triangulation that can grow.
+/// A constrained Delaunay triangulation; in the plane it can grow.
 #[derive(Debug)]
-pub struct Marked {
+pub struct Marked<S = Vec<Point2>> {
     /// The vertices, then NaN up to the capacity of the mesh, plus one NaN for infinity.
-    pub points: Vec<Point2>,
+    pub points: S,
     /// The mesh, with capacity for more vertices.
     pub mesh: Mesh2,
     /// How many vertices there are.
     pub count: usize,
+    /// How many records are fewer than in a mesh with a hull: none in the plane.
+    lack: u32,
     /// One corner of each vertex.
     pub near: Vec<Code>,
     /// Edges that may have to be flipped, each as a code of either side.
@@ -42,12 +45,17 @@ pub fn turn(mesh: &Patch, corner: Code) -> Code {
     next(mesh.opposite(next(corner)))
 }
 
-impl Marked {
+impl<S: Sites> Marked<S> {
     /// Builds it from a mesh of all of its vertices and their points, which end with NaN.
-    pub fn new(mut mesh: Mesh2, points: Vec<Point2>, watch: &Watch) -> Result<Self> {
+    pub fn new(mesh: Mesh2, points: S, watch: &Watch) -> Result<Self> {
+        let used = 2 * mesh.vertices() as u32 - 2;
+        Self::with_records(mesh, points, used, watch)
+    }
+
+    /// The same for a mesh that may lack vertices, or a hull, and has this many records.
+    pub fn with_records(mut mesh: Mesh2, points: S, used: u32, watch: &Watch) -> Result<Self> {
         let count = mesh.vertices();
         let mut near = filled(count, 0)?;
-        let used = 2 * count as u32 - 2;
         let patch = mesh.resume(used);
         for e in (0..used).flat_map(|t| 8 * t..8 * t + 3) {
             if e.is_multiple_of(8 * LOT) {
@@ -61,6 +69,7 @@ impl Marked {
             points,
             mesh,
             count,
+            lack: 2 * count as u32 - 2 - used,
             near,
             stack: Vec::new(),
         })
@@ -69,7 +78,7 @@ impl Marked {
     /// The number of triangles, ghosts included.
     #[inline]
     pub fn triangles(&self) -> u32 {
-        2 * self.count as u32 - 2
+        2 * self.count as u32 - 2 - self.lack
     }
 
     /// The mesh for an edit.
@@ -79,6 +88,85 @@ impl Marked {
         self.mesh.resume(used)
     }
 
+    /// The edge from `u` to `v`, in the triangle on its left.
+    pub fn edge(&mut self, u: u32, v: u32) -> Result<Code> {
+        let start = self.near[u as usize];
+        let mesh = self.patch();
+        let mut corner = start;
+        while mesh.vertex(next(corner)) != v {
+            corner = turn(&mesh, corner);
+            if corner == start {
+                return Err(Error::Internal(format!("no edge joins {u} {v}")));
+            }
+        }
+        Ok(prev(corner))
+    }
+
+    /// Records `t` as the triangle by which each of its vertices is found.
+    #[inline]
+    pub fn touch(&mut self, t: u32) {
+        let corners = self.patch().corners(t);
+        for (e, v) in (8 * t..).zip(corners) {
+            if let Some(near) = self.near.get_mut(v as usize) {
+                *near = e;
+            }
+        }
+    }
+
+    /// Legalizes: flips edges, starting from those on the stack, until all are legal. Terminates
+    /// because each flip lowers the lifted surface for good (see `delaunay2::lawson`; marked edges
+    /// do not change that).
+    pub fn legalize(&mut self) -> Result<()> {
+        self.legalize_with(|_, _| {})
+    }
+
+    /// The same; calls `flipped` with the two triangles of each flip.
+    pub fn legalize_with(&mut self, mut flipped: impl FnMut(u32, u32)) -> Result<()> {
+        while let Some(e) = self.stack.pop() {
+            if self.must_flip(e)? {
+                let mut mesh = self.patch();
+                let other = mesh.flip_marked(e);
+                self.stack.extend([e, prev(e), other, next(other)]);
+                self.touch(triangle(e));
+                self.touch(triangle(other));
+                flipped(triangle(e), triangle(other));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the edge `e` must be flipped: it is not marked, and the circumcircle of the triangle
+    /// on one side contains the apex on the other; or it joins two ghosts, one of whose apexes sees
+    /// the other's hull edge.
+    fn must_flip(&mut self, e: Code) -> Result<bool> {
+        let used = self.triangles();
+        let mesh = self.mesh.resume(used);
+        let o = mesh.opposite(e);
+        if mesh.is_bound(e) || mesh.is_bound(o) {
+            return Ok(false);
+        }
+        //        p
+        //      /   \
+        //     u --- v
+        //      \   /
+        //        q
+        let inf = mesh.infinite();
+        let [p, q, u, v] = [e, o, next(e), prev(e)].map(|c| mesh.vertex(c));
+        let turns = |a: u32, b: u32, c: u32| self.points.orient([a, b, c]) == Sign::Positive;
+        if p == inf || q == inf {
+            return Ok(false);
+        }
+        if u == inf {
+            return Ok(turns(q, v, p));
+        }
+        if v == inf {
+            return Ok(turns(u, q, p));
+        }
+        Ok(self.points.in_circle([u, v, p, q]))
+    }
+}
+
+impl Marked {
     /// The point of a vertex.
     #[inline]
     pub fn at(&self, v: u32) -> Point2 {
@@ -133,20 +221,6 @@ impl Marked {
         Ok((v, parted))
     }
 
-    /// The edge from `u` to `v`, in the triangle on its left.
-    pub fn edge(&mut self, u: u32, v: u32) -> Result<Code> {
-        let start = self.near[u as usize];
-        let mesh = self.patch();
-        let mut corner = start;
-        while mesh.vertex(next(corner)) != v {
-            corner = turn(&mesh, corner);
-            if corner == start {
-                return Err(Error::Internal(format!("no edge joins {u} {v}")));
-            }
-        }
-        Ok(prev(corner))
-    }
-
     /// Makes room for one more vertex.
     pub fn grow(&mut self) -> Result<()> {
         let room = self.mesh.vertices();
@@ -186,71 +260,5 @@ impl Marked {
         };
         let found = (0..2 * self.count as u32 - 2).find(|&t| holds(t));
         found.ok_or_else(|| Error::Internal(format!("no triangle contains {p:?}")))
-    }
-
-    /// Records `t` as the triangle by which each of its vertices is found.
-    #[inline]
-    pub fn touch(&mut self, t: u32) {
-        let corners = self.patch().corners(t);
-        for (e, v) in (8 * t..).zip(corners) {
-            if let Some(near) = self.near.get_mut(v as usize) {
-                *near = e;
-            }
-        }
-    }
-
-    /// Legalizes: flips edges, starting from those on the stack, until all are legal. Terminates
-    /// because each flip lowers the lifted surface for good (see `delaunay2::lawson`; marked edges
-    /// do not change that).
-    pub fn legalize(&mut self) -> Result<()> {
-        self.legalize_with(|_, _| {})
-    }
-
-    /// The same; calls `flipped` with the two triangles of each flip.
-    pub fn legalize_with(&mut self, mut flipped: impl FnMut(u32, u32)) -> Result<()> {
-        while let Some(e) = self.stack.pop() {
-            if self.must_flip(e)? {
-                let mut mesh = self.patch();
-                let other = mesh.flip_marked(e);
-                self.stack.extend([e, prev(e), other, next(other)]);
-                self.touch(triangle(e));
-                self.touch(triangle(other));
-                flipped(triangle(e), triangle(other));
-            }
-        }
-        Ok(())
-    }
-
-    /// Whether the edge `e` must be flipped: it is not marked, and the circumcircle of the triangle
-    /// on one side contains the apex on the other; or it joins two ghosts, one of whose apexes sees
-    /// the other's hull edge.
-    fn must_flip(&mut self, e: Code) -> Result<bool> {
-        let mesh = self.mesh.resume(2 * self.count as u32 - 2);
-        let o = mesh.opposite(e);
-        if mesh.is_bound(e) || mesh.is_bound(o) {
-            return Ok(false);
-        }
-        //        p
-        //      /   \
-        //     u --- v
-        //      \   /
-        //        q
-        let inf = mesh.infinite();
-        let [p, q, u, v] = [e, o, next(e), prev(e)].map(|c| mesh.vertex(c));
-        let turns = |a: u32, b: u32, c: u32| {
-            let [a, b, c] = [a, b, c].map(|v| self.points[v as usize]);
-            orient2d(a, b, c) == Sign::Positive
-        };
-        if p == inf || q == inf {
-            return Ok(false);
-        }
-        if u == inf {
-            return Ok(turns(q, v, p));
-        }
-        if v == inf {
-            return Ok(turns(u, q, p));
-        }
-        let [a, b, c, d] = [u, v, p, q].map(|v| self.points[v as usize]);
-        Ok(incircle_canonical(a, b, c, d) == Sign::Positive)
     }
 }

@@ -10,7 +10,7 @@ mod components;
 pub(crate) mod conforming;
 mod crowd;
 mod edges;
-mod inserted;
+pub(crate) mod inserted;
 pub mod intersection;
 pub(crate) mod marked;
 pub mod pairs;
@@ -18,7 +18,8 @@ mod polygon;
 mod present;
 mod reroute;
 mod ring;
-mod segment;
+pub(crate) mod segment;
+pub(crate) mod sites;
 mod split;
 mod subsegments;
 
@@ -32,8 +33,6 @@ pub use self::subsegments::Subsegments;
 
 use self::inserted::Inserted;
 use self::marked::Marked;
-use self::present::mark_present;
-use self::segment::{Cavity, Step};
 use self::split::Splitter;
 use crate::arrays::Arrays;
 use crate::delaunay2::{Built, Clock, Method, Stage, mesh};
@@ -155,7 +154,7 @@ impl<'a> Work<'a> {
             ..
         } = self.options;
         let few = if split { self.few() } else { 0 };
-        let inserted = match self.insert_all(few, watch)? {
+        let inserted = match inserted::insert_all(&mut self.marked, &self.ends, few, watch)? {
             Some((inserted, waiting)) if waiting.is_empty() => Some(inserted),
             Some((inserted, waiting)) if split => self.reroute(input, inserted, &waiting, watch)?,
             _ if !split => return Err(self.crossing_error(input, watch)?),
@@ -184,60 +183,6 @@ impl<'a> Work<'a> {
             splitter.conform()?;
         }
         splitter.finish()
-    }
-
-    /// Marks the segments that are edges, and inserts the others row by row. Returns the rows that
-    /// cross segments inserted before them, which are postponed; `None` if there are more than
-    /// `few`.
-    fn insert_all(&mut self, few: usize, watch: &Watch) -> Result<Option<(Inserted, Vec<u32>)>> {
-        let present = mark_present(&mut self.marked, &self.ends, watch)?;
-        let mut inserted = Inserted {
-            pieces: with_room(self.ends.len())?,
-            repeated: present.repeated,
-            sorted: true,
-            ..Inserted::default()
-        };
-        let mut waiting = Vec::new();
-        let mut cavity = Cavity::default();
-        let mut pace = Pace::new(watch, WATCH_EVERY * TRIANGLES);
-        for (row, &[mut a, mut b]) in (0u32..).zip(&self.ends) {
-            pace.spend(1)?;
-            if present.holds([a, b]) {
-                push(&mut inserted.pieces, ([a, b], row))?;
-                continue;
-            }
-            // The segment is inserted from both ends; pieces from the end `b` are collected in
-            // `back`.
-            let mut back = Vec::new();
-            while a != b {
-                let step = self.marked.join(a, b, &mut cavity)?;
-                pace.spend(TRIANGLES + cavity.size())?;
-                let Step::Joined { from, to, again } = step else {
-                    // Blocked by a segment that was inserted before.
-                    waiting.push(row);
-                    break;
-                };
-                inserted.repeated |= again;
-                // `a ^ b ^ from` is the other end: any other vertex lies on the segment.
-                if to != a ^ b ^ from {
-                    push(&mut inserted.through, [row, to])?;
-                }
-                if from == a {
-                    push(&mut inserted.pieces, ([a, to], row))?;
-                    a = to;
-                } else {
-                    push(&mut back, ([to, b], row))?;
-                    b = to;
-                }
-            }
-            for piece in back.into_iter().rev() {
-                push(&mut inserted.pieces, piece)?;
-            }
-            if waiting.len() > few {
-                return Ok(None);
-            }
-        }
-        Ok(Some((inserted, waiting)))
     }
 
     /// The error that names all pairs that cross.

@@ -7,6 +7,7 @@
 //! Segments that find both slots taken are inserted one by one later.
 
 use super::marked::{LOT, Marked};
+use super::sites::Sites;
 use crate::error::Result;
 use crate::memory::filled;
 use crate::watch::{Pace, Watch};
@@ -39,7 +40,11 @@ fn bits(slots: [u32; 2], v: u32) -> u8 {
 }
 
 /// Marks the edges of triangles that are among the segments `ends`.
-pub fn mark_present(marked: &mut Marked, ends: &[[u32; 2]], watch: &Watch) -> Result<Present> {
+pub fn mark_present<S: Sites>(
+    marked: &mut Marked<S>,
+    ends: &[[u32; 2]],
+    watch: &Watch,
+) -> Result<Present> {
     let mut present = with_slots(ends, marked.count, watch)?;
     let (slots, hits) = (&present.slots, &mut present.hits);
     let triangles = marked.triangles();

@@ -20,9 +20,10 @@
 //! log k for points that are not adversarial. Triangles outside of the cavity do not change, since
 //! the constrained Delaunay triangulation is unique and only a segment blocks visibility.
 
-use delone_predicates::{Point2, Sign, lexicographic, orient2d};
+use delone_predicates::Sign;
 
 use super::marked::{Marked, turn};
+use super::sites::Sites;
 use crate::error::{Error, Result};
 use crate::mesh2::{Code, Patch, next, prev, triangle};
 
@@ -87,22 +88,27 @@ enum Side {
 /// The vertex beyond edge `e`, which the segment from `a` to `b` crosses, and the next edge that
 /// the segment crosses; `None` if it meets the vertex.
 #[inline]
-fn behind(mesh: &Patch, points: &[Point2], e: Code, a: u32, b: u32) -> Result<(u32, Option<Code>)> {
+fn behind<S: Sites>(
+    mesh: &Patch,
+    points: &S,
+    e: Code,
+    a: u32,
+    b: u32,
+) -> Result<(u32, Option<Code>)> {
     let o = mesh.opposite(e);
     let x = mesh.vertex(o);
     if x == mesh.infinite() {
         let message = format!("the segment {a} {b} leaves the hull");
         return Err(Error::Internal(message));
     }
-    let [p, q, at] = [a, b, x].map(|v| points[v as usize]);
-    Ok(match orient2d(p, q, at) {
+    Ok(match points.orient([a, b, x]) {
         Sign::Positive => (x, Some(next(o))),
         Sign::Negative => (x, Some(prev(o))),
         Sign::Zero => (x, None),
     })
 }
 
-impl Marked {
+impl<S: Sites> Marked<S> {
     /// Joins the distinct vertices `a` and `b` as far as the first vertex or marked edge on the
     /// segment, from one of its ends.
     pub fn join(&mut self, a: u32, b: u32, cavity: &mut Cavity) -> Result<Step> {
@@ -144,7 +150,8 @@ impl Marked {
                 }
                 Leave::Across(first) => {
                     let mut e = first;
-                    let mesh = self.mesh.resume(2 * self.count as u32 - 2);
+                    let used = self.triangles();
+                    let mesh = self.mesh.resume(used);
                     let mut beside = vec![mesh.vertex(next(e)), mesh.vertex(prev(e))];
                     let end = loop {
                         let (x, beyond) = behind(&mesh, &self.points, e, a, b)?;
@@ -181,21 +188,37 @@ impl Marked {
     /// Calls `visit` for each edge that the segment from `a` to `b` crosses, except those that it
     /// only touches. Terminates as `gather` does.
     pub fn cross(&mut self, a: u32, b: u32, mut visit: impl FnMut(&Patch, Code)) -> Result<()> {
+        self.trace(a, b, |mesh, met| {
+            if let Met::Across(e) = met {
+                visit(mesh, e);
+            }
+        })
+    }
+
+    /// Calls `visit` for all that the segment from `a` to `b` meets, except its ends.
+    pub fn trace(&mut self, a: u32, b: u32, mut visit: impl FnMut(&Patch, Met)) -> Result<()> {
+        let used = self.triangles();
         let mut from = a;
         while from != b {
             from = match self.leave(from, b)? {
-                Leave::Along(_, w) => w,
+                Leave::Along(e, w) => {
+                    visit(&self.mesh.resume(used), Met::Along(e));
+                    w
+                }
                 Leave::Across(first) => {
                     let mut e = first;
-                    let mesh = self.mesh.resume(2 * self.count as u32 - 2);
+                    let mesh = self.mesh.resume(used);
                     loop {
-                        visit(&mesh, e);
+                        visit(&mesh, Met::Across(e));
                         let (x, beyond) = behind(&mesh, &self.points, e, a, b)?;
                         let Some(f) = beyond else { break x };
                         e = f;
                     }
                 }
             };
+            if from != b {
+                visit(&self.mesh.resume(used), Met::Vertex(from));
+            }
         }
         Ok(())
     }
@@ -222,17 +245,10 @@ impl Marked {
     /// How the segment from `a` to `b`, which is not an edge, leaves a.
     fn leave(&mut self, a: u32, b: u32) -> Result<Leave> {
         let start = self.near[a as usize];
-        let mesh = self.mesh.resume(2 * self.count as u32 - 2);
+        let used = self.triangles();
+        let mesh = self.mesh.resume(used);
         let inf = mesh.infinite();
-        let side = |v: u32| {
-            let [a, b, v] = [a, b, v].map(|v| self.points[v as usize]);
-            orient2d(a, b, v)
-        };
-        // Whether a vertex on the line lies on b's side.
-        let ahead = |v: u32| {
-            let [a, b, v] = [a, b, v].map(|v| self.points[v as usize]);
-            lexicographic(a, b) == lexicographic(a, v)
-        };
+        let side = |v: u32| self.points.orient([a, b, v]);
         let mut corner = start;
         let mut right = None;
         // One step more than there are triangles: each edge is seen from both sides.
@@ -240,7 +256,7 @@ impl Marked {
         loop {
             let u = mesh.vertex(next(corner));
             let here = (u != inf).then(|| side(u));
-            if here == Some(Sign::Zero) && ahead(u) {
+            if here == Some(Sign::Zero) && self.points.ahead(a, b, u) {
                 return Ok(Leave::Along(prev(corner), u));
             }
             if let (Some(before), Some(Sign::Positive)) = (right, here) {
@@ -283,7 +299,8 @@ impl Marked {
     /// Collects the crossed triangles and the rims. Terminates: the crossed edges follow each other
     /// along a b.
     fn gather(&mut self, a: u32, b: u32, first: Code, cavity: &mut Cavity) -> Result<Step> {
-        let mesh = self.mesh.resume(2 * self.count as u32 - 2);
+        let used = self.triangles();
+        let mesh = self.mesh.resume(used);
         let rim = |end: u32, inner: Code| Rim {
             end,
             inner,
@@ -316,11 +333,10 @@ impl Marked {
                 )));
             }
             cavity.triangles.push(triangle(o));
-            let [p, q, at] = [a, b, x].map(|v| self.points[v as usize]);
             let side = if x == b {
                 Sign::Zero
             } else {
-                orient2d(p, q, at)
+                self.points.orient([a, b, x])
             };
             match side {
                 Sign::Positive => {
@@ -412,12 +428,12 @@ impl Marked {
             //       /   \         An ear: the chain turns right at top, so the triangle lies in the
             //  below --- v        polygon, and v takes the place of top.
             while let [.., (below, _), (top, top_side)] = scan[..] {
-                let [p, q, r] = [below, v, top].map(|v| self.at(v));
-                if orient2d(p, q, r) != Sign::Positive {
+                if self.points.orient([below, v, top]) != Sign::Positive {
                     break;
                 }
                 let t = free.pop().ok_or_else(broken)?;
-                let mut mesh = self.mesh.resume(2 * self.count as u32 - 2);
+                let used = self.triangles();
+                let mut mesh = self.mesh.resume(used);
                 mesh.set(t, [below, v, top]);
                 mesh.clear(t);
                 for (old, new) in [(side, 8 * t), (top_side, 8 * t + 1)] {
@@ -454,6 +470,17 @@ impl Marked {
             mesh.fix(r.new);
         }
     }
+}
+
+/// What a segment meets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Met {
+    /// An edge that it crosses.
+    Across(Code),
+    /// An edge that it runs along.
+    Along(Code),
+    /// A vertex between its ends.
+    Vertex(u32),
 }
 
 /// Whether two vertices are joined.

@@ -22,14 +22,26 @@ const LOT: usize = 1 << 16;
 
 /// Like [`arrays`], and for each triangle and corner whether the opposite edge is marked.
 pub fn marked_arrays(
-    mut mesh: Mesh2,
+    mesh: Mesh2,
     ghost: Code,
     rows: &[u32],
     workers: usize,
     watch: &Watch,
 ) -> Result<(Arrays<3>, Vec<[bool; 3]>)> {
     let all = 2 * mesh.vertices() - 2;
-    let count = drop_ghosts(&mut mesh, ghost, all)?;
+    partial_marked_arrays(mesh, Some(ghost), all, rows, workers, watch)
+}
+
+/// The same for the first `all` records of a mesh, which may lack vertices, or ghosts.
+pub fn partial_marked_arrays(
+    mut mesh: Mesh2,
+    ghost: Option<Code>,
+    all: usize,
+    rows: &[u32],
+    workers: usize,
+    watch: &Watch,
+) -> Result<(Arrays<3>, Vec<[bool; 3]>)> {
+    let count = keep_triangles(&mut mesh, ghost, all)?;
     let patch = mesh.patch();
     let mut marks = with_room(count)?;
     for first in (0..count).step_by(LOT) {
@@ -61,10 +73,7 @@ pub fn partial_arrays(
     workers: usize,
     watch: &Watch,
 ) -> Result<Arrays<3>> {
-    let count = match ghost {
-        Some(ghost) => drop_ghosts(&mut mesh, ghost, all)?,
-        None => all,
-    };
+    let count = keep_triangles(&mut mesh, ghost, all)?;
     write(mesh, count, rows, workers, watch)
 }
 
@@ -110,6 +119,14 @@ fn pack(records: &mut [u32], neighbors: &mut [[i32; 3]], rows: &[u32]) {
         let corners = [r[0], r[1], r[2]].map(|v| rows[v as usize]);
         records[3 * i..3 * i + 3].copy_from_slice(&corners);
         *n = [r[OPPOSITE], r[OPPOSITE + 1], r[OPPOSITE + 2]].map(|e| e as i32 >> 3);
+    }
+}
+
+/// Drops the ghosts, where there are any, and returns the count of triangles.
+fn keep_triangles(mesh: &mut Mesh2, ghost: Option<Code>, all: usize) -> Result<usize> {
+    match ghost {
+        Some(ghost) => drop_ghosts(mesh, ghost, all),
+        None => Ok(all),
     }
 }
 

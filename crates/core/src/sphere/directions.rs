@@ -3,6 +3,7 @@
 use delone_predicates::sphere::{Unit, incircle_of, orient_of, same, tie};
 use delone_predicates::{Point3, Sign, orient2d};
 
+use crate::constrained::sites::Sites;
 use crate::error::{Error, Result};
 use crate::memory::{filled, push, with_room};
 use crate::order::order_of;
@@ -188,6 +189,26 @@ impl Directions {
         [[0, 1], [1, 2], [2, 0]].iter().any(|&axes| {
             let side = turn(a, b, axes);
             !side.is_zero() && turn(a, p, axes) == side && turn(p, b, axes) == side
+        })
+    }
+}
+
+impl Sites for Directions {
+    #[inline]
+    fn orient(&self, vertices: [u32; 3]) -> Sign {
+        self.orient(vertices)
+    }
+
+    #[inline]
+    fn in_circle(&self, vertices: [u32; 4]) -> bool {
+        self.in_circle(vertices)
+    }
+
+    fn ahead(&self, a: u32, b: u32, v: u32) -> bool {
+        let [a, b, v] = [a, b, v].map(|i| self.vector(i));
+        [[0, 1], [1, 2], [2, 0]].iter().any(|&axes| {
+            let side = turn(a, b, axes);
+            !side.is_zero() && turn(a, v, axes) == side
         })
     }
 }

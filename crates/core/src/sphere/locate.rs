@@ -24,6 +24,8 @@ use crate::watch::{Pace, Watch};
 
 /// Work between two checks for interruption; a step of a walk is one.
 const WATCH_EVERY: usize = 1 << 12;
+/// Steps of a walk before edges are tried in random order.
+const TURNS: usize = 1 << 10;
 /// More than two rounded products of rounded directions are off by together: each by 5 units of
 /// rounding.
 const MARGIN: f64 = 1e-14;
@@ -173,12 +175,21 @@ impl Index {
     }
 
     /// The triangle that contains a query, or the one at whose boundary edge the walk left the hull.
+    ///
+    /// In a Delaunay triangulation no triangle is met twice. Around constrained edges a walk may cycle: a
+    /// long one tries edges in random order, which ends (O. Devillers, S. Pion and M. Teillaud, "Walking in
+    /// a triangulation", 2002), and one that is much too long gives way to a search.
     fn walk(&self, q: (Point3, Unit), from: usize, pace: &mut Pace) -> Result<(usize, bool)> {
-        let mut t = from;
-        // In a Delaunay triangulation no triangle is met twice.
-        for _ in 0..=self.arrays.simplices.len() {
+        let (mut t, mut dice) = (from, 1_u32);
+        let count = self.arrays.simplices.len();
+        for step in 0..count + TURNS {
             pace.spend(1)?;
-            let Some(k) = (0..3).find(|&k| self.side(&q, t, k) == Sign::Negative) else {
+            if step > TURNS {
+                dice = dice.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            }
+            let first = (dice >> 16) as usize;
+            let mut corners = (first..first + 3).map(|k| k % 3);
+            let Some(k) = corners.find(|&k| self.side(&q, t, k) == Sign::Negative) else {
                 return Ok((t, true));
             };
             match usize::try_from(self.arrays.neighbors[t][k]) {
@@ -186,6 +197,13 @@ impl Index {
                 Err(_) => return Ok((t, false)),
             }
         }
+        for t in 0..count {
+            pace.spend(1)?;
+            if (0..3).all(|k| self.side(&q, t, k) != Sign::Negative) {
+                return Ok((t, true));
+            }
+        }
+        // The hull is convex: where the query is in no triangle, each walk leaves it.
         Err(Error::Internal("a walk on the sphere does not end".into()))
     }
 

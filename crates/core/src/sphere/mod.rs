@@ -9,6 +9,7 @@
 //! |---|---|
 //! | `directions` | vectors and their directions, in insertion order; predicates by number |
 //! | `kernel`, `close`, `walk` | insertion; the one that covers the rest of the sphere; the walk |
+//! | `constrain` | arcs as edges, by the insertion of segments in the plane |
 //! | `angles`, `sines` | longitudes and latitudes to vectors |
 //! | `locate`, `measure` | queries on arrays; areas and circumcenters |
 //! | `void`, `dual`, `span` | the facets beyond a hull; the Voronoi diagram; its ridges and areas |
@@ -16,6 +17,7 @@
 
 pub mod angles;
 mod close;
+mod constrain;
 mod degenerate;
 pub mod directions;
 pub mod dual;
@@ -28,4 +30,5 @@ mod triangulate;
 pub mod void;
 mod walk;
 
+pub use constrain::{Constrained, constrain};
 pub use triangulate::{Triangulation, triangulate};

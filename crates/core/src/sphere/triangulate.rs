@@ -11,7 +11,7 @@ use super::kernel::Kernel;
 use crate::arrays::Arrays;
 use crate::error::Result;
 use crate::memory::with_room;
-use crate::mesh2::{Mesh2, export, triangle};
+use crate::mesh2::{Code, Mesh2, export, triangle};
 use crate::order::{Rounds, sort};
 use crate::watch::Watch;
 
@@ -29,11 +29,39 @@ pub struct Triangulation {
     pub duplicates: Vec<[u32; 2]>,
 }
 
+/// A mesh of directions.
+pub(super) struct Built {
+    pub mesh: Mesh2,
+    /// The infinite corner of a ghost; `None` if the sphere is covered.
+    pub ghost: Option<Code>,
+    /// The records taken.
+    pub taken: usize,
+    /// The directions; after `join` the row of each vertex is the first of its direction.
+    pub arranged: Arranged,
+    /// Directions that are the same as a vertex, with that vertex.
+    pub repeats: Vec<[u32; 2]>,
+}
+
 /// The canonical Delaunay triangulation of the directions of `vectors`; the same arrays for any number of
 /// workers.
 pub fn triangulate(vectors: &[Point3], workers: usize, watch: &Watch) -> Result<Triangulation> {
+    let mut built = build(vectors, workers, watch)?;
+    let duplicates = join(&mut built.arranged, &built.repeats, watch)?;
+    let Built {
+        mesh,
+        ghost,
+        taken,
+        arranged,
+        ..
+    } = built;
+    let arrays = export::partial_arrays(mesh, ghost, taken, &arranged.rows, workers, watch)?;
+    Ok(Triangulation { arrays, duplicates })
+}
+
+/// The mesh of the directions of `vectors`.
+pub(super) fn build(vectors: &[Point3], workers: usize, watch: &Watch) -> Result<Built> {
     check(vectors)?;
-    let mut arranged = arrange(vectors, workers, watch)?;
+    let arranged = arrange(vectors, workers, watch)?;
     let n = arranged.directions.count();
     let Some(first) = first_triangle(&arranged.directions, watch)? else {
         return Err(degenerate(&arranged, watch)?);
@@ -50,9 +78,13 @@ pub fn triangulate(vectors: &[Point3], workers: usize, watch: &Watch) -> Result<
     }
     let (ghost, taken) = (kernel.ghost(), kernel.taken());
     let repeats = std::mem::take(&mut kernel.repeats);
-    let duplicates = join(&mut arranged, &repeats, watch)?;
-    let arrays = export::partial_arrays(mesh, ghost, taken, &arranged.rows, workers, watch)?;
-    Ok(Triangulation { arrays, duplicates })
+    Ok(Built {
+        mesh,
+        ghost,
+        taken,
+        arranged,
+        repeats,
+    })
 }
 
 /// Three directions that are not on one great circle, counterclockwise; `None` if all are on one.
@@ -81,7 +113,11 @@ fn first_triangle(directions: &Directions, watch: &Watch) -> Result<Option<[u32;
 
 /// All rows of directions that occur before, with the first row of the same direction, which becomes
 /// the row of the vertex.
-fn join(arranged: &mut Arranged, repeats: &[[u32; 2]], watch: &Watch) -> Result<Vec<[u32; 2]>> {
+pub(super) fn join(
+    arranged: &mut Arranged,
+    repeats: &[[u32; 2]],
+    watch: &Watch,
+) -> Result<Vec<[u32; 2]>> {
     let Arranged {
         rows,
         repeats: equal,

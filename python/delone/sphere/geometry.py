@@ -1,0 +1,113 @@
+"""Polygons, lines and points in longitudes and latitudes as arcs and directions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from delone._arrays import as_choice, as_flag
+from delone.constrained import geodata
+from delone.duplicates import first_rows
+from delone.sphere.constrained import ConstrainedDelaunay, Given, most_added
+from delone.sphere.coordinates import directions_of
+from delone.sphere.land import Origin
+
+__all__ = ["from_geometry"]
+
+_WINDINGS = ("ccw", "cw", "smaller")
+
+
+def from_geometry(
+    geometries: Any,
+    *,
+    winding: str = "ccw",
+    crossing: str = "split",
+    max_points: int | None = None,
+    degrees: bool = True,
+    workers: int | None = None,
+) -> ConstrainedDelaunay:
+    """Triangulate the sphere with polygons, lines and points in longitudes and latitudes.
+
+    Parameters
+    ----------
+    geometries : geometry or iterable of geometries
+        As for `delone.from_geometry`: geometries of shapely, tables of geopandas, mappings in the
+        form of GeoJSON, or iterables of these. Each row of a table and each feature of a collection
+        is a geometry. Longitudes come first.
+    winding : {"ccw", "cw", "smaller"}, optional
+        Which side of its outer rings is inside a polygon: the left one, as outer rings in GeoJSON
+        (RFC 7946) run counter-clockwise; the right one, as in shapefiles; or whichever makes the
+        area of a geometry the smaller part of the sphere. Most sides of its outer rings decide.
+    crossing : {"split", "raise"}, optional
+        As for `ConstrainedDelaunay`, but by default crossings are split, because borders in real
+        data do cross.
+    max_points : int, optional
+        As for `ConstrainedDelaunay`.
+    degrees : bool, optional
+        Whether angles are in degrees (the default) or in radians.
+    workers : int, optional
+        Maximum number of threads; by default one per core.
+
+    Returns
+    -------
+    ConstrainedDelaunay
+        The triangulation. Its directions are the distinct coordinates in order of appearance, then
+        crossings; its segments are the lines and the sides of all rings. ``geometry_of_segment``
+        has the geometry of each, and ``polygon`` the first geometry that contains each triangle, -1
+        at sea.
+
+    Raises
+    ------
+    InputError
+        An item is not a geometry. Reading ``polygon`` raises it, too, if as many sides of
+        the outer rings of a geometry run in one direction as in the other.
+    CrossingSegmentsError, BudgetExceededError, DirectionError, DegenerateInputError
+        As for `ConstrainedDelaunay`.
+    NonFiniteError
+        A coordinate is NaN or infinite; the rows of the error are geometries.
+
+    Warns
+    -----
+    LongitudeWarning
+        Longitudes span more than one turn.
+
+    Notes
+    -----
+    Sides of rings are arcs of great circles, not straight lines of a map: along a parallel, or
+    across many degrees, add points in between. A ring may surround a pole or cross the date line.
+    Sides that a geometry has twice separate nothing, such as the cut along the date line from a
+    polygon's coast to the pole. By the even-odd rule a point is inside if rings of a geometry
+    separate it from outside an odd number of times, so the direction of inner rings does not
+    matter.
+
+    Examples
+    --------
+    >>> from delone import sphere
+    >>> cap = [(0, 70), (90, 70), (180, 70), (-90, 70)]
+    >>> island = [(175, -5), (-175, -5), (-175, 5), (175, 5)]
+    >>> land = [{"type": "Polygon", "coordinates": [ring]} for ring in (cap, island)]
+    >>> points = {"type": "MultiPoint", "coordinates": [(10, -70), (130, -70), (-110, -70)]}
+    >>> mesh = sphere.from_geometry([*land, points])
+    >>> [round(float(mesh.areas[mesh.polygon == k].sum()), 3) for k in (-1, 0, 1)]
+    [12.287, 0.249, 0.03]
+    """
+    as_flag(degrees, name="degrees")
+    as_choice(winding, _WINDINGS, name="winding")
+    most = most_added(crossing, max_points)
+    parts = geodata.parts_of(geometries)
+    geodata.require_finite_parts(parts)
+    first = first_rows(parts.coordinates)
+    distinct = first == np.arange(len(first))
+    vertex = (np.cumsum(distinct) - 1)[first].astype(np.int32)
+    lonlat = parts.coordinates[distinct]
+    vectors = directions_of(lonlat, None, degrees=degrees, workers=workers)
+    ends, part = geodata.steps_of(parts)
+    kinds = parts.kinds[part]
+    origin = Origin(
+        parts.geometries[part].astype(np.int32),
+        kinds >= geodata.EXTERIOR,
+        kinds == geodata.EXTERIOR,
+    )
+    given = Given(vertex[ends], origin, winding, len(vectors))
+    return ConstrainedDelaunay._of_geometries(vectors, given, most, degrees, workers)
