@@ -410,6 +410,7 @@ mod tests {
     use super::super::Options;
     use super::super::split::Splitter;
     use super::*;
+    use crate::constrained::inserted::insert_all;
     use crate::delaunay2::{Clock, Method};
 
     type Bits = [u64; 2];
@@ -466,7 +467,9 @@ mod tests {
         let Ok(mut work) = start() else {
             return Ok(false);
         };
-        let (inserted, waiting) = work.insert_all(usize::MAX, &watch).unwrap().unwrap();
+        let (inserted, waiting) = insert_all(&mut work.marked, &work.ends, usize::MAX, &watch)
+            .unwrap()
+            .unwrap();
         if waiting.is_empty() {
             return Ok(false);
         }

@@ -7,17 +7,19 @@
 //! # Bounds of the filters
 //!
 //! They use the rounded directions alone. Let u = 2^-53, P = a - p for the new direction p, computed
-//! from the heads, and s its 1-norm, at most 2 sqrt 3. A tail is at most u / 2, so an entry errs
-//! by u of itself and 1.01 u. In the determinant [P, Q, R] a monomial passes three differences, three
-//! products, a difference and two sums: 9 u of the permanent, which is at most s t w for the three
-//! norms, and s t w <= 1.16 (s t + t w + w s). An error 1.01 u in one entry meets a minor of the other
-//! rows, all together 1.01 u (s t + t w + w s). If the determinant exceeds [`CIRCLE_BOUND`] = 16 u times
-//! that sum, then s t w does, so that each of s, t, w is above 16 u; then products of two such errors are
-//! at most 2.1 u^2 (s + t + w), below 0.14 u times the sum. In all that is 11.8 u of it.
+//! from the heads, and s its 1-norm, at most 2 sqrt 3; Q with t and R with w likewise. A tail is at most
+//! u / 2, so an entry errs by u of itself and 1.01 u. In the determinant [P, Q, R] a monomial passes three
+//! differences, two products, a difference and two sums: 9 u of the permanent with room, and that is at
+//! most s t w. An error 1.01 u in one entry meets a minor of the other rows, all together
+//! 1.01 u (s t + t w + w s). Two of them are at most 2.1 u^2 (s + t + w), three 6.2 u^3. If the
+//! determinant exceeds 3 u (s t + t w + w s), then s t w does, so that each of s, t, w is above 3 u: then
+//! two errors are below 0.7 u and three below 0.3 u times that sum. In all these are 2.1 u of it, where
+//! [`CIRCLE_BOUND`] takes 3 u, and 10 u s t w beside it.
 //!
-//! The determinant [P, Q, p] errs by 8 u of its permanent, at most s t <= 1.74 (s + t), and by
-//! 1.01 u 1.74 (s + t) for the tails: 17.5 u (s + t) with terms of second order, where
-//! [`TURN_BOUND`] = 32 u.
+//! The determinant [P, Q, p] errs by 8 u of its permanent, at most s t, by 0.5 u s t for the tail of p,
+//! and by 1.01 u 1.74 (s + t) for the other tails. Two of these are at most 3.6 u^2, and if the
+//! determinant exceeds 3 u (s + t) then s and t are above 3 u, so that this is 0.6 u (s + t). In all these
+//! are 2.4 u (s + t), where [`TURN_BOUND`] takes 3 u, and 10 u s t beside it.
 //!
 //! The infinite vertex is NaN: nothing is certain with it, and exact tests see to ghosts.
 
@@ -32,10 +34,12 @@ use crate::watch::{Pace, Watch};
 
 /// Half the distance from 1.0 to the next double.
 const U: f64 = f64::EPSILON / 2.0;
-/// Bound of the determinant of three differences.
-const CIRCLE_BOUND: f64 = 16.0 * U;
-/// Bound of the determinant of two differences and a direction.
-const TURN_BOUND: f64 = 32.0 * U;
+/// Bound of the determinant of three differences, for tails.
+const CIRCLE_BOUND: f64 = 3.0 * U;
+/// Bound of the determinant of two differences and a direction, for tails.
+const TURN_BOUND: f64 = 3.0 * U;
+/// Bound of both for the arithmetic.
+const ROUNDING: f64 = 10.0 * U;
 
 /// Units of work between two checks for interruption: a triangle is one.
 const WATCH_EVERY: usize = 1 << 14;
@@ -71,7 +75,7 @@ struct Seed {
 }
 
 #[inline]
-fn cross(a: Point3, b: Point3) -> Point3 {
+pub(super) fn cross(a: Point3, b: Point3) -> Point3 {
     [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -80,13 +84,19 @@ fn cross(a: Point3, b: Point3) -> Point3 {
 }
 
 #[inline]
-fn dot(a: Point3, b: Point3) -> f64 {
+pub(super) fn dot(a: Point3, b: Point3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline]
-fn circle_bound(s: f64, t: f64, w: f64) -> f64 {
-    CIRCLE_BOUND * (s * t + w * (s + t))
+pub(super) fn circle_bound(s: f64, t: f64, w: f64) -> f64 {
+    let product = s * t;
+    CIRCLE_BOUND * (product + w * (s + t)) + ROUNDING * (product * w)
+}
+
+#[inline]
+pub(super) fn turn_bound(s: f64, t: f64) -> f64 {
+    TURN_BOUND * (s + t) + ROUNDING * (s * t)
 }
 
 /// A mesh into which directions are inserted one at a time.
@@ -263,8 +273,7 @@ impl<'a> Kernel<'a> {
                 }));
             }
             let turns = [dot(bc, origin), dot(ca, origin), dot(ab, origin)];
-            let bounds =
-                [b.size + c.size, c.size + a.size, a.size + b.size].map(|s| TURN_BOUND * s);
+            let bounds = [[b, c], [c, a], [a, b]].map(|[x, y]| turn_bound(x.size, y.size));
             if turns[0] < -bounds[0] {
                 (b, c) = (c, b);
             } else if turns[1] < -bounds[1] {

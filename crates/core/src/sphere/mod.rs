@@ -16,6 +16,8 @@
 //! | `triangulate`, `degenerate` | rows to arrays; what exists where there is no triangle |
 
 pub mod angles;
+#[cfg(test)]
+mod bounds;
 mod close;
 mod constrain;
 mod degenerate;

@@ -103,28 +103,46 @@ pub fn tie(vectors: [Point3; 4]) -> Sign {
 
 /// The sign, if pairs prove it.
 #[inline]
-pub fn pairs([a, b, c, d]: [&Unit; 4]) -> Option<Sign> {
+pub fn pairs(units: [&Unit; 4]) -> Option<Sign> {
+    let (det, bound) = by_pairs(units);
+    (det.abs() > bound).then(|| Sign::of(det))
+}
+
+/// The determinant by pairs and the bound of its error; infinite where none is proved.
+#[inline]
+pub fn by_pairs([a, b, c, d]: [&Unit; 4]) -> (f64, f64) {
     let [p, q, r] = [a, b, c].map(|x| difference(x, d));
     let (det, permanent) = determinant(p, q, r);
     let (s, t, w) = (size(p), size(q), size(r));
     let bound = BOUND * permanent + ABSOLUTE * (s * t + t * w + w * s);
     let apart = s >= NEAREST && t >= NEAREST && w >= NEAREST;
-    (det.abs() > bound && apart).then(|| -Sign::of(det))
+    (-det, if apart { bound } else { f64::INFINITY })
 }
 
 /// The sign, if double-double arithmetic proves it.
 #[inline]
-pub fn double_double([a, b, c, d]: [&Unit; 4]) -> Option<Sign> {
+pub fn double_double(units: [&Unit; 4]) -> Option<Sign> {
+    let (det, bound) = by_double_double(units);
+    (det.hi.abs() > bound).then(|| Sign::of(det.hi))
+}
+
+/// The same in double-double arithmetic.
+#[inline]
+pub fn by_double_double([a, b, c, d]: [&Unit; 4]) -> (Pair, f64) {
     let [p, q, r] = [a, b, c].map(|x| pair_difference(x, d));
     let minor = |i: usize, j: usize| q[i] * r[j] - q[j] * r[i];
-    let det = (p[0] * minor(1, 2) + p[1] * minor(2, 0) + p[2] * minor(0, 1)).hi;
+    let det = p[0] * minor(1, 2) + p[1] * minor(2, 0) + p[2] * minor(0, 1);
     let heads = |p: [Pair; 3]| p.map(|x| x.hi);
     let [p, q, r] = [p, q, r].map(heads);
     let (_, permanent) = determinant(p, q, r);
     let (s, t, w) = (size(p), size(q), size(r));
     let bound = BOUND_DOUBLE * permanent + ABSOLUTE * (s * t + t * w + w * s);
     let apart = s >= NEAREST && t >= NEAREST && w >= NEAREST;
-    (det.abs() > bound && apart).then(|| -Sign::of(det))
+    let negated = Pair {
+        hi: -det.hi,
+        lo: -det.lo,
+    };
+    (negated, if apart { bound } else { f64::INFINITY })
 }
 
 /// The same by integers: always right.

@@ -37,6 +37,7 @@ pub use unit::{Unit, leveled};
 /// Each stage by itself, for tests and measurements; not part of the stable interface.
 #[doc(hidden)]
 pub mod stages {
-    pub use super::incircle::{double_double, pairs};
-    pub use super::orient::pairs as orient_pairs;
+    pub use super::incircle::{by_double_double, by_pairs, double_double, pairs};
+    pub use super::nearer::by_differences;
+    pub use super::orient::{by_pairs as orient_by_pairs, pairs as orient_pairs};
 }

@@ -36,16 +36,23 @@ pub fn nearer(q: Point3, a: Point3, b: Point3) -> Sign {
 /// The same, with the directions given, too.
 #[inline]
 #[must_use]
-pub fn nearer_of(vectors: [Point3; 3], [q, a, b]: [&Unit; 3]) -> Sign {
-    let d = difference(a, b);
-    let terms = [0, 1, 2].map(|k| d[k] * q.hi[k]);
-    let sum = terms[0] + terms[1] + terms[2];
-    let permanent = terms[0].abs() + terms[1].abs() + terms[2].abs();
-    if sum.abs() > BOUND * permanent + ABSOLUTE {
+pub fn nearer_of(vectors: [Point3; 3], units: [&Unit; 3]) -> Sign {
+    let (sum, bound) = by_differences(units);
+    if sum.abs() > bound {
         Sign::of(sum)
     } else {
         nearer_exact(vectors)
     }
+}
+
+/// The difference of the products and the bound of its error.
+#[inline]
+pub fn by_differences([q, a, b]: [&Unit; 3]) -> (f64, f64) {
+    let d = difference(a, b);
+    let terms = [0, 1, 2].map(|k| d[k] * q.hi[k]);
+    let sum = terms[0] + terms[1] + terms[2];
+    let permanent = terms[0].abs() + terms[1].abs() + terms[2].abs();
+    (sum, BOUND * permanent + ABSOLUTE)
 }
 
 #[cold]

@@ -55,12 +55,20 @@ pub(super) fn determinant(p: Point3, q: Point3, r: Point3) -> (f64, f64) {
 
 /// The sign of [a, b, c], if pairs prove it.
 #[inline]
-pub fn pairs([a, b, c]: [&Unit; 3]) -> Option<Sign> {
+pub fn pairs(units: [&Unit; 3]) -> Option<Sign> {
+    let (det, bound) = by_pairs(units);
+    (det.abs() > bound).then(|| Sign::of(det))
+}
+
+/// The determinant by pairs and the bound of its error; infinite where none is proved.
+#[inline]
+pub fn by_pairs([a, b, c]: [&Unit; 3]) -> (f64, f64) {
     let (p, q) = (difference(a, c), difference(b, c));
     let (det, permanent) = determinant(p, q, c.hi);
     let (s, t) = (size(p), size(q));
     let bound = BOUND * permanent + ABSOLUTE * (s + t);
-    (det.abs() > bound && s >= NEAREST && t >= NEAREST).then(|| Sign::of(det))
+    let apart = s >= NEAREST && t >= NEAREST;
+    (det, if apart { bound } else { f64::INFINITY })
 }
 
 /// The sign of the determinant [a, b, c] of three vectors: positive if they turn counterclockwise seen
