@@ -1592,6 +1592,23 @@ class Locator3:
     def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
 
 @final
+class SphereWeights:
+    """Weights of vertices at directions as compressed rows."""
+
+    @property
+    def indptr(self) -> NDArray[np.int64]:
+        """Start of the entries of each query, and the end, (q + 1,)."""
+    @property
+    def indices(self) -> NDArray[np.int32]:
+        """The vertices, (k,)."""
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """Their weights, (k,)."""
+    @property
+    def slopes(self) -> NDArray[np.float64] | None:
+        """Derivatives towards east and north, per radian, (k, 2); None if not wanted."""
+
+@final
 class SphereLocator:
     def __new__(
         cls,
@@ -1600,6 +1617,14 @@ class SphereLocator:
         neighbors: NDArray[np.int32],
         workers: int,
     ) -> SphereLocator: ...
+    def weights(
+        self,
+        kind: str,
+        xi: NDArray[np.float64],
+        simplex: NDArray[np.int32],
+        sloped: bool,
+        workers: int,
+    ) -> SphereWeights: ...
     def find(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
     def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
 

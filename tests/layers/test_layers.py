@@ -162,6 +162,7 @@ CORE: dict[str, set[str]] = {
     "contour": {"delone_predicates"} | GROUND,
     "overlay": {"locate", "order", "parallel", "points", "delone_predicates"} | GROUND,
     "interpolate": {"locate", "delaunay2", "parallel", "wide", "delone_predicates"} | GROUND,
+    "interpolate_sphere": {"interpolate", "sphere", "parallel", "delone_predicates"} | GROUND,
     "interpolate3": {"interpolate", "locate", "locate3", "parallel", "wide", "delone_predicates"}
     | GROUND,
 }
@@ -191,6 +192,7 @@ BINDINGS = {
     "improve",
     "interpolate",
     "interpolate3",
+    "interpolate_sphere",
     "live",
     "locate",
     "locate3",

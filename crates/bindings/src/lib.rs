@@ -87,6 +87,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<sphere::SphereTriangulation>()?;
     m.add_class::<sphere::SphereLocator>()?;
     m.add_class::<sphere::SphereDual>()?;
+    m.add_class::<sphere::SphereWeights>()?;
     m.add_class::<improve::ImprovedMesh>()?;
     m.add_class::<improve::ImprovementCounts>()?;
     m.add_class::<surface::CheckedSurface>()?;

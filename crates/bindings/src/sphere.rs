@@ -2,15 +2,19 @@
 
 use delone::{Error, Point3, Result};
 use delone_core::arrays::Arrays;
+use delone_core::interpolate_sphere::{Kind, Queries, weights};
 use delone_core::memory::copied;
 use delone_core::sphere::angles::{Measure, directions};
 use delone_core::sphere::locate::Index;
 use delone_core::sphere::{constrain, directions as rays, dual, measure, span, triangulate, void};
 use delone_core::watch::Watch;
-use numpy::PyReadonlyArray2;
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, in_range, number_rows, numbers, rows, table};
+use crate::arrays::{
+    Column, Table, column, flat, in_range, number_rows, numbers, rows, shaped, table,
+};
 use crate::constrained::ConstrainedTriangulation;
 use crate::errors::raise;
 use crate::signals::watched;
@@ -221,6 +225,19 @@ pub fn sphere_spans(
     table(py, found)
 }
 
+/// Weights of vertices at directions as compressed rows.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct SphereWeights {
+    /// Start of the entries of each query, and the end, (q + 1,).
+    pub indptr: Column<i64>,
+    /// The vertices, (k,).
+    pub indices: Column<i32>,
+    /// Their weights, (k,).
+    pub weights: Column<f64>,
+    /// Derivatives of the weights towards east and north, per radian, (k, 2); None if not wanted.
+    pub slopes: Option<Table<f64>>,
+}
+
 /// A triangulation of directions that is kept for many calls.
 #[pyclass(frozen, module = "delone._core")]
 pub struct SphereLocator(Index);
@@ -265,6 +282,43 @@ impl SphereLocator {
         workers: usize,
     ) -> PyResult<Column<i32>> {
         self.column(py, &xi, |index, xi, watch| index.find(xi, workers, watch))
+    }
+
+    /// The weights of vertices at vectors, each of which is in or at a triangle, or -1 for none; and if
+    /// `sloped` their derivatives.
+    fn weights(
+        &self,
+        py: Python<'_>,
+        kind: &str,
+        xi: PyReadonlyArray2<'_, f64>,
+        simplex: PyReadonlyArray1<'_, i32>,
+        sloped: bool,
+        workers: usize,
+    ) -> PyResult<SphereWeights> {
+        let kind = Kind::named(kind)
+            .ok_or_else(|| PyValueError::new_err(format!("unknown kind {kind:?}")))?;
+        let queries = (|| {
+            Ok(Queries {
+                vectors: rows(&xi, "xi")?,
+                simplices: flat(&simplex, "simplex")?,
+            })
+        })();
+        let queries = queries.map_err(|e| raise(py, &e))?;
+        let found = watched(py, |watch| {
+            weights(&self.0, kind, queries, sloped, workers, watch)
+        })?;
+        let entries = found.indices.len();
+        let slopes = if sloped {
+            Some(shaped(py, found.slopes, [entries, 2])?)
+        } else {
+            None
+        };
+        Ok(SphereWeights {
+            indptr: column(py, found.indptr),
+            indices: column(py, found.indices),
+            weights: column(py, found.weights),
+            slopes,
+        })
     }
 
     /// The vertex nearest to the direction of each vector.

@@ -18,6 +18,7 @@ pub mod hull;
 pub mod improve;
 pub mod interpolate;
 pub mod interpolate3;
+pub mod interpolate_sphere;
 pub mod live;
 pub mod locate;
 pub mod locate3;

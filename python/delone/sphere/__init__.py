@@ -14,7 +14,7 @@ from delone.sphere.constrained import ConstrainedDelaunay
 from delone.sphere.coordinates import LongitudeWarning
 from delone.sphere.delaunay import Delaunay
 from delone.sphere.geometry import from_geometry
-from delone.sphere.interpolation import Linear, Nearest
+from delone.sphere.interpolation import Linear, NaturalNeighbor, Nearest
 from delone.sphere.voronoi import Voronoi
 
 __all__ = [
@@ -22,6 +22,7 @@ __all__ = [
     "Delaunay",
     "Linear",
     "LongitudeWarning",
+    "NaturalNeighbor",
     "Nearest",
     "Voronoi",
     "from_geometry",

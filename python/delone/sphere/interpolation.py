@@ -1,4 +1,4 @@
-"""Interpolation on the sphere: linear on spherical triangles, and by the nearest site.
+"""Interpolation on the sphere: linear, by natural neighbors, and by the nearest site.
 
 The base class `_Interpolator` has the policies and the fields, which are those of
 `delone.interpolate`; a subclass has the sites of each query and their weights.
@@ -7,16 +7,19 @@ The base class `_Interpolator` has the policies and the fields, which are those 
 from __future__ import annotations
 
 import copy
+import math
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_flag, as_plain_array, as_workers
+from delone._arrays import as_flag, as_number, as_plain_array, as_workers
 from delone.counting import agreed
 from delone.errors import DtypeError, InputError, ShapeError
+from delone.interpolate.base import shaped_derivatives
+from delone.interpolate.hull import Terms
 from delone.interpolate.values import DUPLICATES, NAN, as_field, chosen, require_finite_values
-from delone.interpolate.weights import Weights, rectangular
+from delone.interpolate.weights import Weights, joined, rectangular
 from delone.sphere.coordinates import queries_of
 from delone.sphere.delaunay import Delaunay
 from delone.sphere.outside import arc_weights
@@ -25,12 +28,13 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone.interpolate.values import Field
+    from delone.interpolate.weights import Table
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
     Rows = NDArray[np.int64]
 
-__all__ = ["Linear", "Nearest"]
+__all__ = ["Linear", "NaturalNeighbor", "Nearest"]
 
 _NAMED = 5
 
@@ -120,19 +124,53 @@ class _Interpolator:
         >>> sphere.Linear(sites, [1.0, 3.0, 2.0, 2.0])([(180, 0), (-180, 0), (0, 0)])
         array([ 2.,  2., nan])
         """
-        if values is not None:
-            field = as_field(values, self.npoints)
-            owner = self._for(field)
-            columns = owner.settled(field)
-        elif self._field is not None:
-            field, owner, columns = self._field
-        else:
-            raise InputError("no values: pass them to the constructor or to the call")
+        field, owner, columns = self._with(values)
         table = owner._table(xi)
         found = _core.combine2(
             table.indptr, table.rows, table.weights, columns, None, None, as_workers(self._workers)
         )
         return field.shaped(found, table.shape)
+
+    def distance(self, xi: ArrayLike) -> Floats:
+        """Return the angle from each query to the nearest site.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2) or (..., 3)
+            Longitudes and latitudes, in the unit of the constructor, or vectors of any length.
+
+        Returns
+        -------
+        ndarray of float64, shape (...)
+            Angles, in degrees unless the constructor was given radians; NaN for NaN and vectors of
+            length zero.
+
+        Raises
+        ------
+        DirectionError, ShapeError, DtypeError
+            As for values.
+
+        Notes
+        -----
+        The nearest site is found exactly; the angle is rounded. Sites that ``nan="drop"`` removed
+        are ignored.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> sites = [(170, 0), (-170, 0), (180, 10)]
+        >>> sphere.Linear(sites).distance([(-172, 0), (180, 85)]).round(9)
+        array([ 2., 75.])
+        """
+        mesh = self.triangulation
+        flat, known, shape = self._queries(xi)
+        found = np.full(len(flat), np.nan)
+        rows = mesh.nearest(flat[known])
+        units = _core.sphere_units(flat[known], as_workers(self._workers))
+        step = units - mesh.points[rows]
+        angle = 2 * np.arcsin(np.minimum(np.sqrt(np.einsum("kj,kj->k", step, step)) / 2, 1.0))
+        found[known] = np.degrees(angle) if self._degrees else angle
+        return found.reshape(shape)
 
     def weights(self, xi: ArrayLike) -> Weights:
         """Return the sites that contribute to each query, with their weights.
@@ -204,6 +242,16 @@ class _Interpolator:
         """The caller's rows for the given rows of the mesh."""
         return (rows if self._kept is None else self._kept[rows]).astype(np.int32)
 
+    def _with(self, values: ArrayLike | None) -> tuple[Field, _Interpolator, Floats]:
+        """The field, the interpolator for its sites, and its values after the policies."""
+        if values is not None:
+            field = as_field(values, self.npoints)
+            owner = self._for(field)
+            return field, owner, owner.settled(field)
+        if self._field is None:
+            raise InputError("no values: pass them to the constructor or to the call")
+        return self._field
+
     def _for(self, field: Field) -> _Interpolator:
         """The interpolator without the sites that ``nan="drop"`` removes for a field."""
         dropped = field.not_finite
@@ -219,20 +267,23 @@ class _Interpolator:
             self._other = other
         return other
 
-    def _table(self, xi: ArrayLike) -> Weights:
-        """Weights of the sites in the mesh."""
+    def _queries(self, xi: ArrayLike) -> tuple[Floats, Rows, tuple[int, ...]]:
+        """Vectors of queries, (k, 3), which of them have a direction, and their leading axes."""
         queries = queries_of(xi, degrees=self._degrees, workers=self._workers)
-        shape = queries.shape[:-1]
         flat = queries.reshape(-1, 3)
         known = np.flatnonzero(np.isfinite(flat).all(axis=1) & flat.any(axis=1))
-        rows, weights = self._weighted(flat[known], known, len(flat))
-        all_rows = np.zeros((len(flat), rows.shape[1]), dtype=np.int32)
-        all_weights = np.full(all_rows.shape, np.nan)
-        all_rows[known], all_weights[known] = rows, weights
-        return Weights(*rectangular(all_rows, all_weights), shape, self)
+        return flat, known, queries.shape[:-1]
 
-    def _weighted(self, queries: Floats, names: Rows, count: int) -> tuple[Indices, Floats]:
-        """Rows of the mesh and weights for directions, (k, m); NaN for no result.
+    def _table(self, xi: ArrayLike) -> Weights:
+        """Weights of the sites in the mesh."""
+        flat, known, shape = self._queries(xi)
+        indptr, rows, weights, _ = self._weighted(flat[known], known, len(flat))
+        counts = np.zeros(len(flat) + 1, dtype=np.int64)
+        counts[known + 1] = np.diff(indptr)
+        return Weights(np.cumsum(counts), rows, weights, None, shape, self)
+
+    def _weighted(self, queries: Floats, names: Rows, count: int) -> Table:
+        """Rows of the mesh and weights for directions; no entries for no result.
 
         Errors use `names`, the numbers of the queries among `count`.
         """
@@ -260,7 +311,99 @@ class _Interpolator:
         return f"<{type(self).__name__} on {self.triangulation!r}>"
 
 
-class Linear(_Interpolator):
+class _Continuous(_Interpolator):
+    """Interpolants whose weights the core has, with their derivatives."""
+
+    _kind: str
+
+    def gradient(
+        self, xi: ArrayLike, *, values: ArrayLike | None = None, radius: float = 1.0
+    ) -> NDArray[Any]:
+        """Return the gradient of the interpolant, a tangent vector.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2) or (..., 3)
+            Longitudes and latitudes, in the unit of the constructor, or vectors of any length.
+        values : array_like, shape (n,) or (n, ...), optional
+            Another field on the same sites.
+        radius : float, optional
+            Radius of the sphere. By default 1: derivatives are per radian, whatever the unit of
+            longitudes and latitudes. With 6371008.8, those on the Earth are per meter.
+
+        Returns
+        -------
+        ndarray of float64 or complex128
+            The shape of the queries, without their last axis, then that of one value, then 2: the
+            derivatives towards east and north. NaN outside of a hull. At a pole, directions are
+            those of the meridian of longitude 0.
+
+        Raises
+        ------
+        InputError
+            `radius` is not positive; or as for values.
+        DirectionError, ShapeError, DtypeError, NonFiniteError
+            As for values.
+
+        Notes
+        -----
+        The derivatives of the weights, by automatic differentiation. On the edges of a triangle,
+        where a linear interpolant has several gradients, that of the triangle with the smallest
+        number; at a site natural neighbor interpolants have none, and give NaN.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> sites = [(170, 0), (-170, 0), (180, 10), (180, -10)]
+        >>> per_radian = sphere.Linear(sites, [1.0, 3.0, 2.0, 2.0]).gradient((180, 1))
+        >>> per_radian.round(3), (per_radian / 6371.0).round(6)
+        (array([5.672, 0.   ]), array([0.00089, 0.     ]))
+        """
+        radius = as_number(radius, name="radius")
+        if not 0 < radius < math.inf:
+            raise InputError(f"radius must be positive, got {radius!r}")
+        field, owner, columns = self._with(values)
+        assert isinstance(owner, _Continuous)
+        flat, known, shape = self._queries(xi)
+        simplex = np.full(len(flat), -1, dtype=np.int32)
+        simplex[known] = owner._inside(flat[known], known, len(flat))
+        threads = as_workers(self._workers)
+        found = owner._mesh._locator.weights(self._kind, flat, simplex, True, threads)
+        slopes = found.slopes
+        assert slopes is not None
+        parts = [
+            _core.combine2(found.indptr, found.indices, part, columns, None, None, threads)
+            for part in np.ascontiguousarray(slopes.T)
+        ]
+        return shaped_derivatives(np.stack(parts, axis=-1) / radius, field, shape)
+
+    def _weighted(self, queries: Floats, names: Rows, count: int) -> Table:
+        simplex = self._inside(queries, names, count)
+        threads = as_workers(self._workers)
+        found = self._mesh._locator.weights(self._kind, queries, simplex, False, threads)
+        inner = (found.indptr, found.indices, found.weights, None)
+        empty = np.flatnonzero(np.diff(found.indptr) == 0)
+        if self._extrapolate != "nearest":
+            empty = empty[simplex[empty] >= 0]
+        if not empty.size:
+            return inner
+        return joined(inner, empty, self._completed(queries[empty], simplex[empty]))
+
+    def _completed(self, queries: Floats, simplex: Indices) -> Terms:
+        """The weights of queries outside, and of those whose corners are one point when rounded."""
+        rows = np.zeros((len(queries), 2), dtype=np.int32)
+        weights = np.zeros(rows.shape)
+        lost = simplex >= 0
+        rows[lost] = self._mesh.nearest(queries[lost])[:, None]
+        weights[lost] = (1.0, 0.0)
+        if not lost.all():
+            units = _core.sphere_units(queries[~lost], as_workers(self._workers))
+            arcs = arc_weights(self._mesh.points, self._mesh.boundary, units)
+            rows[~lost], weights[~lost] = arcs
+        return Terms(rows, weights, None)
+
+
+class Linear(_Continuous):
     """Piecewise linear interpolation on the triangles of a sphere.
 
     Parameters
@@ -323,23 +466,82 @@ class Linear(_Interpolator):
     array(-30.)
     """
 
-    def _weighted(self, queries: Floats, names: Rows, count: int) -> tuple[Indices, Floats]:
-        simplex = self._inside(queries, names, count)
-        units = _core.sphere_units(queries, as_workers(self._workers))
-        rows = self._mesh.simplices[simplex]
-        weights = _barycentric(self._mesh.points, rows, units)
-        lost = np.flatnonzero((simplex >= 0) & np.isnan(weights[:, 0]))
-        if lost.size:
-            # The corners are one point after rounding.
-            rows[lost] = self._mesh.nearest(queries[lost])[:, None]
-            weights[lost] = (1.0, 0.0, 0.0)
-        outside = np.flatnonzero(simplex < 0)
-        weights[outside] = np.nan
-        if self._extrapolate == "nearest" and outside.size:
-            ends, shares = arc_weights(self._mesh.points, self._mesh.boundary, units[outside])
-            rows[outside, :2], weights[outside, :2] = ends, shares
-            weights[outside, 2] = 0.0
-        return rows, weights
+    _kind = "linear"
+
+
+class NaturalNeighbor(_Continuous):
+    """Interpolation from natural neighbors on the sphere.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3), or Delaunay
+        Sites: longitudes and latitudes, or vectors of any length; or their triangulation.
+    values : array_like, shape (n,) or (n, ...), optional
+        Real or complex values at the sites. Optional if each call passes its own values.
+    kind : {"sibson", "laplace"}, optional
+        Sibson's weights by area, C1 except at the sites; or Laplace's by length, continuous and
+        faster.
+    extrapolate, duplicates, nan, degrees, workers
+        As in `Linear`.
+
+    Raises
+    ------
+    InputError, NonFiniteError, DegenerateInputError, DirectionError, ShapeError, DtypeError
+        As in `Linear`.
+
+    Notes
+    -----
+    The neighbors are the corners of all triangles whose circle contains the query, exactly. Their
+    weights are those of the plane, in the projection from the center to the tangent plane of the
+    query, where great circles are lines: of the area or the wall that the Voronoi cell of the query
+    takes from that of the neighbor. They are nonnegative and sum to 1, and the weighted mean of the
+    sites has the direction of the query, as with `Linear`; the boundary of a hull is linear. So
+    there is no date line and no pole, and no projection of the data to choose. Sites are
+    reproduced exactly. Where more than nine digits are lost by rounding, as between sites that
+    almost coincide, the weights are those of `Linear`.
+
+    Each query takes time linear in the number of its neighbors, about six.
+
+    References
+    ----------
+    R. Sibson, "A vector identity for the Dirichlet tessellation", 1980; T. Langer, A. Belyaev and
+    H.-P. Seidel, "Spherical barycentric coordinates", 2006.
+
+    See Also
+    --------
+    delone.interpolate.NaturalNeighbor : The same in the plane and in 3-D.
+
+    Examples
+    --------
+    >>> from delone import sphere
+    >>> sites = [(0, 90), (0, 0), (90, 0), (180, 0), (270, 0), (0, -90)]
+    >>> warmth = sphere.NaturalNeighbor(sites, [-30.0, 25.0, 27.0, 28.0, 26.0, -50.0])
+    >>> warmth([(90, 0), (45, 0), (180, 45)]).round(2)
+    array([27.  , 16.33,  3.03])
+    """
+
+    def __init__(
+        self,
+        points: ArrayLike | Delaunay,
+        values: ArrayLike | None = None,
+        *,
+        kind: str = "sibson",
+        extrapolate: str = "nan",
+        duplicates: str = "raise",
+        nan: str = "raise",
+        degrees: bool = True,
+        workers: int | None = None,
+    ) -> None:
+        self._kind = chosen("kind", kind, ("sibson", "laplace"))
+        super().__init__(
+            points,
+            values,
+            extrapolate=extrapolate,
+            duplicates=duplicates,
+            nan=nan,
+            degrees=degrees,
+            workers=workers,
+        )
 
 
 class Nearest(_Interpolator):
@@ -401,12 +603,12 @@ class Nearest(_Interpolator):
             workers=workers,
         )
 
-    def _weighted(self, queries: Floats, names: Rows, count: int) -> tuple[Indices, Floats]:
+    def _weighted(self, queries: Floats, names: Rows, count: int) -> Table:
         rows = self._mesh.nearest(queries)[:, None]
         weights = np.ones(rows.shape)
         if self._extrapolate != "nearest":
             weights[self._inside(queries, names, count) < 0] = np.nan
-        return rows, weights
+        return rectangular(rows, weights)
 
 
 def _triangulated(points: Any, degrees: bool, workers: int | None) -> Delaunay:
@@ -419,18 +621,3 @@ def _triangulated(points: Any, degrees: bool, workers: int | None) -> Delaunay:
     if shape[1] == 2:
         return Delaunay(lonlat=points, degrees=degrees, workers=workers)
     return Delaunay(xyz=points, degrees=degrees, workers=workers)
-
-
-def _barycentric(points: Floats, rows: Indices, units: Floats) -> Floats:
-    """The weights of three corners, (k, 3), at directions; NaN if all vanish.
-
-    From differences to the query, so that a corner that equals it gets all of the weight.
-    """
-    steps = points[rows] - units[:, None]
-    weights = np.empty((len(units), 3))
-    for k in range(3):
-        normal = np.cross(steps[:, (k + 1) % 3], steps[:, (k + 2) % 3])
-        weights[:, k] = np.maximum(np.einsum("kj,kj->k", units, normal), 0.0)
-    with np.errstate(invalid="ignore"):
-        shares: Floats = weights / weights.sum(axis=1, keepdims=True)
-    return shares

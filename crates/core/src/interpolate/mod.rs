@@ -27,6 +27,7 @@ pub use kind::Kind;
 pub use leave_one_out::{Method, leave_one_out};
 pub use linear::linear;
 pub use natural::{natural, natural_values};
+pub use number::{Jet, Number};
 pub use rows::{Part, Rows, Table};
 
 /// What is requested of an interpolant.

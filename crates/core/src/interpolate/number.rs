@@ -26,6 +26,8 @@ pub trait Number:
     fn linear(value: f64, gradient: Point2) -> Self;
     /// The number without its derivatives.
     fn value(self) -> f64;
+    /// The first derivatives; zero for a plain double.
+    fn gradient(self) -> [f64; 2];
     /// The same derivatives with another value.
     fn with_value(self, value: f64) -> Self;
     /// The square root, of a positive number.
@@ -51,6 +53,10 @@ impl Number for f64 {
     #[inline]
     fn value(self) -> f64 {
         self
+    }
+    #[inline]
+    fn gradient(self) -> [f64; 2] {
+        [0.0; 2]
     }
     #[inline]
     fn with_value(self, value: f64) -> Self {
@@ -120,6 +126,9 @@ impl Number for Jet {
     }
     fn value(self) -> f64 {
         self.value
+    }
+    fn gradient(self) -> [f64; 2] {
+        self.gradient
     }
     fn with_value(self, value: f64) -> Self {
         Self { value, ..self }

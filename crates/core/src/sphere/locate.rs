@@ -93,6 +93,17 @@ impl Index {
         Ok(Self { rays, arrays, rim })
     }
 
+    /// The triangles.
+    pub fn arrays(&self) -> &Arrays<3> {
+        &self.arrays
+    }
+
+    /// The vector of a vertex, and its direction.
+    #[inline]
+    pub fn ray(&self, vertex: u32) -> (Point3, Unit) {
+        self.rays.at(vertex as usize)
+    }
+
     /// For each query the first triangle that contains it, or -1.
     pub fn find(&self, queries: Vec<Point3>, workers: usize, watch: &Watch) -> Result<Vec<i32>> {
         self.each(queries, workers, watch, |queries, i, start, pace| {
