@@ -139,8 +139,8 @@ def test_xarray() -> None:
 
     degrees = {"x": "degrees_east", "y": "degrees_north"}
     for array in (stations(("lon", "lat")), stations(("x", "y"), **degrees)):
-        with pytest.warns(GeographicWarning):
-            array.delone.interp([0.0], [0.0])
+        with pytest.warns(GeographicWarning, match=r"delone\.sphere"):
+            array.delone.interp([0.0], [0.0], method="clough-tocher")
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             array.delone.grid(shape=(2, 2), planar=True)

@@ -29,18 +29,23 @@ def stations() -> Any:
             "name": ("time", list("abcdef")),
             "code": ("station", np.arange(150)),
         },
-        coords={"lon": ("station", x), "lat": ("station", y), "time": TIME, "id": ("station", x)},
+        coords={
+            "easting": ("station", x),
+            "northing": ("station", y),
+            "time": TIME,
+            "id": ("station", x),
+        },
         attrs={"source": "survey"},
     )
 
 
 def test_a_dataset_to_a_raster() -> None:
     found = stations().delone.grid(shape=(7, 5))
-    assert found.height.dims == ("time", "lat", "lon") and found.height.shape == (6, 5, 7)
+    assert found.height.dims == ("time", "northing", "easting") and found.height.shape == (6, 5, 7)
     assert found.attrs == {"source": "survey"} and found.height.attrs == {"units": "m"}
-    assert found.code.dims == ("lat", "lon") and found.name.dims == ("time",)
+    assert found.code.dims == ("northing", "easting") and found.name.dims == ("time",)
     assert "id" not in found.coords and found.time.values.tolist() == TIME.tolist()
-    plane = found.time + 2 * found.lon - found.lat
+    plane = found.time + 2 * found.easting - found.northing
     gap = (found.height - plane).values
     assert np.isfinite(gap).any() and np.nanmax(np.abs(gap)) < 1e-12
 
@@ -114,7 +119,7 @@ def test_nan_and_complex() -> None:
 
 def test_what_is_not_understood_is_refused() -> None:
     with pytest.raises(InputError, match="name two with coords"):
-        stations().height.drop_vars(["lon", "lat"]).delone.interp([0], [0])
+        stations().height.drop_vars(["easting", "northing"]).delone.interp([0], [0])
     with pytest.raises(InputError, match="no coordinates u and v"):
         stations().delone.grid(shape=(2, 2), coords=("u", "v"))
     with pytest.raises(InputError, match="one-dimensional"):

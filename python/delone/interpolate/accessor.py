@@ -4,16 +4,20 @@ The import registers ``.delone`` on DataArray and Dataset. Scattered points are 
 two coordinates (``x(station)``, ``y(station)``), or several (curvilinear ``lon(j, i)``,
 ``lat(j, i)``). The weights of the target points are computed once and applied to each field along
 every other dimension (time, level), chunk by chunk if the data are Dask arrays.
+
+Longitudes and latitudes, known by their units, standard names or names, are interpolated on the
+sphere by the methods that `delone.sphere` has; ``planar=True`` takes them as planar coordinates.
 """
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from delone.errors import DtypeError, InputError, MissingExtraError
-from delone.georeference import names_degrees, warn_of_degrees
+from delone.georeference import may_be_degrees, names_degrees, warn_of_degrees
 from delone.interpolate.base import as_max_distance
 from delone.interpolate.methods import interpolator
 from delone.interpolate.raster import raster_nodes, require_memory
@@ -36,6 +40,16 @@ if TYPE_CHECKING:
 
 __all__ = ["ArrayInterpolation", "DatasetInterpolation"]
 
+# Units of longitudes and latitudes, of the CF conventions and of models.
+_DEGREES = tuple(
+    {
+        word + letter
+        for word in ("degrees_", "degree_", "degrees", "degree")
+        for letter in (*letters, *(name.casefold() for name in names))
+    }
+    for letters, names in (("e", ("east",)), ("n", ("north",)))
+)
+_RADIANS = {"rad", "radian", "radians"}
 _NAMES = (("x", "y"), ("lon", "lat"), ("longitude", "latitude"), ("easting", "northing"))
 
 
@@ -84,13 +98,16 @@ class ArrayInterpolation:
             broadcast against each other, and each entry is a point.
         coords : pair of str, optional
             Names of the coordinates of the array; by default x and y, lon and lat, longitude and
-            latitude, or easting and northing.
+            latitude, or easting and northing; or those whose standard names or units are those of
+            longitude and latitude.
         method : str, optional
-            As in `interpolator`.
+            As in `interpolator`. On the sphere ``"linear"``, ``"nearest"``, ``"sibson"`` and
+            ``"laplace"``; others are planar, with a warning.
         **options
             Options of the interpolator: ``extrapolate``, ``respect_constraints``, ``workers``,
             ``planar`` and so on. NaN among the values propagates unless ``nan="raise"`` is given.
-            With ``max_distance``, targets farther than this from the nearest point get NaN.
+            With ``max_distance``, targets farther than this from the nearest point get NaN; on the
+            sphere it is an angle in the unit of the coordinates.
 
         Returns
         -------
@@ -104,9 +121,31 @@ class ArrayInterpolation:
             The coordinates are not found; or ``nan="drop"`` is given, which would need a separate
             triangulation for each field; or `max_distance` is negative or NaN.
 
+        Warns
+        -----
+        delone.sphere.LongitudeWarning
+            Longitudes of the points are from 0 to 360 and those of the targets from -180 to 180, or
+            the reverse. Both mean the same directions.
+        delone.GeographicWarning
+            The coordinates are longitudes and latitudes, and the method is planar.
+
         Examples
         --------
-        See `ArrayInterpolation`.
+        Stations on both sides of the date line are on the sphere:
+
+        >>> import xarray
+        >>> import delone.interpolate.accessor
+        >>> stations = xarray.DataArray(
+        ...     [1.0, 3.0, 2.0],
+        ...     dims="station",
+        ...     coords={
+        ...         "lon": ("station", [175.0, -175.0, 180.0], {"units": "degrees_east"}),
+        ...         "lat": ("station", [0.0, 0.0, 8.0], {"units": "degrees_north"}),
+        ...     },
+        ... )
+        >>> stations.delone.interp([-180.0], [0.0, 8.0]).values
+        array([[2.],
+               [2.]])
         """
         return _interpolated(
             self._array, _target(x, y, coords, self._array), coords, method, options
@@ -217,6 +256,10 @@ def _coordinates(data: Any, coords: Sequence[str] | None) -> tuple[Any, Any]:
     for pair in pairs:
         if len(pair) == 2 and all(name in data.coords for name in pair):
             return tuple(xarray.broadcast(*(data.coords[name] for name in pair)))
+    if coords is None:
+        found = [[part for part in data.coords.values() if _is_angle(part, k)] for k in (0, 1)]
+        if all(len(parts) == 1 for parts in found):
+            return tuple(xarray.broadcast(*(parts[0] for parts in found)))
     wanted = ", or ".join(" and ".join(map(str, pair)) for pair in pairs)
     raise InputError(f"found no coordinates {wanted}; name two with coords=")
 
@@ -266,9 +309,18 @@ def _interpolated(
     _require_memory(data, places[0].dims, target)
     points = np.column_stack([np.ravel(part) for part in places]).astype(np.float64)
     planar = options.pop("planar", False)
-    warn_of_degrees(None, points, planar=planar, name="coordinates", by=_degrees(places))
     queries = np.stack([np.asarray(part, dtype=np.float64) for part in target], axis=-1)
-    made = interpolator(method, points, **({"nan": "propagate"} | options))
+    options = {"nan": "propagate"} | options
+    by = _degrees(places)
+    # By its name: that package builds on this one.
+    sphere = importlib.import_module("delone.sphere.methods")
+    if planar is False and by and method in sphere.METHODS and _may_be_angles(places, points):
+        degrees = not _in_radians(places)
+        sphere.warn_of_conventions(points[:, 0], queries[..., 0], degrees=degrees)
+        made = sphere.interpolator(method, points, degrees=degrees, **options)
+    else:
+        warn_of_degrees(None, points, planar=planar, name="coordinates", by=by)
+        made = interpolator(method, points, **options)
     near = None if limit is None else made.distance(queries) <= limit
     geometry = _Geometry(made.weights(queries), places[0].dims, target, near)
     # Coordinates of the points are not coordinates of the result.
@@ -297,13 +349,29 @@ class _Geometry(NamedTuple):
     near: NDArray[np.bool_] | None
 
 
+def _is_angle(part: Any, axis: int) -> bool:
+    """Whether the attributes of a coordinate say longitude (axis 0) or latitude (1)."""
+    name = str(part.attrs.get("standard_name", "")).casefold()
+    unit = str(part.attrs.get("units", "")).casefold()
+    return name == ("longitude", "latitude")[axis] or unit in _DEGREES[axis]
+
+
 def _degrees(places: tuple[Any, Any]) -> str | None:
     """Return what shows that the coordinates are longitudes and latitudes, or None."""
-    units = [str(part.attrs.get("units", "")) for part in places]
-    if units[0].startswith("degrees_e") and units[1].startswith("degrees_n"):
-        return f"units {', '.join(units)}"
+    if all(_is_angle(part, axis) for axis, part in enumerate(places)):
+        found = [part.attrs.get("units") or part.attrs["standard_name"] for part in places]
+        return f"units {', '.join(map(str, found))}"
     names = [str(part.name) for part in places]
     return f"coordinates {', '.join(names)}" if names_degrees(names) else None
+
+
+def _in_radians(places: tuple[Any, Any]) -> bool:
+    return all(str(part.attrs.get("units", "")).casefold() in _RADIANS for part in places)
+
+
+def _may_be_angles(places: tuple[Any, Any], points: NDArray[np.float64]) -> bool:
+    """Whether the values are in the range of angles, in the unit of the coordinates."""
+    return may_be_degrees(np.degrees(points) if _in_radians(places) else points)
 
 
 def _require_memory(data: Any, dims: tuple[Any, ...], target: tuple[Any, Any]) -> None:
