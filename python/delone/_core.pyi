@@ -48,6 +48,7 @@ __all__ = [
     "RegularFaults3",
     "RegularTriangulation",
     "SphereDual",
+    "SphereWeights",
     "SphereLocator",
     "SphereTriangulation",
     "Triangulation",
