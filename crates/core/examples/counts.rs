@@ -16,9 +16,10 @@ use delone_core::watch::{IDLE, Watch};
 use delone_core::{Point2, Point3};
 
 type Outcome = Result<(), Box<dyn Error>>;
+type Job = fn() -> Outcome;
 
 /// A job with its name; its points are few, as callgrind takes fifty times as long.
-const JOBS: [(&str, fn() -> Outcome); 7] = [
+const JOBS: [(&str, Job); 7] = [
     ("uniform", || planar(&uniform(20_000))),
     ("lattice", || planar(&lattice(100))),
     ("clusters", || planar(&clusters(10_000))),

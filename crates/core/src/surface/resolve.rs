@@ -142,16 +142,15 @@ fn mark(
             push(made, (row, [other.ids[i]; 2]))?;
         }
         let mut along = [NONE; 5];
-        let mut count = 0;
         let next = (i + 1) % 3;
         let ends = [i, next].into_iter().filter(|&k| on_own[k] != Place::Off);
         let inside = (0..3).filter(|&k| on_other[k] == Place::Edge(i));
-        for v in ends.map(|k| other.ids[k]).chain(inside.map(|k| own.ids[k])) {
+        let all = ends.map(|k| other.ids[k]).chain(inside.map(|k| own.ids[k]));
+        for (count, v) in all.enumerate() {
             for &u in &along[..count] {
                 push(made, (row, [u.min(v), u.max(v)]))?;
             }
             along[count] = v;
-            count += 1;
         }
     }
     Ok(())
