@@ -131,6 +131,43 @@ def test_ctrl_c_ends_a_batch_and_nothing_has_changed(kind: tuple[int, int, bool]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="RLIMIT_AS is kept on Linux alone")
+@pytest.mark.parametrize("ndim", [2, 3])
+def test_refused_memory_for_a_rebuild_takes_back_what_was_done(ndim: int) -> None:
+    # A vertex with most others around it goes by a rebuild, and comes last.
+    process = start(
+        """
+        angle = draw.random(3_000) * 7
+        rim = np.column_stack((np.cos(angle), np.sin(angle), np.zeros(3_000)))[:, :ndim]
+        if ndim == 3:
+            rim[:, 2] = draw.random(3_000)
+            rim /= np.linalg.norm(rim, axis=1)[:, None]
+        live = Dynamic(np.concatenate((live.points * 0.01 + 3, rim, np.zeros((1, ndim)))), workers=1)
+        gone = np.concatenate((live.handles[: len(live.handles) // 16], [len(live) - 1]))
+        before = state()
+        for megabytes in (0, 1, 2, 4, 8, 1000):
+            child = os.fork()
+            if child == 0:
+                size = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+                limits = resource.getrlimit(resource.RLIMIT_AS)
+                resource.setrlimit(resource.RLIMIT_AS, (size + megabytes * 2**20, limits[1]))
+                try:
+                    live.remove(gone)
+                except MemoryError:
+                    resource.setrlimit(resource.RLIMIT_AS, limits)
+                    os._exit(3 if state() == before and live.validate() else 4)
+                resource.setrlimit(resource.RLIMIT_AS, limits)
+                os._exit(0 if live.validate() else 5)
+            print(os.waitpid(child, 0)[1] / 256)
+        """,
+        (ndim, 60_000, False),
+    )
+    lines = finish(process).splitlines()
+    assert lines[-1] == "0.0"
+    assert {*lines[:-1]} <= {"0.0", "3.0"}
+    assert ndim == 3 or "3.0" in lines
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="RLIMIT_AS is kept on Linux alone")
 @pytest.mark.parametrize("kind", SHORT, ids=str)
 def test_refused_memory_changes_nothing(kind: tuple[int, int, bool]) -> None:
     process = start(

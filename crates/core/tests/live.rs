@@ -298,6 +298,41 @@ fn a_hub_and_lines_equal_a_fresh_build() {
 }
 
 #[test]
+fn a_snapshot_of_edits_in_one_place_is_small_after_scattered_removals() {
+    let mut seed = 1u64;
+    let mut next = || {
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let points: Vec<Point2> = (0..40_000).map(|_| [next(), next()]).collect();
+    let mut live = Plane::new(&points, 1, &idle()).unwrap();
+    let mut last = live.state(&idle()).unwrap();
+    for row in 0..4_000 {
+        live.remove(&[row * 7 % 40_000], 1, &idle()).unwrap();
+    }
+    let scattered = live.state(&idle()).unwrap();
+    assert!(scattered.own_bytes(&last) > 2_000_000);
+    last = scattered;
+    for _ in 0..5 {
+        let place = [0.3 + 0.4 * next(), 0.3 + 0.4 * next()];
+        let new: Vec<Point2> = (0..1_000)
+            .map(|_| place.map(|x| x + 0.02 * next()))
+            .collect();
+        live.insert(&new, 1, &idle()).unwrap();
+        let state = live.state(&idle()).unwrap();
+        assert!(
+            state.own_bytes(&last) < 400_000,
+            "{} bytes",
+            state.own_bytes(&last)
+        );
+        last = state;
+    }
+    live.check().unwrap();
+}
+
+#[test]
 fn an_interrupted_batch_changes_nothing() {
     let mut twin = Twin::new(&scattered(30_000, 1));
     twin.agree();

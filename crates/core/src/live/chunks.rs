@@ -24,6 +24,9 @@ const GROUP: usize = 1 << 6;
 /// Chunks between two checks for interruption.
 const LOT: usize = 1 << 12;
 
+/// At most one in this many items may be free while others are appended.
+const SPARE: usize = 4;
+
 /// Items of a snapshot.
 type Chunk<T> = Arc<Vec<T>>;
 type Group<T> = Arc<Vec<Chunk<T>>>;
@@ -107,6 +110,15 @@ impl<T: Copy> Chunks<T> {
     pub fn get_mut(&mut self, i: usize) -> &mut T {
         self.marked[i / Self::SIZE] = true;
         &mut self.items[i]
+    }
+
+    /// Whether a free item is to be used before one is appended, where about `free` are. The next
+    /// snapshot copies its chunk, unless that has changed anyway; but free items must not pile up.
+    #[inline]
+    pub fn is_to_be_used(&self, i: usize, free: usize) -> bool {
+        self.marked[i / Self::SIZE]
+            || free > self.items.len() / SPARE
+            || self.items.len() == self.items.capacity()
     }
 
     /// Reserves room for `n` more items: the next `n` calls of [`Self::push`] do not fail.

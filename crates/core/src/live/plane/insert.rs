@@ -12,7 +12,7 @@ impl Mesh {
     /// has changed.
     pub fn insert(&mut self, v: u32, seed: u32) -> Result<()> {
         let p = self.at(v);
-        self.records.reserve(2)?;
+        self.reserve_two()?;
         let lost = self.empty(p, seed)?;
         for _ in 0..2 {
             let t = self.take_record()?;

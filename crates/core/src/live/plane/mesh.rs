@@ -144,10 +144,21 @@ impl Mesh {
         self.sites.get_mut(v as usize).near = e;
     }
 
+    /// Makes sure that the next two calls of [`Self::take_record`] do not fail.
+    pub fn reserve_two(&mut self) -> Result<()> {
+        let first = self.counts.record;
+        if first == NONE || self.records[first as usize][0] == NONE {
+            self.records.reserve(2)?;
+        }
+        Ok(())
+    }
+
     /// Takes a free record, or appends one.
     pub fn take_record(&mut self) -> Result<u32> {
         let t = self.counts.record;
-        if t == NONE {
+        let used = 2 * self.counts.vertices as usize;
+        let free = self.records.len().saturating_sub(used);
+        if t == NONE || !self.records.is_to_be_used(t as usize, free) {
             self.records.push([0; 8])?;
             return Ok(self.records.len() as u32 - 1);
         }
@@ -169,7 +180,8 @@ impl Mesh {
             head: NONE,
         };
         let v = self.counts.site;
-        if v == NONE {
+        let free = self.sites.len() - 1 - self.counts.vertices as usize;
+        if v == NONE || !self.sites.is_to_be_used(v as usize, free) {
             self.sites.push(site)?;
             return Ok(self.sites.len() as u32 - 1);
         }

@@ -3,7 +3,7 @@
 use delone_predicates::{Point2, Sign, orient2d};
 
 use super::mesh::{INFINITE, Mesh};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::live::rows::NONE;
 use crate::locate::{Start, squared};
 use crate::mesh2::{next, prev, triangle};
@@ -75,7 +75,14 @@ impl Mesh {
             if self.strolled < (sites.len() / SHARE) as isize {
                 return Ok(self.last);
             }
-            let start = Start::of(sites.len(), |i| sites[i].at, watch)?;
+            let start = match Start::of(sites.len(), |i| sites[i].at, watch) {
+                // A walk does without, also where memory for an edit was refused that is taken back.
+                Err(Error::Memory { .. }) => {
+                    self.strolled = 0;
+                    return Ok(self.last);
+                }
+                start => start?,
+            };
             // Most of its vertices are still there after so much work.
             self.jump = Some((start, self.work + LASTING * sites.len()));
             self.strolled = 0;

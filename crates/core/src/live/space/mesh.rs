@@ -235,7 +235,8 @@ impl Mesh {
             head: NONE,
         };
         let v = self.counts.site;
-        if v == NONE {
+        let free = self.sites.len() - 1 - self.counts.vertices as usize;
+        if v == NONE || !self.sites.is_to_be_used(v as usize, free) {
             self.sites.push(site)?;
             return Ok(self.sites.len() as u32 - 1);
         }
@@ -261,7 +262,8 @@ impl Mesh {
     /// Takes a free record, or appends one, for which there is room.
     pub fn take_record(&mut self) -> Result<u32> {
         let t = self.counts.record;
-        if t == NONE {
+        let free = self.records.len() - self.counts.tetrahedra as usize;
+        if t == NONE || !self.records.is_to_be_used(t as usize, free) {
             self.records.push([0; 8])?;
             return Ok(self.records.len() as u32 - 1);
         }

@@ -7,7 +7,7 @@ use super::mesh::{Counts, FREE, INFINITE, Record, Site};
 use crate::error::Result;
 use crate::live::chunks::Image;
 use crate::live::rows::{NONE, RowsImage};
-use crate::memory::{push, with_room};
+use crate::memory::{filled, push, with_room};
 use crate::order::{sort, sort_by};
 use crate::watch::{Pace, Watch};
 
@@ -117,19 +117,40 @@ impl Space {
         Ok(all)
     }
 
+    /// One bit for each site: whether its row is not that of a state.
+    fn renamed(&self, seen: &State, watch: &Watch) -> Result<Vec<u64>> {
+        let sites = self.mesh.sites.items();
+        let mut renamed = filled(sites.len() / 64 + 1, 0u64)?;
+        let mut pace = Pace::new(watch, LOT);
+        for i in self.mesh.sites.changed(&seen.sites).flatten() {
+            pace.spend(1)?;
+            let before = seen.sites.get(i).map(|site| site.head);
+            if sites.get(i).is_some_and(|site| Some(site.head) != before) {
+                renamed[i / 64] |= 1 << (i % 64);
+            }
+        }
+        Ok(renamed)
+    }
+
     /// What has changed since a state.
     fn since(&self, seen: &State, watch: &Watch) -> Result<Changes> {
         let (mut old, mut new) = (Vec::new(), Vec::new());
         let mut pace = Pace::new(watch, LOT);
+        let renamed = self.renamed(seen, watch)?;
+        let is_renamed = |v: &u32| renamed[*v as usize / 64] >> (v % 64) & 1 == 1;
         for i in self.mesh.records.changed(&seen.records).flatten() {
             pace.spend(1)?;
             let before = seen.records.get(i);
+            let now = self.mesh.records.items().get(i).copied();
+            // Most records of a chunk have not changed, and names need corners far away.
+            if before == now && now.is_none_or(|r| r[3] == FREE || !r[..4].iter().any(is_renamed)) {
+                continue;
+            }
             let head = |v: u32| seen.sites.get(v as usize).map_or(NONE, |site| site.head);
             if let Some(t) = before.and_then(|record| named(record, head)) {
                 push(&mut old, t)?;
             }
-            let now = self.mesh.records.items().get(i);
-            if let Some(t) = now.and_then(|&r| named(r, |v| self.mesh.sites[v as usize].head)) {
+            if let Some(t) = now.and_then(|r| named(r, |v| self.mesh.sites[v as usize].head)) {
                 push(&mut new, t)?;
             }
         }

@@ -8,7 +8,7 @@
 use delone_predicates::{Point3, Sign, orient3d};
 
 use super::mesh::{INFINITE, Mesh};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::live::rows::NONE;
 use crate::locate::{Start, squared};
 use crate::mesh3::{FACETS, corner, tetrahedron};
@@ -66,7 +66,14 @@ impl Mesh {
         // Not the vertex at infinity.
         let sites = &self.sites.items()[1..];
         if self.jump.is_none() && self.strolled > sites.len() / SHARE {
-            let start = Start::of(sites.len(), |i| sites[i].at, watch)?;
+            let start = match Start::of(sites.len(), |i| sites[i].at, watch) {
+                // A walk does without, also where memory for an edit was refused that is taken back.
+                Err(Error::Memory { .. }) => {
+                    self.strolled = 0;
+                    return Ok(self.sampled(q));
+                }
+                start => start?,
+            };
             // Most of its vertices are still there after so much work.
             self.jump = Some((start, self.work + 8 * sites.len()));
             self.strolled = 0;
