@@ -141,7 +141,8 @@ def test_refused_memory_for_a_rebuild_takes_back_what_was_done(ndim: int) -> Non
         if ndim == 3:
             rim[:, 2] = draw.random(3_000)
             rim /= np.linalg.norm(rim, axis=1)[:, None]
-        live = Dynamic(np.concatenate((live.points * 0.01 + 3, rim, np.zeros((1, ndim)))), workers=1)
+        points = np.concatenate((live.points * 0.01 + 3, rim, np.zeros((1, ndim))))
+        live = Dynamic(points, workers=1)
         gone = np.concatenate((live.handles[: len(live.handles) // 16], [len(live) - 1]))
         before = state()
         for megabytes in (0, 1, 2, 4, 8, 1000):
