@@ -25,6 +25,7 @@ mod locate3;
 mod locator;
 mod measure;
 mod predicates;
+mod recover;
 mod refine;
 mod regular;
 mod regular_faults;
@@ -94,6 +95,8 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<surface::FacePairs>()?;
     m.add_function(wrap_pyfunction!(surface::check_surface3, m)?)?;
     m.add_function(wrap_pyfunction!(surface::resolve_touches3, m)?)?;
+    m.add_class::<recover::RecoveredFaces>()?;
+    m.add_class::<recover::RecoveryCounts>()?;
     m.add_function(wrap_pyfunction!(sphere::sphere_delaunay, m)?)?;
     m.add_function(wrap_pyfunction!(sphere::sphere_constrained, m)?)?;
     m.add_function(wrap_pyfunction!(sphere::sphere_directions, m)?)?;
@@ -130,6 +133,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(refine::refine2, m)?)?;
     m.add_function(wrap_pyfunction!(refine::judge2, m)?)?;
     m.add_function(wrap_pyfunction!(improve::improve3, m)?)?;
+    m.add_function(wrap_pyfunction!(recover::recover_faces, m)?)?;
     m.add_function(wrap_pyfunction!(consistency::fault2, m)?)?;
     m.add_function(wrap_pyfunction!(consistency::fault3, m)?)?;
     m.add_function(wrap_pyfunction!(measure::edges2, m)?)?;

@@ -31,6 +31,7 @@ pub mod overlay;
 mod parallel;
 pub mod points;
 pub mod proof;
+pub mod recover;
 pub mod refine;
 pub mod regular;
 pub mod regular3;

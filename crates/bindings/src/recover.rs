@@ -1,0 +1,108 @@
+//! Recovered faces as arrays.
+
+use delone::Error;
+use delone_core::recover::{Counts, Recovered, Task, recover};
+use numpy::PyReadonlyArray2;
+use pyo3::prelude::*;
+
+use crate::arrays::{Column, Table, in_range, numbers, rows, table};
+use crate::errors::raise;
+use crate::signals::watched;
+
+/// What happened during a recovery of faces.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct RecoveryCounts {
+    /// Edges of faces that the Delaunay triangulation lacks.
+    pub missing_edges: usize,
+    /// Faces that it lacks.
+    pub missing_faces: usize,
+    /// Changes by flips.
+    pub flips: usize,
+    /// Edges recovered by flips.
+    pub flipped_edges: usize,
+    /// Faces recovered by flips.
+    pub flipped_faces: usize,
+    /// Points that were put on edges for a time.
+    pub segment_points: usize,
+    /// Points that were put in faces for a time.
+    pub face_points: usize,
+    /// Sectors whose point on the boundary moved into the inside.
+    pub suppressed: usize,
+    /// Sectors that were joined to a vertex without a point.
+    pub joined: usize,
+    /// Points inside that were taken away again.
+    pub thinned: usize,
+}
+
+/// Tetrahedra that have given faces.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct RecoveredFaces {
+    /// The points given, followed by those that were added, (n + k, 3).
+    pub points: Table<f64>,
+    /// Vertices of the tetrahedra, (t, 4).
+    pub tetrahedra: Table<i32>,
+    /// The tetrahedron opposite each vertex, -1 if there is none, (t, 4).
+    pub neighbors: Table<i32>,
+    /// How many points were added.
+    pub nadded: usize,
+    /// What happened.
+    pub counts: Py<RecoveryCounts>,
+    /// Rows of faces near which no double is left for a point, (k,): then there are no tetrahedra.
+    pub crowded: Column<i32>,
+}
+
+/// Tetrahedra that have all faces, which may meet in common vertices and edges only. What can be
+/// reached from far outside without crossing a face is left out.
+#[pyfunction]
+pub fn recover_faces<'py>(
+    py: Python<'py>,
+    points: PyReadonlyArray2<'py, f64>,
+    faces: PyReadonlyArray2<'py, i32>,
+    max_points: usize,
+    flips: bool,
+    workers: usize,
+) -> PyResult<RecoveredFaces> {
+    let task = || -> Result<Task<'_>, Error> {
+        let points = rows(&points, "points")?;
+        let faces = rows(&faces, "faces")?;
+        in_range(faces, 0, points.len(), "faces")?;
+        Ok(Task {
+            points,
+            faces,
+            max_points,
+            flips,
+            workers,
+        })
+    };
+    let task = task().map_err(|e| raise(py, &e))?;
+    let made = watched(py, |watch| recover(task, watch))?;
+    arrays_of(py, made, task.points.len())
+}
+
+/// The result as Python arrays.
+fn arrays_of(py: Python<'_>, made: Recovered, given: usize) -> PyResult<RecoveredFaces> {
+    Ok(RecoveredFaces {
+        nadded: made.points.len().saturating_sub(given),
+        points: table(py, made.points)?,
+        tetrahedra: table(py, made.tetrahedra)?,
+        neighbors: table(py, made.neighbors)?,
+        counts: Py::new(py, counts_of(made.counts))?,
+        crowded: numbers(py, made.crowded),
+    })
+}
+
+/// The counts as a Python object.
+fn counts_of(counts: Counts) -> RecoveryCounts {
+    RecoveryCounts {
+        missing_edges: counts.missing_edges,
+        missing_faces: counts.missing_faces,
+        flips: counts.flips,
+        flipped_edges: counts.flipped_edges,
+        flipped_faces: counts.flipped_faces,
+        segment_points: counts.segment_points,
+        face_points: counts.face_points,
+        suppressed: counts.suppressed,
+        joined: counts.joined,
+        thinned: counts.thinned,
+    }
+}

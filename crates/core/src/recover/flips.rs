@@ -1,0 +1,237 @@
+//! Edges and faces by flips: an edge is removed, or two tetrahedra become three, where fewer
+//! faces and edges cross what is missing.
+//!
+//! Each change lowers the number of crossings of one segment or face, so it ends. Parts that are
+//! recovered do not change.
+
+use delone_predicates::Sign;
+
+use super::mesh::{Corners, Ring, ascending, pair};
+use super::work::Work;
+use crate::error::Result;
+
+/// The longest ring that is tried.
+const LONGEST: usize = 24;
+
+/// What is missing.
+#[derive(Debug, Clone, Copy)]
+pub enum Goal {
+    /// A segment between two vertices.
+    Segment([u32; 2]),
+    /// A face.
+    Face([u32; 3]),
+}
+
+/// The best triangulation of a part of a ring.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    /// Crossings, or [`usize::MAX`] if there is none.
+    cost: usize,
+    /// The third vertex of its outermost triangle.
+    apex: usize,
+}
+
+impl Work<'_> {
+    /// Recovers segments by flips, and returns those that are still missing.
+    pub fn flip_segments(&mut self, mut missing: Vec<u32>) -> Result<Vec<u32>> {
+        loop {
+            let before = missing.len();
+            let mut rest = Vec::new();
+            for &s in &missing {
+                let [a, b] = self.segments[s as usize];
+                if self.flip_segment([a, b])? {
+                    self.locked_edges.insert([a, b], s);
+                    self.counts.flipped_edges += 1;
+                } else {
+                    rest.push(s);
+                }
+            }
+            missing = rest;
+            if missing.is_empty() || missing.len() == before {
+                return Ok(missing);
+            }
+        }
+    }
+
+    /// Recovers one segment by flips, if that is possible.
+    fn flip_segment(&mut self, s: [u32; 2]) -> Result<bool> {
+        let goal = Goal::Segment(s);
+        'changed: while self.mesh.with_edge(s[0], s[1]).is_none() {
+            self.pace.spend(8)?;
+            let (faces, edges) = self.crossed(s)?;
+            for &(t, [p, q]) in &edges {
+                if self.remove_edge(t, p, q, goal)? {
+                    continue 'changed;
+                }
+            }
+            for &(t, k) in &faces {
+                if self.split_face(t, k, goal)? {
+                    continue 'changed;
+                }
+                let [u, v, w] = self.mesh.face(t, k);
+                for [p, q] in [[u, v], [v, w], [w, u]] {
+                    if self.remove_edge(t, p, q, goal)? {
+                        continue 'changed;
+                    }
+                }
+            }
+            return Ok(false);
+        }
+        Ok(true)
+    }
+
+    /// Recovers one face, whose edges are there, by flips, if that is possible.
+    pub fn flip_face(&mut self, f: u32) -> Result<bool> {
+        let face = self.faces[f as usize];
+        let goal = Goal::Face(face);
+        'changed: loop {
+            if self.mesh.has_face(face) {
+                return Ok(true);
+            }
+            self.pace.spend(8)?;
+            for [u, v] in self.piercings(f)? {
+                let Some(t) = self.mesh.with_edge(u, v) else {
+                    continue;
+                };
+                if self.remove_edge(t, u, v, goal)? {
+                    continue 'changed;
+                }
+            }
+            return Ok(false);
+        }
+    }
+
+    /// Crossings of an edge.
+    fn edge_cost(&self, goal: Goal, p: u32, q: u32) -> usize {
+        match goal {
+            Goal::Segment(s) => usize::from(self.cuts(s, [p, q])),
+            Goal::Face(f) => usize::from(self.pierces(p, q, f).unwrap_or(true)),
+        }
+    }
+
+    /// Crossings of a face.
+    fn face_cost(&self, goal: Goal, face: [u32; 3]) -> usize {
+        match goal {
+            Goal::Segment(s) => usize::from(self.stabs(s, face)),
+            Goal::Face(_) => 0,
+        }
+    }
+
+    /// Two tetrahedra at a face become three at an edge, if that lowers the crossings.
+    fn split_face(&mut self, t: u32, k: usize, goal: Goal) -> Result<bool> {
+        let face = self.mesh.face(t, k);
+        let [u, v, w] = face;
+        let a = self.mesh.corners[t as usize][k];
+        let Some((below, b)) = self.mesh.apex(t, k) else {
+            return Ok(false);
+        };
+        if self.locked_faces.contains_key(&ascending(face)) {
+            return Ok(false);
+        }
+        let new = [[u, v, b, a], [v, w, b, a], [w, u, b, a]];
+        let positive = new
+            .iter()
+            .all(|&t| self.mesh.points.positive([t[0], t[1], t[2], t[3]]));
+        if !positive {
+            return Ok(false);
+        }
+        let old = self.face_cost(goal, face);
+        let cost: usize = [u, v, w]
+            .iter()
+            .map(|&x| self.face_cost(goal, [a, b, x]))
+            .sum();
+        if cost + self.edge_cost(goal, a, b) >= old {
+            return Ok(false);
+        }
+        self.mesh.replace(&[t, below], &new)?;
+        self.counts.flips += 1;
+        Ok(true)
+    }
+
+    /// Removes an edge of a tetrahedron, if that lowers the crossings.
+    fn remove_edge(&mut self, t: u32, a: u32, b: u32, goal: Goal) -> Result<bool> {
+        let Some(ring) = self.mesh.ring(t, a, b) else {
+            return Ok(false);
+        };
+        if ring.vertices.len() > LONGEST || self.ring_is_locked(&ring) {
+            return Ok(false);
+        }
+        self.pace.spend(ring.vertices.len())?;
+        let faces = ring
+            .vertices
+            .iter()
+            .map(|&v| self.face_cost(goal, [a, b, v]));
+        let old = faces.sum::<usize>() + self.edge_cost(goal, a, b);
+        let Some(new) = self.cheapest(&ring, goal, old) else {
+            return Ok(false);
+        };
+        self.mesh.replace(&ring.tetrahedra, &new)?;
+        self.counts.flips += 1;
+        Ok(true)
+    }
+
+    /// The triangulation of a ring with the fewest crossings, if these are fewer than `limit`.
+    fn cheapest(&self, ring: &Ring, goal: Goal, limit: usize) -> Option<Vec<Corners>> {
+        let [a, b] = ring.ends;
+        let v = &ring.vertices;
+        let n = v.len();
+        let none = Part {
+            cost: usize::MAX,
+            apex: 0,
+        };
+        let mut best = vec![none; n * n];
+        for i in 0..n - 1 {
+            best[i * n + i + 1].cost = 0;
+        }
+        for width in 2..n {
+            for i in 0..n - width {
+                let j = i + width;
+                for k in i + 1..j {
+                    let (left, right) = (best[i * n + k].cost, best[k * n + j].cost);
+                    if left == usize::MAX || right == usize::MAX {
+                        continue;
+                    }
+                    let triangle = [v[i], v[k], v[j]];
+                    let sides = left + right;
+                    if sides >= limit.min(best[i * n + j].cost) || !self.fits(triangle, a, b) {
+                        continue;
+                    }
+                    let cost = sides + self.face_cost(goal, triangle);
+                    if cost < best[i * n + j].cost {
+                        best[i * n + j] = Part { cost, apex: k };
+                    }
+                }
+                let whole = i == 0 && j == n - 1;
+                if !whole && best[i * n + j].cost != usize::MAX {
+                    best[i * n + j].cost += self.edge_cost(goal, v[i], v[j])
+                        + self.face_cost(goal, [a, v[i], v[j]])
+                        + self.face_cost(goal, [b, v[i], v[j]]);
+                }
+            }
+        }
+        if best[n - 1].cost >= limit {
+            return None;
+        }
+        let mut new = Vec::with_capacity(2 * n);
+        let mut open = vec![(0, n - 1)];
+        while let Some((i, j)) = open.pop() {
+            if j - i > 1 {
+                let k = best[i * n + j].apex;
+                new.push([v[i], v[k], v[j], b]);
+                new.push([v[i], v[j], v[k], a]);
+                open.extend([(i, k), (k, j)]);
+            }
+        }
+        Some(new)
+    }
+
+    /// Whether a triangle of a ring has both ends strictly on its sides.
+    fn fits(&self, [u, v, w]: [u32; 3], a: u32, b: u32) -> bool {
+        self.orient(u, v, w, b) == Sign::Positive && self.orient(u, w, v, a) == Sign::Positive
+    }
+}
+
+/// Whether an edge of a mesh is one of a sorted list.
+pub fn has(edges: &[[u32; 2]], a: u32, b: u32) -> bool {
+    edges.binary_search(&pair(a, b)).is_ok()
+}

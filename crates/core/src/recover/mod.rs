@@ -1,0 +1,244 @@
+//! Tetrahedra that have given triangles as faces, bit for bit: exact recovery of a boundary.
+//!
+//! Points are added only strictly between the faces, and all end as doubles.
+//!
+//! # Why it ends
+//!
+//! The Delaunay triangulation of the vertices and four far ones fills a region with tetrahedra.
+//! Let e be a face or an edge inside of it, K the tetrahedra around e, and x a point inside e. Each outer
+//! face of K leaves out exactly one vertex of e, so the points from which K can be fanned are an
+//! open set that contains x. Fanning loses only what contains e.
+//!
+//! 1. Flips (`flips`): each lowers the number of crossings of what is missing.
+//! 2. Segments (`segments`): the open tetrahedra on the rest of one become fewer with each point.
+//! 3. Faces (`facets`): each point leaves one crossing edge less.
+//! 4. Points on the boundary are suppressed (`suppress`): each is replaced by one point in each
+//!    sector between faces; then free points are taken away (`thin`) where a neighbor sees all.
+//! 5. Coordinates are exact (`coordinates`) until doubles are found (`place`).
+//!
+//! What is locked contains no e: it would cross the segment or face, which valid input excludes.
+//!
+//! # Determinism
+//!
+//! Vertices and faces are sorted first, and only the Delaunay triangulation runs in threads: the
+//! result is independent of the order of the rows and of the number of workers.
+
+mod center;
+mod coordinates;
+mod crossing;
+mod export;
+mod facets;
+mod flips;
+mod input;
+mod mesh;
+mod place;
+mod segments;
+mod suppress;
+mod task;
+mod thin;
+mod work;
+
+pub use task::{Counts, Recovered, Task};
+
+use crate::error::Result;
+use crate::watch::Watch;
+use mesh::{NONE, PAIRS, ascending, pair};
+use work::{Origin, Work};
+
+/// Sweeps that look for doubles.
+const SWEEPS: usize = 8;
+
+/// Recovers faces. Returns the tetrahedra that cannot be reached from far outside without crossing
+/// a face: none, if the faces close nothing.
+pub fn recover(task: Task, watch: &Watch) -> Result<Recovered> {
+    let imported = input::import(task, watch)?;
+    let mut work = Work::new(imported.mesh, imported.faces, task.max_points, watch);
+    let (mut segments, mut faces) = work.missing()?;
+    work.counts.missing_edges = segments.len();
+    work.counts.missing_faces = faces.len();
+    if task.flips {
+        segments = work.flip_segments(segments)?;
+    }
+    work.split_segments(&segments)?;
+    if task.flips {
+        faces = work.flip_faces(faces)?;
+    }
+    work.cut_faces(&faces)?;
+    work.thin(work.given)?;
+    let out = work.finish()?;
+    let crowded = work.crowded(&out);
+    if !crowded.is_empty() {
+        let rows = crowded.iter().map(|&f| imported.face_rows[f as usize]);
+        let crowded = rows.collect();
+        return Ok(Recovered {
+            points: Vec::new(),
+            tetrahedra: Vec::new(),
+            neighbors: Vec::new(),
+            counts: work.counts,
+            crowded,
+        });
+    }
+    work.verify(&out)?;
+    work.export(task, &imported.rows, &out)
+}
+
+impl Work<'_> {
+    /// Segments and faces that the mesh lacks; locks the others.
+    fn missing(&mut self) -> Result<(Vec<u32>, Vec<u32>)> {
+        let mut edges: Vec<[u32; 2]> = Vec::new();
+        let mut all: Vec<[u32; 3]> = Vec::new();
+        for (t, v) in (0..).zip(&self.mesh.corners) {
+            for [i, j, ..] in PAIRS {
+                crate::memory::push(&mut edges, pair(v[i], v[j]))?;
+            }
+            for k in 0..4 {
+                crate::memory::push(&mut all, ascending(self.mesh.face(t, k)))?;
+            }
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        all.sort_unstable();
+        all.dedup();
+        let (mut segments, mut faces) = (Vec::new(), Vec::new());
+        for (s, e) in (0..).zip(&self.segments) {
+            if flips::has(&edges, e[0], e[1]) {
+                self.locked_edges.insert(*e, s);
+            } else {
+                segments.push(s);
+            }
+        }
+        for f in 0..self.faces.len() as u32 {
+            let face = self.faces[f as usize];
+            if all.binary_search(&face).is_ok() {
+                self.locked_faces.insert(face, f);
+                self.close(f);
+            } else {
+                faces.push(f);
+            }
+        }
+        Ok((segments, faces))
+    }
+
+    /// Notes that a face is recovered.
+    fn close(&mut self, f: u32) {
+        for s in self.sides[f as usize] {
+            self.open_faces[s as usize] -= 1;
+        }
+    }
+
+    /// Recovers faces with whole edges by flips, and returns those that are still missing.
+    fn flip_faces(&mut self, faces: Vec<u32>) -> Result<Vec<u32>> {
+        let mut missing = faces;
+        loop {
+            let before = missing.len();
+            let mut rest = Vec::new();
+            for &f in &missing {
+                let whole = self.rim(f).len() == 3;
+                if whole && self.flip_face(f)? {
+                    self.locked_faces.insert(self.faces[f as usize], f);
+                    self.close(f);
+                    self.counts.flipped_faces += 1;
+                } else {
+                    rest.push(f);
+                }
+            }
+            missing = rest;
+            if missing.is_empty() || missing.len() == before {
+                return Ok(missing);
+            }
+        }
+    }
+
+    /// Recovers faces one after another, and takes points of the boundary away as soon as possible.
+    fn cut_faces(&mut self, faces: &[u32]) -> Result<()> {
+        for &f in faces {
+            let first = self.mesh.points.len() as u32;
+            self.cut_face(f)?;
+            self.close(f);
+            let last = self.mesh.points.len() as u32;
+            for s in first..last {
+                if matches!(self.origin(s), Some(Origin::Face(_))) {
+                    self.suppress(s)?;
+                }
+            }
+            for segment in self.sides[f as usize] {
+                self.suppress_segment(segment)?;
+            }
+            self.thin(first)?;
+        }
+        // Segments all of whose faces were there.
+        for segment in 0..self.segments.len() as u32 {
+            self.suppress_segment(segment)?;
+        }
+        Ok(())
+    }
+
+    /// Suppresses the points of a segment whose faces are all recovered.
+    fn suppress_segment(&mut self, segment: u32) -> Result<()> {
+        if self.open_faces[segment as usize] > 0 {
+            return Ok(());
+        }
+        while let Some(&s) = self.chains.get(&segment).and_then(|chain| chain.last()) {
+            self.suppress(s)?;
+        }
+        Ok(())
+    }
+
+    /// Moves free points to doubles and takes away what is not needed; returns what is outside.
+    fn finish(&mut self) -> Result<Vec<bool>> {
+        for _ in 0..SWEEPS {
+            for v in self.free_points() {
+                self.pace.spend(32)?;
+                self.center_free(v);
+            }
+            let before = self.free_points().len();
+            self.thin(self.given)?;
+            if self.free_points().len() == before {
+                break;
+            }
+        }
+        let mut out = self.outside()?;
+        for _ in 0..SWEEPS {
+            let wide = self.wide_inside(&out);
+            if wide.is_empty() {
+                break;
+            }
+            for v in self.free_points() {
+                self.pace.spend(32)?;
+                self.center_free(v);
+            }
+            self.thin(self.given)?;
+            out = self.outside()?;
+        }
+        Ok(out)
+    }
+
+    /// Points inside that are not doubles.
+    fn wide_inside(&self, out: &[bool]) -> Vec<u32> {
+        let inside = |v: &u32| !out[self.mesh.at[*v as usize] as usize];
+        let free = self.free_points().into_iter();
+        free.filter(|v| !self.mesh.points.is_double(*v) && inside(v))
+            .collect()
+    }
+
+    /// Faces next to points inside that are not doubles.
+    fn crowded(&mut self, out: &[bool]) -> Vec<u32> {
+        let mut found = std::collections::BTreeSet::new();
+        for v in self.wide_inside(out) {
+            for t in self.mesh.star(v, usize::MAX) {
+                for w in self.mesh.corners[t as usize] {
+                    for u in self.mesh.star(w, 1 << 10) {
+                        for k in 0..4 {
+                            let face = ascending(self.mesh.face(u, k));
+                            let near = face.contains(&w) && self.mesh.across[u as usize][k] != NONE;
+                            if let Some(&f) = self.locked_faces.get(&face).filter(|_| near) {
+                                found.insert(f);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        found.into_iter().collect()
+    }
+}

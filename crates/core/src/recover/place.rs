@@ -1,0 +1,150 @@
+//! Where a point sees all faces around it: near the center of its kernel, in doubles if any fit.
+
+use std::collections::BTreeSet;
+
+use delone_predicates::Point3;
+
+use super::center::{Plane, center};
+use super::coordinates::{Wide, cross};
+use super::suppress::unit;
+use super::work::{Origin, Work};
+use crate::error::Result;
+
+/// The most halvings of a step.
+const HALVINGS: i32 = 1100;
+
+/// After a wide point was found, so many halvings more look for a double.
+const FURTHER: i32 = 12;
+
+impl Work<'_> {
+    /// A new free point that sees all faces, looked for from the point `s`, which sees those that do
+    /// not contain it in their planes.
+    pub fn point_in(
+        &mut self,
+        s: u32,
+        faces: &[[u32; 3]],
+        directions: [Point3; 2],
+    ) -> Result<Option<u32>> {
+        let start = self.mesh.points.exact(s);
+        let v = self.add(start.clone(), Origin::Free)?;
+        let (size, vertices) = self.size(s, faces);
+        if let Some(step) = self.step_to_center(s, faces, &vertices, size)
+            && self.try_at(v, s, faces, step)
+        {
+            return Ok(Some(v));
+        }
+        let [inward, along] = directions;
+        let back = along.map(|x| -x);
+        let mut wide = None;
+        for direction in [inward, along, back].map(unit) {
+            if direction == [0.0; 3] {
+                continue;
+            }
+            let mut left = HALVINGS;
+            let mut length = size;
+            while left > 0 && length > 0.0 {
+                left -= 1;
+                length /= 2.0;
+                let step = direction.map(|x| x * length);
+                if self.try_double(v, s, faces, step) {
+                    return Ok(Some(v));
+                }
+                if wide.is_none() && self.try_wide(v, &start, faces, step) {
+                    wide = Some(step);
+                    left = left.min(FURTHER);
+                }
+            }
+        }
+        if let Some(step) = wide {
+            // Half as far is farther from the ends of the interval that sees.
+            let half = step.map(|x| x / 2.0);
+            if self.try_wide(v, &start, faces, half) || self.try_wide(v, &start, faces, step) {
+                return Ok(Some(v));
+            }
+        }
+        self.drop_last();
+        Ok(None)
+    }
+
+    /// Moves a free point to the center of its kernel, in doubles. False if it stays.
+    pub fn center_free(&mut self, v: u32) -> bool {
+        let star = self.mesh.star(v, usize::MAX);
+        let faces = self.mesh.outer_faces(&star);
+        let (size, vertices) = self.size(v, &faces);
+        let old = self.mesh.points.exact(v);
+        if let Some(step) = self.step_to_center(v, &faces, &vertices, size) {
+            for part in [1.0, 0.5, 0.25, 0.125, 0.0] {
+                let step = step.map(|x| x * part);
+                self.mesh.points.place(v, old.clone());
+                if self.try_double(v, v, &faces, step) {
+                    return true;
+                }
+            }
+        }
+        self.mesh.points.place(v, old);
+        false
+    }
+
+    /// The largest difference from a vertex to those of faces, and these.
+    fn size(&self, s: u32, faces: &[[u32; 3]]) -> (f64, BTreeSet<u32>) {
+        let vertices: BTreeSet<u32> = faces.as_flattened().iter().copied().collect();
+        let far = vertices
+            .iter()
+            .flat_map(|&w| self.mesh.points.from_to(s, w));
+        (far.fold(0.0, |m, x| m.max(x.abs())), vertices)
+    }
+
+    /// The step from a point to the center of the kernel of faces.
+    fn step_to_center(
+        &self,
+        s: u32,
+        faces: &[[u32; 3]],
+        vertices: &BTreeSet<u32>,
+        size: f64,
+    ) -> Option<Point3> {
+        if !(size.is_finite() && size > 0.0) {
+            return None;
+        }
+        let at: std::collections::BTreeMap<u32, Point3> = vertices
+            .iter()
+            .map(|&w| (w, self.mesh.points.from_to(s, w).map(|x| x / size)))
+            .collect();
+        let mut planes = Vec::with_capacity(faces.len());
+        for [a, b, c] in faces {
+            let (p, q, r) = (at.get(a)?, at.get(b)?, at.get(c)?);
+            let from = |x: &Point3| [x[0] - p[0], x[1] - p[1], x[2] - p[2]];
+            let normal = unit(cross(from(q), from(r)));
+            if normal == [0.0; 3] {
+                return None;
+            }
+            let offset = normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2];
+            planes.push(Plane { normal, offset });
+        }
+        let (x, _) = center(&planes)?;
+        Some(x.map(|x| x * size))
+    }
+
+    /// Tries a step in doubles, then exactly.
+    fn try_at(&mut self, v: u32, s: u32, faces: &[[u32; 3]], step: Point3) -> bool {
+        self.try_double(v, s, faces, step) || {
+            let start = self.mesh.points.exact(s);
+            self.try_wide(v, &start, faces, step)
+        }
+    }
+
+    /// Places `v` at the double nearest to a step from `s`, if that sees all faces.
+    fn try_double(&mut self, v: u32, s: u32, faces: &[[u32; 3]], step: Point3) -> bool {
+        let near = self.mesh.points.near(s);
+        let p = [0, 1, 2].map(|k| near[k] + step[k] + 0.0);
+        p.iter().all(|x| x.is_finite())
+            && self.mesh.points.place(v, Wide::of(p))
+            && self.sees(faces, v)
+    }
+
+    /// The same without rounding.
+    fn try_wide(&mut self, v: u32, start: &Wide, faces: &[[u32; 3]], step: Point3) -> bool {
+        step.iter().all(|x| x.is_finite())
+            && self.mesh.points.place(v, start.plus(step))
+            && self.sees(faces, v)
+    }
+}

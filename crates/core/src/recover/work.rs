@@ -1,0 +1,176 @@
+//! The state of a recovery: the mesh, what is locked, and where added points lie.
+
+use std::collections::HashMap;
+
+use delone_predicates::Sign;
+use num_bigint::BigInt;
+
+use super::coordinates::Wide;
+use super::mesh::{Mesh, Ring, ascending, pair};
+use super::task::Counts;
+use crate::error::{Crowd, Error, Result};
+use crate::watch::{Pace, Watch};
+
+/// Where an added point lies.
+#[derive(Debug, Clone)]
+pub enum Origin {
+    /// On a segment.
+    Segment(u32),
+    /// On a face of the input.
+    Face(u32),
+    /// Strictly between the faces: it may move.
+    Free,
+}
+
+/// A position on a segment: `numerator / 2^bits` of the way.
+#[derive(Debug, Clone)]
+pub struct Dyadic {
+    /// The numerator.
+    pub numerator: BigInt,
+    /// The binary digits after the point.
+    pub bits: u64,
+}
+
+/// The state.
+pub struct Work<'a> {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// Vertices of the input and the four far ones; those from here on were added.
+    pub given: u32,
+    /// A vertex far outside; three more follow it.
+    pub far: u32,
+    /// The faces of the input, vertices in ascending order of the faces.
+    pub faces: Vec<[u32; 3]>,
+    /// The edges of the faces, ascending.
+    pub segments: Vec<[u32; 2]>,
+    /// Faces not yet recovered, by segment.
+    pub open_faces: Vec<u32>,
+    /// The segments of each face, opposite its corners.
+    pub sides: Vec<[u32; 3]>,
+    /// Parts of segments, with the segment of each.
+    pub locked_edges: HashMap<[u32; 2], u32>,
+    /// Parts of faces, with the face of each.
+    pub locked_faces: HashMap<[u32; 3], u32>,
+    /// Points on segments, in order, where there are any.
+    pub chains: HashMap<u32, Vec<u32>>,
+    /// Where each added point lies.
+    pub origin: Vec<Origin>,
+    /// Added points that are in the mesh.
+    pub alive: usize,
+    /// The limit of these.
+    pub limit: usize,
+    /// What happened.
+    pub counts: Counts,
+    /// The pace of interruption.
+    pub pace: Pace<'a>,
+}
+
+impl<'a> Work<'a> {
+    /// The state before anything is recovered.
+    pub fn new(mesh: Mesh, faces: Vec<[u32; 3]>, limit: usize, watch: &'a Watch<'a>) -> Self {
+        let given = mesh.points.len() as u32;
+        let edges = |f: &[u32; 3]| [pair(f[1], f[2]), pair(f[0], f[2]), pair(f[0], f[1])];
+        let mut segments: Vec<[u32; 2]> = faces.iter().flat_map(edges).collect();
+        segments.sort_unstable();
+        segments.dedup();
+        let mut open_faces = vec![0; segments.len()];
+        let mut sides = Vec::with_capacity(faces.len());
+        for face in &faces {
+            let found = edges(face).map(|e| segments.binary_search(&e).unwrap_or(0) as u32);
+            for s in found {
+                open_faces[s as usize] += 1;
+            }
+            sides.push(found);
+        }
+        Self {
+            mesh,
+            given,
+            far: given - 4,
+            faces,
+            segments,
+            open_faces,
+            sides,
+            locked_edges: HashMap::new(),
+            locked_faces: HashMap::new(),
+            chains: HashMap::new(),
+            origin: Vec::new(),
+            alive: 0,
+            limit,
+            counts: Counts::default(),
+            pace: Pace::new(watch, 1 << 8),
+        }
+    }
+
+    /// Where an added point lies; `None` for a vertex of the input.
+    pub fn origin(&self, v: u32) -> Option<&Origin> {
+        self.origin.get(v.checked_sub(self.given)? as usize)
+    }
+
+    /// Whether a vertex is an added point that may move.
+    pub fn is_free(&self, v: u32) -> bool {
+        matches!(self.origin(v), Some(Origin::Free))
+    }
+
+    /// Adds a point, or returns `None` if it is beyond the range of doubles.
+    pub fn add(&mut self, p: Wide, origin: Origin) -> Result<u32> {
+        self.pace.spend(1)?;
+        if self.alive >= self.limit {
+            return Err(Error::Budget {
+                what: "added points inside a surface",
+                limit: self.limit,
+                found: self.alive + 1,
+                crowd: Crowd::default(),
+            });
+        }
+        let v = self.mesh.add(p)?;
+        let v = v.ok_or_else(|| Error::Shape("a coordinate is too large".into()))?;
+        self.origin.push(origin);
+        self.alive += 1;
+        Ok(v)
+    }
+
+    /// Takes back the point added last.
+    pub fn drop_last(&mut self) {
+        self.mesh.drop_last();
+        self.origin.pop();
+        self.alive -= 1;
+    }
+
+    /// The sign of det[b-a, c-a, d-a].
+    #[inline]
+    pub fn orient(&self, a: u32, b: u32, c: u32, d: u32) -> Sign {
+        self.mesh.points.orient(a, b, c, d)
+    }
+
+    /// A far vertex that is not in the plane of a face, and on which side it is.
+    pub fn aside(&self, [a, b, c]: [u32; 3]) -> Result<(u32, Sign)> {
+        let mut far = self.far..self.far + 4;
+        let found = far.find_map(|v| {
+            let sign = self.orient(a, b, c, v);
+            (!sign.is_zero()).then_some((v, sign))
+        });
+        found.ok_or_else(|| Error::Shape(format!("face {:?} is flat", [a, b, c])))
+    }
+
+    /// Whether a fan from `v` would be positive.
+    pub fn sees(&self, faces: &[[u32; 3]], v: u32) -> bool {
+        let sees = |&[a, b, c]: &[u32; 3]| self.mesh.points.positive([a, b, c, v]);
+        faces.iter().all(sees)
+    }
+
+    /// Whether the edge of a ring or a face at it is locked.
+    pub fn ring_is_locked(&self, ring: &Ring) -> bool {
+        let [a, b] = ring.ends;
+        let face = |&v: &u32| self.locked_faces.contains_key(&ascending([a, b, v]));
+        self.locked_edges.contains_key(&pair(a, b)) || ring.vertices.iter().any(face)
+    }
+}
+
+/// The sign as a number.
+pub fn number(sign: Sign) -> i32 {
+    match sign {
+        Sign::Negative => -1,
+        Sign::Zero => 0,
+        Sign::Positive => 1,
+    }
+}
