@@ -5,13 +5,12 @@
 <Delaunay of 5 points: 4 triangles>
 
 `Delaunay` triangulates 2-D or 3-D points; `ConstrainedDelaunay` and `from_geometry` also take
-segments and polygons. `mesh` and `improve` create triangles and tetrahedra of good quality. Related
+segments and polygons. `mesh` and `improve` create triangles and tetrahedra of good quality,
+`tetrahedralize` fills closed surfaces with tetrahedra. Related
 structures are `Voronoi`, `ConvexHull`, `RegularTriangulation` and `PeriodicDelaunay`. The modules
 `graphs`, `cluster`, `terrain`, `interpolate`, `distributed`, `io`, `plot`, `predicates`,
 `datasets`, `testing`, `reference` and `compat` have the rest. All errors are subclasses of
 `DeloneError`.
-`graphs`, `sphere`, `terrain`, `interpolate`, `distributed`, `io`, `plot`, `predicates`, `datasets`,
-`testing`, `reference` and `compat` have the rest. All errors are subclasses of `DeloneError`.
 """
 
 from __future__ import annotations
@@ -34,6 +33,7 @@ from delone.errors import (
     ConflictingValuesError,
     CrossingFacesError,
     CrossingSegmentsError,
+    CrowdedFacesError,
     DegenerateInputError,
     DeloneError,
     DirectionError,
@@ -92,8 +92,11 @@ if TYPE_CHECKING:
     from delone.surface.report import SurfaceCheck
     from delone.surface.resolve import resolve_touches
     from delone.tetmesh.improvement import improve
+    from delone.tetmesh.recovery import RecoveryReport
     from delone.tetmesh.report import ImproveReport
     from delone.tetmesh.tetmesh import TetMesh
+    from delone.tetmesh.validation import TetMeshReport
+    from delone.tetrahedra.filling import tetrahedralize
     from delone.voronoi.centroidal import LloydResult, lloyd
     from delone.voronoi.diagram import Voronoi
 
@@ -111,6 +114,7 @@ __all__ = [
     "ConvexHull",
     "CrossingFacesError",
     "CrossingSegmentsError",
+    "CrowdedFacesError",
     "DegenerateInputError",
     "Delaunay",
     "DeloneError",
@@ -137,11 +141,13 @@ __all__ = [
     "PeriodicDelaunay",
     "PolygonTriangles",
     "Quality",
+    "RecoveryReport",
     "RegularTriangulation",
     "SegmentReport",
     "ShapeError",
     "SurfaceCheck",
     "TetMesh",
+    "TetMeshReport",
     "TetQuality",
     "UnitsWarning",
     "ValidationReport",
@@ -168,6 +174,7 @@ __all__ = [
     "sphere",
     "terrain",
     "testing",
+    "tetrahedralize",
     "triangulate_polygon",
 ]
 
@@ -198,6 +205,7 @@ _MODULES = {
     "terrain",
     "testing",
     "tetmesh",
+    "tetrahedra",
     "voronoi",
 }
 _HOMES = {
@@ -216,10 +224,12 @@ _HOMES = {
     "MeshReport": "refine.report",
     "PeriodicDelaunay": "periodic",
     "PolygonTriangles": "constrained.polygons",
+    "RecoveryReport": "tetmesh.recovery",
     "RegularTriangulation": "regular",
     "SegmentReport": "constrained.segments",
     "SurfaceCheck": "surface.report",
     "TetMesh": "tetmesh.tetmesh",
+    "TetMeshReport": "tetmesh.validation",
     "Voronoi": "voronoi.diagram",
     "check_surface": "surface.check",
     "concave_hull": "alpha.concave",
@@ -230,6 +240,7 @@ _HOMES = {
     "lloyd": "voronoi.centroidal",
     "mesh": "refine.refine",
     "resolve_touches": "surface.resolve",
+    "tetrahedralize": "tetrahedra.filling",
     "triangulate_polygon": "constrained.polygons",
 }
 

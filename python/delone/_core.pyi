@@ -42,6 +42,8 @@ __all__ = [
     "NaturalWeights",
     "PeriodicFaults",
     "PeriodicTriangulation",
+    "RecoveredFaces",
+    "RecoveryCounts",
     "RefinedMesh",
     "Refinement2",
     "RegularFaults2",
@@ -131,6 +133,7 @@ __all__ = [
     "proximity3",
     "qualities2",
     "qualities3",
+    "recover_faces",
     "refine2",
     "regular2",
     "regular3",
@@ -1675,6 +1678,61 @@ def check_surface3(
 def resolve_touches3(
     points: NDArray[np.float64], faces: NDArray[np.int32], limit: int, workers: int
 ) -> tuple[tuple[NDArray[np.int32], NDArray[np.int32]] | None, FacePairs]: ...
+@final
+class RecoveryCounts:
+    """What happened during a recovery of faces."""
+
+    @property
+    def missing_edges(self) -> int: ...
+    @property
+    def missing_faces(self) -> int: ...
+    @property
+    def flips(self) -> int: ...
+    @property
+    def flipped_edges(self) -> int: ...
+    @property
+    def flipped_faces(self) -> int: ...
+    @property
+    def segment_points(self) -> int: ...
+    @property
+    def face_points(self) -> int: ...
+    @property
+    def suppressed(self) -> int: ...
+    @property
+    def joined(self) -> int: ...
+    @property
+    def thinned(self) -> int: ...
+
+@final
+class RecoveredFaces:
+    """Tetrahedra that have given faces."""
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The points given, followed by those that were added, (n + k, 3)."""
+    @property
+    def tetrahedra(self) -> NDArray[np.int32]:
+        """Vertices of the tetrahedra, (t, 4)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The tetrahedron opposite each vertex, -1 if there is none, (t, 4)."""
+    @property
+    def nadded(self) -> int:
+        """How many points were added."""
+    @property
+    def counts(self) -> RecoveryCounts:
+        """What happened."""
+    @property
+    def crowded(self) -> NDArray[np.int32]:
+        """Rows of faces near which no double is left for a point; then there are no tetrahedra."""
+
+def recover_faces(
+    points: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    max_points: int,
+    flips: bool,
+    workers: int,
+) -> RecoveredFaces: ...
 def improve3(
     points: NDArray[np.float64],
     simplices: NDArray[np.int32],

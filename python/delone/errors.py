@@ -23,6 +23,7 @@ __all__ = [
     "ConflictingValuesError",
     "CrossingFacesError",
     "CrossingSegmentsError",
+    "CrowdedFacesError",
     "DegenerateInputError",
     "DeloneError",
     "DirectionError",
@@ -391,6 +392,36 @@ class OpenSurfaceError(InputError):
         super().__init__(message)
         self.edges = np.array(edges, dtype=np.int64).reshape(-1, 2)
         self.edges.flags.writeable = False
+
+
+class CrowdedFacesError(InputError):
+    """Faces of a surface are so close that no double lies where a point is needed between them.
+
+    Parameters
+    ----------
+    message : str
+        The message.
+    faces : array_like of int, shape (k,), optional
+        Rows of these faces.
+
+    Attributes
+    ----------
+    faces : ndarray of int64, shape (k,)
+        Rows of these faces.
+
+    Examples
+    --------
+    >>> from delone import CrowdedFacesError
+    >>> CrowdedFacesError(faces=[3, 5]).faces.tolist()
+    [3, 5]
+    """
+
+    faces: NDArray[np.int64]
+
+    def __init__(self, message: str = "no room between faces", *, faces: ArrayLike = ()) -> None:
+        super().__init__(message)
+        self.faces = np.array(faces, dtype=np.int64).reshape(-1)
+        self.faces.flags.writeable = False
 
 
 class ConflictingValuesError(InputError):

@@ -22,6 +22,7 @@ from delone.plane.topology import (
     half_edges,
     unjoined,
 )
+from delone.space.locking import sides
 from delone.space.topology import boundary_faces
 
 if TYPE_CHECKING:
@@ -94,15 +95,43 @@ def check_surface(**arrays: NDArray[Any]) -> None:
 
 
 def check_tetrahedra(**arrays: NDArray[Any]) -> None:
-    """Check tetrahedra with any boundary, their regions, and the report of their improvement."""
+    """Check tetrahedra with any boundary, their regions and input faces, and their report."""
     points, simplices, neighbors = arrays["points"], arrays["simplices"], arrays["neighbors"]
     _check_simplices(points, simplices, neighbors)
     _check_joined(simplices, neighbors)
     _check_closed(boundary_faces(simplices, neighbors), len(points))
     require(len(arrays["region"]) == len(simplices), "regions and tetrahedra do not match")
+    _check_faces(**arrays)
+    if len(arrays["recovery"]):
+        _check_recovery(**arrays)
+        return
     require(len(arrays["weights"]) == len(points), "weights and points do not match")
     require((arrays["weights"] >= 0).all(), "weights are not numbers of at least 0")
     _check_improvement(**arrays)
+
+
+def _check_faces(**arrays: NDArray[Any]) -> None:
+    """Check that input faces are faces of tetrahedra, and the number of added points."""
+    points, faces = arrays["points"], arrays["input_faces"]
+    _check_range("input_faces", faces, 0, len(points))
+    _check_range("face_source", arrays["face_source"], 0, 2**31)
+    for name in ("face_source", "face_markers"):
+        require(len(arrays[name]) == len(faces), f"{name} and input_faces do not match")
+    require(len(arrays["added"]) == 1, "added is not one number")
+    _check_range("added", arrays["added"], 0, len(points) + 1)
+    found = sides(arrays["simplices"], faces, len(points)).face
+    require(len(np.unique(found[found >= 0])) == len(faces), "an input face is not in the mesh")
+
+
+def _check_recovery(**arrays: NDArray[Any]) -> None:
+    """Check the report of a recovery, with which there is none of an improvement."""
+    require(len(arrays["recovery"]) == 11, "the report is incomplete")
+    _check_range("recovery", arrays["recovery"], 0, 2**63)
+    require(arrays["recovery"][0] == arrays["added"][0], "the report counts other added points")
+    _check_range("duplicate_points", arrays["duplicate_points"], 0, len(arrays["points"]))
+    for name in ("subdivided", "repeated", "degenerate", "dangling", "outside"):
+        _check_range(name, arrays[name], 0, 2**31)
+        require((np.diff(arrays[name]) > 0).all(), f"{name} is out of order")
 
 
 def _check_improvement(**arrays: NDArray[Any]) -> None:

@@ -93,7 +93,18 @@ _TET_MESH = Kind(
     _simplices(3)
     | {
         "region": ("<i4", 0),
-        # The report of the improvement.
+        "input_faces": ("<i4", 3),
+        "face_source": ("<i4", 0),
+        "face_markers": ("<i4", 0),
+        "added": ("<i8", 0),
+        # The report of the recovery of faces, or else of the improvement; the other one is empty.
+        "recovery": ("<i8", 0),
+        "duplicate_points": ("<i8", 2),
+        "subdivided": ("<i8", 0),
+        "repeated": ("<i8", 0),
+        "degenerate": ("<i8", 0),
+        "dangling": ("<i8", 0),
+        "outside": ("<i8", 0),
         "angles": ("<f8", 0),
         "counts": ("<i8", 0),
         "bounds": ("<f8", 0),

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone import ImproveReport, TetMesh
+    from delone import TetMesh
     from delone.cli.show import Row
     from delone.io import GeometrySet
 
@@ -98,8 +98,9 @@ def improved(
     return improve(mesh, min_angle=goal, max_iter=most, progress=told)
 
 
-def improvement_figures(report: ImproveReport) -> dict[str, Any]:
+def improvement_figures(improved: TetMesh) -> dict[str, Any]:
     """Return angles before and after, and the tetrahedra below the goal by cause."""
+    report: Any = improved.report
     causes, counts = np.unique(report.cause, return_counts=True)
     return {
         "goal": report.min_angle,

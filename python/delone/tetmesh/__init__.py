@@ -1,10 +1,13 @@
-"""Improvement of tetrahedral meshes, by moving vertices and replacing tetrahedra.
+"""Tetrahedral meshes: the class TetMesh, and improvement by moving vertices and by flips.
 
-`improvement` has the function `improve`, `tetmesh` the class TetMesh, `report` its result.
+`improvement` has the function `improve`, `report` its result; `recovery` has the report of
+`delone.tetrahedralize`, `walls` what `improve` keeps of its faces.
 """
 
 from delone.tetmesh.improvement import improve
+from delone.tetmesh.recovery import RecoveryReport
 from delone.tetmesh.report import ImproveReport
 from delone.tetmesh.tetmesh import TetMesh
+from delone.tetmesh.validation import TetMeshReport
 
-__all__ = ["ImproveReport", "TetMesh", "improve"]
+__all__ = ["ImproveReport", "RecoveryReport", "TetMesh", "TetMeshReport", "improve"]

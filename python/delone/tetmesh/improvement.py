@@ -24,7 +24,7 @@ from delone._arrays import (
 from delone.counting import agreed, counted
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.space import quality
-from delone.tetmesh import report
+from delone.tetmesh import report, walls
 from delone.tetmesh.tetmesh import TetMesh
 
 if TYPE_CHECKING:
@@ -77,7 +77,9 @@ def improve(
         tetrahedra around them in the regular triangulation are better.
     boundary : {"faces", "surface"}, optional
         What is preserved of the boundary: its triangles; or only the surface, so that exactly
-        coplanar triangles may be flipped. Boundary vertices never move.
+        coplanar triangles may be flipped. Boundary vertices never move. With the triangles, all
+        `input_faces` of a TetMesh are preserved, those inside included; with the surface, the
+        result has none.
     region : array_like of int, shape (m,), optional
         A number for each tetrahedron. Faces between different numbers are preserved like the
         boundary. By default that of a TetMesh.
@@ -143,6 +145,8 @@ def improve(
     """
     points, simplices, own = _given(mesh)
     labels = _labels(region, own, len(simplices))
+    walled = isinstance(mesh, TetMesh) and len(mesh.input_faces) > 0 and boundary == "faces"
+    kept = walls.Kept.of(mesh, labels) if walled else None
     held = _mask(fixed, len(points))
     goal = _angle(min_angle)
     kinds = (
@@ -155,7 +159,15 @@ def improve(
     as_callback(progress, name="progress")
     try:
         made = _core.improve3(
-            points, simplices, labels, held, goal, *kinds, flips_boundary, passes, progress
+            points,
+            simplices,
+            labels if kept is None else kept.labels,
+            held,
+            goal,
+            *kinds,
+            flips_boundary,
+            passes,
+            progress,
         )
     except ShapeError as error:
         raise InputError(*error.args) from None
@@ -169,7 +181,10 @@ def improve(
         "neighbors": made.neighbors,
         "region": made.labels,
     }
-    better = TetMesh._of(arrays, judged)
+    if kept is not None:
+        arrays |= kept.arrays(made.labels)
+    nadded = mesh.nadded if isinstance(mesh, TetMesh) else 0
+    better = TetMesh._of(arrays, judged, nadded)
     better._cache["quality"] = after
     return better
 

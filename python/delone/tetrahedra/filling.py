@@ -1,0 +1,338 @@
+"""The function `tetrahedralize`: checks the surface, calls the core, and decides what is inside.
+
+The core recovers the faces (its module comment has the method and why it ends).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import (
+    as_callback,
+    as_choice,
+    as_workers,
+)
+from delone.counting import counted, listed
+from delone.errors import CrowdedFacesError, InputError
+from delone.space.locking import cells, sides
+from delone.surface import check_surface
+from delone.tetmesh.tetmesh import TetMesh
+from delone.tetrahedra import arguments, seeds, sources
+from delone.tetrahedra.covering import counts_of, parts_of, reported
+from delone.tetrahedra.inside import RULES, inner_cells
+from delone.tetrahedra.seeds import Tiling
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone._core import RecoveryCounts
+    from delone.space.locking import Sides
+    from delone.surface import SurfaceCheck
+    from delone.tetrahedra.arguments import Task
+    from delone.tetrahedra.covering import Parts
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["tetrahedralize"]
+
+_BOUNDARIES = ("faces",)
+
+
+def tetrahedralize(
+    points: Any,
+    faces: ArrayLike | None = None,
+    *,
+    boundary: str = "faces",
+    inside: str = "winding",
+    holes: ArrayLike | None = None,
+    regions: ArrayLike | None = None,
+    face_markers: ArrayLike | None = None,
+    extra_points: ArrayLike | None = None,
+    max_points: int | None = None,
+    progress: Callable[[str, float], object] | None = None,
+    workers: int | None = None,
+) -> TetMesh:
+    """Fill a closed surface with tetrahedra; its triangles are kept exactly.
+
+    No point of the input moves, and points are added only strictly between the faces.
+
+    Parameters
+    ----------
+    points : array_like of float, shape (n, 3), or path or mesh
+        Coordinates. Rows with equal coordinates are one vertex; rows that no face uses are no
+        vertices. Without `faces`: a file that `delone.io.read_mesh` reads, such as STL, OBJ, PLY,
+        OFF or TetGen's .smesh and .poly; or a surface as an object of trimesh, PyVista or meshio,
+        or of delone, such as a 3-D `ConvexHull`.
+    faces : array_like of int, shape (m, 3)
+        The vertices of each triangle, rows of `points`.
+    boundary : {"faces"}, optional
+        What is kept: all triangles.
+    inside : {"winding", "parity", "enclosed"}, optional
+        What is filled: regions with a winding number other than 0; regions that an odd number of
+        faces separates from the outside, however these are oriented; or everything enclosed.
+        For walls between regions and sheets in them, see Notes.
+    holes : array_like of float, shape (k, 3), optional
+        Seeds: the region around each is left empty.
+    regions : array_like, shape (k, 3) or (k, 4), optional
+        Seeds of regions: the tetrahedra of the region around each seed get its label in `region`.
+        The label is the fourth column (an integer of at least 0), or the row of the seed; it is -1
+        for regions without a seed. Without seeds, regions are numbered from 0.
+    face_markers : array_like of int, shape (m,), optional
+        A number for each face, inherited by the `face_markers` of the mesh.
+    extra_points : array_like of float, shape (k, 3), optional
+        Further vertices strictly inside regions; in the mesh their rows follow `points`.
+    max_points : int, optional
+        Maximum number of points that exist besides those of the input at any time; by default a
+        million, or ten per face if that is more.
+    progress : callable, optional
+        Called before each stage with its name and the fraction of stages done.
+    workers : int, optional
+        Number of threads; by default one per core. The result does not depend on it.
+
+    Returns
+    -------
+    TetMesh
+        The mesh, immutable. Its `report` says what was added, and which input faces are unions of
+        faces of the mesh, or not in it.
+
+    Raises
+    ------
+    CrossingFacesError
+        Faces cross; with pairs and kinds.
+    OpenSurfaceError
+        The surface encloses nothing; with its boundary edges.
+    DegenerateInputError
+        All faces are in one plane.
+    CrowdedFacesError
+        Between some faces there is no double where a point is needed; with these faces.
+    BudgetExceededError
+        More than `max_points` are needed.
+    InputError
+        Regions are not inside by the rule, or that is not defined; seeds or extra points are
+        outside or on a face; an argument is invalid.
+    NonFiniteError, ShapeError, DtypeError, FileFormatError, MissingExtraError
+        The input is not such arrays, or not such a file or object.
+    KeyboardInterrupt
+        Ctrl-C was pressed.
+
+    See Also
+    --------
+    check_surface : Check the surface alone.
+    improve : Remove slivers from the mesh.
+
+    Notes
+    -----
+    Faces may touch: at T-junctions, where corners are on others, and where faces repeat others or
+    overlap in one plane, they are subdivided at existing vertices, as by `resolve_touches`, and the
+    report says so. Edges may have any number of faces: sheets inside, several shells, and walls
+    between regions are all faces of the mesh.
+
+    Winding numbers and parities are counted from the outside: a region gets its number through
+    faces to regions that are nearer to the outside, in the number of faces between. Walls between
+    regions that are equally near need not be consistent; they may be given once, in any
+    orientation.
+
+    The Delaunay triangulation of the vertices lacks some of the edges and faces. Flips recover
+    most; for the others, points are put on them temporarily and then moved to their sides. All
+    decisions are exact, and the order of points and faces does not matter. The mesh is not Delaunay
+    in general. If the surface is valid, failures have two causes: the limit on points, and places
+    so narrow that no double lies in them.
+
+    In practice the time is linear, up to a logarithm; for the points on faces no better bound than
+    a quadratic one is known, as polyhedra exist that need as many [1]_.
+
+    References
+    ----------
+    .. [1] B. Chazelle, "Convex partitions of polyhedra: a lower bound and worst-case optimal
+       algorithm", SIAM Journal on Computing 13 (1984), 488-507.
+
+    Examples
+    --------
+    A cube:
+
+    >>> import delone
+    >>> points = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    >>> cube = delone.ConvexHull(points)
+    >>> mesh = delone.tetrahedralize(cube.points, cube.simplices)
+    >>> mesh.nsimplex, mesh.nadded, len(mesh.input_faces), bool(mesh.validate())
+    (6, 0, 12, True)
+    """
+    as_choice(boundary, _BOUNDARIES, name="boundary")
+    as_choice(inside, RULES, name="inside")
+    as_callback(progress, name="progress")
+    surface = sources.given(points, faces, face_markers, holes, regions)
+    task = arguments.task(surface, extra_points, max_points, workers)
+    stages = _Stages(task, inside, progress)
+    return stages.filled()
+
+
+class _Everything(NamedTuple):
+    """All tetrahedra that faces enclose."""
+
+    tiling: Tiling
+    nadded: int
+    counts: RecoveryCounts
+
+
+class _Solid(NamedTuple):
+    """What the faces of these are, and their cells."""
+
+    sides: Sides
+    cell: Indices
+
+    @classmethod
+    def of(cls, tiling: Tiling) -> _Solid:
+        found = sides(tiling.simplices, tiling.faces, len(tiling.points))
+        return cls(found, cells(tiling.neighbors, found.face >= 0))
+
+
+class _Stages(NamedTuple):
+    """The stages of one call."""
+
+    task: Task
+    rule: str
+    progress: Callable[[str, float], object] | None
+
+    def _tell(self, stage: str, done: float) -> None:
+        if self.progress is not None:
+            self.progress(stage, done)
+
+    def filled(self) -> TetMesh:
+        """Return the mesh."""
+        points, workers = self.task.points, self.task.workers
+        self._tell("check", 0.0)
+        check = _checked(points, self.task.faces, workers)
+        self._tell("recover", 0.25)
+        parts = parts_of(points, self.task.faces, check, workers)
+        found = self._recovered(parts, np.empty((0, 3)))
+        if len(self.task.extra):
+            _require_inside(found.tiling, self.task.extra, workers)
+            found = self._recovered(parts, self.task.extra)
+        self._tell("select", 0.75)
+        solid = _Solid.of(found.tiling)
+        made = self._mesh(found, solid, self._inside(found.tiling, solid, parts), parts, check)
+        self._tell("done", 1.0)
+        return made
+
+    def _recovered(self, parts: Parts, extra: Floats) -> _Everything:
+        """Return all tetrahedra that the faces enclose, in rows of the result."""
+        points, limit = self.task.points, self.task.limit
+        used = np.unique(parts.faces)
+        faces = np.searchsorted(used, parts.faces).astype(np.int32)
+        places = np.concatenate((points[used], extra))
+        made = _core.recover_faces(places, faces, limit, True, as_workers(self.task.workers))
+        if len(made.crowded):
+            raise _crowded(parts.source[made.crowded])
+        further = made.points[len(used) :]
+        rows = np.concatenate((used, len(points) + np.arange(len(further)))).astype(np.int32)
+        everywhere = np.concatenate((points, further))
+        tiling = Tiling(everywhere, rows[made.tetrahedra], made.neighbors, parts.faces)
+        return _Everything(tiling, made.nadded, made.counts)
+
+    def _inside(self, tiling: Tiling, solid: _Solid, parts: Parts) -> Bools:
+        """Return which tetrahedra remain."""
+        inner = inner_cells(self.rule, solid.cell, tiling.neighbors, solid.sides, parts)
+        hole = seeds.located(tiling, self.task.holes, "holes", self.task.workers)
+        inner[solid.cell[hole]] = False
+        if not inner.any():
+            raise InputError(
+                "nothing is left inside: every region is a hole, or not inside by the rule "
+                f"inside={self.rule!r}"
+            )
+        kept: Bools = inner[solid.cell]
+        return kept
+
+    def _mesh(
+        self, found: _Everything, solid: _Solid, kept: Bools, parts: Parts, check: SurfaceCheck
+    ) -> TetMesh:
+        """Return the tetrahedra that remain, with their regions and faces."""
+        tiling = found.tiling
+        number = np.cumsum(kept, dtype=np.int32) - np.int32(1)
+        number[~kept] = -1
+        across, face = tiling.neighbors[kept], solid.sides.face[kept]
+        there = np.zeros(len(parts.faces), dtype=bool)
+        there[face[face >= 0]] = True
+        points, simplices, nadded = _without_unused(
+            tiling.points, tiling.simplices[kept], found.nadded
+        )
+        source = parts.source[there]
+        arrays: dict[str, NDArray[Any]] = {
+            "points": points,
+            "simplices": simplices,
+            "neighbors": np.where(across < 0, np.int32(-1), number[across]),
+            "region": self._regions(tiling, solid, kept),
+            "input_faces": parts.faces[there],
+            "face_source": source,
+            "face_markers": self.task.markers[source],
+        }
+        counts = counts_of(found.counts, nadded)
+        report = reported(counts, self.task.faces, parts, there, check)
+        return TetMesh._of(arrays, report, nadded, self.task.workers)
+
+    def _regions(self, tiling: Tiling, solid: _Solid, kept: Bools) -> Indices:
+        """Return the region of each tetrahedron that remains."""
+        if not len(self.task.regions):
+            return np.unique(solid.cell[kept], return_inverse=True)[1].astype(np.int32)
+        found = seeds.located(tiling, self.task.regions, "regions", self.task.workers)
+        lost = np.flatnonzero(~kept[found])
+        if len(lost):
+            raise InputError(
+                f"regions: {counted(len(lost), 'seed')} in what is left empty: {listed(lost, 10)}"
+            )
+        label = np.full(int(solid.cell.max()) + 1, -1, dtype=np.int32)
+        for row, (cell, own) in enumerate(
+            zip(solid.cell[found].tolist(), self.task.labels.tolist(), strict=True)
+        ):
+            if label[cell] not in (-1, own):
+                raise InputError(
+                    f"regions: the seed in row {row} has the label {own}, but another one in its "
+                    f"region has {label[cell]}"
+                )
+            label[cell] = own
+        return label[solid.cell[kept]]
+
+
+def _checked(points: Floats, faces: Indices, workers: int | None) -> SurfaceCheck:
+    """Return the check of a surface that can be filled, with all pairs that touch."""
+    check = check_surface(points, faces, workers=workers)
+    check.raise_if_bad()
+    if len(check.pairs) < check.npairs:
+        check = check_surface(points, faces, limit=None, workers=workers)
+    return check
+
+
+def _require_inside(tiling: Tiling, extra: Floats, workers: int | None) -> None:
+    """Require that extra points are different, enclosed, and not on a face."""
+    seeds.located(tiling, extra, "extra_points", workers)
+    _, first = np.unique(extra, axis=0, return_index=True)
+    if len(first) < len(extra):
+        again = np.setdiff1d(np.arange(len(extra)), first)
+        raise InputError(f"extra_points: rows repeat others: {listed(again, 10)}")
+
+
+def _without_unused(points: Floats, simplices: Indices, nadded: int) -> tuple[Floats, Indices, int]:
+    """Leave out added points, the last rows, that no tetrahedron has."""
+    given = len(points) - nadded
+    used = np.zeros(len(points), dtype=bool)
+    used[simplices] = True
+    used[:given] = True
+    if used.all():
+        return points, simplices, nadded
+    number = np.cumsum(used, dtype=np.int32) - np.int32(1)
+    return points[used], number[simplices], int(used.sum()) - given
+
+
+def _crowded(faces: Indices) -> CrowdedFacesError:
+    rows = np.unique(faces)
+    return CrowdedFacesError(
+        f"between {counted(len(rows), 'face')} no double is left for a point that is needed there: "
+        f"{listed(rows, 10)}; `error.faces` has them: move them apart, or subdivide them",
+        faces=rows,
+    )

@@ -1,0 +1,95 @@
+"""What `tetrahedralize` accepts besides arrays: files, and surfaces of other libraries."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone.errors import DtypeError, FileFormatError, InputError
+from delone.io import read_mesh
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Given", "given"]
+
+_ACCEPTED = (
+    "points and faces, a file, or a surface of triangles: an object of trimesh, PyVista, meshio or "
+    "delone"
+)
+
+
+class Given(NamedTuple):
+    """A surface with what belongs to it, not checked."""
+
+    points: ArrayLike
+    faces: ArrayLike
+    markers: ArrayLike | None = None
+    holes: ArrayLike | None = None
+    regions: ArrayLike | None = None
+
+
+def given(
+    points: Any,
+    faces: ArrayLike | None,
+    markers: ArrayLike | None,
+    holes: ArrayLike | None,
+    regions: ArrayLike | None,
+) -> Given:
+    """Return the surface of the arguments; markers, holes and regions replace those of a file."""
+    found = Given(points, faces) if faces is not None else _of(points)
+    further = {"markers": markers, "holes": holes, "regions": regions}
+    return found._replace(**{name: value for name, value in further.items() if value is not None})
+
+
+def _of(surface: Any) -> Given:
+    if isinstance(surface, str | os.PathLike):
+        return _of_file(surface)
+    # trimesh.Trimesh, and whatever has its names
+    if hasattr(surface, "vertices") and hasattr(surface, "faces"):
+        return Given(np.asarray(surface.vertices), np.asarray(surface.faces))
+    if hasattr(surface, "cells_dict"):
+        return _of_meshio(surface)
+    if hasattr(surface, "points") and hasattr(surface, "simplices"):
+        return _of_simplices(surface)
+    if hasattr(surface, "points") and hasattr(surface, "faces"):
+        return _of_pyvista(surface)
+    raise DtypeError(f"{_ACCEPTED} are needed, got {type(surface).__name__} without faces")
+
+
+def _of_file(path: str | os.PathLike[str]) -> Given:
+    found = read_mesh(path)
+    if found.simplices.shape[1] != 3:
+        raise FileFormatError(f"{os.fspath(path)} contains tetrahedra, not a surface of triangles")
+    points = found.points
+    if points.shape[1] == 2:
+        z = np.zeros(len(points)) if found.z is None else found.z
+        points = np.column_stack((points, z))
+    return Given(points, found.simplices)
+
+
+def _of_meshio(mesh: Any) -> Given:
+    kinds = sorted({block.type for block in mesh.cells} - {"triangle", "vertex", "line"})
+    if kinds:
+        raise InputError(f"the mesh has {', '.join(kinds)} cells: a surface of triangles is needed")
+    if "triangle" not in mesh.cells_dict:
+        raise InputError("the mesh has no triangles")
+    return Given(np.asarray(mesh.points), mesh.cells_dict["triangle"])
+
+
+def _of_simplices(surface: Any) -> Given:
+    if np.shape(surface.simplices)[1:] != (3,) or np.shape(surface.points)[1:] != (3,):
+        name = type(surface).__name__
+        raise InputError(f"a surface of triangles in 3-D is needed, not this {name}")
+    return Given(surface.points, surface.simplices)
+
+
+def _of_pyvista(surface: Any) -> Given:
+    flat: NDArray[Any] = np.asarray(surface.faces).reshape(-1)
+    if len(flat) % 4 or (flat[::4] != 3).any():
+        raise InputError(
+            "the surface has other cells than triangles: call its method triangulate() first"
+        )
+    return Given(np.asarray(surface.points), flat.reshape(-1, 4)[:, 1:])
