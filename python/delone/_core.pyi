@@ -1678,6 +1678,7 @@ def check_surface3(
 def resolve_touches3(
     points: NDArray[np.float64], faces: NDArray[np.int32], limit: int, workers: int
 ) -> tuple[tuple[NDArray[np.int32], NDArray[np.int32]] | None, FacePairs]: ...
+
 @final
 class RecoveryCounts:
     """What happened during a recovery of faces."""

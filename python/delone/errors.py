@@ -24,6 +24,7 @@ __all__ = [
     "CrossingFacesError",
     "CrossingSegmentsError",
     "CrowdedFacesError",
+    "DanglingFacesError",
     "DegenerateInputError",
     "DeloneError",
     "DirectionError",
@@ -419,6 +420,36 @@ class CrowdedFacesError(InputError):
     faces: NDArray[np.int64]
 
     def __init__(self, message: str = "no room between faces", *, faces: ArrayLike = ()) -> None:
+        super().__init__(message)
+        self.faces = np.array(faces, dtype=np.int64).reshape(-1)
+        self.faces.flags.writeable = False
+
+
+class DanglingFacesError(InputError):
+    """Faces end inside of a solid, and the mesh cannot be made to contain them.
+
+    Parameters
+    ----------
+    message : str
+        The message.
+    faces : array_like of int, shape (k,), optional
+        Rows of faces with an edge that is not part of any other face.
+
+    Attributes
+    ----------
+    faces : ndarray of int64, shape (k,)
+        Rows of these faces.
+
+    Examples
+    --------
+    >>> from delone import DanglingFacesError
+    >>> DanglingFacesError(faces=[3, 5]).faces.tolist()
+    [3, 5]
+    """
+
+    faces: NDArray[np.int64]
+
+    def __init__(self, message: str = "faces end inside", *, faces: ArrayLike = ()) -> None:
         super().__init__(message)
         self.faces = np.array(faces, dtype=np.int64).reshape(-1)
         self.faces.flags.writeable = False

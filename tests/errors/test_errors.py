@@ -27,6 +27,7 @@ CASES = [
     errors.CrossingFacesError("m", pairs=[(0, 2)], kinds=["crossing"], count=4),
     errors.OpenSurfaceError("m", edges=[(0, 2), (2, 3)]),
     errors.CrowdedFacesError("m", faces=[3, 5]),
+    errors.DanglingFacesError("m", faces=[3, 5]),
     errors.BudgetExceededError("m", limit=10, found=12, segments=[3, 1], place=(0.5, 2.0)),
     errors.BusyError("m", pid=7, host="here"),
     errors.LimitError("m"),

@@ -16,7 +16,7 @@ from delone._arrays import (
     as_workers,
 )
 from delone.counting import counted, listed
-from delone.errors import CrowdedFacesError, InputError
+from delone.errors import CrowdedFacesError, DanglingFacesError, InputError, ShapeError
 from delone.space.locking import cells, sides
 from delone.surface import check_surface
 from delone.tetmesh.tetmesh import TetMesh
@@ -112,6 +112,9 @@ def tetrahedralize(
         All faces are in one plane.
     CrowdedFacesError
         Between some faces there is no double where a point is needed; with these faces.
+    DanglingFacesError
+        Faces with an edge that is not part of any other face are not in the mesh without points on
+        them; with these faces.
     BudgetExceededError
         More than `max_points` are needed.
     InputError
@@ -227,7 +230,11 @@ class _Stages(NamedTuple):
         used = np.unique(parts.faces)
         faces = np.searchsorted(used, parts.faces).astype(np.int32)
         places = np.concatenate((points[used], extra))
-        made = _core.recover_faces(places, faces, limit, True, as_workers(self.task.workers))
+        workers = as_workers(self.task.workers)
+        try:
+            made = _core.recover_faces(places, faces, limit, True, workers)
+        except ShapeError as error:
+            raise _dangling(parts) from error
         if len(made.crowded):
             raise _crowded(parts.source[made.crowded])
         further = made.points[len(used) :]
@@ -334,5 +341,18 @@ def _crowded(faces: Indices) -> CrowdedFacesError:
     return CrowdedFacesError(
         f"between {counted(len(rows), 'face')} no double is left for a point that is needed there: "
         f"{listed(rows, 10)}; `error.faces` has them: move them apart, or subdivide them",
+        faces=rows,
+    )
+
+
+def _dangling(parts: Parts) -> DanglingFacesError:
+    """Return the error that names the faces with an edge of one face."""
+    edges = np.sort(parts.faces[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1)
+    _, of, count = np.unique(edges, axis=0, return_inverse=True, return_counts=True)
+    alone = (count[of.reshape(-1)] == 1).reshape(-1, 3).any(axis=1)
+    rows = np.unique(parts.source[alone])
+    return DanglingFacesError(
+        f"{counted(len(rows), 'face')} with an edge of no other face cannot be kept: "
+        f"{listed(rows, 10)}; extend them to other faces, or remove points and faces near them",
         faces=rows,
     )
