@@ -96,6 +96,12 @@ COMMANDS = {
     "mesh": Listed(
         "meshing", "make_mesh", "Mesh polygons with triangles without small angles.", on_rows=False
     ),
+    "tetrahedralize": Listed(
+        "filling",
+        "fill",
+        "Fill a closed surface with tetrahedra; its triangles are kept exactly.",
+        on_rows=False,
+    ),
     "cluster": Listed(
         "cluster",
         "cluster_points",

@@ -16,6 +16,8 @@ from delone.errors import (
     ConflictingValuesError,
     CrossingFacesError,
     CrossingSegmentsError,
+    CrowdedFacesError,
+    DanglingFacesError,
     DegenerateInputError,
     FileFormatError,
     InputError,
@@ -110,6 +112,8 @@ def code_of(error: BaseException) -> Exit:
         (ConflictingValuesError, Exit.DEGENERATE),
         (CrossingFacesError, Exit.DEGENERATE),
         (CrossingSegmentsError, Exit.DEGENERATE),
+        (CrowdedFacesError, Exit.DEGENERATE),
+        (DanglingFacesError, Exit.DEGENERATE),
         (OpenSurfaceError, Exit.DEGENERATE),
         (BudgetExceededError, Exit.DEGENERATE),
         (BusyError, Exit.OUTPUT),
@@ -124,7 +128,7 @@ def code_of(error: BaseException) -> Exit:
 _ATTRIBUTE = re.compile(r"; `error\.\w+` ha[^;]*")
 _QUOTES = str.maketrans("", "", "'\"")
 _OPTION = re.compile(
-    r"""\b(crossing|duplicates|extrapolate|nan)=((?:["'][\w-]+["'](?:, | or )?)+)"""
+    r"""\b(crossing|duplicates|extrapolate|inside|nan)=((?:["'][\w-]+["'](?:, | or )?)+)"""
 )
 
 

@@ -39,9 +39,9 @@ def read_faces(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     with reading():
         mesh = read_mesh(path)
     if mesh.simplices.shape[1] != 3:
-        raise Failure(f"{path}: --surface needs triangles, not tetrahedra", Exit.USAGE)
+        raise Failure(f"{path}: a surface has triangles, not tetrahedra", Exit.USAGE)
     if mesh.z is None:
-        raise Failure(f"{path}: --surface needs points with three coordinates", Exit.USAGE)
+        raise Failure(f"{path}: a surface has points with three coordinates", Exit.USAGE)
     return np.column_stack((mesh.points, mesh.z)), mesh.simplices
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from delone.exchange.parts import HasParts
 
@@ -55,17 +55,27 @@ def write_mesh(
 def _draw_solid(
     path: Path, triangulation: HasParts, attributes: Mapping[str, ArrayLike] | None
 ) -> None:
-    """Draw a surface, or the tetrahedra in front of a cut, in colors of their volumes."""
+    """Draw a surface, or the tetrahedra in front of a cut.
+
+    Those inside a given surface have the colors of their regions, others those of their volumes.
+    """
     from delone.plot import draw
 
     if attributes:
-        raise FileFormatError("a plot of tetrahedra shows their volumes and no attributes")
+        raise FileFormatError("a plot of tetrahedra shows regions or volumes and no attributes")
     mesh: Any = triangulation
     # PyVista chooses the format by the suffix, which a temporary file does not have.
     picture = path.with_name(path.name + ".png")
+    cut = "x" if mesh.simplices.shape[1] == 4 else "none"
+    draw(picture, mesh, values=_values(mesh), cut=cut, colorbar=False)
+    picture.replace(path)
+
+
+def _values(mesh: Any) -> NDArray[Any] | None:
+    """Return what the colors of simplices show; None for a single color."""
+    if len(getattr(mesh, "input_faces", ())):
+        return mesh.region if len(np.unique(mesh.region)) > 1 else None
     # Surfaces and triangulations without volumes have a single color.
     with np.errstate(divide="ignore"):
         size = np.log10(getattr(mesh, "volumes", 0.0))
-    cut = "x" if mesh.simplices.shape[1] == 4 else "none"
-    draw(picture, mesh, values=size if np.isfinite(size).all() else None, cut=cut, colorbar=False)
-    picture.replace(path)
+    return size if np.isfinite(size).all() else None

@@ -1,0 +1,210 @@
+"""The command `tetrahedralize`: a closed surface to tetrahedra."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+import typer
+
+from delone import TetMesh, __version__, improve, tetrahedralize
+from delone.atomic import check_target
+from delone.cli.exits import Exit, Failure, as_options, protect_inputs, writing
+from delone.cli.faces import read_faces
+from delone.cli.options import Json, MeshOutput, Quiet, Workers
+from delone.cli.outputs import write_all
+from delone.cli.report import Stopwatch, finite_or_none, peak_memory
+from delone.cli.show import print_json, print_report, spinner
+from delone.cli.solid import improvement_figures, improvement_rows
+from delone.errors import (
+    BudgetExceededError,
+    CrossingFacesError,
+    CrowdedFacesError,
+    DanglingFacesError,
+    DegenerateInputError,
+    NonFiniteError,
+    OpenSurfaceError,
+)
+from delone.io.registry import mesh_suffixes, writer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from delone.cli.show import Row
+
+__all__ = ["fill"]
+
+_STAGES = {
+    "check": "checking the surface",
+    "recover": "recovering faces",
+    "select": "selecting what is inside",
+    "done": "done",
+}
+# The surface is at fault, not the command line.
+_OF_SURFACE = (
+    BudgetExceededError,
+    CrossingFacesError,
+    CrowdedFacesError,
+    DanglingFacesError,
+    DegenerateInputError,
+    NonFiniteError,
+    OpenSurfaceError,
+)
+_COUNTS = ("missing_edges", "missing_faces", "flips")
+_ROWS = ("duplicate_points", "subdivided", "repeated", "degenerate", "dangling", "outside")
+_FIRST = 10
+
+
+def fill(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            metavar="INPUT", help="File of a closed surface: " + " ".join(mesh_suffixes())
+        ),
+    ],
+    *,
+    output: MeshOutput = None,
+    inside: Annotated[
+        str,
+        typer.Option(
+            help="What is filled: winding (numbers other than 0), parity (odd) or enclosed (all)."
+        ),
+    ] = "winding",
+    hole: Annotated[
+        list[str] | None,
+        typer.Option(metavar="X,Y,Z", help="Leave the region around a point empty; repeatable."),
+    ] = None,
+    region: Annotated[
+        list[str] | None,
+        typer.Option(metavar="X,Y,Z,LABEL", help="Label the region around a point; repeatable."),
+    ] = None,
+    max_points: Annotated[
+        int | None, typer.Option(help="Maximum number of added points; by default a million.")
+    ] = None,
+    better: Annotated[
+        bool, typer.Option("--improve", help="Remove slivers; all triangles are kept.")
+    ] = False,
+    workers: Workers = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Fill a closed surface with tetrahedra; its triangles are kept exactly.
+
+    A PNG file shows the tetrahedra behind a cut.
+    """
+    with writing():
+        protect_inputs(output or (), source)
+        writers = {path: _ready(path) for path in output or ()}
+    options = {
+        "inside": inside,
+        "holes": _numbers(hole, "--hole", 3),
+        "regions": _numbers(region, "--region", 4),
+        "max_points": max_points,
+        "workers": workers,
+    }
+    watch = Stopwatch()
+    with spinner(quiet or as_json) as say:
+        say(f"reading {source.name}")
+        with watch.stage("read"):
+            points, faces = read_faces(source)
+        with watch.stage("tetrahedralize"):
+            mesh = _filled(source, (points, faces), options, say)
+        gained: dict[str, Any] = {}
+        figures = _figures(mesh)
+        if better:
+            say("improving")
+            with watch.stage("improve"):
+                mesh = improve(mesh)
+            gained = {"improvement": improvement_figures(mesh)}
+        write_all(writers, mesh, watch, say, z=None, crs=None, edges=False)
+    figures = {
+        "delone": __version__,
+        "input": str(source),
+        "faces": len(faces),
+        **figures,
+        **gained,
+        "stages": watch.rows(mesh.npoints),
+        "outputs": [str(path) for path in writers],
+        "peak_memory_bytes": peak_memory(),
+    }
+    if as_json:
+        print_json(figures)
+    elif not quiet:
+        print_report(str(source), _rows(figures), figures)
+
+
+def _ready(path: Path) -> Callable[..., None]:
+    write = writer(path, space=True)
+    check_target(path)
+    return write
+
+
+def _numbers(given: Sequence[str] | None, option: str, columns: int) -> list[list[float]] | None:
+    """Return the numbers of an option, one list for each time it is given."""
+    if not given:
+        return None
+    found = []
+    for text in given:
+        try:
+            numbers = [float(part) for part in text.split(",")]
+        except ValueError:
+            numbers = []
+        if len(numbers) != columns or not all(map(math.isfinite, numbers)):
+            raise Failure(f"{option} takes {columns} numbers with commas, got {text!r}", Exit.USAGE)
+        found.append(numbers)
+    return found
+
+
+def _filled(
+    source: Path, surface: tuple[Any, Any], options: dict[str, Any], say: Callable[[str], object]
+) -> TetMesh:
+    def told(stage: str, done: float) -> None:
+        say(f"{_STAGES[stage]} ({done:.0%})")
+
+    try:
+        return tetrahedralize(*surface, progress=told, **options)
+    except _OF_SURFACE as error:
+        raise Failure(f"{source}: {as_options(str(error))}", Exit.DEGENERATE) from error
+
+
+def _figures(mesh: TetMesh) -> dict[str, Any]:
+    report: Any = mesh.report
+    quality = mesh.quality()
+    labels, counts = np.unique(mesh.region, return_counts=True)
+    with np.errstate(over="ignore"):
+        volume = float(mesh.volumes.sum())
+    return {
+        "points": mesh.npoints,
+        "added": mesh.nadded,
+        "tetrahedra": mesh.nsimplex,
+        "regions": dict(zip(map(str, labels.tolist()), counts.tolist(), strict=True)),
+        "volume": finite_or_none(volume),
+        "smallest_dihedral": float(quality.smallest_dihedral.min()),
+        "largest_dihedral": float(quality.largest_dihedral.max()),
+        "kept": report.ok,
+        **{name: int(getattr(report, name)) for name in _COUNTS},
+        **{name: _listed(getattr(report, name)) for name in _ROWS if len(getattr(report, name))},
+        "report": str(report),
+    }
+
+
+def _listed(rows: Any) -> dict[str, Any]:
+    return {"count": len(rows), "first": rows[:_FIRST].tolist()}
+
+
+def _rows(figures: dict[str, Any]) -> list[Row]:
+    volume, regions = figures["volume"], figures["regions"]
+    rows = [
+        ("faces", f"{figures['faces']:,}"),
+        ("points", f"{figures['points']:,}"),
+        ("tetrahedra", f"{figures['tetrahedra']:,}"),
+        ("regions", ", ".join(f"{label} ({count:,})" for label, count in regions.items())),
+        ("volume", "beyond range" if volume is None else f"{volume:,.6g}"),
+        ("report", figures["report"]),
+    ]
+    if "improvement" in figures:
+        return rows + improvement_rows(figures["improvement"])
+    small, large = figures["smallest_dihedral"], figures["largest_dihedral"]
+    return [*rows, ("dihedral angles", f"{small:.4g} to {large:.4g} degrees")]

@@ -1,0 +1,108 @@
+"""delone tetrahedralize: reports, files, options, and surfaces that cannot be filled."""
+
+import meshio
+import numpy as np
+import pytest
+
+import delone
+import solids
+from delone.io import read_mesh
+
+CUBE = solids.box((0, 0, 0), (4, 4, 4))
+SHELLS = solids.joined(CUBE, solids.box((1, 1, 1), (2, 2, 2)))
+
+
+def save(path, points, faces):
+    meshio.Mesh(points, [("triangle", faces.astype(np.int32))]).write(path)
+    return path
+
+
+def test_report_and_files(tmp_path, command):
+    source = save(tmp_path / "part.stl", *solids.schoenhardt())
+    code, out, err = command("tetrahedralize", source, "-o", tmp_path / "part.vtu")
+    assert (code, err) == (0, "")
+    for words in ("faces", "8", "7", "1 point added", "each input face is a face", "written"):
+        assert words in out
+    found = read_mesh(tmp_path / "part.vtu")
+    wanted = delone.tetrahedralize(source)
+    assert np.array_equal(found.simplices, wanted.simplices)
+    assert np.array_equal(found.points, wanted.points)
+    assert command("tetrahedralize", source, "--quiet")[:2] == (0, "")
+
+
+def test_figures(tmp_path, figures):
+    source = save(tmp_path / "shells.ply", *SHELLS)
+    found = figures("tetrahedralize", source, "--region", "0.5,0.5,0.5,3", "--workers", "1")
+    assert (found["faces"], found["added"], found["volume"]) == (24, 0, pytest.approx(64))
+    assert set(found["regions"]) == {"-1", "3"}
+    assert found["kept"]
+    assert figures("tetrahedralize", source, "--hole", "1.5,1.25,1.5")["volume"] == pytest.approx(
+        63
+    )
+    assert figures("tetrahedralize", source, "--inside", "parity")["volume"] == pytest.approx(63)
+
+
+def test_improved(tmp_path, figures):
+    source = save(tmp_path / "part.ply", *solids.torus())
+    found = figures("tetrahedralize", source, "--improve", "-o", tmp_path / "part.npz")
+    gained = found["improvement"]["smallest_dihedral"]
+    assert gained["after"] >= gained["before"]
+    mesh = delone.TetMesh.load(tmp_path / "part.npz")
+    assert len(mesh.input_faces) == found["faces"]
+    assert bool(mesh.validate())
+
+
+def test_touching_faces_are_listed(tmp_path, figures):
+    both = solids.joined(CUBE, solids.box((1, 1, 4), (2, 2, 6)))
+    found = figures("tetrahedralize", save(tmp_path / "part.ply", *both))
+    assert not found["kept"]
+    assert found["repeated"]["count"] == 2
+    assert found["subdivided"]["count"] > 0
+
+
+def test_surfaces_that_cannot_be_filled(tmp_path, command):
+    points, faces = CUBE
+    source = save(tmp_path / "open.ply", points, faces[1:])
+    code, _, err = command("tetrahedralize", source, "-o", tmp_path / "open.vtu")
+    assert code == 4
+    assert f"{source}: the surface encloses nothing: 3 edges have only one face" in err
+    assert "error." not in err
+    assert not (tmp_path / "open.vtu").exists()
+    crossing = solids.joined(CUBE, solids.box((3, 3, 3), (5, 5, 5)))
+    code, _, err = command("tetrahedralize", save(tmp_path / "crossing.ply", *crossing))
+    assert code == 4
+    assert "cross" in err
+    code, _, err = command(
+        "tetrahedralize", save(tmp_path / "a.ply", *solids.schoenhardt()), "--max-points", "0"
+    )
+    assert code == 4
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--hole", "1,2"), "--hole takes 3 numbers with commas, got '1,2'"),
+        (("--hole", "1,2,nan"), "--hole takes 3 numbers"),
+        (("--region", "1,2,3"), "--region takes 4 numbers"),
+        (("--region", "1,2,3,x"), "--region takes 4 numbers"),
+        (("--hole", "9,9,9"), "holes: 1 seed outside"),
+        (("--inside", "odd"), "inside must be one of"),
+        (("-o", "a.svg"), "cannot store tetrahedra"),
+    ],
+)
+def test_options(tmp_path, command, options, words):
+    code, _, err = command("tetrahedralize", save(tmp_path / "cube.ply", *CUBE), *options)
+    assert code in (2, 5)
+    assert words in err
+
+
+def test_other_files(tmp_path, command):
+    assert command("tetrahedralize", tmp_path / "none.stl")[0] == 3
+    delone.Delaunay(CUBE[0]).save(tmp_path / "solid.npz")
+    code, _, err = command("tetrahedralize", tmp_path / "solid.npz")
+    assert code == 2
+    assert "not tetrahedra" in err
+    source = save(tmp_path / "cube.ply", *CUBE)
+    code, _, err = command("tetrahedralize", source, "-o", source)
+    assert code == 2
+    assert "would replace the input" in err
