@@ -50,6 +50,7 @@ __all__ = [
 _JSON = (".geojson", ".json")
 _MESHES = (".vtu", ".ply", ".obj", ".stl", ".msh")
 _TRIANGLE = (".node", ".ele", ".poly")
+_TETGEN = (".smesh", ".face")
 _LANDXML = (".xml", ".landxml")
 _READERS = {
     **dict.fromkeys((".csv", ".tsv", ".txt", ".xyz", ".pts", ".dat"), "text"),
@@ -61,19 +62,25 @@ _READERS = {
     **dict.fromkeys(_TRIANGLE, "triangle"),
     **dict.fromkeys(_LANDXML, "landxml"),
     ".dxf": "dxf",
+    ".off": "off",
 }
 _WRITERS = {
     **dict.fromkeys(_MESHES, "mesh"),
     **dict.fromkeys((".xdmf", ".inp", ".su2"), "fem"),
     **dict.fromkeys(_TRIANGLE, "triangle"),
+    **dict.fromkeys(_TETGEN, "tetgen"),
+    ".off": "off",
     **dict.fromkeys((".gpkg", ".geojson"), "vector"),
     ".npz": "arrays",
     **dict.fromkeys(_LANDXML, "landxml"),
     **dict.fromkeys((".png", ".svg"), "picture"),
 }
 # What holds tetrahedra, or triangles in 3-D, or draws them.
-_TETRAHEDRA = (".vtu", ".msh", ".xdmf", ".inp", ".su2", ".npz", ".png")
-_SURFACES = (*_MESHES, ".npz", ".xdmf", ".inp", ".png")
+_TETRAHEDRA = (
+    *(".vtu", ".msh", ".xdmf", ".inp", ".su2", ".npz", ".png"),
+    *(".node", ".ele", *_TETGEN),
+)
+_SURFACES = (*_MESHES, ".npz", ".xdmf", ".inp", ".png", ".off", ".node", *_TETGEN)
 # What holds triangles that share no points.
 _SEPARATE = (*_MESHES, ".npz", ".xdmf", ".gpkg", ".geojson")
 _HOLDERS: dict[str, tuple[tuple[str, ...], str]] = {
@@ -87,7 +94,13 @@ _GEOMETRIES = ("vector", "parquet", *_SHEETS)
 # Formats that can store a reference system, or label the axes with it.
 _LABELS = (".png", ".svg")
 WITH_CRS = (".gpkg", ".geojson", ".npz", *_LANDXML, *_LABELS)
-_MESH_READERS = {".npz": "arrays", **dict.fromkeys(_MESHES, "mesh"), ".ele": "triangle"}
+_MESH_READERS = {
+    ".npz": "arrays",
+    **dict.fromkeys(_MESHES, "mesh"),
+    ".ele": "triangle",
+    **dict.fromkeys((".poly", *_TETGEN), "tetgen"),
+    ".off": "off",
+}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -106,6 +119,12 @@ class MeshFile:
         Heights.
     source : str, optional
         The file.
+    markers : ndarray of int32, shape (m,), optional
+        A number for each triangle, in TetGen's formats.
+    holes : ndarray of float64, shape (k, 3), optional
+        Points in holes, in .poly and .smesh.
+    regions : ndarray of float64, shape (k, 4), optional
+        Points in regions, and their numbers, in .poly and .smesh.
 
     Examples
     --------
@@ -117,6 +136,9 @@ class MeshFile:
     neighbors: NDArray[np.int32] | None = None
     z: NDArray[np.float64] | None = None
     source: str = ""
+    markers: NDArray[np.int32] | None = None
+    holes: NDArray[np.float64] | None = None
+    regions: NDArray[np.float64] | None = None
 
     def __repr__(self) -> str:
         kind = "triangle" if self.simplices.shape[1] == 3 else "tetrahedron"
@@ -444,8 +466,9 @@ def read_mesh(path: str | os.PathLike[str]) -> MeshFile:
     ----------
     path : str or path-like
         An npz file of a `Delaunay`, `ConstrainedDelaunay`, `RegularTriangulation`, `Mesh` or
-        `TetMesh`, or VTU, PLY, OBJ, STL, MSH, or Triangle's ELE with its NODE next to it.
-        Tetrahedra are read from npz, VTU and MSH.
+        `TetMesh`, or VTU, PLY, OBJ, STL, OFF, MSH, or Triangle's ELE with its NODE next to it.
+        Tetrahedra are read from npz, VTU, MSH and TetGen's ELE; its FACE, SMESH and POLY have
+        triangles in 3-D, of which facets with more corners are made.
 
     Returns
     -------
@@ -493,14 +516,14 @@ def write_mesh(
     Parameters
     ----------
     path : str or path-like
-        VTU, PLY, OBJ, STL, MSH, XDMF, INP, SU2, Triangle's NODE, ELE and POLY, GeoPackage,
-        GeoJSON, LandXML (.xml, .landxml), npz, PNG or SVG. An existing file is replaced only once
-        the new one is complete.
+        VTU, PLY, OBJ, STL, OFF, MSH, XDMF, INP, SU2, Triangle's NODE, ELE and POLY, TetGen's NODE,
+        ELE, FACE and SMESH, GeoPackage, GeoJSON, LandXML (.xml, .landxml), npz, PNG or SVG. An
+        existing file is replaced only once the new one is complete.
     triangulation : Delaunay, ConstrainedDelaunay, Mesh, TetMesh or another mesh
         What to write: also a `RegularTriangulation`, a `PeriodicDelaunay` or a `ConvexHull` in 3-D.
-        Tetrahedra go to VTU, MSH, XDMF, INP, SU2 and PNG, those of a `Delaunay` to npz as well. The
-        surface of a hull goes to VTU, MSH, PLY, OBJ, STL, XDMF, INP and PNG. Both are written
-        without `z` and `crs`.
+        Tetrahedra go to VTU, MSH, XDMF, INP, SU2, NODE, ELE, FACE, SMESH and PNG, those of a
+        `Delaunay` or `TetMesh` to npz as well. The surface of a hull goes to VTU, MSH, PLY, OBJ,
+        STL, OFF, XDMF, INP, NODE, FACE, SMESH and PNG. Both are written without `z` and `crs`.
     z : array_like of float, shape (n,), optional
         Heights, the third coordinate, by default those of a `delone.terrain.TIN`; in plots the
         color, with shading if there are 2000 triangles or more, but never on a `Mesh`.

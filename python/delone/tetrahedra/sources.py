@@ -67,7 +67,7 @@ def _of_file(path: str | os.PathLike[str]) -> Given:
     if points.shape[1] == 2:
         z = np.zeros(len(points)) if found.z is None else found.z
         points = np.column_stack((points, z))
-    return Given(points, found.simplices)
+    return Given(points, found.simplices, found.markers, found.holes, found.regions)
 
 
 def _of_meshio(mesh: Any) -> Given:

@@ -1,0 +1,108 @@
+"""OFF files: points and polygons as text, read and written without a library.
+
+Colors and normals are left out.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone._arrays import as_simplices
+from delone.errors import FileFormatError, InputError
+from delone.io.content import content
+from delone.io.facets import facet_triangles
+from delone.io.numbered import Lines
+from delone.io.pointset import PointSet
+from delone.io.registry import MeshFile
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.exchange.parts import HasParts
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["read_mesh", "read_points", "require_libraries", "write_mesh"]
+
+_HEADS = ("OFF", "COFF", "NOFF", "CNOFF")
+
+
+def read_points(
+    path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]
+) -> PointSet:
+    """Read the vertices; see `delone.io.read_points`."""
+    if columns is not None or attributes:
+        raise FileFormatError(f"{path}: the columns of these files cannot be chosen")
+    points, _, _ = _opened(path)
+    return PointSet(points=points[:, :2].copy(), z=points[:, 2].copy(), source=str(path))
+
+
+def read_mesh(path: Path) -> MeshFile:
+    """Read triangles, and triangles of polygons; see `delone.io.read_mesh`."""
+    points, count, lines = _opened(path)
+    if count > lines.left:
+        raise FileFormatError(f"{path} is truncated: it declares more than it contains")
+    faces: list[list[int]] = []
+    nothing = np.empty((0, 3))
+    for _ in range(count):
+        corners, _ = lines.polygon()
+        polygon = [int(row) for row in corners]
+        if polygon != corners or not all(0 <= row < len(points) for row in polygon):
+            raise FileFormatError(f"{path} refers to points that do not exist")
+        if len(polygon) < 3:
+            raise FileFormatError(f"{path} has a face with {len(polygon)} corners")
+        faces += facet_triangles(points, [polygon], nothing, str(path))
+    if not faces:
+        raise FileFormatError(f"{path} contains no triangles")
+    try:
+        simplices = as_simplices(np.array(faces), len(points), 2)
+    except InputError as error:
+        raise FileFormatError(f"{path}: {error}") from error
+    return MeshFile(
+        points=points[:, :2].copy(), simplices=simplices, z=points[:, 2].copy(), source=str(path)
+    )
+
+
+def _opened(path: Path) -> tuple[Floats, int, Lines]:
+    """Return the points, (n, 3), the number of faces, and the lines of these."""
+    lines = Lines(path)
+    word = lines.word()
+    if word not in _HEADS:
+        raise FileFormatError(
+            f"{path} is not an OFF file of 3-D points: it starts with {word!r:.20}"
+        )
+    npoints, count, *_ = lines.counts(2)
+    points = lines.rows(npoints, 3)
+    if not npoints:
+        raise FileFormatError(f"{path} contains no points")
+    return points, count, lines
+
+
+def require_libraries(suffix: str) -> None:
+    """Do nothing: no library is needed."""
+
+
+def write_mesh(
+    path: Path,
+    triangulation: HasParts,
+    *,
+    z: ArrayLike | None = None,
+    crs: str | None = None,
+    edges: bool = False,
+    attributes: Mapping[str, ArrayLike] | None = None,
+) -> None:
+    """Write triangles, with heights as the third coordinate."""
+    if edges or attributes:
+        raise FileFormatError(".off files can store neither edges nor attributes; use .vtu")
+    found = content(triangulation, z=z).bare()
+    points = np.zeros((len(found.points), 3))
+    points[:, : found.points.shape[1]] = found.points
+    lines = ["OFF", f"{len(points)} {len(found.simplices)} 0"]
+    lines += [" ".join(map(repr, row)) for row in points.tolist()]
+    lines += [" ".join(map(str, (3, *row))) for row in found.simplices.tolist()]
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -1,0 +1,229 @@
+"""The formats of TetGen: 3-D points, tetrahedra, faces, and surfaces of polygons with holes.
+
+A .node file has points, .ele tetrahedra, .face triangles with markers; .smesh and .poly have
+facets, points in holes, and points in regions with their numbers. A file without points takes them
+from the .node file next to it. Facets with more than three corners become triangles.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import as_points
+from delone.errors import FileFormatError, InputError
+from delone.exchange.parts import boundary
+from delone.io.content import content
+from delone.io.facets import facet_triangles
+from delone.io.numbered import Lines, Numbers, as_markers, as_rows, first_number, table
+from delone.io.registry import MeshFile
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.exchange.parts import HasParts
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["is_solid", "read_mesh", "read_nodes", "require_libraries", "write_mesh"]
+
+
+def is_solid(path: Path) -> bool:
+    """Return whether the points of a file, or of the .node file next to it, have 3 coordinates."""
+    found = _dimension(path)
+    if found is None and path.suffix.lower() != ".node" and _node(path).exists():
+        found = _dimension(_node(path))
+    return found == 3
+
+
+def _dimension(path: Path) -> int | None:
+    """Return the number of coordinates of the points in a file; None if there are none."""
+    if path.suffix.lower() in (".ele", ".face"):
+        return None
+    with path.open("rb") as file:
+        for line in file:
+            words = line.partition(b"#")[0].split()
+            if words:
+                return (
+                    int(words[1]) if words[0] != b"0" and words[1:2] in ([b"2"], [b"3"]) else None
+                )
+    return None
+
+
+def _node(path: Path) -> Path:
+    return path.with_suffix(".node")
+
+
+def read_nodes(path: Path) -> Floats:
+    """Read the points, (n, 3), of a file or of the .node file next to it."""
+    if path.suffix.lower() in (".ele", ".face"):
+        return _nodes_beside(path)[0]
+    points, _, _ = _opened(path)
+    return points
+
+
+def _nodes_beside(path: Path) -> tuple[Floats, int]:
+    """Return the points of the .node file next to another, and the number of the first."""
+    node = _node(path)
+    if not node.exists():
+        raise FileNotFoundError(f"{node}: no such file; {path.name} needs it for its points")
+    points, first, _ = _opened(node)
+    return points, first
+
+
+def _opened(path: Path) -> tuple[Floats, int, Lines]:
+    """Return points, the number of the first, and what follows them in the file."""
+    lines = Lines(path)
+    count, dimension, *_ = lines.counts(2)
+    if not count and path.suffix.lower() != ".node":
+        return *_nodes_beside(path), lines
+    if dimension != 3:
+        raise FileFormatError(f"{path}: points have {dimension} coordinates, not three")
+    rows = lines.rows(count, 4)
+    first = first_number(rows[:, 0], path)
+    try:
+        return as_points(np.ascontiguousarray(rows[:, 1:]), ndim=3), first, lines
+    except InputError as error:
+        raise FileFormatError(f"{path}: {error}") from error
+
+
+def read_mesh(path: Path) -> MeshFile:
+    """Read tetrahedra, or triangles in 3-D; see `delone.io.read_mesh`."""
+    suffix = path.suffix.lower()
+    if suffix == ".ele":
+        points, first = _nodes_beside(path)
+        numbers = Numbers(path)
+        count, corners, attributes = numbers.head(3)
+        if count and corners not in (4, 10):
+            raise FileFormatError(f"{path} contains elements of {corners} nodes, not 4 or 10")
+        rows = numbers.take(count, 1 + corners + attributes)
+        # The further nodes of an element are on its edges.
+        tetrahedra = as_rows(rows[:, 1:5], first, path, len(points))
+        if not count:
+            raise FileFormatError(f"{path} contains no tetrahedra")
+        return MeshFile(points=points, simplices=tetrahedra, source=str(path))
+    if suffix == ".face":
+        return _faces(path)
+    return _facets(path)
+
+
+def _surface(path: Path, points: Floats, faces: Indices, **further: Any) -> MeshFile:
+    if not len(faces):
+        raise FileFormatError(f"{path} contains no triangles")
+    plane, z = points[:, :2].copy(), points[:, 2].copy()
+    return MeshFile(points=plane, simplices=faces, z=z, source=str(path), **further)
+
+
+def _faces(path: Path) -> MeshFile:
+    """Read triangles with markers; what follows them in a line is left out."""
+    points, first = _nodes_beside(path)
+    lines = Lines(path)
+    count, marked, *_ = [*lines.counts(1), 0]
+    rows = lines.rows(count, 5 if marked else 4)
+    faces = as_rows(rows[:, 1:4], first, path, len(points))
+    markers = as_markers(rows[:, 4:5], path)[:, 0] if marked else None
+    return _surface(path, points, faces, markers=markers)
+
+
+def _facets(path: Path) -> MeshFile:
+    """Read facets, holes and regions of a .smesh or .poly file."""
+    if path.suffix.lower() == ".poly" and not is_solid(path):
+        raise FileFormatError(f"{path} contains segments in 2-D, not triangles")
+    points, first, lines = _opened(path)
+    count, marked, *_ = [*lines.counts(1), 0]
+    if count > lines.left:
+        raise FileFormatError(f"{path} is truncated: it declares more than it contains")
+    read = _polygons if path.suffix.lower() == ".poly" else _polygon
+    faces: list[list[int]] = []
+    markers: list[float] = []
+    for _ in range(count):
+        polygons, holes, marker = read(lines)
+        rows = [as_rows(np.array(p), first, path, len(points)).tolist() for p in polygons]
+        made = facet_triangles(points, rows, holes, str(path))
+        faces += made
+        markers += [marker] * len(made)
+    return _surface(
+        path,
+        points,
+        np.array(faces, dtype=np.int32).reshape(-1, 3),
+        markers=as_markers(np.array(markers)[:, None], path)[:, 0] if marked and faces else None,
+        holes=_seeds(lines, 4)[:, 1:] if not lines.ended else None,
+        regions=_seeds(lines, 5)[:, 1:] if not lines.ended else None,
+    )
+
+
+def _polygon(lines: Lines) -> tuple[list[list[float]], Floats, float]:
+    """Return the facet of a .smesh file: one polygon without holes, and its marker."""
+    corners, rest = lines.polygon()
+    if len(corners) < 3:
+        raise FileFormatError(f"{lines.path} has a facet with {len(corners)} corners")
+    return [corners], np.empty((0, 3)), rest[0] if rest else 0.0
+
+
+def _polygons(lines: Lines) -> tuple[list[list[float]], Floats, float]:
+    """Return the facet of a .poly file: polygons, seeds of holes, and its marker."""
+    count, holes, marker, *_ = [*lines.counts(1), 0, 0]
+    if not 0 < count <= lines.left or holes < 0:
+        raise FileFormatError(f"{lines.path} has a facet of {count} polygons and {holes} holes")
+    polygons = [lines.polygon()[0] for _ in range(count)]
+    if len(polygons[0]) < 3:
+        raise FileFormatError(f"{lines.path} has a facet with {len(polygons[0])} corners")
+    return polygons, lines.rows(holes, 4)[:, 1:], float(marker)
+
+
+def _seeds(lines: Lines, columns: int) -> Floats:
+    """Return numbered points, (k, columns), with a number of a region as the last of five."""
+    (count, *_) = lines.counts(1)
+    return lines.rows(count, columns)
+
+
+def require_libraries(suffix: str) -> None:
+    """Do nothing: no library is needed."""
+
+
+def write_mesh(
+    path: Path,
+    triangulation: HasParts,
+    *,
+    z: ArrayLike | None = None,
+    crs: str | None = None,
+    edges: bool = False,
+    attributes: Mapping[str, ArrayLike] | None = None,
+) -> None:
+    """Write one of the files; triangles are those of the input, or of the boundary."""
+    suffix = path.suffix.lower()
+    if edges or attributes:
+        raise FileFormatError(f"{suffix} files can store neither edges nor attributes; use .vtu")
+    parts = content(triangulation, z=z).whole()
+    points = np.zeros((len(parts.points), 3))
+    points[:, : parts.points.shape[1]] = parts.points
+    if suffix == ".ele":
+        region = parts.of_simplices.get("region", np.empty((len(parts.simplices), 0)))
+        region = region.reshape(len(parts.simplices), -1)
+        head = f"{len(parts.simplices)} 4 {region.shape[1]}"
+        text = table(head, (parts.simplices, region))
+    elif suffix == ".node":
+        text = table(f"{len(points)} 3 0 0", (points,))
+    else:
+        faces, markers = _triangles(triangulation, parts.simplices)
+        if suffix == ".face":
+            text = table(f"{len(faces)} 1", (faces, markers[:, None]))
+        else:
+            facets = zip(faces.tolist(), markers.tolist(), strict=True)
+            lines = [" ".join(map(str, (3, *face, marker))) for face, marker in facets]
+            text = table(f"{len(points)} 3 0 0", (points,))
+            text += "\n".join([f"{len(faces)} 1", *lines, "0", "0"]) + "\n"
+    path.write_text(text, encoding="utf-8")
+
+
+def _triangles(mesh: Any, simplices: Indices) -> tuple[Indices, Indices]:
+    """Return the triangles of a surface, of the input, or of the boundary, with their markers."""
+    if len(getattr(mesh, "input_faces", ())):
+        return mesh.input_faces, mesh.face_markers
+    faces = boundary(simplices) if simplices.shape[1] == 4 else simplices
+    return faces, np.zeros(len(faces), dtype=np.int32)
