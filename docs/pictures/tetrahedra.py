@@ -1,5 +1,7 @@
 """Pictures of surfaces filled with tetrahedra, drawn from what delone computes."""
 
+from itertools import pairwise
+
 import matplotlib.pyplot as plt
 import numpy as np
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
@@ -25,7 +27,7 @@ def flange(size: float = 0.16) -> tuple[np.ndarray, np.ndarray]:
     segments = np.concatenate(
         [
             np.column_stack((np.arange(a, b), np.roll(np.arange(a, b), -1)))
-            for a, b in zip(start[:-1], start[1:], strict=True)
+            for a, b in pairwise(start.tolist())
         ]
     )
     top = delone.mesh(
