@@ -141,6 +141,15 @@ def test_holes_and_regions() -> None:
     assert {*numbered.region.tolist()} == {0, 1, -1}
 
 
+def test_pairs_beyond_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Faces that overlap count, however many pairs there are."""
+    void = solids.box((0, 0, 0), (1, 1, 1))
+    points, faces = solids.joined(CUBE, (void[0], void[1][:, ::-1]))
+    monkeypatch.setattr("delone.tetrahedra.filling._LISTED", 1)
+    mesh = tetrahedralize(points, faces)
+    assert solids.filled(mesh.points, mesh.simplices) == 63
+
+
 def test_markers_follow_their_faces() -> None:
     points, faces = solids.joined(CUBE, solids.box((1, 1, 4), (2, 2, 6)))
     mesh = tetrahedralize(points, faces, face_markers=np.arange(24) * 10)

@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 __all__ = ["tetrahedralize"]
 
 _BOUNDARIES = ("faces",)
+# Pairs of faces that are listed at first; if no faces cross, all that touch are.
+_LISTED = 100_000
 
 
 def tetrahedralize(
@@ -308,7 +310,7 @@ class _Stages(NamedTuple):
 
 def _checked(points: Floats, faces: Indices, workers: int | None) -> SurfaceCheck:
     """Return the check of a surface that can be filled, with all pairs that touch."""
-    check = check_surface(points, faces, workers=workers)
+    check = check_surface(points, faces, limit=_LISTED, workers=workers)
     check.raise_if_bad()
     if len(check.pairs) < check.npairs:
         check = check_surface(points, faces, limit=None, workers=workers)

@@ -69,9 +69,8 @@ def _steps(
     # Where the normal points out, the tetrahedron is on the inner side.
     change = of_face[face] if parity else sides.out[tetrahedron, corner] * of_face[face]
     steps, first = np.unique(np.column_stack((into, behind, change)), axis=0, return_index=True)
-    distinct = steps[:, 0] != steps[:, 1]
-    into, behind, change = steps[distinct].T
-    return _Steps(into, behind, change, face[first[distinct]])
+    into, behind, change = steps.T
+    return _Steps(into, behind, change, face[first])
 
 
 def _numbers(steps: _Steps, count: int, *, parity: bool) -> tuple[Rows, Indices]:
