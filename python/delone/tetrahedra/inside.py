@@ -68,9 +68,12 @@ def _steps(
     behind = np.where(across < 0, outside, cell[across]).astype(np.int64)
     # Where the normal points out, the tetrahedron is on the inner side.
     change = of_face[face] if parity else sides.out[tetrahedron, corner] * of_face[face]
-    steps, first = np.unique(np.column_stack((into, behind, change)), axis=0, return_index=True)
-    into, behind, change = steps.T
-    return _Steps(into, behind, change, face[first])
+    # Whole rows by one number each: pairs of cells, then pairs with changes.
+    _, pair = np.unique(into * (outside + 1) + behind, return_inverse=True)
+    least = int(change.min(initial=0))
+    span = int(change.max(initial=0)) - least + 1
+    _, first = np.unique(pair * span + (change - least), return_index=True)
+    return _Steps(into[first], behind[first], change[first].astype(np.int64), face[first])
 
 
 def _numbers(steps: _Steps, count: int, *, parity: bool) -> tuple[Rows, Indices]:
