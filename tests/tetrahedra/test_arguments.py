@@ -267,6 +267,17 @@ def test_validation_finds_faults() -> None:
     assert len(bad.touching)
 
 
+def test_six_volumes_of_many(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beyond the first block, too."""
+    from delone.tetmesh import validation
+
+    mesh = tetrahedralize(*solids.torus())
+    whole = validation.six_volumes(mesh.points, mesh.simplices)
+    assert whole == validation.six_volumes(mesh.points, mesh.boundary) > 0
+    monkeypatch.setattr("delone.blocks.ROWS", 7)
+    assert validation.six_volumes(mesh.points, mesh.simplices) == whole
+
+
 def test_six_volumes_of_extreme_coordinates() -> None:
     from delone.tetmesh.validation import six_volumes
 

@@ -34,6 +34,22 @@ def test_files(suffix: str, tmp_path: Path) -> None:
     assert same(delone.tetrahedralize(str(path)))
 
 
+@pytest.mark.parametrize("suffix", [".obj", ".vtu", ".ply"])
+def test_files_with_polygons(suffix: str, tmp_path: Path) -> None:
+    meshio = pytest.importorskip("meshio")
+    points, _ = solids.box((0, 0, 0), (1, 2, 3))
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    cells = [("quad", np.array(quads[1:], dtype=np.int32))]
+    cells.append(("triangle", np.array([(0, 1, 3), (0, 3, 2)], dtype=np.int32)))
+    meshio.Mesh(points, cells).write(tmp_path / f"box{suffix}")
+    with pytest.raises(delone.FileFormatError, match="quad"):
+        delone.io.read_mesh(tmp_path / f"box{suffix}")
+    mesh = delone.tetrahedralize(tmp_path / f"box{suffix}")
+    assert len(mesh.input_faces) == 12
+    assert solids.filled(mesh.points, mesh.simplices) == 6
+    assert solids.volume(mesh.points, mesh.input_faces) == 6
+
+
 def test_meshio() -> None:
     meshio = pytest.importorskip("meshio")
     assert same(delone.tetrahedralize(meshio.Mesh(POINTS, [("triangle", FACES)])))

@@ -37,7 +37,7 @@ _FAULTS = (
 def read_faces(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Read the points, (n, 3), and triangles of a surface in 3-D."""
     with reading():
-        mesh = read_mesh(path)
+        mesh = read_mesh(path, polygons="split")
     if mesh.simplices.shape[1] != 3:
         raise Failure(f"{path}: a surface has triangles, not tetrahedra", Exit.USAGE)
     if mesh.z is None:

@@ -23,6 +23,7 @@ from delone.exchange.meshio import TAGS, to_meshio
 from delone.extras import require
 from delone.io.content import content
 from delone.io.counts import announced
+from delone.io.facets import facet_triangles
 from delone.io.markup import refuse_document_type
 from delone.io.pointset import PointSet
 from delone.io.registry import MeshFile
@@ -40,6 +41,7 @@ __all__ = ["read_mesh", "read_points", "require_libraries", "write_mesh"]
 
 _MODULES = {".vtu": "vtu", ".ply": "ply", ".obj": "obj", ".stl": "stl", ".msh": "gmsh"}
 _DIMENSIONS = {"triangle": 2, "tetra": 3}
+_POLYGONS = ("triangle", "quad", "polygon")
 # These hold triangles, and no lines or tetrahedra.
 _PLAIN = (".ply", ".obj", ".stl")
 _HEAD, _TAIL = 1 << 16, 1 << 12
@@ -65,13 +67,15 @@ def read_points(
     return PointSet(points=points, z=z, attributes=further, source=str(path))
 
 
-def read_mesh(path: Path) -> MeshFile:
-    """Read the triangles of a mesh; see `delone.io.read_mesh`."""
+def read_mesh(path: Path, *, split: bool = False) -> MeshFile:
+    """Read the triangles of a mesh; see `delone.io.read_mesh`. With `split`, also polygons."""
     mesh = _read(path)
     if any(block.type == "tetra" for block in mesh.cells):
         return _tetrahedra(mesh, path)
     points, z = _coordinates(mesh, path)
     others = {block.type for block in mesh.cells} - {"triangle", "vertex", "line"}
+    if split and others and all(kind.startswith(_POLYGONS) for kind in others):
+        return _polygons(mesh, path)
     if others:
         raise FileFormatError(
             f"{path} contains {', '.join(sorted(others))} cells, not only triangles"
@@ -80,6 +84,25 @@ def read_mesh(path: Path) -> MeshFile:
         raise FileFormatError(f"{path} contains no triangles")
     simplices = _simplices(mesh, "triangle", len(points), path)
     return MeshFile(points=points, simplices=simplices, z=z, source=str(path))
+
+
+def _polygons(mesh: Any, path: Path) -> MeshFile:
+    """The triangles of a mesh and those of its polygons, in the order of the file."""
+    plane, z = _coordinates(mesh, path)
+    heights = np.zeros(len(plane)) if z is None else z
+    points = np.column_stack((plane, heights))
+    faces: list[list[int]] = []
+    nothing = np.empty((0, 3))
+    for block in mesh.cells:
+        if block.type in ("vertex", "line"):
+            continue
+        corners = np.asarray(block.data)
+        if corners.dtype.kind not in "iu" or corners.min() < 0 or corners.max() >= len(points):
+            raise FileFormatError(f"{path} names points that there are not")
+        for polygon in corners.tolist():
+            faces += facet_triangles(points, [polygon], nothing, str(path))
+    simplices = as_simplices(np.array(faces), len(points), 2)
+    return MeshFile(points=plane, simplices=simplices, z=heights, source=str(path))
 
 
 def _simplices(mesh: Any, kind: str, npoints: int, path: Path) -> NDArray[np.int32]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_count, as_flag, as_plain_array
+from delone._arrays import as_choice, as_count, as_flag, as_plain_array
 from delone.atomic import replacing
 from delone.counting import counted
 from delone.errors import DtypeError, FileFormatError, InputError
@@ -459,7 +459,7 @@ def read_surface(
     return read(file, name=layer, order=order or plain)
 
 
-def read_mesh(path: str | os.PathLike[str]) -> MeshFile:
+def read_mesh(path: str | os.PathLike[str], *, polygons: str = "raise") -> MeshFile:
     """Read triangles or tetrahedra from a file, unchanged.
 
     Parameters
@@ -468,7 +468,10 @@ def read_mesh(path: str | os.PathLike[str]) -> MeshFile:
         An npz file of a `Delaunay`, `ConstrainedDelaunay`, `RegularTriangulation`, `Mesh` or
         `TetMesh`, or VTU, PLY, OBJ, STL, OFF, MSH, or Triangle's ELE with its NODE next to it.
         Tetrahedra are read from npz, VTU, MSH and TetGen's ELE; its FACE, SMESH and POLY have
-        triangles in 3-D, of which facets with more corners are made.
+        triangles in 3-D.
+    polygons : {"raise", "split"}, optional
+        Whether faces with more than three corners in VTU, PLY, OBJ and MSH are an error or become
+        triangles. In OFF, SMESH and POLY they always become triangles.
 
     Returns
     -------
@@ -498,8 +501,9 @@ def read_mesh(path: str | os.PathLike[str]) -> MeshFile:
     """
     file = _existing(path)
     module = _module(_MESH_READERS, _suffix(file), file, "read triangles from")
-    read: Callable[[Path], MeshFile] = module.read_mesh
-    return read(file)
+    split = as_choice(polygons, ("raise", "split"), name="polygons") == "split"
+    read: Callable[..., MeshFile] = module.read_mesh
+    return read(file, **({"split": True} if split and _suffix(file) in _MESHES else {}))
 
 
 def write_mesh(

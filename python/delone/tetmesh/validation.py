@@ -9,6 +9,7 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_workers
+from delone.blocks import blocks
 from delone.plane.topology import unjoined
 from delone.space.locking import sides
 from delone.space.topology import boundary_faces
@@ -116,7 +117,12 @@ def six_volumes(points: Floats, simplices: Indices) -> int:
     bits = (fraction * 2.0**53).astype(np.int64).astype(object)
     shift = np.where(points != 0, exponent - least, 0).astype(object)
     whole = np.left_shift(bits, shift)
-    # Corners that all tetrahedra have in common would cost digits: from the first corner.
+    # Python's integers take memory, and a long array operation cannot be interrupted.
+    return sum(_six_volumes(whole, simplices[block]) for block in blocks(len(simplices)))
+
+
+def _six_volumes(whole: NDArray[np.object_], simplices: Indices) -> int:
+    """Return the sum for points of integers."""
     corners = whole[simplices]
     if simplices.shape[1] == 3:
         a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
@@ -127,4 +133,4 @@ def six_volumes(points: Floats, simplices: Indices) -> int:
     normal = np.stack(
         [b[:, i] * c[:, j] - b[:, j] * c[:, i] for i, j in ((1, 2), (2, 0), (0, 1))], axis=1
     )
-    return int((a * normal).sum()) if len(simplices) else 0
+    return int((a * normal).sum())

@@ -60,7 +60,7 @@ def _of(surface: Any) -> Given:
 
 
 def _of_file(path: str | os.PathLike[str]) -> Given:
-    found = read_mesh(path)
+    found = read_mesh(path, polygons="split")
     if found.simplices.shape[1] != 3:
         raise FileFormatError(f"{os.fspath(path)} contains tetrahedra, not a surface of triangles")
     points = found.points
