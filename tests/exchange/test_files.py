@@ -157,7 +157,7 @@ def test_heights_and_values_of_periodic_points_are_those_of_their_rows(tmp_path:
     [
         (hull, ".su2", "surfaces"),
         (hull, ".gpkg", "surfaces"),
-        (hull, ".node", "surfaces"),
+        (hull, ".ele", "surfaces"),
         (hull, ".svg", "surfaces"),
         (periodic, ".su2", "share no points"),
         (periodic, ".ele", "share no points"),
