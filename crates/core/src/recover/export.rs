@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use delone_predicates::{Sign, lexicographic, orient3d};
 
-use super::mesh::{Corners, FACES, NONE, ascending, internal};
+use super::mesh::{Corners, FACES, NONE, ascending, internal, number};
 use super::task::{Recovered, Task};
 use super::work::Work;
 use crate::error::Result;
@@ -37,7 +37,7 @@ impl Work<'_> {
     /// Checks that each tetrahedron is positive or has a point of wide coordinates outside, that
     /// faces pair up, and that each face of the input is there.
     pub fn verify(&mut self, out: &[bool]) -> Result<()> {
-        let mut sides: Vec<([u32; 3], bool)> = with_room(4 * self.mesh.corners.len())?;
+        let mut sides: Vec<u128> = with_room(4 * self.mesh.corners.len())?;
         for t in 0..self.mesh.corners.len() {
             self.pace.spend(1)?;
             let v = self.mesh.corners[t];
@@ -55,25 +55,25 @@ impl Work<'_> {
             }
             for f in FACES {
                 let face = f.map(|i| v[i]);
-                sides.push((ascending(face), odd(face)));
+                sides.push(number(ascending(face)) << 1 | u128::from(odd(face)));
             }
         }
         sides.sort_unstable();
-        let far = |face: &[u32; 3]| face.iter().all(|&v| (self.far..self.given).contains(&v));
+        let far = FACES.map(|f| number(ascending(f.map(|i| self.far + i as u32))));
         let mut rest = sides.as_slice();
-        let mut all: Vec<[u32; 3]> = with_room(sides.len() / 2 + 4)?;
-        while let Some((&(face, turned), others)) = rest.split_first() {
-            all.push(face);
+        let mut all: Vec<u128> = with_room(sides.len() / 2 + 4)?;
+        while let Some((&side, others)) = rest.split_first() {
+            all.push(side >> 1);
             match others.first() {
-                Some(&(other, way)) if other == face && way != turned => rest = &others[1..],
-                _ if far(&face) => rest = others,
+                Some(&other) if other == side ^ 1 => rest = &others[1..],
+                _ if far.contains(&(side >> 1)) => rest = others,
                 _ => return Err(internal("a face has no other side")),
             }
         }
         if all.windows(2).any(|w| w[0] == w[1]) {
             return Err(internal("a face has more than two sides"));
         }
-        let there = |f: &[u32; 3]| all.binary_search(f).is_ok();
+        let there = |&f: &[u32; 3]| all.binary_search(&number(f)).is_ok();
         if !self.faces.iter().all(there) {
             return Err(internal("a face of the input is not in the mesh"));
         }

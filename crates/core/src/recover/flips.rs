@@ -12,6 +12,10 @@ use crate::error::Result;
 
 /// The longest ring that is tried.
 const LONGEST: usize = 24;
+/// The longest ring of edges that are removed to remove others.
+const SHORT: usize = 9;
+/// The most edges tried for one segment or face.
+const TRIES: usize = 1000;
 
 /// What is missing.
 #[derive(Debug, Clone, Copy)]
@@ -20,6 +24,8 @@ pub enum Goal {
     Segment([u32; 2]),
     /// A face.
     Face([u32; 3]),
+    /// Fewer edges at a vertex.
+    Vertex(u32),
 }
 
 /// The best triangulation of a part of a ring.
@@ -33,13 +39,13 @@ struct Part {
 
 impl Work<'_> {
     /// Recovers segments by flips, and returns those that are still missing.
-    pub fn flip_segments(&mut self, mut missing: Vec<u32>) -> Result<Vec<u32>> {
+    pub fn flip_segments(&mut self, mut missing: Vec<u32>, depth: usize) -> Result<Vec<u32>> {
         loop {
             let before = missing.len();
             let mut rest = Vec::new();
             for &s in &missing {
                 let [a, b] = self.segments[s as usize];
-                if self.flip_segment([a, b])? {
+                if self.flip_segment([a, b], depth)? {
                     self.locked_edges.insert([a, b], s);
                     self.counts.flipped_edges += 1;
                 } else {
@@ -54,51 +60,130 @@ impl Work<'_> {
     }
 
     /// Recovers one segment by flips, if that is possible.
-    fn flip_segment(&mut self, s: [u32; 2]) -> Result<bool> {
+    pub fn flip_segment(&mut self, s: [u32; 2], depth: usize) -> Result<bool> {
         let goal = Goal::Segment(s);
-        'changed: while self.mesh.with_edge(s[0], s[1]).is_none() {
+        let mut tries = TRIES;
+        while self.mesh.with_edge(s[0], s[1]).is_none() {
             self.pace.spend(8)?;
             let (faces, edges) = self.crossed(s)?;
-            for &(t, [p, q]) in &edges {
-                if self.remove_edge(t, p, q, goal)? {
-                    continue 'changed;
+            let faces: Vec<[u32; 3]> = faces.iter().map(|&(t, k)| self.mesh.face(t, k)).collect();
+            let mut around: Vec<[u32; 2]> = edges.iter().map(|&(_, e)| e).collect();
+            let mut changed = self.remove_edges(&around, goal)?;
+            for &face in &faces {
+                changed |= self.split_face(face, goal)?;
+            }
+            around.clear();
+            for [u, v, w] in faces {
+                around.extend([pair(u, v), pair(v, w), pair(w, u)]);
+            }
+            around.sort_unstable();
+            around.dedup();
+            changed |= self.remove_edges(&around, goal)?;
+            if !changed && depth > 0 {
+                around.extend(edges.iter().map(|&(_, e)| e));
+                for &[p, q] in &around {
+                    changed |= self.force([p, q], goal, (depth, 0), &mut tries)?;
                 }
             }
-            for &(t, k) in &faces {
-                if self.split_face(t, k, goal)? {
-                    continue 'changed;
-                }
-                let [u, v, w] = self.mesh.face(t, k);
-                for [p, q] in [[u, v], [v, w], [w, u]] {
-                    if self.remove_edge(t, p, q, goal)? {
-                        continue 'changed;
-                    }
-                }
+            if !changed {
+                return Ok(false);
             }
-            return Ok(false);
         }
         Ok(true)
     }
 
+    /// Removes those edges whose removal lowers the crossings; true if there is one.
+    fn remove_edges(&mut self, edges: &[[u32; 2]], goal: Goal) -> Result<bool> {
+        let mut changed = false;
+        for &[p, q] in edges {
+            if let Some(t) = self.mesh.with_edge(p, q) {
+                changed |= self.remove_edge(t, p, q, goal, 0)?;
+            }
+        }
+        Ok(changed)
+    }
+
     /// Recovers one face, whose edges are there, by flips, if that is possible.
-    pub fn flip_face(&mut self, f: u32) -> Result<bool> {
+    pub fn flip_face(&mut self, f: u32, depth: usize) -> Result<bool> {
         let face = self.faces[f as usize];
         let goal = Goal::Face(face);
-        'changed: loop {
-            if self.mesh.has_face(face) {
-                return Ok(true);
-            }
+        let mut tries = TRIES;
+        while !self.mesh.has_face(face) {
             self.pace.spend(8)?;
-            for [u, v] in self.piercings(f)? {
-                let Some(t) = self.mesh.with_edge(u, v) else {
-                    continue;
-                };
-                if self.remove_edge(t, u, v, goal)? {
-                    continue 'changed;
+            let piercings: Vec<[u32; 2]> = self.piercings(f)?.into_iter().collect();
+            let mut changed = self.remove_edges(&piercings, goal)?;
+            if !changed && depth > 0 {
+                for &edge in &piercings {
+                    changed |= self.force(edge, goal, (depth, 0), &mut tries)?;
                 }
             }
+            if !changed {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Removes an edge of a vertex, so that it has one less, if that is possible.
+    pub fn flip_off(&mut self, v: u32, depth: usize) -> Result<bool> {
+        let star = self.mesh.star(v, usize::MAX);
+        let mut link: Vec<u32> = star
+            .iter()
+            .flat_map(|&t| self.mesh.corners[t as usize])
+            .collect();
+        link.sort_unstable();
+        link.dedup();
+        let mut tries = TRIES;
+        let mut changed = false;
+        for w in link.into_iter().filter(|&w| w != v) {
+            changed |= self.force([v, w], Goal::Vertex(v), (depth, 0), &mut tries)?;
+        }
+        Ok(changed)
+    }
+
+    /// Removes an edge, if that leaves fewer crossings than there are and `slack` more. Where its ring does
+    /// not allow that, edges from its ends to the ring are removed first, `depth` times in turn.
+    fn force(
+        &mut self,
+        [a, b]: [u32; 2],
+        goal: Goal,
+        (depth, slack): (usize, usize),
+        tries: &mut usize,
+    ) -> Result<bool> {
+        if *tries == 0 || self.locked_edges.contains_key(&pair(a, b)) {
             return Ok(false);
         }
+        *tries -= 1;
+        let Some(t) = self.mesh.with_edge(a, b) else {
+            return Ok(false);
+        };
+        if self.remove_edge(t, a, b, goal, slack)? {
+            return Ok(true);
+        }
+        if depth == 0 {
+            return Ok(false);
+        }
+        let Some(ring) = self.mesh.ring(t, a, b) else {
+            return Ok(false);
+        };
+        if ring.vertices.len() > SHORT || self.ring_is_locked(&ring) {
+            return Ok(false);
+        }
+        for &v in &ring.vertices {
+            for end in [a, b] {
+                if !self.force([end, v], goal, (depth - 1, 1), tries)? {
+                    continue;
+                }
+                let Some(t) = self.mesh.with_edge(a, b) else {
+                    return Ok(true);
+                };
+                if self.remove_edge(t, a, b, goal, slack)? {
+                    return Ok(true);
+                }
+                break;
+            }
+        }
+        Ok(false)
     }
 
     /// Crossings of an edge.
@@ -106,6 +191,7 @@ impl Work<'_> {
         match goal {
             Goal::Segment(s) => usize::from(self.cuts(s, [p, q])),
             Goal::Face(f) => usize::from(self.pierces(p, q, f).unwrap_or(true)),
+            Goal::Vertex(v) => usize::from(p == v || q == v),
         }
     }
 
@@ -113,14 +199,16 @@ impl Work<'_> {
     fn face_cost(&self, goal: Goal, face: [u32; 3]) -> usize {
         match goal {
             Goal::Segment(s) => usize::from(self.stabs(s, face)),
-            Goal::Face(_) => 0,
+            Goal::Face(_) | Goal::Vertex(_) => 0,
         }
     }
 
     /// Two tetrahedra at a face become three at an edge, if that lowers the crossings.
-    fn split_face(&mut self, t: u32, k: usize, goal: Goal) -> Result<bool> {
-        let face = self.mesh.face(t, k);
-        let [u, v, w] = face;
+    fn split_face(&mut self, face: [u32; 3], goal: Goal) -> Result<bool> {
+        let Some((t, k)) = self.mesh.side(face) else {
+            return Ok(false);
+        };
+        let [u, v, w] = self.mesh.face(t, k);
         let a = self.mesh.corners[t as usize][k];
         let Some((below, b)) = self.mesh.apex(t, k) else {
             return Ok(false);
@@ -148,12 +236,13 @@ impl Work<'_> {
         Ok(true)
     }
 
-    /// Removes an edge of a tetrahedron, if that lowers the crossings.
-    fn remove_edge(&mut self, t: u32, a: u32, b: u32, goal: Goal) -> Result<bool> {
+    /// Removes an edge of a tetrahedron, if that leaves fewer crossings than there are and `slack` more.
+    fn remove_edge(&mut self, t: u32, a: u32, b: u32, goal: Goal, slack: usize) -> Result<bool> {
         let Some(ring) = self.mesh.ring(t, a, b) else {
             return Ok(false);
         };
-        if ring.vertices.len() > LONGEST || self.ring_is_locked(&ring) {
+        let longest = if slack == 0 { LONGEST } else { SHORT };
+        if ring.vertices.len() > longest || self.ring_is_locked(&ring) {
             return Ok(false);
         }
         self.pace.spend(ring.vertices.len())?;
@@ -162,7 +251,7 @@ impl Work<'_> {
             .iter()
             .map(|&v| self.face_cost(goal, [a, b, v]));
         let old = faces.sum::<usize>() + self.edge_cost(goal, a, b);
-        let Some(new) = self.cheapest(&ring, goal, old) else {
+        let Some(new) = self.cheapest(&ring, goal, old + slack) else {
             return Ok(false);
         };
         self.mesh.replace(&ring.tetrahedra, &new)?;
@@ -229,9 +318,4 @@ impl Work<'_> {
     fn fits(&self, [u, v, w]: [u32; 3], a: u32, b: u32) -> bool {
         self.orient(u, v, w, b) == Sign::Positive && self.orient(u, w, v, a) == Sign::Positive
     }
-}
-
-/// Whether an edge of a mesh is one of a sorted list.
-pub fn has(edges: &[[u32; 2]], a: u32, b: u32) -> bool {
-    edges.binary_search(&pair(a, b)).is_ok()
 }

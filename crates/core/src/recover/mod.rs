@@ -9,11 +9,13 @@
 //! face of K leaves out exactly one vertex of e, so the points from which K can be fanned are an
 //! open set that contains x. Fanning loses only what contains e.
 //!
-//! 1. Flips (`flips`): each lowers the number of crossings of what is missing.
+//! 1. Flips (`flips`): each lowers the number of crossings of what is missing, or keeps it and is one
+//!    of a limited number.
 //! 2. Segments (`segments`): the open tetrahedra on the rest of one become fewer with each point.
 //! 3. Faces (`facets`): each point leaves one crossing edge less.
 //! 4. Points on the boundary are suppressed (`suppress`): each is replaced by one point in each
-//!    sector between faces; then free points are taken away (`thin`) where a neighbor sees all.
+//!    sector between faces; then free points are taken away (`thin`) where a neighbor sees all, also
+//!    after flips that leave them fewer edges.
 //! 5. Coordinates are exact (`coordinates`) until doubles are found (`place`).
 //!
 //! What is locked contains no e: it would cross the segment or face, which valid input excludes.
@@ -41,12 +43,20 @@ mod work;
 pub use task::{Counts, Recovered, Task};
 
 use crate::error::Result;
+use crate::memory::with_room;
 use crate::watch::Watch;
-use mesh::{NONE, PAIRS, ascending, pair};
+use mesh::{NONE, PAIRS, ascending, number, pair};
 use work::{Origin, Work};
 
 /// Sweeps that look for doubles.
 const SWEEPS: usize = 8;
+
+/// How deep edges are removed to take points away. These are few, so that depth costs little.
+const DEEPEST: usize = 3;
+
+/// How deep edges are removed to recover segments and faces. Points that a greater depth would save are
+/// taken away again at less cost.
+const DEPTH: usize = 1;
 
 /// Recovers faces. Returns the tetrahedra that cannot be reached from far outside without crossing
 /// a face: none, if the faces close nothing.
@@ -57,15 +67,19 @@ pub fn recover(task: Task, watch: &Watch) -> Result<Recovered> {
     work.counts.missing_edges = segments.len();
     work.counts.missing_faces = faces.len();
     if task.flips {
-        segments = work.flip_segments(segments)?;
+        for depth in 0..=DEPTH {
+            segments = work.flip_segments(segments, depth)?;
+        }
     }
-    work.split_segments(&segments)?;
+    work.split_segments(&segments, task.flips)?;
     if task.flips {
-        faces = work.flip_faces(faces)?;
+        for depth in 0..=DEPTH {
+            faces = work.flip_faces(faces, depth)?;
+        }
     }
     work.cut_faces(&faces)?;
     work.thin(work.given)?;
-    let out = work.finish()?;
+    let out = work.finish(task.flips)?;
     let crowded = work.crowded(&out);
     if !crowded.is_empty() {
         let rows = crowded.iter().map(|&f| imported.face_rows[f as usize]);
@@ -85,23 +99,20 @@ pub fn recover(task: Task, watch: &Watch) -> Result<Recovered> {
 impl Work<'_> {
     /// Segments and faces that the mesh lacks; locks the others.
     fn missing(&mut self) -> Result<(Vec<u32>, Vec<u32>)> {
-        let mut edges: Vec<[u32; 2]> = Vec::new();
-        let mut all: Vec<[u32; 3]> = Vec::new();
+        let cells = self.mesh.corners.len();
+        let mut edges: Vec<u64> = with_room(6 * cells)?;
+        let mut all: Vec<u128> = with_room(4 * cells)?;
+        let packed = |[a, b]: [u32; 2]| u64::from(a) << 32 | u64::from(b);
         for (t, v) in (0..).zip(&self.mesh.corners) {
-            for [i, j, ..] in PAIRS {
-                crate::memory::push(&mut edges, pair(v[i], v[j]))?;
-            }
-            for k in 0..4 {
-                crate::memory::push(&mut all, ascending(self.mesh.face(t, k)))?;
-            }
+            self.pace.spend(1)?;
+            edges.extend(PAIRS.map(|[i, j, ..]| packed(pair(v[i], v[j]))));
+            all.extend([0, 1, 2, 3].map(|k| number(ascending(self.mesh.face(t, k)))));
         }
         edges.sort_unstable();
-        edges.dedup();
         all.sort_unstable();
-        all.dedup();
         let (mut segments, mut faces) = (Vec::new(), Vec::new());
         for (s, e) in (0..).zip(&self.segments) {
-            if flips::has(&edges, e[0], e[1]) {
+            if edges.binary_search(&packed(*e)).is_ok() {
                 self.locked_edges.insert(*e, s);
             } else {
                 segments.push(s);
@@ -109,7 +120,7 @@ impl Work<'_> {
         }
         for f in 0..self.faces.len() as u32 {
             let face = self.faces[f as usize];
-            if all.binary_search(&face).is_ok() {
+            if all.binary_search(&number(face)).is_ok() {
                 self.locked_faces.insert(face, f);
                 self.close(f);
             } else {
@@ -127,14 +138,14 @@ impl Work<'_> {
     }
 
     /// Recovers faces with whole edges by flips, and returns those that are still missing.
-    fn flip_faces(&mut self, faces: Vec<u32>) -> Result<Vec<u32>> {
+    fn flip_faces(&mut self, faces: Vec<u32>, depth: usize) -> Result<Vec<u32>> {
         let mut missing = faces;
         loop {
             let before = missing.len();
             let mut rest = Vec::new();
             for &f in &missing {
                 let whole = self.rim(f).len() == 3;
-                if whole && self.flip_face(f)? {
+                if whole && self.flip_face(f, depth)? {
                     self.locked_faces.insert(self.faces[f as usize], f);
                     self.close(f);
                     self.counts.flipped_faces += 1;
@@ -185,15 +196,23 @@ impl Work<'_> {
     }
 
     /// Moves free points to doubles and takes away what is not needed; returns what is outside.
-    fn finish(&mut self) -> Result<Vec<bool>> {
-        for _ in 0..SWEEPS {
+    fn finish(&mut self, flips: bool) -> Result<Vec<bool>> {
+        for sweep in 0..SWEEPS {
+            let before = self.free_points().len();
+            if before == 0 {
+                break;
+            }
+            if flips {
+                let out = self.outside()?;
+                self.thin_by_flips(sweep.min(DEEPEST), &out)?;
+            }
             for v in self.free_points() {
                 self.pace.spend(32)?;
                 self.center_free(v);
             }
-            let before = self.free_points().len();
             self.thin(self.given)?;
-            if self.free_points().len() == before {
+            let after = self.free_points().len();
+            if after == before && sweep > DEEPEST {
                 break;
             }
         }

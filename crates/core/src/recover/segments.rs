@@ -34,8 +34,8 @@ impl Fraction {
 }
 
 impl Work<'_> {
-    /// Splits the segments that are missing.
-    pub fn split_segments(&mut self, missing: &[u32]) -> Result<()> {
+    /// Splits the segments that are missing; if `flips`, only until the rest of one can be recovered by these.
+    pub fn split_segments(&mut self, missing: &[u32], flips: bool) -> Result<()> {
         for &s in missing {
             self.pace.spend(16)?;
             let [a, b] = self.segments[s as usize];
@@ -43,6 +43,9 @@ impl Work<'_> {
             let mut chain = Vec::new();
             while self.mesh.with_edge(now.0, b).is_none() {
                 self.pace.spend(8)?;
+                if flips && self.flip_segment([now.0, b], super::DEPTH)? {
+                    break;
+                }
                 let cells = self.crossed_first(now.0, b)?;
                 let (v, place) = self.split(s, &cells, &now)?;
                 self.locked_edges.insert(pair(now.0, v), s);

@@ -27,6 +27,20 @@ impl Work<'_> {
         }
     }
 
+    /// Takes free points away from which edges can be flipped until a vertex sees all faces around them.
+    pub fn thin_by_flips(&mut self, depth: usize, out: &[bool]) -> Result<()> {
+        let inside = |v: &u32| !out[self.mesh.at[*v as usize] as usize];
+        let points: Vec<u32> = self.free_points().into_iter().filter(inside).collect();
+        for v in points {
+            while !self.thin_one(v)? {
+                if !self.flip_off(v, depth)? {
+                    break;
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Takes a free point away if a vertex around it sees all faces around it.
     fn thin_one(&mut self, v: u32) -> Result<bool> {
         let star = self.mesh.star(v, usize::MAX);
