@@ -188,6 +188,41 @@ def test_long_segments_through_many_points() -> None:
     assert live.validate()
 
 
+def test_edits_of_crossings_stay_local() -> None:
+    draw = np.random.default_rng(5)
+    live = Dynamic(draw.random((20_000, 2)), crossing="split")
+    centers = 0.1 + 0.8 * draw.random((150, 1, 2))
+    crosses = [(-0.01, -0.01), (0.01, 0.012), (-0.01, 0.01), (0.012, -0.01)]
+    handles = live.insert((centers + crosses).reshape(-1, 2)).reshape(-1, 2)
+    segments = live.insert_segments(handles)
+    assert len(live.crossings) >= 150
+    kept = set(live.crossings[:, 2].tolist())
+    edits = (
+        lambda: live.insert_segments([handles[0] + [0, 2], handles[2]]),
+        lambda: live.move(handles[5], live.points[handles[5]] + [(0.001, 0), (0, 0.001)]),
+        lambda: live.remove_segments(segments[[8, 11]]),
+        lambda: live.move(handles[20], live.points[handles[24]] + 1e-4),
+        lambda: live.insert_segments([(handles[9, 0], handles[14, 1])]),
+    )
+    for edit in edits:
+        before = live.snapshot()
+        edit()
+        # All of it is more than 2 MB.
+        assert live.snapshot().bytes_beyond(before) < 400_000
+        assert live.validate()
+        rows = np.flatnonzero(~np.isin(live.handles, live.crossings[:, 2]))
+        ends = np.searchsorted(live.handles[rows], live.input_segments)
+        fresh = ConstrainedDelaunay(live.points[rows], ends, crossing="split")
+        assert fresh.nadded == len(live) - len(rows)
+        assert places(live.points, live.simplices) == places(fresh.points, fresh.simplices)
+        assert len(kept & set(live.crossings[:, 2].tolist())) >= 130
+
+
+def places(points: np.ndarray, simplices: np.ndarray) -> set[frozenset[tuple[float, ...]]]:
+    """Return the triangles as sets of coordinates."""
+    return {frozenset(map(tuple, corners)) for corners in points[simplices].tolist()}
+
+
 def test_a_dynamic_from_a_constrained_triangulation_has_its_segments() -> None:
     square = [(0, 0), (4, 0), (4, 4), (0, 4)]
     mesh = ConstrainedDelaunay(square, [(0, 2), (1, 3)], crossing="split")

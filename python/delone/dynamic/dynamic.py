@@ -84,8 +84,8 @@ class Dynamic(Segmented):
     With segments the simplices are those of a new `ConstrainedDelaunay` of the same points and
     segments. A segment joins two handles and moves with its ends; a point that is an end cannot be
     removed. Where segments cross, with ``crossing="split"``, the crossing is a vertex with a handle
-    of its own, which goes with the segments; an edit that touches segments that cross triangulates
-    everything again, others stay local (`insert_segments`).
+    of its own, which goes with the segments; an edit of one of them takes time for those that it
+    crosses, and those that cross these (`insert_segments`).
 
     An edit is all or nothing: on any error, Ctrl-C and refused memory included, nothing has
     changed. Edits from several threads take turns.

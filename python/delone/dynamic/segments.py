@@ -75,8 +75,10 @@ class Segmented:
         -----
         Edges in the way of a segment are flipped until none is (S. W. Sloan, "A fast algorithm for
         generating constrained Delaunay triangulations", 1993): for k of them in O(k) if most can
-        be flipped at once, and at most O(k^2). Where segments cross, everything is triangulated
-        again.
+        be flipped at once, and at most O(k^2). Where segments cross, all that are connected by
+        crossings are inserted again, and all crossings are compared with the new ones; everything
+        is triangulated again where that is cheaper, and where a segment passes within the rounding
+        of a point or of a crossing of others.
 
         Examples
         --------

@@ -27,8 +27,9 @@ use delone_predicates::{Point2, lexicographic, orient2d};
 
 pub use self::components::components;
 pub use self::polygon::{Filled, Rule, polygon};
+pub(crate) use self::reroute::{Band, is_near};
 pub use self::ring::simple_ring;
-pub(crate) use self::split::passes;
+pub(crate) use self::split::{in_direction, passes};
 pub use self::subsegments::Subsegments;
 
 use self::inserted::Inserted;

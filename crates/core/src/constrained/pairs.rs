@@ -112,7 +112,7 @@ impl Item {
 
 /// Whether two boxes have a point in common.
 #[inline]
-pub(super) fn overlap(a: &Extent, b: &Extent) -> bool {
+pub(crate) fn overlap(a: &Extent, b: &Extent) -> bool {
     // Not short-circuited: four comparisons are cheaper than an unpredictable branch.
     (a.min[0] <= b.max[0])
         & (b.min[0] <= a.max[0])

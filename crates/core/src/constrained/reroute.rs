@@ -40,15 +40,17 @@ const POINTS: usize = 4;
 const NEVER: u32 = u32::MAX;
 
 /// A segment and the size of the pixels in its box.
-struct Band {
+pub(crate) struct Band {
     from: Point2,
     along: Point2,
-    extent: Extent,
+    /// Its box.
+    pub(crate) extent: Extent,
     pixel: f64,
 }
 
 impl Band {
-    fn of(p: Point2, q: Point2) -> Self {
+    /// Of the segment from p to q.
+    pub(crate) fn of(p: Point2, q: Point2) -> Self {
         let along = [q[0] - p[0], q[1] - p[1]];
         let largest = (p.iter().chain(&q)).fold(0.0, |m: f64, x| m.max(x.abs()));
         let unit = largest * f64::EPSILON + f64::MIN_POSITIVE;
@@ -63,7 +65,7 @@ impl Band {
     /// The side of the line on which x lies; zero at least if x is no farther from it than a
     /// pixel's width.
     #[inline]
-    fn side(&self, x: Point2) -> Sign {
+    pub(crate) fn side(&self, x: Point2) -> Sign {
         let left = self.along[0] * (x[1] - self.from[1]);
         let right = self.along[1] * (x[0] - self.from[0]);
         let rounding = 4.0 * f64::EPSILON * (left.abs() + right.abs()) + f64::MIN_POSITIVE;
@@ -395,7 +397,7 @@ impl Work<'_> {
 }
 
 /// Whether the edge `r s` may pass through the pixel of `p`.
-fn is_near(r: Point2, s: Point2, p: Point2) -> bool {
+pub(crate) fn is_near(r: Point2, s: Point2, p: Point2) -> bool {
     let beside = (0..2).any(|k| {
         let unit = 2.0 * (p[k].abs() * f64::EPSILON + f64::MIN_POSITIVE);
         p[k] < r[k].min(s[k]) - unit || p[k] > r[k].max(s[k]) + unit

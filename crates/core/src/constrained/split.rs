@@ -327,18 +327,19 @@ pub(super) fn route(
     }
     stops.extend(meets.into_iter().filter(|&w| w != a && w != b));
     stops.extend([a, b]);
-    // The rounded points of a line are monotone in both coordinates, though perhaps not strictly:
-    // sort by the first, or by the second where the first is constant.
-    let along = |v: Point2, w: Point2, k: usize| {
+    stops.sort_by(|&v, &w| in_direction([p, q], marked.at(v), marked.at(w)));
+    stops.dedup();
+    Ok(stops)
+}
+
+/// The order of two rounded points of the segment from p to q. They are monotone in both coordinates,
+/// though perhaps not strictly: the first decides, or the second where the first is constant.
+pub(crate) fn in_direction([p, q]: [Point2; 2], v: Point2, w: Point2) -> Ordering {
+    let along = |k: usize| {
         let (v, w) = if p[k] <= q[k] { (v, w) } else { (w, v) };
         v[k].partial_cmp(&w[k]).unwrap_or(Ordering::Equal)
     };
-    stops.sort_by(|&v, &w| {
-        let [v, w] = [v, w].map(|v| marked.at(v));
-        along(v, w, 0).then_with(|| along(v, w, 1))
-    });
-    stops.dedup();
-    Ok(stops)
+    along(0).then_with(|| along(1))
 }
 
 /// The segments of positive length, each from its lexicographically smaller end, sorted by their

@@ -16,11 +16,14 @@
 //! # Crossings
 //!
 //! A crossing is rounded, segments bend there, and by their rounding they may meet others. Such
-//! segments are *tangled*. What touches none of them is edited as above. An edit that touches one, or
-//! makes a new crossing, triangulates all points and segments again by `constrained`, so that a
-//! crossing vertex goes with the segments that cross there. To touch means: to have an edge of a tangled
-//! segment at a vertex that is edited, or, for a new point, to lie in the range of rounding of a tangled
-//! segment, or, for a new segment, to have a crossing in its own range of rounding.
+//! segments are *tangled*. What touches none of them is edited as above. An edit of one, or one that
+//! makes a new crossing, takes out all that cross it, directly or not, with their crossings (see
+//! `loose`), and puts them back where they cross now (see `weave`). A crossing vertex so goes with the
+//! segments that cross there.
+//!
+//! Where rounding makes more than the segments themselves meet, all points and segments are
+//! triangulated again by `constrained`: a point in the range of rounding of a tangled segment, or a
+//! crossing in that of a segment that is not its own.
 //!
 //! # All or nothing
 //!
@@ -34,6 +37,7 @@ use delone_predicates::{Point2, lexicographic, orient2d};
 use super::Plane;
 use super::marks::{Reach, STRAIGHT, TANGLED};
 use super::remove::Removed;
+use super::segments::Loose;
 use super::walk::Place;
 use crate::constrained::passes;
 use crate::error::{Error, Result};
@@ -49,7 +53,7 @@ const LOT: usize = 1 << 6;
 pub enum Outcome {
     /// It is done.
     Done,
-    /// It crosses a segment or touches a tangled one: all is triangulated again.
+    /// All is triangulated again.
     Rebuild,
 }
 
@@ -116,16 +120,16 @@ impl Plane {
         let first = self.segments.total();
         self.atomically(watch, |plane| {
             let mut pace = Pace::new(watch, LOT);
-            let mut outcome = Outcome::Done;
+            let mut loose = Loose::default();
             for pair in ends {
                 pace.spend(1)?;
                 let segment = plane.segments.insert(pair.map(|row| row as u32))?;
                 plane.mesh.has_segments = true;
-                if outcome == Outcome::Done {
-                    outcome = plane.link_segment(segment)?;
+                if !plane.link_segment(segment)? {
+                    loose.segments.insert(segment);
                 }
             }
-            plane.finish(outcome, None, workers, watch)
+            plane.finish(Outcome::Done, loose, None, workers, watch)
         })?;
         Ok(first..first + ends.len())
     }
@@ -140,6 +144,7 @@ impl Plane {
         self.atomically(watch, |plane| {
             let mut pace = Pace::new(watch, LOT);
             let mut outcome = Outcome::Done;
+            let mut loose = Loose::default();
             for &number in numbers {
                 pace.spend(1)?;
                 if plane.segments.ends(number).is_none() {
@@ -148,11 +153,12 @@ impl Plane {
                 }
                 let segment = number as u32;
                 if outcome == Outcome::Done {
-                    outcome = plane.unlink_segment(segment)?;
+                    outcome = plane.unlink_segment(segment, &mut loose)?;
                 }
+                loose.segments.remove(&segment);
                 plane.segments.remove(segment);
             }
-            plane.finish(outcome, None, workers, watch)
+            plane.finish(outcome, loose, None, workers, watch)
         })
     }
 
@@ -216,7 +222,7 @@ impl Plane {
                 push(&mut after.points, *p)?;
             }
             after.total += input.len();
-            plane.finish(outcome, Some(after), workers, watch)
+            plane.finish(outcome, Loose::default(), Some(after), workers, watch)
         })?;
         Ok(first..first + input.len())
     }
@@ -266,7 +272,7 @@ impl Plane {
             sort(&mut gone, watch)?;
             let kept = |row: u32, p| gone.binary_search(&row).is_err().then_some(p);
             let after = plane.present(kept)?;
-            plane.finish(outcome, Some(after), workers, watch)
+            plane.finish(outcome, Loose::default(), Some(after), workers, watch)
         })
     }
 
@@ -287,23 +293,24 @@ impl Plane {
             crate::order::sort_by(&mut places, watch, |a, b| a.0.cmp(&b.0))?;
             let mut pace = Pace::new(watch, LOT);
             // All segments that move go first: halfway they may cross others.
-            let mut loose = Vec::new();
+            let mut moved = Vec::new();
             for &(row, _) in &places {
                 for (segment, _) in plane.segments.at(row) {
-                    push(&mut loose, segment)?;
+                    push(&mut moved, segment)?;
                 }
             }
-            sort(&mut loose, watch)?;
-            loose.dedup();
+            sort(&mut moved, watch)?;
+            moved.dedup();
             let mut outcome = if whole {
                 Outcome::Rebuild
             } else {
                 Outcome::Done
             };
-            for &segment in &loose {
+            let mut loose = Loose::default();
+            for &segment in &moved {
                 pace.spend(1)?;
                 if outcome == Outcome::Done {
-                    outcome = plane.unlink_segment(segment)?;
+                    outcome = plane.unlink_segment(segment, &mut loose)?;
                 }
                 plane.segments.unlist(segment);
             }
@@ -313,12 +320,17 @@ impl Plane {
                     outcome = plane.relocate_vertex(row, p, watch)?;
                 }
             }
-            for &segment in &loose {
+            for &segment in &moved {
                 pace.spend(1)?;
                 plane.segments.list(segment);
-                if outcome == Outcome::Done {
-                    outcome = plane.link_segment(segment)?;
+                if outcome == Outcome::Done
+                    && (loose.segments.contains(&segment) || !plane.link_segment(segment)?)
+                {
+                    loose.segments.insert(segment);
                 }
+            }
+            if outcome == Outcome::Done && !loose.segments.is_empty() {
+                outcome = plane.weave(&mut loose, watch)?;
             }
             if outcome == Outcome::Done {
                 return Ok(());
@@ -328,7 +340,7 @@ impl Plane {
                 Err(_) => Some(p),
             };
             let after = plane.present(place)?;
-            plane.finish(outcome, Some(after), workers, watch)
+            plane.finish(outcome, loose, Some(after), workers, watch)
         })
     }
 
@@ -411,7 +423,7 @@ impl Plane {
     }
 
     /// Whether the rounding of a tangled segment reaches `p`.
-    fn is_near_tangle(&self, p: Point2) -> bool {
+    pub fn is_near_tangle(&self, p: Point2) -> bool {
         let at = |row: u32| self.mesh.at(self.vertex(row));
         let tangled = self.segments.tangle.segments.iter();
         let ends = tangled.filter_map(|&s| self.segments.ends(i64::from(s)));
@@ -471,29 +483,21 @@ impl Plane {
         }
     }
 
-    /// Marks the edges of a segment that is in the list.
-    pub fn link_segment(&mut self, segment: u32) -> Result<Outcome> {
+    /// Marks the edges of a segment that is in the list; `false` if another one is in the way.
+    pub fn link_segment(&mut self, segment: u32) -> Result<bool> {
         let ends = self.segments.ends(i64::from(segment)).unwrap_or_default();
         let [a, b] = ends.map(|row| self.vertex(row));
         if a == b || self.mesh.is_flat() {
-            return Ok(Outcome::Done);
+            return Ok(true);
         }
-        let [r, s] = [a, b].map(|v| self.mesh.at(v));
-        let tangle = &self.segments.tangle;
-        let is_rounded = |&row: &u32| passes(r, s, self.mesh.at(self.vertex(row)));
-        let crosses = |&other: &u32| {
-            let ends = self.segments.ends(i64::from(other)).unwrap_or_default();
-            let [p, q] = ends.map(|row| self.mesh.at(self.vertex(row)));
-            are_apart(r, s, p, q) && are_apart(p, q, r, s)
-        };
-        if tangle.rows.iter().any(is_rounded) || tangle.segments.iter().any(crosses) {
-            return Ok(Outcome::Rebuild);
+        if !self.touched(a, b).is_empty() || self.mesh.blocker(a, b)?.is_some() {
+            return Ok(false);
         }
-        self.link_vertices(a, b)
+        Ok(self.link_vertices(a, b)? == Outcome::Done)
     }
 
     /// Makes the segment between two vertices a chain of marked edges.
-    fn link_vertices(&mut self, mut a: u32, b: u32) -> Result<Outcome> {
+    pub fn link_vertices(&mut self, mut a: u32, b: u32) -> Result<Outcome> {
         while a != b {
             match self.mesh.reach(a, b)? {
                 Reach::Vertex(next) => a = next,
@@ -501,119 +505,6 @@ impl Plane {
             }
         }
         Ok(Outcome::Done)
-    }
-
-    /// Removes the marks of a segment that no other one needs.
-    fn unlink_segment(&mut self, segment: u32) -> Result<Outcome> {
-        let ends = self.segments.ends(i64::from(segment)).unwrap_or_default();
-        let [a, b] = ends.map(|row| self.vertex(row));
-        if a == b || self.mesh.is_flat() {
-            return Ok(Outcome::Done);
-        }
-        if self
-            .segments
-            .tangle
-            .segments
-            .binary_search(&segment)
-            .is_ok()
-        {
-            return Ok(Outcome::Rebuild);
-        }
-        let Some(along) = self.line_of(a, b)? else {
-            return Ok(Outcome::Rebuild);
-        };
-        let needed = self.covers(&along, segment)?;
-        for (pair, needed) in along.windows(2).zip(needed) {
-            if needed == 0 {
-                self.mesh.remove_mark(pair[0], pair[1])?;
-            }
-        }
-        Ok(Outcome::Done)
-    }
-
-    /// The vertices of the marked edges along the line of a segment, in order: those of the segment,
-    /// and beyond its ends as far as marked edges go. `None` if a tangled edge is at one of them.
-    fn line_of(&self, a: u32, b: u32) -> Result<Option<Vec<u32>>> {
-        let mut halves = Vec::new();
-        for (from, to) in [(a, b), (b, a)] {
-            // From the one end past the other one.
-            let mut half = with_room(1)?;
-            half.push(from);
-            while let Some(next) = self.marked_beyond(half[half.len() - 1], from, to)? {
-                push(&mut half, next)?;
-            }
-            push(&mut halves, half)?;
-        }
-        let (Some(back), Some(front)) = (halves.pop(), halves.pop()) else {
-            return Ok(None);
-        };
-        // `back` runs from b past a: its part beyond a, reversed, comes first.
-        let Some(i) = back.iter().position(|&v| v == a) else {
-            return Err(Error::Internal("a segment has no edges".into()));
-        };
-        let mut along: Vec<u32> = with_room(back.len() - i + front.len())?;
-        along.extend(back[i + 1..].iter().rev());
-        along.extend(front);
-        for &v in &along {
-            let tangled = |&(_, mark): &(u32, u32)| mark == TANGLED;
-            if self.mesh.marked_at(v)?.iter().any(tangled) {
-                return Ok(None);
-            }
-        }
-        Ok(Some(along))
-    }
-
-    /// The end of the marked edge at `v` that leads on in the direction from `a` to `b`.
-    fn marked_beyond(&self, v: u32, a: u32, b: u32) -> Result<Option<u32>> {
-        let [p, q, from] = [a, b, v].map(|v| self.mesh.at(v));
-        let leads = |&(w, _): &(u32, u32)| {
-            let to = self.mesh.at(w);
-            orient2d(p, q, to).is_zero() && lexicographic(from, to) == lexicographic(p, q)
-        };
-        let marked = self.mesh.marked_at(v)?;
-        Ok(marked.into_iter().find(leads).map(|(w, _)| w))
-    }
-
-    /// For each edge between vertices of a line, the number of segments but `except` that run along it.
-    fn covers(&self, along: &[u32], except: u32) -> Result<Vec<u32>> {
-        let mut places: Vec<(u32, usize)> = with_room(along.len())?;
-        places.extend(along.iter().copied().zip(0..));
-        places.sort_unstable();
-        let place = |v: u32| {
-            let found = places.binary_search_by_key(&v, |at| at.0);
-            found.ok().map(|i| places[i].1)
-        };
-        let mut change = filled(along.len() + 1, 0i64)?;
-        // The segment itself is the only one whose edges may lose their marks.
-        let mut own = [usize::MAX, 0];
-        for (i, &v) in along.iter().enumerate() {
-            let head = self.mesh.sites[v as usize].head;
-            for row in self.rows.at(head) {
-                for (segment, other) in self.segments.at(row) {
-                    let Some(j) = place(self.vertex(other)) else {
-                        continue;
-                    };
-                    if segment == except {
-                        own = [own[0].min(i).min(j), own[1].max(i).max(j)];
-                    } else if i < j {
-                        change[i] += 1;
-                        change[j] -= 1;
-                    }
-                }
-            }
-        }
-        let mut covers = with_room(along.len())?;
-        let mut sum = 0;
-        for (i, change) in change
-            .iter()
-            .take(along.len().saturating_sub(1))
-            .enumerate()
-        {
-            sum += change;
-            let is_own = own[0] <= i && i < own[1];
-            covers.push(if is_own { sum as u32 } else { 1 });
-        }
-        Ok(covers)
     }
 
     /// The rows that are there, without crossings, with the points that `place` gives them.
@@ -634,7 +525,7 @@ impl Plane {
 }
 
 /// Whether p and q are strictly on different sides of the line through r and s.
-fn are_apart(r: Point2, s: Point2, p: Point2, q: Point2) -> bool {
+pub fn are_apart(r: Point2, s: Point2, p: Point2, q: Point2) -> bool {
     let [one, other] = [orient2d(r, s, p), orient2d(r, s, q)];
     one != other && !one.is_zero() && !other.is_zero()
 }

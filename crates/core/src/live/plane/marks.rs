@@ -27,6 +27,14 @@ pub enum Reach {
     Blocked,
 }
 
+/// What comes first on the way from a vertex to another.
+enum Way {
+    /// A vertex, the other one at last.
+    Vertex(u32),
+    /// A marked edge.
+    Marked(Code),
+}
+
 impl Mesh {
     /// The mark of an edge: 0, [`STRAIGHT`] or [`TANGLED`].
     #[inline]
@@ -106,8 +114,8 @@ impl Mesh {
     pub fn reach(&mut self, a: u32, b: u32) -> Result<Reach> {
         let mut crossed = Vec::new();
         let end = match self.crossed(a, b, &mut crossed)? {
-            Some(end) => end,
-            None => return Ok(Reach::Blocked),
+            Way::Vertex(end) => end,
+            Way::Marked(_) => return Ok(Reach::Blocked),
         };
         self.stack.clear();
         let budget = PATIENCE * (1 + crossed.len() * crossed.len());
@@ -148,22 +156,35 @@ impl Mesh {
         Ok(Reach::Vertex(end))
     }
 
-    /// Lists the edges that the segment from `a` to `b` crosses, up to the next vertex on it, which is
-    /// returned; `None` if one of the edges is marked.
-    fn crossed(&self, a: u32, b: u32, crossed: &mut Vec<[u32; 2]>) -> Result<Option<u32>> {
+    /// The first marked edge that the segment from `a` to `b` crosses.
+    pub fn blocker(&self, mut a: u32, b: u32) -> Result<Option<Code>> {
+        let mut crossed = Vec::new();
+        while a != b {
+            match self.crossed(a, b, &mut crossed)? {
+                Way::Vertex(next) => a = next,
+                Way::Marked(e) => return Ok(Some(e)),
+            }
+            crossed.clear();
+        }
+        Ok(None)
+    }
+
+    /// Lists the edges that the segment from `a` to `b` crosses, up to the next vertex on it or the
+    /// first marked edge.
+    fn crossed(&self, a: u32, b: u32, crossed: &mut Vec<[u32; 2]>) -> Result<Way> {
         let [p, q] = [self.at(a), self.at(b)];
         let mut corner = self.sites[a as usize].near;
         let first = corner;
         let mut e = loop {
             let [u, w] = self.ends(corner);
             if u == b {
-                return Ok(Some(b));
+                return Ok(Way::Vertex(b));
             }
             if u != INFINITE {
                 let side = orient2d(p, q, self.at(u));
                 // On the ray towards b, and not behind a.
                 if side.is_zero() && lexicographic(p, self.at(u)) == lexicographic(p, q) {
-                    return Ok(Some(u));
+                    return Ok(Way::Vertex(u));
                 }
                 if side == Sign::Negative
                     && w != INFINITE
@@ -180,17 +201,17 @@ impl Mesh {
         };
         loop {
             if self.mark(e) != 0 {
-                return Ok(None);
+                return Ok(Way::Marked(e));
             }
             push(crossed, self.ends(e))?;
             let o = self.opposite(e);
             let x = self.vertex(o);
             if x == b {
-                return Ok(Some(b));
+                return Ok(Way::Vertex(b));
             }
             // Beyond e = u w, with u on the right, the edges are u x and x w.
             e = match orient2d(p, q, self.at(x)) {
-                Sign::Zero => return Ok(Some(x)),
+                Sign::Zero => return Ok(Way::Vertex(x)),
                 Sign::Positive => next(o),
                 Sign::Negative => prev(o),
             };

@@ -6,8 +6,10 @@ mod ears;
 mod edit;
 mod export;
 mod insert;
+mod loose;
 mod marks;
 mod mesh;
+mod near;
 mod query;
 mod remove;
 mod segments;
@@ -15,6 +17,7 @@ mod shift;
 mod state;
 mod tangle;
 mod walk;
+mod weave;
 
 use delone_predicates::Point2;
 

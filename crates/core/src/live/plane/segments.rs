@@ -3,7 +3,10 @@
 //! A segment has a number that is never used again, as a row has. Its ends are rows and not vertices, so
 //! that they stay where points move, and where one of several equal points goes.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
+
+use delone_predicates::Point2;
 
 use crate::error::{Error, Result};
 use crate::live::chunks::{Chunks, Image};
@@ -31,6 +34,17 @@ pub struct Tangle {
     pub rows: Vec<u32>,
     /// Two segments, ascending, and the row of the vertex where they cross.
     pub crossings: Vec<[u32; 3]>,
+    /// The edges of these segments: the segment, ascending, and two vertices.
+    pub edges: Vec<(u32, [u32; 2])>,
+}
+
+/// What an edit has taken out of the mesh.
+#[derive(Debug, Default)]
+pub struct Loose {
+    /// Segments that are there, but have no edges.
+    pub segments: BTreeSet<u32>,
+    /// Crossings that are gone, and their rows.
+    pub places: Vec<(Point2, u32)>,
 }
 
 /// All segments that ever were.

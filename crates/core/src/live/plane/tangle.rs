@@ -10,12 +10,12 @@ use delone_predicates::{Point2, lexicographic, orient2d};
 
 use super::constrained::{Input, Outcome};
 use super::marks::{Reach, TANGLED};
-use super::segments::Tangle;
+use super::segments::{Loose, Tangle};
 use super::{Plane, build};
 use crate::constrained::{Constrained, Options, constrain};
 use crate::delaunay2::Method;
 use crate::error::{Error, Result};
-use crate::memory::{filled, push, with_room};
+use crate::memory::{filled, make_room, push, with_room};
 use crate::order::{sort, sort_by};
 use crate::watch::{Pace, Watch};
 
@@ -29,17 +29,21 @@ impl Plane {
     /// Ends an edit, by a triangulation of all points and segments if it must be.
     pub fn finish(
         &mut self,
-        outcome: Outcome,
+        mut outcome: Outcome,
+        mut loose: Loose,
         after: Option<Input>,
         workers: usize,
         watch: &Watch,
     ) -> Result<()> {
+        if outcome == Outcome::Done && !loose.segments.is_empty() {
+            outcome = self.weave(&mut loose, watch)?;
+        }
         if outcome == Outcome::Rebuild {
             let input = match after {
                 Some(input) => input,
                 None => self.present(|_, p| Some(p))?,
             };
-            let old = self.crossings_by_place(watch)?;
+            let old = self.crossings_by_place(loose.places, watch)?;
             self.rebuild_all(input, &old, workers, watch)?;
         }
         self.mesh.has_segments = self.has_segments();
@@ -61,7 +65,7 @@ impl Plane {
         all.extend(self.segments.iter());
         for &(segment, _) in &all {
             pace.spend(1)?;
-            if self.link_segment(segment)? == Outcome::Rebuild {
+            if !self.link_segment(segment)? {
                 return self.untangle(input, &all, old, workers, watch);
             }
         }
@@ -76,10 +80,14 @@ impl Plane {
         Ok(())
     }
 
-    /// The crossings, by their coordinates.
-    fn crossings_by_place(&self, watch: &Watch) -> Result<Vec<(Point2, u32)>> {
+    /// The crossings, and those that are gone, by their coordinates.
+    fn crossings_by_place(
+        &self,
+        mut places: Vec<(Point2, u32)>,
+        watch: &Watch,
+    ) -> Result<Vec<(Point2, u32)>> {
         let rows = &self.segments.tangle.rows;
-        let mut places = with_room(rows.len())?;
+        make_room(&mut places, rows.len())?;
         places.extend(
             rows.iter()
                 .map(|&row| (self.mesh.at(self.vertex(row)), row)),
@@ -160,7 +168,7 @@ impl Plane {
             total: input.total,
         };
         self.replace(&with_crossings, workers, watch)?;
-        self.link_pieces(&made, &rows, &tangle, number, watch)?;
+        self.link_pieces(&made, &rows, &mut tangle, number, watch)?;
         self.segments.tangle = Arc::new(tangle);
         Ok(())
     }
@@ -170,7 +178,7 @@ impl Plane {
         &mut self,
         made: &Constrained,
         rows: &[u32],
-        tangle: &Tangle,
+        tangle: &mut Tangle,
         number: impl Fn(u32) -> u32,
         watch: &Watch,
     ) -> Result<()> {
@@ -183,12 +191,18 @@ impl Plane {
                 return Err(Error::Internal("a piece of a segment is no edge".into()));
             }
             let sources = pieces.start[i] as usize..pieces.start[i + 1] as usize;
-            let is_tangled = |&s: &i32| tangle.segments.binary_search(&number(s as u32)).is_ok();
-            if pieces.source[sources].iter().any(is_tangled) {
+            let before = tangle.edges.len();
+            for &s in &pieces.source[sources] {
+                let segment = number(s as u32);
+                if tangle.segments.binary_search(&segment).is_ok() {
+                    push(&mut tangle.edges, (segment, [a, b]))?;
+                }
+            }
+            if tangle.edges.len() > before {
                 self.mesh.add_mark(a, b, TANGLED)?;
             }
         }
-        Ok(())
+        sort(&mut tangle.edges, watch)
     }
 }
 

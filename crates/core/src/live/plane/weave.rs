@@ -1,0 +1,312 @@
+//! Segments are put back into the mesh, and split where they cross.
+//!
+//! First, all segments that the loose ones cross are taken out as well, and those that these cross (see
+//! `loose`), so that nothing in the mesh crosses one of them. Then their crossings become vertices, and
+//! each runs through its own, as `constrained::reroute` does it. Where rounding makes a segment pass
+//! through the pixel of any other vertex, or pieces cross, `constrained` triangulates everything again.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use delone_predicates::{Point2, orient2d};
+
+use super::Plane;
+use super::constrained::{Outcome, are_apart};
+use super::marks::{Reach, TANGLED};
+use super::segments::{Loose, Tangle};
+use super::walk::Place;
+use crate::constrained::intersection::intersection;
+use crate::constrained::pairs::crossing_pairs_above;
+use crate::constrained::passes;
+use crate::error::{Error, Result};
+use crate::memory::{copied, push, with_room};
+use crate::watch::Watch;
+
+/// With more segments than this, and one in so many, all are triangulated again; and so with more
+/// pairs that cross than this for each of them.
+const FEW: usize = 64;
+const ONE_IN: usize = 8;
+const PAIRS: usize = 16;
+
+/// A segment to be put back: its number and its two vertices.
+type Thread = (u32, [u32; 2]);
+
+/// Edges, each with the place of its segment in a list.
+type Edges = Vec<(u32, [u32; 2])>;
+
+/// A crossing: two places in a list of segments, and the vertex.
+type Knot = ([u32; 2], u32);
+
+impl Plane {
+    /// Puts the loose segments back.
+    pub fn weave(&mut self, loose: &mut Loose, watch: &Watch) -> Result<Outcome> {
+        if self.mesh.is_flat() || !self.clear_ways(loose, watch)? {
+            return Ok(Outcome::Rebuild);
+        }
+        let threads = self.threads(loose)?;
+        let (mut points, mut ends) = (Vec::new(), Vec::new());
+        for (i, (_, pair)) in (0u32..).zip(&threads) {
+            push(&mut ends, [2 * i, 2 * i + 1])?;
+            push(&mut points, self.mesh.at(pair[0]))?;
+            push(&mut points, self.mesh.at(pair[1]))?;
+        }
+        let most = PAIRS * (threads.len() + FEW);
+        let pairs = crossing_pairs_above(&points, &ends, most, watch)?;
+        if pairs.len() > most {
+            return Ok(Outcome::Rebuild);
+        }
+        let crossings = self.meetings(&points, pairs, watch)?;
+        if !crossings.is_empty() && !self.splits_crossings() {
+            return Err(Error::Crossing {
+                pairs: crossings
+                    .iter()
+                    .map(|c| c.0.map(|i| threads[i as usize].0))
+                    .collect(),
+                points: crossings.iter().map(|c| c.1).collect(),
+            });
+        }
+        let mut fresh = BTreeSet::new();
+        let knots = self.tie(&crossings, loose, &mut fresh, watch)?;
+        let edges = match &knots {
+            Some(knots) => self.put_back(&threads, knots, &fresh)?,
+            None => None,
+        };
+        let mut tangle = copy(&self.segments.tangle)?;
+        // Also if all are triangulated again: the new rows are no points.
+        let rows = fresh.iter().map(|&v| self.mesh.sites[v as usize].head);
+        tangle.rows.extend(rows);
+        tangle.rows.sort_unstable();
+        let outcome = match (knots, edges) {
+            (Some(knots), Some(edges)) => {
+                self.enlist(&mut tangle, &threads, &knots, &edges)?;
+                Outcome::Done
+            }
+            _ => Outcome::Rebuild,
+        };
+        self.segments.tangle = Arc::new(tangle);
+        loose.segments.clear();
+        Ok(outcome)
+    }
+
+    /// Takes out all segments that the loose ones cross; whether they are few.
+    fn clear_ways(&mut self, loose: &mut Loose, watch: &Watch) -> Result<bool> {
+        let mut done = BTreeSet::new();
+        while let Some(&segment) = loose.segments.iter().find(|s| !done.contains(*s)) {
+            watch.check()?;
+            done.insert(segment);
+            let ends = self.segments.ends(i64::from(segment)).unwrap_or_default();
+            let [a, b] = ends.map(|row| self.vertex(row));
+            if a == b {
+                continue;
+            }
+            let touched = self.touched(a, b);
+            if !touched.is_empty() && self.loosen(&touched, loose)? == Outcome::Rebuild {
+                return Ok(false);
+            }
+            while let Some(e) = self.mesh.blocker(a, b)? {
+                let [u, v] = self.mesh.ends(e);
+                if self.mesh.mark(e) == TANGLED {
+                    let tangled = self.tangled_along(u, v);
+                    if tangled.is_empty() || self.loosen(&tangled, loose)? == Outcome::Rebuild {
+                        return Ok(false);
+                    }
+                    continue;
+                }
+                let Some(owners) = self.owners(u, v, loose)?.filter(|all| !all.is_empty()) else {
+                    return Ok(false);
+                };
+                for owner in owners {
+                    if self.unlink_segment(owner, loose)? == Outcome::Rebuild {
+                        return Ok(false);
+                    }
+                    loose.segments.insert(owner);
+                }
+            }
+            if loose.segments.len() > FEW + self.segments.live() / ONE_IN {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// The tangled segments that cross the one from `a` to `b`, or have a crossing in its range of
+    /// rounding.
+    pub fn touched(&self, a: u32, b: u32) -> Vec<u32> {
+        let [r, s] = [a, b].map(|v| self.mesh.at(v));
+        let tangle = &self.segments.tangle;
+        let crosses = |&other: &u32| {
+            let ends = self.segments.ends(i64::from(other)).unwrap_or_default();
+            let [p, q] = ends.map(|row| self.mesh.at(self.vertex(row)));
+            are_apart(r, s, p, q) && are_apart(p, q, r, s)
+        };
+        let mut touched: Vec<u32> = tangle.segments.iter().copied().filter(crosses).collect();
+        let near = tangle.rows.iter().map(|&row| self.vertex(row));
+        let near: Vec<u32> = near.filter(|&v| passes(r, s, self.mesh.at(v))).collect();
+        if !near.is_empty() {
+            let at = tangle
+                .edges
+                .iter()
+                .filter(|e| e.1.iter().any(|v| near.contains(v)));
+            touched.extend(at.map(|e| e.0));
+        }
+        touched
+    }
+
+    /// The loose segments of positive length.
+    fn threads(&self, loose: &Loose) -> Result<Vec<Thread>> {
+        let mut threads = with_room(loose.segments.len())?;
+        for &segment in &loose.segments {
+            let ends = self.segments.ends(i64::from(segment)).unwrap_or_default();
+            let [a, b] = ends.map(|row| self.vertex(row));
+            if a != b {
+                threads.push((segment, [a, b]));
+            }
+        }
+        Ok(threads)
+    }
+
+    /// The places where pairs cross, but not those that cross exactly at a vertex.
+    fn meetings(
+        &mut self,
+        points: &[Point2],
+        pairs: Vec<[u32; 2]>,
+        watch: &Watch,
+    ) -> Result<Vec<([u32; 2], Point2)>> {
+        let mut found = with_room(pairs.len())?;
+        for pair in pairs {
+            let [[a, b], [c, d]] =
+                pair.map(|i| [points[2 * i as usize], points[2 * i as usize + 1]]);
+            let x = intersection(a, b, c, d).map(|x| x + 0.0);
+            let is_exact = orient2d(a, b, x).is_zero() && orient2d(c, d, x).is_zero();
+            if !is_exact || !matches!(self.mesh.place(x, watch)?, Place::At(_)) {
+                found.push((pair, x));
+            }
+        }
+        Ok(found)
+    }
+
+    /// Makes crossings vertices, which go to `fresh`; `None` if one is at a vertex or on a segment, or a
+    /// segment passes through its pixel.
+    fn tie(
+        &mut self,
+        crossings: &[([u32; 2], Point2)],
+        loose: &Loose,
+        fresh: &mut BTreeSet<u32>,
+        watch: &Watch,
+    ) -> Result<Option<Vec<Knot>>> {
+        let mut knots = with_room(crossings.len())?;
+        for &(pair, x) in crossings {
+            let v = match self.mesh.place(x, watch)? {
+                Place::At(v) if fresh.contains(&v) => v,
+                Place::At(_) => return Ok(None),
+                Place::In(t) => {
+                    let is_on = (8 * t..8 * t + 3).any(|e| {
+                        let [u, v] = self.mesh.ends(e);
+                        self.mesh.mark(e) != 0
+                            && orient2d(self.mesh.at(u), self.mesh.at(v), x).is_zero()
+                    });
+                    if is_on || self.is_near_tangle(x) {
+                        return Ok(None);
+                    }
+                    let v = self.create(x, t)?;
+                    let known = loose.places.iter().find(|place| place.0 == x);
+                    let row = match known {
+                        Some(place) => place.1,
+                        None => self.rows.push()?,
+                    };
+                    self.attach(row, v);
+                    fresh.insert(v);
+                    v
+                }
+            };
+            knots.push((pair, v));
+        }
+        for &v in fresh.iter() {
+            if self.mesh.is_passed(v)? {
+                return Ok(None);
+            }
+        }
+        Ok(Some(knots))
+    }
+
+    /// Marks the edges of segments, through their crossings. Returns the edges of those that cross, each
+    /// with the place of its segment; `None` if they are not all edges, or if a segment passes through
+    /// the pixel of another vertex.
+    fn put_back(
+        &mut self,
+        threads: &[Thread],
+        knots: &[Knot],
+        fresh: &BTreeSet<u32>,
+    ) -> Result<Option<Edges>> {
+        let mut own: Vec<(u32, u32)> = with_room(2 * knots.len())?;
+        own.extend(knots.iter().flat_map(|&([i, j], v)| [(i, v), (j, v)]));
+        own.sort_unstable();
+        own.dedup();
+        let mut routes = with_room(threads.len())?;
+        for (i, &(_, [a, b])) in (0u32..).zip(threads) {
+            let first = own.partition_point(|o| o.0 < i);
+            let meets = own[first..].iter().take_while(|o| o.0 == i).map(|o| o.1);
+            let meets: Vec<u32> = meets.collect();
+            let [r, s] = [a, b].map(|v| self.mesh.at(v));
+            let passes_one = |v: &u32| !meets.contains(v) && passes(r, s, self.mesh.at(*v));
+            if fresh.iter().any(passes_one) {
+                return Ok(None);
+            }
+            match meets.is_empty() {
+                true => routes.push(Vec::new()),
+                false => match self.mesh.stops([a, b], &meets)? {
+                    Some(stops) => routes.push(stops),
+                    None => return Ok(None),
+                },
+            }
+        }
+        let mut edges = Vec::new();
+        for ((i, &(_, [a, b])), stops) in (0u32..).zip(threads).zip(routes) {
+            if stops.is_empty() && self.link_vertices(a, b)? == Outcome::Rebuild {
+                return Ok(None);
+            }
+            for pair in stops.windows(2) {
+                if self.mesh.reach(pair[0], pair[1])? != Reach::Vertex(pair[1]) {
+                    return Ok(None);
+                }
+                self.mesh.add_mark(pair[0], pair[1], TANGLED)?;
+                push(&mut edges, (i, [pair[0], pair[1]]))?;
+            }
+        }
+        Ok(Some(edges))
+    }
+
+    /// Lists segments that cross, with their crossings and edges.
+    fn enlist(
+        &self,
+        tangle: &mut Tangle,
+        threads: &[Thread],
+        knots: &[Knot],
+        edges: &[(u32, [u32; 2])],
+    ) -> Result<()> {
+        let number = |i: u32| threads[i as usize].0;
+        for &([i, j], v) in knots {
+            let row = self.mesh.sites[v as usize].head;
+            push(&mut tangle.crossings, [number(i), number(j), row])?;
+        }
+        for &(i, ends) in edges {
+            push(&mut tangle.segments, number(i))?;
+            push(&mut tangle.edges, (number(i), ends))?;
+        }
+        tangle.crossings.sort_unstable();
+        tangle.segments.sort_unstable();
+        tangle.segments.dedup();
+        tangle.edges.sort_unstable();
+        Ok(())
+    }
+}
+
+/// A copy of a tangle.
+fn copy(tangle: &Tangle) -> Result<Tangle> {
+    Ok(Tangle {
+        segments: copied(&tangle.segments)?,
+        rows: copied(&tangle.rows)?,
+        crossings: copied(&tangle.crossings)?,
+        edges: copied(&tangle.edges)?,
+    })
+}
