@@ -14,7 +14,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from delone import DegenerateInputError, Delaunay, Dynamic, HandleError, NonFiniteError
+from delone import (
+    DegenerateInputError,
+    Delaunay,
+    Dynamic,
+    HandleError,
+    NonFiniteError,
+    ShapeError,
+)
 
 CORPUS = Path(__file__).parents[1] / "corpus"
 
@@ -208,6 +215,8 @@ def test_a_bad_handle_changes_nothing() -> None:
             live.move(handles, np.zeros((len(handles), 2)))
     again = pickle.loads(pickle.dumps(caught.value))
     assert again.handles.tolist() == [2] and str(again) == "handle 2 is named twice"
+    with pytest.raises(ShapeError, match="handles must be an array, got one number: 0"):
+        live.remove(0)
     with pytest.raises(NonFiniteError):
         live.insert([(3, 3), (np.nan, 0)])
     with pytest.raises(NonFiniteError):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import pickle
 import random
+import threading
 from fractions import Fraction
 from typing import Any
 
@@ -259,6 +260,54 @@ def test_errors_of_segments_name_them_and_change_nothing() -> None:
         Dynamic(ndim=3).insert_segments([(0, 1)])
     assert np.array_equal(live.simplices, before)
     assert live.insert_segments([(4, 1)]).tolist() == [1]
+
+
+def test_points_are_located_in_the_present_triangles() -> None:
+    draw = np.random.default_rng(8)
+    live = Dynamic(draw.random((300, 2)), crossing="split")
+    live.insert_segments([(0, 1), (2, 3), (4, 5), (6, 7)])
+    assert len(live.crossings)
+    live.remove([50, 60])
+    queries = draw.random((400, 2))
+    place = live.locate(queries)
+    assert np.array_equal(place.simplex, live.find_simplex(queries))
+    inside = place.simplex >= 0
+    assert 300 < inside.sum() < 400
+    handles, _ = live.corners(queries)
+    found = live.handles[live.simplices[place.simplex[inside]]]
+    assert np.array_equal(np.sort(found, axis=1), np.sort(handles[inside], axis=1))
+    assert (handles[~inside] == -1).all()
+    live.remove_segments(live.segment_handles)
+    assert np.array_equal(live.freeze().find_simplex(queries), live.find_simplex(queries))
+
+
+def test_one_state_is_read_while_others_edit() -> None:
+    draw = np.random.default_rng(2)
+    live = Dynamic(draw.random((60, 2)), crossing="split")
+    found: list[BaseException] = []
+
+    def edit(seed: int) -> None:
+        own = np.random.default_rng(seed)
+        try:
+            for _ in range(40):
+                handles = live.insert(own.random((4, 2)))
+                segments = live.insert_segments(handles.reshape(2, 2))
+                assert len(live.segments) >= 0
+                assert live.freeze().validate()
+                again = pickle.loads(pickle.dumps(live))
+                assert set(again.input_segments.ravel()) <= set(again.handles)
+                live.remove_segments(segments)
+                live.remove(handles)
+        except BaseException as error:
+            found.append(error)
+
+    threads = [threading.Thread(target=edit, args=(seed,)) for seed in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not found
+    assert (len(live), len(live.segments)) == (60, 0)
 
 
 def test_a_crossing_cannot_be_edited_itself() -> None:

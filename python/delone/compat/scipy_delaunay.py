@@ -126,7 +126,7 @@ class Delaunay(Incremental):
         with told_as_qhull_does(np.concatenate((self._points, more)), self._what):
             live.insert(more)
         self._live = live
-        mesh = live._frozen()
+        mesh = live._frozen(live._arrays())
         return self._take(mesh, mesh.points)
 
     def _take(self, mesh: delaunay.Delaunay, points: Floats) -> None:

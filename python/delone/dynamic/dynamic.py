@@ -6,20 +6,31 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone import _core
+from delone import _core, location
 from delone._arrays import as_choice, as_points, as_vectors, as_workers
 from delone.complex import Complex
 from delone.constrained import ConstrainedDelaunay
 from delone.counting import counted
 from delone.delaunay import Delaunay
 from delone.dynamic.results import Changes, Snapshot
-from delone.dynamic.segments import FEW, Segmented, adopt, as_handles, given_segments, refuse
+from delone.dynamic.segments import (
+    FEW,
+    Segmented,
+    adopt,
+    as_handles,
+    given_segments,
+    refuse,
+    saved_segments,
+)
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.immutable import own_copy, sealed
+from delone.plane.dimension import PLANE
+from delone.space.dimension import SPACE
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone.dimension import Dimension, Locator
     from delone.location import Location
     from delone.validation import ValidationReport
 
@@ -114,12 +125,14 @@ class Dynamic(Segmented):
     <Delaunay of 4 points: 3 triangles>
     """
 
-    __slots__ = ("__weakref__", "_present")
+    __slots__ = ("__weakref__", "_index", "_present")
 
     _live: _core.Live2 | _core.Live3
     # An object of its own for each state, and the arrays of the state when they were made.
     _edit: object
     _present: tuple[object, _core.LiveArrays2 | _core.LiveArrays3] | None
+    # What finds simplices, and the arrays that it is for.
+    _index: tuple[_core.LiveArrays2 | _core.LiveArrays3, Locator] | None
     _workers: int | None
 
     def __init__(
@@ -154,6 +167,7 @@ class Dynamic(Segmented):
         self._workers = workers
         self._edit = object()
         self._present = None
+        self._index = None
 
     @classmethod
     def _of(cls, core: _core.Live2 | _core.Live3, workers: int | None) -> Self:
@@ -180,9 +194,10 @@ class Dynamic(Segmented):
         return cls._of(core, workers)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        handles, points = self._live.points()
-        total = self._live.counts()[3]
-        saved = (points, handles, total, self._workers, self._saved_segments())
+        # Of one state, whatever other threads do.
+        core = self._live.state().open()
+        handles, points = core.points()
+        saved = (points, handles, core.counts()[3], self._workers, saved_segments(core))
         return type(self)._again, saved
 
     def __copy__(self) -> Self:
@@ -431,11 +446,13 @@ class Dynamic(Segmented):
         >>> bool(Dynamic([(0, 0), (1, 0), (0, 1)]).freeze().validate())
         True
         """
-        return self._frozen_segments() if self._has_segments else self._frozen()
-
-    def _frozen(self) -> Delaunay:
-        """Return the present triangulation, which has no segments, as one that never changes."""
         made = self._arrays()
+        if isinstance(made, _core.LiveArrays2) and made.constrained is not None:
+            return self._frozen_segments()
+        return self._frozen(made)
+
+    def _frozen(self, made: _core.LiveArrays2 | _core.LiveArrays3) -> Delaunay:
+        """Return arrays without segments as a triangulation that never changes."""
         if not len(made.simplices):
             return Delaunay(made.points, workers=self._workers, planar=True)
         arrays: dict[str, NDArray[Any]] = {
@@ -555,7 +572,7 @@ class Dynamic(Segmented):
         queries = as_vectors(xi, self.ndim, name="xi")
         if self.nsimplex == 0:
             return np.full(queries.shape[:-1], -1, dtype=np.int32)
-        return self.freeze().find_simplex(queries)
+        return location.find(_dimension(self.ndim), self._locator()[1], queries, self._workers)
 
     def locate(self, xi: ArrayLike) -> Location:
         """Locate points: simplices, barycentric weights, nearest points of the boundary.
@@ -581,7 +598,20 @@ class Dynamic(Segmented):
         >>> Dynamic([(0, 0), (4, 0), (0, 4)]).locate((1, 2)).barycentric.max()
         np.float64(0.5)
         """
-        return self.freeze().locate(xi)
+        made, index = self._locator()
+        return location.locate(_dimension(self.ndim), index, made.points, xi, self._workers)
+
+    def _locator(self) -> tuple[_core.LiveArrays2 | _core.LiveArrays3, Locator]:
+        """Return the present arrays, and what finds simplices in them."""
+        made, index = self._arrays(), self._index
+        if not len(made.simplices):
+            # The error says why there is none.
+            Delaunay(made.points, workers=self._workers, planar=True)
+        if index is None or index[0] is not made:
+            locator = _dimension(self.ndim).locator
+            index = (made, locator(made.points, made.simplices, made.neighbors))
+            self._index = index
+        return index
 
     def corners(self, xi: ArrayLike) -> tuple[Handles, Floats]:
         """Return corners and weights of the simplices that contain points.
@@ -689,6 +719,11 @@ class Dynamic(Segmented):
 def _live(ndim: int) -> type[_core.Live2] | type[_core.Live3]:
     """Return the class of the core for a number of coordinates."""
     return _core.Live2 if ndim == 2 else _core.Live3
+
+
+def _dimension(ndim: int) -> Dimension:
+    """Return the functions for a number of coordinates."""
+    return PLANE if ndim == 2 else SPACE
 
 
 def _restore(core: _core.Live2 | _core.Live3, state: _core.LiveState2 | _core.LiveState3) -> None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int32]
     Handles = NDArray[np.int64]
 
-__all__ = ["Segmented", "adopt", "as_handles", "given_segments", "refuse"]
+__all__ = ["Segmented", "adopt", "as_handles", "given_segments", "refuse", "saved_segments"]
 
 # Fewer items are edited with the GIL, so that nobody can change them meanwhile.
 FEW = 16
@@ -150,24 +150,22 @@ class Segmented:
     def constrained(self) -> NDArray[np.bool_]:
         """Whether the edge opposite each vertex is part of a segment, (m, 3)."""
         self._plane()
-        made = self._arrays()
-        marked = made.constrained if isinstance(made, _core.LiveArrays2) else None
-        if marked is None:
-            marked = np.zeros(made.simplices.shape, dtype=bool)
-        return sealed(marked)
+        return sealed(_marked(self._arrays()))
 
     @property
     def segments(self) -> Indices:
         """The edges that the segments consist of, as rows of `points`, ascending, (q, 2)."""
-        simplices, marked = self._arrays().simplices, self.constrained
+        made = self._arrays()
+        simplices, marked = made.simplices, _marked(made)
         corners = [simplices[marked[:, k]][:, [(k + 1) % 3, (k + 2) % 3]] for k in range(3)]
         edges = np.sort(np.concatenate(corners), axis=1)
         return sealed(np.unique(edges, axis=0).astype(np.int32))
 
     def _frozen_segments(self) -> ConstrainedDelaunay:
         """Return the present triangulation with its segments as an object that never changes."""
-        plane = self._plane()
-        made, own = self._arrays(), plane.segments()
+        # Of one state, whatever other threads do.
+        plane = self._plane().state().open()
+        made, own = plane.arrays(), plane.segments()
         kept = ~np.isin(made.handles, own.added)
         handles = made.handles[kept]
         rows = np.searchsorted(handles, own.ends).astype(np.int32)
@@ -178,15 +176,6 @@ class Segmented:
             workers=self._workers,
             planar=True,
         )
-
-    def _saved_segments(self) -> tuple[Any, ...] | None:
-        """Return what a pickle keeps of the segments."""
-        if not isinstance(self._live, _core.Live2):
-            return None
-        own, (_, split) = self._live.segments(), self._live.constraints()
-        handles, points = self._live.points()
-        places = points[np.searchsorted(handles, own.added)]
-        return split, own.handles, own.ends, own.total, own.added, places
 
     def _refuse_held(self, handles: Handles) -> None:
         """Raise an error if points to be removed are ends of segments, or crossings."""
@@ -252,6 +241,8 @@ def _as_ends(ends: ArrayLike) -> Handles:
 
 def _as_integers(handles: ArrayLike, name: str) -> Handles:
     array = as_plain_array(handles, name)
+    if array.ndim == 0:
+        raise ShapeError(f"{name} must be an array, got one number: {handles!r}")
     if array.size == 0:
         return np.empty(0, dtype=np.int64)
     if array.dtype.kind not in "iu":
@@ -261,6 +252,22 @@ def _as_integers(handles: ArrayLike, name: str) -> Handles:
     if len(array) > FEW:
         return np.array(array, dtype=np.int64, order="C")
     return np.ascontiguousarray(array, dtype=np.int64)
+
+
+def saved_segments(live: _core.Live2 | _core.Live3) -> tuple[Any, ...] | None:
+    """Return what a pickle keeps of the segments."""
+    if not isinstance(live, _core.Live2):
+        return None
+    own, (_, split) = live.segments(), live.constraints()
+    handles, points = live.points()
+    places = points[np.searchsorted(handles, own.added)]
+    return split, own.handles, own.ends, own.total, own.added, places
+
+
+def _marked(made: _core.LiveArrays2 | _core.LiveArrays3) -> NDArray[np.bool_]:
+    """Return which edges are parts of segments."""
+    marked = made.constrained if isinstance(made, _core.LiveArrays2) else None
+    return np.zeros(made.simplices.shape, dtype=bool) if marked is None else marked
 
 
 def _crossings_among(plane: _core.Live2, handles: Handles) -> Handles:
