@@ -1,8 +1,9 @@
 """Triangulations that change: delone, CGAL, and startinpy if installed.
 
-Each peer works in a process of its own, and they take turns run by run. The table has microseconds
-for each point; for snapshots, milliseconds and megabytes. CGAL is built where Debian's libcgal-dev
-is installed. startinpy is given a tenth of the points, along a curve. Run it:
+Each peer works in a process of its own, on one thread, and they take turns run by run. The table
+has microseconds of processor time for each point; for snapshots, milliseconds and megabytes. CGAL
+is built where Debian's libcgal-dev is installed. startinpy is given a tenth of the points, along a
+curve. Run it:
 ``python benchmarks/live.py [--n 1000000] [--m 100000] [--ndim 2] [--runs 5]``.
 """
 
@@ -26,10 +27,10 @@ PEERS = ("delone", "startinpy")
 
 
 def timed(name: str, count: int, work: Callable[[], Any]) -> Any:
-    """Run some work, and print its name, its seconds, and how many points it edits."""
-    start = time.perf_counter()
+    """Run some work, and print its name, processor seconds, and how many points it edits."""
+    start = time.process_time()
     made = work()
-    print(f"{name}\t{time.perf_counter() - start:.9f}\t{count}", flush=True)
+    print(f"{name}\t{time.process_time() - start:.9f}\t{count}", flush=True)
     return made
 
 
