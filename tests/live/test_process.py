@@ -27,10 +27,10 @@ if {segments}:
 else:
     free = live.handles
 # Below and above the share from which on everything is built again.
-few, many = free[:: 8], free[: len(free) // 2]
+few, many = free[:: 8], free[: len(free) * 9 // 10]
 edits = {{
     "insert few": lambda: live.insert(draw.random((len(few), ndim))),
-    "insert many": lambda: live.insert(draw.random((len(many), ndim))),
+    "insert many": lambda: live.insert(draw.random((2 * len(many), ndim))),
     "remove few": lambda: live.remove(few),
     "remove many": lambda: live.remove(many),
     "move few": lambda: live.move(few, live.points[few] + 1e-3),

@@ -19,6 +19,11 @@ use crate::watch::{IDLE, Pace, Watch};
 const SHARE_INSERTED: usize = 3;
 const SHARE_REMOVED: usize = 3;
 const SHARE_MOVED: usize = 1;
+/// The same among segments, whose rebuild costs more, while an insertion or a removal costs as much. A
+/// point that moves far is removed and inserted.
+const SHARE_INSERTED_AMONG: usize = 1;
+const SHARE_REMOVED_AMONG: usize = 3;
+const SHARE_MOVED_AMONG: usize = 2;
 const FEW: usize = 64;
 
 /// A batch of more than this share of the vertices needs no tree of starting points.
@@ -59,7 +64,7 @@ impl Plane {
         let first = self.rows.total();
         self.rows.reserve(input.len())?;
         if self.has_segments() {
-            let whole = !self.is_incremental(input.len(), SHARE_INSERTED);
+            let whole = !self.is_incremental(input.len(), SHARE_INSERTED_AMONG);
             return self.insert_among(input, whole, workers, watch);
         }
         if let [p] = *input {
@@ -265,7 +270,7 @@ impl Plane {
     pub fn remove(&mut self, rows: &[i64], workers: usize, watch: &Watch) -> Result<()> {
         let pairs = self.by_vertex(rows, watch)?;
         if self.has_segments() {
-            let whole = !self.is_incremental(pairs.len(), SHARE_REMOVED);
+            let whole = !self.is_incremental(pairs.len(), SHARE_REMOVED_AMONG);
             return self.remove_among(&pairs, whole, workers, watch);
         }
         let mut lost = with_room(pairs.len())?;
@@ -367,7 +372,7 @@ impl Plane {
             }
         }
         if self.has_segments() {
-            let whole = !self.is_incremental(moves.len(), SHARE_MOVED);
+            let whole = !self.is_incremental(moves.len(), SHARE_MOVED_AMONG);
             return self.relocate_among(&moves, whole, workers, watch);
         }
         let old = match self.is_incremental(moves.len(), SHARE_MOVED) {
