@@ -53,6 +53,7 @@ __all__ = [
     "SphereWeights",
     "SphereLocator",
     "SphereTriangulation",
+    "SphereWeights",
     "Triangulation",
     "WeightRows",
     "__version__",

@@ -258,7 +258,7 @@ impl<'a> Patch<'a> {
     }
 
     /// Moves triangle `from` to record `to` and updates its neighbors, except those outside.
-    pub(super) fn relocate(&mut self, from: u32, to: u32) {
+    pub(crate) fn relocate(&mut self, from: u32, to: u32) {
         self.set(to, self.corners(from));
         self.set_vertex(8 * to + 3, self.vertex(8 * from + 3));
         for k in 0..3 {

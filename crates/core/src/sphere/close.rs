@@ -56,7 +56,7 @@ impl Kernel<'_> {
 
     /// The triangles in conflict with `p`, and the half-edges beyond their boundary.
     fn cavity(&mut self, p: u32, seed: u32) -> Result<(Vec<u32>, Vec<Code>)> {
-        let mut seen = filled(self.mesh.taken().len(), false)?;
+        let mut seen = filled(self.mesh.taken().end as usize, false)?;
         let (mut cavity, mut rim, mut next) = (Vec::new(), Vec::new(), 0);
         seen[seed as usize] = true;
         push(&mut cavity, seed)?;

@@ -5,7 +5,8 @@ use std::cmp::Ordering;
 use delone_predicates::sphere::{compare, same};
 use delone_predicates::{Point3, Sign};
 
-use super::directions::{Arranged, turn};
+use super::arrange::Arranged;
+use super::directions::turn;
 use crate::error::{Error, Result};
 use crate::memory::with_room;
 use crate::order::sort_by;

@@ -5,8 +5,7 @@ use delone_predicates::{Point3, Sign, orient2d};
 
 use crate::constrained::sites::Sites;
 use crate::error::{Error, Result};
-use crate::memory::{filled, push, with_room};
-use crate::order::order_of;
+use crate::memory::zeroed;
 use crate::parallel;
 use crate::points::{NAMED_ROWS, scan};
 use crate::watch::Watch;
@@ -20,20 +19,9 @@ pub struct Directions {
     /// The directions, rounded.
     pub heads: Vec<Point3>,
     /// What is left of them.
-    tails: Vec<Point3>,
+    pub tails: Vec<Point3>,
     /// The vectors, exact.
-    vectors: Vec<Point3>,
-}
-
-/// Directions and their rows.
-#[derive(Debug)]
-pub struct Arranged {
-    /// The directions; the same one may still occur twice, from different vectors.
-    pub directions: Directions,
-    /// For each, its first row in the input.
-    pub rows: Vec<u32>,
-    /// Rows that repeat the vector of a direction, with its number.
-    pub repeats: Vec<[u32; 2]>,
+    pub vectors: Vec<Point3>,
 }
 
 /// Checks that each of the `vectors` is finite and has a direction.
@@ -51,63 +39,14 @@ pub fn check(vectors: &[Point3]) -> Result<()> {
     })
 }
 
-/// Arranges `vectors`, which have been checked, along a curve through their directions.
-pub fn arrange(vectors: &[Point3], workers: usize, watch: &Watch) -> Result<Arranged> {
-    let order = {
-        let places = places(vectors, workers, watch)?;
-        order_of(&places, workers, watch)?
-    };
-    let n = vectors.len();
-    let mut rows: Vec<u32> = with_room(n)?;
-    let mut repeats = Vec::new();
-    let mut own: Vec<Point3> = with_room(n + 1)?;
-    for part in order {
-        watch.check()?;
-        for row in part {
-            // Adding zero turns -0.0 into 0.0.
-            let v = vectors[row as usize].map(|x| x + 0.0);
-            if own.last() == Some(&v) {
-                push(&mut repeats, [row, own.len() as u32 - 1])?;
-            } else {
-                own.push(v);
-                rows.push(row);
-            }
-        }
-    }
-    own.push([f64::NAN; 3]);
-    let (heads, tails) = units(&own, workers, watch)?;
-    Ok(Arranged {
-        directions: Directions {
-            heads,
-            tails,
-            vectors: own,
-        },
-        rows,
-        repeats,
-    })
-}
-
-/// The places of vectors on the curve.
-fn places(vectors: &[Point3], workers: usize, watch: &Watch) -> Result<Vec<Point3>> {
-    let mut places = filled(vectors.len(), [0.0; 3])?;
-    let tasks = vectors.chunks(SHARE).zip(places.chunks_mut(SHARE));
-    parallel::map_watched(workers, tasks.collect(), watch, |(vectors, places)| {
-        for (place, &v) in places.iter_mut().zip(vectors) {
-            *place = rough(v);
-        }
-        Ok(())
-    })?;
-    Ok(places)
-}
-
 /// The directions of vectors: heads and tails.
 pub fn units(
     vectors: &[Point3],
     workers: usize,
     watch: &Watch,
 ) -> Result<(Vec<Point3>, Vec<Point3>)> {
-    let mut heads = filled(vectors.len(), [0.0; 3])?;
-    let mut tails = filled(vectors.len(), [0.0; 3])?;
+    let mut heads = zeroed(vectors.len())?;
+    let mut tails = zeroed(vectors.len())?;
     let both = heads.chunks_mut(SHARE).zip(tails.chunks_mut(SHARE));
     let tasks = vectors.chunks(SHARE).zip(both);
     parallel::map_watched(
@@ -123,14 +62,6 @@ pub fn units(
         },
     )?;
     Ok((heads, tails))
-}
-
-/// The direction, roughly: its place on the curve depends on it, and no triangle.
-fn rough(v: Point3) -> Point3 {
-    let top = v.iter().fold(0.0, |top: f64, x| top.max(x.abs()));
-    let w = v.map(|x| x / top);
-    let length = (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]).sqrt();
-    w.map(|x| x / length)
 }
 
 impl Directions {
@@ -213,7 +144,8 @@ impl Sites for Directions {
     }
 }
 
-/// The sign of one coordinate of the cross product of two vectors, by the other two axes.
+/// The sign of one coordinate of the cross product of two vectors, by the other two axes: that of their
+/// determinant with this axis.
 pub fn turn(a: Point3, b: Point3, [i, j]: [usize; 2]) -> Sign {
     orient2d([a[i], a[j]], [b[i], b[j]], [0.0; 2])
 }

@@ -23,6 +23,8 @@
 //!
 //! The infinite vertex is NaN: nothing is certain with it, and exact tests see to ghosts.
 
+use std::ops::Range;
+
 use delone_predicates::{Point3, Sign};
 
 use super::directions::Directions;
@@ -140,8 +142,8 @@ impl<'a> Kernel<'a> {
     }
 
     /// The records taken.
-    pub fn taken(&self) -> usize {
-        self.mesh.taken().len()
+    pub fn taken(&self) -> Range<u32> {
+        self.mesh.taken()
     }
 
     /// The infinite corner of ghost `t`.

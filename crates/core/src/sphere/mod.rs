@@ -7,8 +7,10 @@
 //!
 //! | file | contents |
 //! |---|---|
-//! | `directions` | vectors and their directions, in insertion order; predicates by number |
+//! | `directions`, `arrange` | vectors and their directions; predicates by number; insertion order |
 //! | `kernel`, `close`, `walk` | insertion; the one that covers the rest of the sphere; the walk |
+//! | `fill` | the insertion of all directions of a block |
+//! | `join` | two triangulations, on both sides of a plane, as one |
 //! | `constrain` | arcs as edges, by the insertion of segments in the plane |
 //! | `angles`, `sines` | longitudes and latitudes to vectors |
 //! | `locate`, `measure` | queries on arrays; areas and circumcenters |
@@ -16,6 +18,7 @@
 //! | `triangulate`, `degenerate` | rows to arrays; what exists where there is no triangle |
 
 pub mod angles;
+mod arrange;
 #[cfg(test)]
 mod bounds;
 mod close;
@@ -23,6 +26,8 @@ mod constrain;
 mod degenerate;
 pub mod directions;
 pub mod dual;
+mod fill;
+mod join;
 mod kernel;
 pub mod locate;
 pub mod measure;

@@ -1,24 +1,18 @@
 //! Triangulates rows of vectors: check, order, insert, export.
-//!
-//! The order is that of `delaunay2::bowyer_watson`. Here no other method takes over where cavities are
-//! large: any input ends, as each insertion does, but some take quadratic time.
 
-use delone_predicates::{Point3, Sign};
+use delone_predicates::Point3;
 
+use super::arrange::{Arranged, arrange};
 use super::degenerate::degenerate;
-use super::directions::{Arranged, Directions, arrange, check};
-use super::kernel::Kernel;
+use super::directions::check;
+use super::fill::fill;
+use super::join::in_halves;
 use crate::arrays::Arrays;
 use crate::error::Result;
 use crate::memory::with_room;
-use crate::mesh2::{Code, Mesh2, export, triangle};
-use crate::order::{Rounds, sort};
+use crate::mesh2::{Code, Mesh2, export};
+use crate::order::sort;
 use crate::watch::Watch;
-
-/// Strides of the rounds, as in 2-D.
-const STRIDES: [u32; 3] = [64, 8, 1];
-/// Directions between two checks for interruption in the search for the first triangle.
-const LOT: u32 = 1 << 12;
 
 /// Triangles in the rows of the input.
 #[derive(Debug)]
@@ -63,52 +57,26 @@ pub(super) fn build(vectors: &[Point3], workers: usize, watch: &Watch) -> Result
     check(vectors)?;
     let arranged = arrange(vectors, workers, watch)?;
     let n = arranged.directions.count();
-    let Some(first) = first_triangle(&arranged.directions, watch)? else {
-        return Err(degenerate(&arranged, watch)?);
-    };
     let mut mesh = Mesh2::with_vertices(n as usize)?;
-    let directions = &arranged.directions;
-    let mut kernel = Kernel::start(directions, mesh.patch(), first, watch);
-    let mut order = Rounds::over(n, STRIDES).filter(|v| !first.contains(v));
-    let mut near = kernel.ghost().map_or(0, triangle);
-    let mut next = order.next();
-    while let Some(p) = next {
-        next = order.next();
-        near = kernel.insert(p, near, next.unwrap_or(p))?;
-    }
-    let (ghost, taken) = (kernel.ghost(), kernel.taken());
-    let repeats = std::mem::take(&mut kernel.repeats);
+    // The same for any number of workers, so that the records are.
+    let joined = match arranged.halves {
+        Some(halves) => in_halves(&mut mesh, &arranged.directions, halves, workers, watch)?,
+        None => None,
+    };
+    let filled = match joined {
+        Some(filled) => filled,
+        None => match fill(mesh.patch(), &arranged.directions, 0..n, watch)? {
+            Some(filled) => filled,
+            None => return Err(degenerate(&arranged, watch)?),
+        },
+    };
     Ok(Built {
         mesh,
-        ghost,
-        taken,
+        ghost: filled.ghost,
+        taken: filled.taken.len(),
         arranged,
-        repeats,
+        repeats: filled.repeats,
     })
-}
-
-/// Three directions that are not on one great circle, counterclockwise; `None` if all are on one.
-fn first_triangle(directions: &Directions, watch: &Watch) -> Result<Option<[u32; 3]>> {
-    let order = || Rounds::over(directions.count(), STRIDES);
-    let Some(a) = order().next() else {
-        return Ok(None);
-    };
-    let mut second = None;
-    for c in order() {
-        if c.is_multiple_of(LOT) {
-            watch.check()?;
-        }
-        let Some(b) = second else {
-            second = (!directions.parallel(a, c)).then_some(c);
-            continue;
-        };
-        match directions.orient([a, b, c]) {
-            Sign::Positive => return Ok(Some([a, b, c])),
-            Sign::Negative => return Ok(Some([b, a, c])),
-            Sign::Zero => {}
-        }
-    }
-    Ok(None)
 }
 
 /// All rows of directions that occur before, with the first row of the same direction, which becomes
@@ -203,7 +171,8 @@ mod tests {
 
     #[test]
     fn interruption_is_heard_in_every_stage() {
-        let vectors = scattered(12_000, -1.0);
+        // So many that they are divided.
+        let vectors = scattered(17_000, -1.0);
         let count = AtomicUsize::new(0);
         let counting = || {
             count.fetch_add(1, Ordering::Relaxed);
