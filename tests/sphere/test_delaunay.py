@@ -237,6 +237,51 @@ def test_a_grid_of_degrees_with_poles_and_both_names_of_the_date_line():
     assert abs(mesh.areas.sum() - 4 * np.pi) < 1e-12
 
 
+@pytest.mark.parametrize("pole", [90.0, -90.0])
+@pytest.mark.parametrize("spacing", [0.01, 0.001])
+def test_rings_about_a_pole_at_small_spacing(pole, spacing):
+    # The unit vectors of all of them are nearly the same doubles, and many tie nearly.
+    step = np.copysign(spacing / 111_000, -pole)
+    turns, rings = np.meshgrid(np.arange(-180, 180, 15.0), np.arange(1, 13))
+    lonlat = np.column_stack((turns.ravel(), pole + step * rings.ravel()))
+    mesh = sphere.Delaunay(lonlat=[*lonlat, (77.0, pole), (-3.0, pole)])
+    assert mesh.duplicates.tolist() == [[289, 288]]
+    assert not mesh.covers_sphere
+    check_topology(mesh)
+    check_locally(mesh)
+
+
+@pytest.mark.parametrize("latitude", [0.0, 60.0, -89.0])
+@pytest.mark.parametrize("spacing", [0.01, 0.001])
+def test_lattices_of_degrees_at_small_spacing(latitude, spacing):
+    step = spacing / 111_000
+    i, j = np.mgrid[-8:9, -8:9]
+    lonlat = np.column_stack((180.0 + step * i.ravel(), latitude + step * j.ravel()))
+    mesh = sphere.Delaunay(lonlat=lonlat)
+    assert len(mesh.duplicates) == 0
+    check_topology(mesh)
+    check_locally(mesh)
+    # One meridian is one great circle, whatever the spacing.
+    with pytest.raises(delone.DegenerateInputError) as caught:
+        sphere.Delaunay(lonlat=lonlat[i.ravel() == 3])
+    chain = caught.value.chain
+    turned = np.roll(chain, -int(chain.argmin()))
+    assert turned.tolist() in (list(range(17)), [0, *range(16, 0, -1)])
+
+
+def test_caps_of_any_size():
+    # From a nanometer to all but a cap as small, about a center off the axes.
+    rng = np.random.default_rng(12)
+    center = np.array([0.5, -0.3, 0.2])
+    for size in (1e-16, 1e-12, 1e-6, 1e-2, 1.0):
+        way = np.cross(center, rng.normal(size=(200, 3)))
+        for sign in (1.0, -1.0):
+            mesh = sphere.Delaunay(xyz=[*(center + size * way), *(sign * center + size * way[:3])])
+            assert mesh.covers_sphere == (sign < 0)
+            check_topology(mesh)
+            check_locally(mesh)
+
+
 def test_many_rows_of_few_directions():
     rng = np.random.default_rng(8)
     lattice = np.array(LATTICE, dtype=float)
