@@ -3,6 +3,7 @@
 
 #![allow(dead_code)] // Each test binary uses its part.
 
+pub mod directions;
 pub mod points;
 
 use delone_predicates::{Sign, stages};
