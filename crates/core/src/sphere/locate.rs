@@ -1,7 +1,7 @@
 //! Location on a triangulation in arrays: the triangle that contains a direction, and the nearest vertex.
 //!
-//! Both are exact and independent of the other queries; the answer is -1 where a query has no direction. A walk by exact signs (see `walk`) leads from
-//! query to query along a curve. On the boundary of triangles the one with the smallest number counts.
+//! Both are exact and independent of the other queries; the answer is -1 where a query has no direction. A
+//! walk by exact signs (see `walk`) leads from query to query along a curve. On the boundary of triangles the one with the smallest number counts.
 //!
 //! The nearest vertex maximizes a linear function over the directions. From a vertex, the walk goes to the
 //! best of its neighbors as long as that is better, as the simplex method does, and ends at the
@@ -15,6 +15,7 @@ use delone_predicates::sphere::{Unit, nearer_of, orient_of};
 use delone_predicates::{Point3, Sign};
 
 use super::directions::{check, units};
+use super::kernel::{cross, dot, turn_bound};
 use crate::arrays::Arrays;
 use crate::error::{Error, Result};
 use crate::memory::{filled, push, with_room};
@@ -185,6 +186,21 @@ impl Index {
         orient_of([a.0, b.0, *q], [&a.1, &b.1, unit])
     }
 
+    /// The same for all three edges, where the rounded directions prove it; see `kernel` for the bound.
+    #[inline]
+    fn sides(&self, query: &Unit, t: usize) -> [Option<Sign>; 3] {
+        let q = query.hi;
+        let [a, b, c] = self.arrays.simplices[t].map(|v| {
+            let p = self.rays.heads[v as usize];
+            let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+            (d, d[0].abs() + d[1].abs() + d[2].abs())
+        });
+        [[b, c], [c, a], [a, b]].map(|[(p, s), (r, w)]| {
+            let turn = dot(cross(p, r), q);
+            (turn.abs() > turn_bound(s, w)).then(|| Sign::of(turn))
+        })
+    }
+
     /// The triangle that contains a query, or the one at whose boundary edge the walk left the hull.
     ///
     /// In a Delaunay triangulation no triangle is met twice. Around constrained edges a walk may cycle: a
@@ -199,8 +215,13 @@ impl Index {
                 dice = dice.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             }
             let first = (dice >> 16) as usize;
+            let sides = self.sides(&q.1, t);
+            let is_beyond = |k: usize| {
+                let sign = sides[k].unwrap_or_else(|| self.side(&q, t, k));
+                sign == Sign::Negative
+            };
             let mut corners = (first..first + 3).map(|k| k % 3);
-            let Some(k) = corners.find(|&k| self.side(&q, t, k) == Sign::Negative) else {
+            let Some(k) = corners.find(|&k| is_beyond(k)) else {
                 return Ok((t, true));
             };
             match usize::try_from(self.arrays.neighbors[t][k]) {
@@ -220,6 +241,10 @@ impl Index {
 
     /// The smallest of the triangles that contain a query, of which one is given.
     fn first(&self, q: (Point3, Unit), t: usize, pace: &mut Pace) -> Result<usize> {
+        let sides = self.sides(&q.1, t);
+        if sides.iter().all(Option::is_some) {
+            return Ok(t);
+        }
         let on: Vec<usize> = (0..3).filter(|&k| self.side(&q, t, k).is_zero()).collect();
         match on[..] {
             [] => Ok(t),
