@@ -1,5 +1,6 @@
 """Each exit code, one line for each error, and no output half written."""
 
+import ast
 import errno
 import json
 import os
@@ -87,6 +88,26 @@ def test_missing_extra(survey, command, tmp_path, monkeypatch, case):
     code, _, err = command(name, survey, "-o", tmp_path / file)
     assert code == 6
     assert f'pip install "delone[{extra}]"' in err
+
+
+def test_help_imports_no_library_that_a_command_may_need():
+    code = """
+import sys
+from delone.cli import run
+assert run(["--help"]) == 0
+libraries = set(sys.modules) - set(sys.stdlib_module_names)
+print(sorted({name.split(".")[0] for name in libraries} - set(sys.stdlib_module_names)))
+print(sorted(name for name in sys.modules if name.startswith("rich.")))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    libraries, parts = map(ast.literal_eval, done.stdout.splitlines()[-2:])
+    # What typer brings along differs from version to version; what commands need is an extra.
+    needed = {"delone", "numpy", "typer"}
+    assert needed < set(libraries)
+    extras = {"dask", "ezdxf", "geopandas", "laspy", "lxml", "matplotlib", "meshio", "networkx"}
+    extras |= {"pandas", "pyarrow", "pyogrio", "pyproj", "pyvista", "rasterio", "scipy", "shapely"}
+    assert not extras & set(libraries)
+    assert {"rich.console", "rich.progress", "rich.table"}.isdisjoint(parts)
 
 
 @pytest.mark.parametrize("library", ["typer", "rich"])
