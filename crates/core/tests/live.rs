@@ -485,3 +485,55 @@ fn marks_and_links_agree_after_edits_of_segments() {
         fresh.arrays.simplices.len()
     );
 }
+
+/// The marked edges of a triangulation, by coordinates.
+fn marked(live: &Plane) -> BTreeSet<[[u64; 2]; 2]> {
+    let made = live.export(&idle()).unwrap();
+    let bits = |v: i32| made.points[v as usize].map(|x| (x + 0.0).to_bits());
+    let mut all = BTreeSet::new();
+    for (t, marks) in made.arrays.simplices.iter().zip(&made.constrained) {
+        for k in (0..3).filter(|&k| marks[k]) {
+            let mut ends = [bits(t[(k + 1) % 3]), bits(t[(k + 2) % 3])];
+            ends.sort_unstable();
+            all.insert(ends);
+        }
+    }
+    all
+}
+
+#[test]
+fn overlapping_and_crossing_segments_equal_a_fresh_build() {
+    let points: Vec<Point2> = (0..36)
+        .map(|i| [f64::from(i % 6), f64::from(i / 6)])
+        .collect();
+    let mut seed = 7u64;
+    let mut next = |n: usize| {
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as usize % n
+    };
+    for _ in 0..40 {
+        let mut live = Plane::new(&points, 1, &idle()).unwrap();
+        live.split_crossings(true);
+        let mut there: Vec<(i64, [i64; 2])> = Vec::new();
+        for _ in 0..25 {
+            if next(3) > 0 || there.is_empty() {
+                let ends = [next(18) as i64, next(18) as i64];
+                let made = live.insert_segments(&[ends], 1, &idle()).unwrap();
+                there.push((made.start as i64, ends));
+            } else {
+                let (gone, _) = there.swap_remove(next(there.len()));
+                live.remove_segments(&[gone], 1, &idle()).unwrap();
+            }
+            live.check().unwrap();
+            let mut fresh = Plane::new(&points, 1, &idle()).unwrap();
+            fresh.split_crossings(true);
+            there.sort_unstable();
+            let ends: Vec<[i64; 2]> = there.iter().map(|s| s.1).collect();
+            fresh.insert_segments(&ends, 1, &idle()).unwrap();
+            assert_eq!(marked(&live), marked(&fresh), "{ends:?}");
+            assert_eq!(live.vertices(), fresh.vertices());
+        }
+    }
+}
