@@ -42,8 +42,7 @@ class RegularTriangulation(PointTriangulation):
         Finite weights, in the square of the unit of the points: the squares of radii, if points
         represent circles or spheres. Adding a constant to all of them changes nothing.
     workers : int, optional
-        Maximum number of threads for queries and measures; by default one per core. The
-        triangulation itself uses one thread.
+        Maximum number of threads; by default one per core. The result does not depend on it.
     planar : bool, optional
         Treat longitudes and latitudes as coordinates of a plane, without a warning.
 
@@ -127,7 +126,7 @@ class RegularTriangulation(PointTriangulation):
         own_weights = as_weights(weights, len(own))
         if workers is not None:
             as_workers(workers)
-        arrays, chain = triangulated(own, own_weights)
+        arrays, chain = triangulated(own, own_weights, workers)
         if not len(arrays["simplices"]):
             raise _degenerate(own, chain)
         self._fill(arrays, {}, workers)
@@ -207,21 +206,24 @@ def as_weights(weights: ArrayLike, npoints: int) -> Floats:
     return found
 
 
-def triangulated(points: Floats, weights: Floats) -> tuple[dict[str, NDArray[Any]], Indices]:
+def triangulated(
+    points: Floats, weights: Floats, workers: int | None
+) -> tuple[dict[str, NDArray[Any]], Indices]:
     """Return what a `RegularTriangulation` holds, also if there is no triangle, and the chain.
 
     If all 2-D points lie on one line, the chain has those that are not hidden, in order. The error
     for coplanar 3-D points has their triangulation as ``error.plane``.
     """
+    threads = as_workers(workers)
     try:
         regular = _core.regular3 if points.shape[1] == _SPACE else _core.regular2
-        made = regular(points, weights)
+        made = regular(points, weights, threads)
     except InternalError as error:
         error.points = np.column_stack((points, weights))
         raise
     except DegenerateInputError as error:
         if error.reason == "coplanar" or len(error.chain) == 3:
-            error.plane = plane_of(points, weights=weights)
+            error.plane = plane_of(points, threads, weights)
         raise
     arrays: dict[str, NDArray[Any]] = {
         "points": points,

@@ -29,12 +29,15 @@ pub fn regular2(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     weights: PyReadonlyArray1<'_, f64>,
+    workers: usize,
 ) -> PyResult<RegularTriangulation> {
     let (points, weights) = attached(py, || {
         let points = rows(&points, "points")?;
         Ok((points, finite_weights(Some(&weights), points.len())?))
     })?;
-    let made = watched(py, |watch| regular::regular(points, weights, watch))?;
+    let made = watched(py, |watch| {
+        regular::regular(points, weights, workers, watch)
+    })?;
     Ok(RegularTriangulation {
         simplices: table(py, made.triangles.simplices)?,
         neighbors: table(py, made.triangles.neighbors)?,
@@ -49,12 +52,13 @@ pub fn regular3(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     weights: PyReadonlyArray1<'_, f64>,
+    workers: usize,
 ) -> PyResult<RegularTriangulation> {
     let (points, weights) = attached(py, || {
         let points = rows(&points, "points")?;
         Ok((points, finite_weights(Some(&weights), points.len())?))
     })?;
-    let made = watched(py, |watch| space::regular(points, weights, watch))?;
+    let made = watched(py, |watch| space::regular(points, weights, workers, watch))?;
     Ok(RegularTriangulation {
         simplices: table(py, made.tetrahedra.simplices)?,
         neighbors: table(py, made.tetrahedra.neighbors)?,

@@ -186,7 +186,7 @@ fn proofs_of_regular_triangulations() {
         .iter()
         .map(|w| 1e-5 * w[0])
         .collect();
-    let made = regular::regular(&points, &weights, &IDLE)
+    let made = regular::regular(&points, &weights, 1, &IDLE)
         .unwrap()
         .triangles;
     let given = Given {
@@ -204,7 +204,7 @@ fn proofs_of_regular_triangulations() {
     assert_eq!((report.faults, report.hidden), Default::default());
     let solid = scattered::<3>(20_000);
     let weights = &weights[..20_000];
-    let made = regular3::regular(&solid, weights, &IDLE)
+    let made = regular3::regular(&solid, weights, 1, &IDLE)
         .unwrap()
         .tetrahedra;
     let given = Given {

@@ -48,7 +48,7 @@ def of_points(points: Floats, weights: Floats | None, workers: int, mesh: Any = 
             found: Any = Delaunay(points, planar=True)
             simplices, neighbors = found.simplices, found.neighbors
         else:
-            arrays, chain = triangulated(points, weights)
+            arrays, chain = triangulated(points, weights, workers)
             simplices, neighbors = arrays["simplices"], arrays["neighbors"]
             if not len(simplices):
                 return _of_chain(points, weights, chain, workers)

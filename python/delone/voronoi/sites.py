@@ -52,7 +52,7 @@ def _delaunay(points: Floats, workers: int | None) -> tuple[Delaunay | None, Dia
 def _regular(
     points: Floats, weights: Floats, workers: int | None
 ) -> tuple[RegularTriangulation | None, Diagram2]:
-    found, chain = triangulated(points, weights)
+    found, chain = triangulated(points, weights, workers)
     mesh = None
     if len(found["simplices"]):
         mesh = RegularTriangulation._from_arrays(found, {}, workers)
@@ -96,7 +96,7 @@ def in_space(
     if weights is None:
         mesh = Delaunay(points, workers=workers)
     else:
-        found, _ = triangulated(points, weights)
+        found, _ = triangulated(points, weights, workers)
         mesh = RegularTriangulation._from_arrays(found, {}, workers)
     topology = mesh.simplices, mesh.neighbors, as_workers(workers)
     arrays = _core.voronoi3(points, weights, *topology)

@@ -6,9 +6,10 @@
 use delone_predicates::{Point3, lexicographic};
 
 use super::deal::{Blocks, deal};
-use super::space::Extent3;
+use super::space::{Arranged3, Extent3, Room3, arrange, arrange_rows};
 use crate::error::Result;
 use crate::memory::with_room;
+use crate::parallel;
 use crate::watch::Watch;
 
 /// Sampled points per block. A median of this many is off by 0.3 % of the points, and so is the
@@ -96,6 +97,41 @@ impl Cuts3 {
 /// Distributes `points` to the blocks of `cuts`.
 pub fn split(points: &[Point3], cuts: &Cuts3, workers: usize, watch: &Watch) -> Result<Blocks<3>> {
     deal(points, cuts.blocks(), |p| cuts.block(p), workers, watch)
+}
+
+/// Distinct points in blocks, each sorted along the curve; where each block begins, and the end.
+pub fn arrange_blocks(
+    points: &[Point3],
+    blocks: usize,
+    workers: usize,
+    watch: &Watch,
+) -> Result<(Arranged3, Vec<usize>)> {
+    if blocks < 2 {
+        let arranged = arrange(points, watch)?;
+        let end = arranged.points.len();
+        return Ok((arranged, vec![0, end]));
+    }
+    let cuts = Cuts3::of(points, blocks)?;
+    let split = split(points, &cuts, workers, watch)?;
+    let tasks = split.each().collect();
+    let parts = parallel::map_watched(workers, tasks, watch, |(points, rows)| {
+        arrange_rows(points, Some(rows), Room3::of(points.len())?, watch)
+    })?;
+    let count = parts.iter().map(|part| part.points.len()).sum::<usize>();
+    let mut out = Arranged3 {
+        points: with_room(count + 1)?,
+        rows: with_room(count)?,
+        duplicates: Vec::new(),
+    };
+    let mut starts = vec![0];
+    for part in parts {
+        out.points.extend(part.points);
+        out.rows.extend(part.rows);
+        out.duplicates.extend(part.duplicates);
+        starts.push(out.points.len());
+    }
+    out.duplicates.sort_unstable();
+    Ok((out, starts))
 }
 
 fn cut(cuts: &mut [Cut], node: usize, sample: &mut [Point3]) {

@@ -1,8 +1,9 @@
 //! 2-D regular triangulations of weighted points, exact and canonical, and periodic triangulations.
 //!
 //! A regular triangulation is the lower hull of sites lifted to |p|^2 - w; periodic triangulations
-//! are built by the same insertion. `records` and `heaviest` also serve 3-D.
+//! are built by the same insertion. `records`, `heaviest` and `blocks` also serve 3-D.
 
+mod blocks;
 mod heaviest;
 mod insertion;
 mod periodic;
@@ -19,6 +20,7 @@ use crate::order::arrange;
 use crate::points;
 use crate::watch::Watch;
 
+pub use blocks::{Found, in_blocks};
 pub use heaviest::{Heaviest, heaviest};
 pub use insertion::Sites;
 pub use periodic::{Copies, Images, periodic};
@@ -39,10 +41,15 @@ pub struct Regular {
     pub stands_for: Vec<i32>,
 }
 
-/// Triangulates finite points with finite weights, one for each.
-pub fn regular(points: &[Point2], weights: &[f64], watch: &Watch) -> Result<Regular> {
+/// Triangulates finite points with finite weights, one for each; the same for any number of workers.
+pub fn regular(
+    points: &[Point2],
+    weights: &[f64],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Regular> {
     points::scan(points)?;
-    let arranged = arrange(points, 1, watch)?;
+    let arranged = arrange(points, workers, watch)?;
     let Heaviest {
         rows,
         weights,
@@ -52,7 +59,9 @@ pub fn regular(points: &[Point2], weights: &[f64], watch: &Watch) -> Result<Regu
         points: &arranged.points,
         weights: &weights,
     };
-    let found = insertion::insert_all(&sites, arranged.rows.len(), watch)?;
+    let found = in_blocks(sites, &arranged.starts, workers, watch, |sites| {
+        insertion::insert_all(&sites, sites.points.len(), watch)
+    })?;
     let (mut triangles, chain) = match found {
         Ok(triangles) => (triangles, Vec::new()),
         Err(chain) => (
