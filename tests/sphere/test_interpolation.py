@@ -291,3 +291,33 @@ def test_blocks_do_not_matter_outside_of_a_hull(monkeypatch):
     found = interpolant(queries)
     monkeypatch.setattr(outside, "_BLOCK", 28)
     np.testing.assert_array_equal(interpolant(queries), found)
+
+
+@pytest.mark.parametrize("kind", [sphere.Linear, sphere.NaturalNeighbor, sphere.Nearest])
+def test_no_value_far_from_all_sites(kind):
+    sites = scattered(60)
+    queries = scattered(400, seed=7).reshape(20, 20, 3)
+    made = kind(sites, np.arange(120.0).reshape(60, 2))
+    far = made.distance(queries)
+    limit = float(np.median(far))
+    found = made(queries, max_distance=limit)
+    assert (np.isnan(found) == (far > limit)[..., None]).all()
+    near = far <= limit
+    assert (found[near] == made(queries)[near]).all()
+    # A limit is an angle, in the unit of the sites; it is part of what is kept.
+    assert np.isnan(made(queries[0, 0], max_distance=far[0, 0] * 0.99)).all()
+    assert np.isfinite(made(queries[0, 0], max_distance=far[0, 0])).all()
+    radians = kind(sites, np.arange(60.0), degrees=False)
+    assert np.isnan(radians(queries, max_distance=np.radians(limit))).sum() == (~near).sum()
+    for wrong in (-1.0, np.nan):
+        with pytest.raises(InputError, match="max_distance"):
+            made(queries, max_distance=wrong)
+
+
+def test_distances_are_from_the_sites_that_are_left():
+    sites = [(0, 0), (10, 0), (10, 10), (0, 10), (5, 5)]
+    made = sphere.Linear(sites, nan="drop")
+    values = [1.0, 1.0, 1.0, 1.0, np.nan]
+    assert made((5, 5), max_distance=1, values=np.ones(5)) == 1
+    assert np.isnan(made((5, 5), max_distance=1, values=values))
+    assert made((5, 5), max_distance=8, values=values) == pytest.approx(1)

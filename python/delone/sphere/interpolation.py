@@ -16,7 +16,7 @@ from delone import _core
 from delone._arrays import as_flag, as_number, as_plain_array, as_workers
 from delone.counting import agreed
 from delone.errors import DtypeError, InputError, ShapeError
-from delone.interpolate.base import shaped_derivatives
+from delone.interpolate.base import as_max_distance, shaped_derivatives
 from delone.interpolate.hull import Terms
 from delone.interpolate.values import DUPLICATES, NAN, as_field, chosen, require_finite_values
 from delone.interpolate.weights import Weights, joined, rectangular
@@ -89,7 +89,13 @@ class _Interpolator:
         """The triangulation of the sites, without those that ``nan="drop"`` removed."""
         return self._mesh if self._field is None else self._field[1]._mesh
 
-    def __call__(self, xi: ArrayLike, *, values: ArrayLike | None = None) -> NDArray[Any]:
+    def __call__(
+        self,
+        xi: ArrayLike,
+        *,
+        values: ArrayLike | None = None,
+        max_distance: float | None = None,
+    ) -> NDArray[Any]:
         """Interpolate.
 
         Parameters
@@ -99,6 +105,9 @@ class _Interpolator:
             and vectors of length zero give NaN.
         values : array_like, shape (n,) or (n, ...), optional
             Another field on the same sites; by default the values given to the constructor.
+        max_distance : float, optional
+            Queries at a larger angle from the nearest site get NaN; in the unit of `distance`. By
+            default there is no limit.
 
         Returns
         -------
@@ -115,20 +124,26 @@ class _Interpolator:
             A value is not finite and ``nan="raise"``.
         InputError
             No values were given; duplicates have different values; a query is outside the hull and
-            ``extrapolate="raise"``.
+            ``extrapolate="raise"``; `max_distance` is negative or NaN.
 
         Examples
         --------
         >>> from delone import sphere
         >>> sites = [(170, 0), (-170, 0), (180, 10), (180, -10)]
-        >>> sphere.Linear(sites, [1.0, 3.0, 2.0, 2.0])([(180, 0), (-180, 0), (0, 0)])
+        >>> warmth = sphere.Linear(sites, [1.0, 3.0, 2.0, 2.0])
+        >>> warmth([(180, 0), (-180, 0), (0, 0)])
         array([ 2.,  2., nan])
+        >>> warmth([(180, 0), (180, 9)], max_distance=5)
+        array([nan,  2.])
         """
+        limit = as_max_distance(max_distance)
         field, owner, columns = self._with(values)
         table = owner._table(xi)
         found = _core.combine2(
             table.indptr, table.rows, table.weights, columns, None, None, as_workers(self._workers)
         )
+        if limit is not None:
+            found[~(owner._distance(xi) <= limit).ravel()] = np.nan
         return field.shaped(found, table.shape)
 
     def distance(self, xi: ArrayLike) -> Floats:
@@ -162,7 +177,11 @@ class _Interpolator:
         >>> sphere.Linear(sites).distance([(-172, 0), (180, 85)]).round(9)
         array([ 2., 75.])
         """
-        mesh = self.triangulation
+        return (self if self._field is None else self._field[1])._distance(xi)
+
+    def _distance(self, xi: ArrayLike) -> Floats:
+        """The angle to the nearest site of the mesh."""
+        mesh = self._mesh
         flat, known, shape = self._queries(xi)
         found = np.full(len(flat), np.nan)
         rows = mesh.nearest(flat[known])
