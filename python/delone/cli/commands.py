@@ -36,6 +36,11 @@ COMMANDS = {
         "triangulate",
         "Triangulate the points of a file, report, and write meshes and plots.",
     ),
+    "sphere": Listed(
+        "globe",
+        "globe",
+        "Triangulate longitudes and latitudes on the sphere, report, and write meshes.",
+    ),
     "check": Listed(
         "check",
         "check",

@@ -19,6 +19,7 @@ from delone.errors import (
     CrowdedFacesError,
     DanglingFacesError,
     DegenerateInputError,
+    DirectionError,
     FileFormatError,
     InputError,
     InternalError,
@@ -71,6 +72,7 @@ MEANINGS = {
     Exit.USAGE: "the command line is wrong",
     Exit.INPUT: "the input is missing, truncated or of unknown format",
     Exit.DEGENERATE: "no triangulation: too few points, collinear points, NaN or infinity, "
+    "latitudes beyond a pole, "
     "duplicates with different values, crossings that are errors, vertices beyond a limit",
     Exit.OUTPUT: "the output cannot be written; no file was written, unless the message says so",
     Exit.MISSING_EXTRA: "an optional library is not installed",
@@ -109,6 +111,7 @@ def code_of(error: BaseException) -> Exit:
         (MissingExtraError, Exit.MISSING_EXTRA),
         (DegenerateInputError, Exit.DEGENERATE),
         (NonFiniteError, Exit.DEGENERATE),
+        (DirectionError, Exit.DEGENERATE),
         (ConflictingValuesError, Exit.DEGENERATE),
         (CrossingFacesError, Exit.DEGENERATE),
         (CrossingSegmentsError, Exit.DEGENERATE),

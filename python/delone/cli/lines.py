@@ -10,7 +10,12 @@ from typing import TYPE_CHECKING, ParamSpec
 import numpy as np
 
 from delone.counting import agreed
-from delone.errors import ConflictingValuesError, FileFormatError, NonFiniteError
+from delone.errors import (
+    ConflictingValuesError,
+    DirectionError,
+    FileFormatError,
+    NonFiniteError,
+)
 from delone.io.registry import is_text, line_numbers
 
 if TYPE_CHECKING:
@@ -33,7 +38,7 @@ def naming_lines(command: Callable[Given, None]) -> Callable[Given, None]:
     def called(*args: Given.args, **kwargs: Given.kwargs) -> None:
         try:
             command(*args, **kwargs)
-        except (NonFiniteError, ConflictingValuesError) as error:
+        except (NonFiniteError, ConflictingValuesError, DirectionError) as error:
             given = kwargs.get("source", kwargs.get("sources"))
             files = given if isinstance(given, list | tuple) else [given]
             rows = np.ravel(error.rows[:_FIRST]).tolist()

@@ -649,12 +649,15 @@ def _plain(
     return found
 
 
-def writer(path: str | os.PathLike[str], *, space: bool = False) -> Callable[..., None]:
+def writer(
+    path: str | os.PathLike[str], *, space: bool = False, surface: bool = False
+) -> Callable[..., None]:
     """Return the function that writes this suffix in place, after importing its library.
 
-    It takes the arguments of `write_mesh`. With `space`, tetrahedra will be written.
+    It takes the arguments of `write_mesh`. With `space`, tetrahedra will be written; with
+    `surface`, triangles in 3-D.
     """
-    return _writer(path, "tetrahedra" if space else "triangles")
+    return _writer(path, "surface" if surface else "tetrahedra" if space else "triangles")
 
 
 def _writer(path: str | os.PathLike[str], kind: str) -> Callable[..., None]:

@@ -10,6 +10,7 @@ from delone import _core
 from delone._arrays import as_flag, as_workers
 from delone.counting import counted
 from delone.errors import InternalError
+from delone.exchange.parts import Parts
 from delone.immutable import Immutable, kept, sealed
 from delone.plane import topology
 from delone.sphere.coordinates import directions_of, lonlat_of, queries_of, units_of
@@ -204,6 +205,11 @@ class Delaunay(Immutable):
         if duplicates := len(self._duplicates):
             points += f" ({counted(duplicates, 'duplicate')})"
         return points
+
+    def _parts(self) -> Parts:
+        longitude, latitude = self.lonlat.T
+        values = {"longitude": longitude, "latitude": latitude}
+        return Parts(self.points, self.simplices, of_points=values)
 
     @property
     def vectors(self) -> Floats:

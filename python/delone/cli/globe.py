@@ -1,0 +1,215 @@
+"""Triangulation of longitudes and latitudes on the sphere: the command ``delone sphere``."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from delone import __version__, sphere
+from delone.atomic import check_target
+from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.options import Classes, Columns, Json, Layer, Quiet, Workers, class_numbers, split
+from delone.cli.outputs import write_all
+from delone.cli.referenced import Crs, note, require_known
+from delone.cli.report import Stopwatch, peak_memory
+from delone.cli.show import print_json, print_report, spinner
+from delone.georeference import is_geographic
+from delone.io import input_suffixes, read_points
+from delone.io.registry import writer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from delone.cli.show import Row
+    from delone.io import PointSet
+
+__all__ = ["globe"]
+
+_SUFFIXES = (".vtu", ".ply", ".obj", ".stl", ".msh", ".xdmf", ".inp")
+# Formats that store values of points.
+_WITH_VALUES = (".vtu", ".ply", ".msh")
+_FIRST = 5
+
+
+def globe(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            metavar="INPUT",
+            help="File of longitudes and latitudes: " + " ".join(input_suffixes()),
+        ),
+    ],
+    *,
+    output: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="OUTPUT",
+            help="File to write, once or more: " + " ".join(_SUFFIXES),
+        ),
+    ] = None,
+    columns: Columns = None,
+    classes: Classes = None,
+    layer: Layer = None,
+    radians: Annotated[
+        bool, typer.Option("--radians", help="Longitudes and latitudes are in radians.")
+    ] = False,
+    edges: Annotated[
+        bool, typer.Option("--edges", help="Write edges instead of triangles.")
+    ] = False,
+    workers: Workers = None,
+    crs: Crs = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Triangulate longitudes and latitudes on the sphere, report, and write meshes.
+
+    The points of a mesh are on the unit sphere, in the order of the file. Heights are values at the
+    points, in .vtu, .ply and .msh.
+    """
+    require_known(crs)
+    with writing():
+        protect_inputs(output or (), source)
+        writers = {path: _ready(path) for path in output or ()}
+    watch = Stopwatch()
+    with spinner(quiet or as_json) as say:
+        say(f"reading {source.name}")
+        with reading(), watch.stage("read"):
+            survey = read_points(
+                source, columns=split(columns), classes=class_numbers(classes), layer=layer
+            )
+        _require_angles(survey, crs)
+        say(f"triangulating {len(survey):,} points")
+        with watch.stage("triangulate"):
+            mesh = _triangulated(survey, radians=radians, workers=workers, quiet=quiet)
+        values = _values(survey)
+        held = {
+            path: partial(write, attributes=_held(path, values, edges=edges))
+            for path, write in writers.items()
+        }
+        write_all(held, mesh, watch, say, edges=edges)
+        say("measuring")
+        with watch.stage("measure"):
+            measures = _measures(mesh)
+        figures = {
+            "delone": __version__,
+            "input": str(source),
+            "crs": crs or survey.crs,
+            **measures,
+            "stages": watch.rows(mesh.npoints),
+            "outputs": [str(path) for path in writers],
+            "peak_memory_bytes": peak_memory(),
+        }
+    if as_json:
+        print_json(figures)
+    elif not quiet:
+        print_report(str(source), _rows(figures), figures)
+
+
+def _ready(path: Path) -> Callable[..., None]:
+    if path.suffix.lower() not in _SUFFIXES:
+        raise Failure(
+            f"{path}: meshes of the sphere can only be written to {' '.join(_SUFFIXES)}", Exit.USAGE
+        )
+    write = writer(path, surface=True)
+    check_target(path)
+    return write
+
+
+def _require_angles(survey: PointSet, crs: str | None) -> None:
+    """Reject a reference system whose coordinates are not longitudes and latitudes."""
+    system = crs or survey.crs
+    if system is not None and not is_geographic(system):
+        name = system.partition("\n")[0]
+        raise Failure(
+            f"{survey.source}: {name:.60} has no longitudes and latitudes; triangulate its plane "
+            "with delone triangulate, or transform the points to EPSG:4326",
+            Exit.USAGE,
+        )
+
+
+def _triangulated(
+    survey: PointSet, *, radians: bool, workers: int | None, quiet: bool
+) -> sphere.Delaunay:
+    """Triangulate, with a note in place of the warning that conventions are mixed."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", sphere.LongitudeWarning)
+        mesh = sphere.Delaunay(lonlat=survey.points, degrees=not radians, workers=workers)
+    for each in caught:
+        note(f"{survey.source}: {each.message}", quiet=quiet)
+    return mesh
+
+
+def _values(survey: PointSet) -> dict[str, Any]:
+    """The heights by the name of their column."""
+    if survey.z is None:
+        return {}
+    return {survey.columns[2] if len(survey.columns) > 2 else "z": survey.z}
+
+
+def _held(path: Path, values: dict[str, Any], *, edges: bool) -> dict[str, Any] | None:
+    return None if edges or path.suffix.lower() not in _WITH_VALUES else values
+
+
+def _measures(mesh: sphere.Delaunay) -> dict[str, Any]:
+    """Counts, those expected from Euler's formula, duplicates, and the area."""
+    distinct = mesh.npoints - len(mesh.duplicates)
+    whole, hull = mesh.covers_sphere, len(mesh.boundary)
+    # Euler: vertices - edges + triangles is 2 on the sphere, and 1 for a hull.
+    triangles, edges = 2 * distinct - hull - 2, 3 * distinct - hull - 3
+    places = mesh.lonlat[mesh.duplicates[:_FIRST, 0]].tolist()
+    return {
+        "points": mesh.npoints,
+        "distinct": distinct,
+        "duplicates": {
+            "count": len(mesh.duplicates),
+            "first": [
+                {"row": row, "same_as": same, "lon": lon, "lat": lat}
+                for (row, same), (lon, lat) in zip(
+                    mesh.duplicates[:_FIRST].tolist(), places, strict=True
+                )
+            ],
+        },
+        "whole_sphere": whole,
+        "boundary_edges": hull,
+        "triangles": {"count": mesh.nsimplex, "expected": triangles - 2 * whole},
+        "edges": {"count": len(mesh.edges), "expected": edges - 3 * whole},
+        "share_of_sphere": float(mesh.areas.sum()) / (4 * math.pi),
+    }
+
+
+def _rows(figures: dict[str, Any]) -> list[Row]:
+    whole = figures["whole_sphere"]
+    hull = figures["boundary_edges"]
+    share = f"{figures['share_of_sphere']:.6g} of the sphere"
+    covers = "the whole sphere" if whole else f"{share}, inside {hull:,} arcs"
+    return [
+        ("points read", f"{figures['points']:,}"),
+        ("distinct", f"{figures['distinct']:,}"),
+        ("duplicates", _duplicates(figures["duplicates"])),
+        ("covers", covers),
+        ("triangles", _against(figures["triangles"], "2n - 4" if whole else "2n - h - 2")),
+        ("edges", _against(figures["edges"], "3n - 6" if whole else "3n - h - 3")),
+    ]
+
+
+def _against(counted: dict[str, int], formula: str) -> str:
+    count, expected = counted["count"], counted["expected"]
+    verdict = "=" if count == expected else f"IS NOT {expected:,} ="
+    return f"{count:,} {verdict} {formula}"
+
+
+def _duplicates(found: dict[str, Any]) -> str:
+    lines = [f"{found['count']:,}"]
+    for each in found["first"]:
+        place = f"{each['lon']:.9g}, {each['lat']:.9g}"
+        lines.append(f"row {each['row']} is row {each['same_as']} at ({place})")
+    if found["count"] > len(found["first"]):
+        lines.append("...")
+    return "\n".join(lines)
