@@ -53,7 +53,7 @@ def survey(**facts: Any) -> PointSet:
 @pytest.mark.parametrize("facts", [{"crs": "EPSG:4326"}, {"columns": ("Lon", "LATITUDE")}])
 def test_what_is_plainly_degrees_is_warned_of(name: str, facts: dict[str, Any]) -> None:
     make = MAKERS[name]
-    with pytest.warns(GeographicWarning, match="planar=True") as caught:
+    with pytest.warns(GeographicWarning, match=r"delone\.sphere, or give planar=True") as caught:
         make(survey(**facts))
     # Once, and it is the caller's line that is named.
     assert [Path(each.filename).name for each in caught] == ["test_degrees.py"]
@@ -110,7 +110,7 @@ def test_geometries() -> None:
     held = GeometrySet(geometries=np.array([box]), crs="EPSG:4326")
     for given in (series, series.to_frame("geometry"), held, [series]):
         for make in (delone.from_geometry, delone.mesh):
-            with pytest.warns(GeographicWarning, match=r"geometries.*EPSG:4326"):
+            with pytest.warns(GeographicWarning, match=r"geometries.*EPSG:4326.*delone\.sphere"):
                 make(given)
     with pytest.warns(GeographicWarning):
         delone.from_geometry([box], crs=4326)
