@@ -61,7 +61,8 @@ print(
 
 # %%
 # Distances are still planar: a degree of longitude counts as much at 55 degrees north as at the equator, and there is
-# no pole. For high latitudes, project the points.
+# no pole. For high latitudes, project the points, or interpolate on the
+# sphere, as in the example "Stations to a global grid".
 
 
 def data_folder():
