@@ -321,3 +321,31 @@ def test_distances_are_from_the_sites_that_are_left():
     assert made((5, 5), max_distance=1, values=np.ones(5)) == 1
     assert np.isnan(made((5, 5), max_distance=1, values=values))
     assert made((5, 5), max_distance=8, values=values) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("kind", [sphere.Linear, sphere.NaturalNeighbor])
+def test_corners_whose_areas_underflow(kind):
+    def near(tiny):
+        rows = [
+            (-1, 0, 0),
+            (0, 1, 1),
+            (0, -1, 1),
+            (0, 0, -1),
+            (1, 0, 0),
+            (1, tiny, 0),
+            (1, 0, tiny),
+        ]
+        return rows, (1, 0.8 * tiny, 0.1 * tiny), (1, 0.1 * tiny, 0.8 * tiny)
+
+    values = np.arange(10.0, 17.0) ** 2
+    # Weights of corners 1e-30 apart are as good as any.
+    sites, first, second = near(1e-30)
+    want = [0.1 * 14**2 + 0.8 * 15**2 + 0.1 * 16**2, 0.1 * 14**2 + 0.1 * 15**2 + 0.8 * 16**2]
+    np.testing.assert_allclose(kind(sites, values)([first, second]), want, rtol=1e-13)
+    # Where areas are below all numbers, the nearest corner.
+    sites, first, second = near(1e-200)
+    made = kind(sites, values)
+    assert (made(sites) == values).all()
+    assert made([first, second]).tolist() == [15.0**2, 16.0**2]
+    table = made.weights([first, second])
+    assert (table.indices.tolist(), table.weights.tolist()) == ([5, 6], [1.0, 1.0])
