@@ -42,11 +42,11 @@ MAKERS: dict[str, Any] = {
     "interpolator": lambda data, **told: interpolator("sibson", data, VALUES, **told),
     "grid": lambda data, **told: grid(data, VALUES, shape=(3, 3), **told),
     "cross_validate": lambda data, **told: cross_validate(data, VALUES, **told),
-    "AlphaComplex": lambda data, **told: delone.AlphaComplex(data, **told),
+    "AlphaComplex": delone.AlphaComplex,
     "concave_hull": lambda data, **told: delone.concave_hull(data, ratio=0.5, **told),
-    "gabriel": lambda data, **told: delone.graphs.gabriel(data, **told),
+    "gabriel": delone.graphs.gabriel,
     "nearest_neighbors": lambda data, **told: delone.graphs.nearest_neighbors(data, 3, **told),
-    "single_linkage": lambda data, **told: delone.cluster.single_linkage(data, **told),
+    "single_linkage": delone.cluster.single_linkage,
     "DBSCAN": lambda data, **told: delone.cluster.DBSCAN(eps=9.0, **told).fit(data),
 }
 
