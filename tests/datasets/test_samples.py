@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from delone import datasets
+from delone import datasets, sphere
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "data"
 
@@ -54,3 +54,29 @@ def test_baja_is_the_table_of_the_examples() -> None:
 def test_credits_travel_with_the_samples() -> None:
     credits = Path(datasets.ahn3.__code__.co_filename).with_name("CREDITS.md").read_text("utf-8")
     assert "AHN3" in credits and "Verde Developers" in credits
+    assert "Natural Earth" in credits
+
+
+def test_land_is_the_land_of_the_earth() -> None:
+    polygons = datasets.land()["coordinates"]
+    assert len(polygons) == 127
+    area = 0.0
+    for polygon in polygons:
+        for k, ring in enumerate(polygon):
+            corners = np.array(ring)
+            assert (corners[0] == corners[-1]).all() and len(corners) > 3
+            assert (np.abs(corners) <= (180, 90)).all()
+            (x, y), (u, v) = corners[:-1].T, corners[1:].T
+            assert ((x * v - u * y).sum() > 0) == (k == 0)
+            # The area below each side between parallels: exact where sides are straight on a
+            # cylindrical equal-area map.
+            z, w = np.sin(np.radians(y)), np.sin(np.radians(v))
+            area -= (np.radians(u - x) * (z + w) / 2).sum()
+    # 149 of 510 million square kilometers.
+    assert abs(area / (4 * np.pi) - 0.292) < 0.005
+
+
+def test_land_is_triangulated_on_the_sphere() -> None:
+    mesh = sphere.from_geometry(datasets.land())
+    share = mesh.areas[mesh.polygon >= 0].sum() / mesh.areas.sum()
+    assert abs(share - 0.29) < 0.01

@@ -1,4 +1,4 @@
-"""Point sets for examples, tests and benchmarks: seeded generators, and two real surveys.
+"""Point sets for examples, tests and benchmarks: seeded generators, two real surveys, land.
 
 Each generator is a function of the number of points and a seed. The 2-D generators are in `plane`
 and listed by name in `GENERATORS`, the 3-D ones are in `space` and listed in `GENERATORS3`, and the
@@ -22,7 +22,7 @@ from delone.datasets.plane import (
     uniform,
     utm_millimeters,
 )
-from delone.datasets.samples import Sample, ahn3, baja
+from delone.datasets.samples import Sample, ahn3, baja, land
 from delone.datasets.space import GENERATORS as GENERATORS3
 
 __all__ = [
@@ -38,6 +38,7 @@ __all__ = [
     "grid",
     "integer_lattice",
     "kuzmin",
+    "land",
     "mixed_exponents",
     "near_collinear",
     "pythagorean_circle",

@@ -1,4 +1,4 @@
-"""Two real surveys included in the package, with their credits in CREDITS.md.
+"""Two real surveys and the land of the Earth, with their credits in CREDITS.md.
 
 The files contain integer columns in NumPy's format, so that only NumPy is needed to read them; the
 results are the doubles nearest to the surveyed decimals.
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import DTypeLike, NDArray
 
-__all__ = ["Sample", "ahn3", "baja"]
+__all__ = ["Sample", "ahn3", "baja", "land"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -118,10 +118,39 @@ def baja() -> Sample:
     )
 
 
+def land() -> dict[str, Any]:
+    """Return the land of the Earth at 1:110 million, from Natural Earth (public domain).
+
+    Returns
+    -------
+    dict
+        A GeoJSON-like multipolygon, which shapely and `delone.sphere.from_geometry` take:
+        ``"coordinates"`` has for each polygon its rings of (longitude, latitude) in degrees, the
+        outer one counter-clockwise. Polygons end at the date line; Antarctica also has an edge at
+        the pole. The largest ones come first.
+
+    Examples
+    --------
+    >>> from delone.datasets import land
+    >>> polygons = land()["coordinates"]
+    >>> len(polygons), [len(ring) for ring in polygons[0]]
+    (127, [1303, 39])
+    """
+    columns = _columns("land.npz")
+    corners = (np.column_stack((columns["x"], columns["y"])) / 1000).tolist()
+    starts = columns["starts"].tolist()
+    polygons: list[list[list[list[float]]]] = []
+    for begin, end, outer in zip(starts[:-1], starts[1:], columns["outer"], strict=True):
+        if outer:
+            polygons.append([])
+        polygons[-1].append([*corners[begin:end], corners[begin]])
+    return {"type": "MultiPolygon", "coordinates": polygons}
+
+
 def _columns(name: str) -> dict[str, NDArray[np.integer]]:
     """Read integer columns; x, y and z are stored as differences, which compress better."""
     with (files(__package__) / name).open("rb") as file, np.load(file) as archive:
         columns: dict[str, NDArray[np.integer]] = {key: archive[key] for key in archive.files}
-    for key in "xyz":
+    for key in columns.keys() & set("xyz"):
         columns[key] = np.cumsum(columns[key], dtype=np.int64)
     return columns
