@@ -378,6 +378,78 @@ class Delaunay(Immutable):
         """
         return self._ask(xi, self._locator.nearest)
 
+    def plot(
+        self,
+        ax: Any = None,
+        *,
+        values: ArrayLike | None = None,
+        view: tuple[float, float] | None = None,
+        cmap: Any = "viridis",
+        colorbar: bool = True,
+        coast: Any = None,
+        points: bool | None = None,
+        linewidth: float | None = None,
+        title: str | None = None,
+    ) -> Any:
+        """Draw the front half of the globe with matplotlib (extra ``plot``), orthographically.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; by default on new ones.
+        values : array_like, shape (m,), optional
+            A number for each triangle, which colors it.
+        view : tuple of two floats, optional
+            Longitude and latitude in degrees of the place in the center; by default the mean
+            direction.
+        cmap : str or matplotlib Colormap, optional
+            The colors of values.
+        colorbar : bool, optional
+            Whether to add the color bar of values.
+        coast : mapping, optional
+            Land whose coasts are drawn: a multipolygon in the form of GeoJSON, such as that of
+            `delone.datasets.land`.
+        points : bool, optional
+            Whether to draw the points; by default up to 2000.
+        linewidth : float, optional
+            Width of the arcs.
+        title : str, optional
+            Title of the axes.
+
+        Returns
+        -------
+        matplotlib Axes
+            Where it is drawn. The globe is the unit circle.
+
+        Raises
+        ------
+        MissingExtraError
+            matplotlib is not installed.
+        InputError
+            `view` is no place, or `values` has another shape.
+
+        Examples
+        --------
+        >>> import matplotlib
+        >>> matplotlib.use("Agg")
+        >>> from delone import sphere
+        >>> ax = sphere.Delaunay(lonlat=[(0, 0), (90, 0), (0, 90), (45, 45)]).plot(view=(30, 30))
+        >>> ax.get_aspect()
+        1.0
+        """
+        from delone.sphere.picture import plot_mesh
+
+        options = {
+            "values": values,
+            "view": view,
+            "cmap": cmap,
+            "colorbar": colorbar,
+            "coast": coast,
+            "linewidth": linewidth,
+            "title": title,
+        }
+        return plot_mesh(self, ax, points, options)
+
     def _ask(self, xi: ArrayLike, answer: Any) -> Indices:
         queries = queries_of(xi, degrees=self._degrees, workers=self._workers)
         found: Indices = answer(queries.reshape(-1, 3), as_workers(self._workers))
