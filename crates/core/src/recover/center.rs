@@ -84,8 +84,9 @@ fn solve(mut m: [[f64; 5]; 4]) -> Option<[f64; 4]> {
         }
         for i in k + 1..4 {
             let factor = m[i][k] / m[k][k];
-            for j in k..5 {
-                m[i][j] -= factor * m[k][j];
+            let pivot = m[k];
+            for (x, p) in m[i].iter_mut().zip(pivot).skip(k) {
+                *x -= factor * p;
             }
         }
     }

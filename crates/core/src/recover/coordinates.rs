@@ -168,7 +168,7 @@ impl Coordinates {
     }
 
     /// The vector from a point to another, each coordinate rounded once.
-    pub fn from_to(&self, from: u32, to: u32) -> Point3 {
+    pub fn difference(&self, from: u32, to: u32) -> Point3 {
         let (p, q) = (self.near(from), self.near(to));
         let plain = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
         if self.is_double(from) && self.is_double(to) {
@@ -227,7 +227,7 @@ mod tests {
                 exponent: -90,
             };
             let v = all.add(p).unwrap().unwrap();
-            assert_eq!(all.is_double(v), true);
+            assert!(all.is_double(v));
             let p = all
                 .exact(v)
                 .plus([1.0, 0.0, 0.0])

@@ -38,16 +38,15 @@ impl Work<'_> {
     /// faces pair up, and that each face of the input is there.
     pub fn verify(&mut self, out: &[bool]) -> Result<()> {
         let mut sides: Vec<u128> = with_room(4 * self.mesh.corners.len())?;
-        for t in 0..self.mesh.corners.len() {
+        for (&v, &is_out) in self.mesh.corners.iter().zip(out) {
             self.pace.spend(1)?;
-            let v = self.mesh.corners[t];
             if v[0] == NONE {
                 continue;
             }
             if !self.mesh.points.positive(v) {
                 return Err(internal("a tetrahedron is not positive"));
             }
-            if !out[t] {
+            if !is_out {
                 let [a, b, c, d] = v.map(|v| self.mesh.points.near(v));
                 if orient3d(a, b, c, d) != Sign::Positive {
                     return Err(internal("a tetrahedron of doubles is not positive"));

@@ -62,7 +62,7 @@ impl Work<'_> {
             let at =
                 [0, 1, 2].map(|k| &all[0] * &p[0][k] + &all[1] * &p[1][k] + &all[2] * &p[2][k]);
             let exponent = low - digits as i64;
-            let point = self.add(Wide { at, exponent }, Origin::Face(f))?;
+            let point = self.add(Wide { at, exponent }, Origin::Face)?;
             if self.sees(around, point) {
                 return Ok(point);
             }

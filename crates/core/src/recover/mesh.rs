@@ -289,8 +289,8 @@ impl Mesh {
         for v in new {
             let t = self.slot()?;
             self.corners[t as usize] = *v;
-            for k in 0..4 {
-                self.at[v[k] as usize] = t;
+            for (k, &x) in v.iter().enumerate() {
+                self.at[x as usize] = t;
                 push(&mut sides, (ascending(self.face(t, k)), t, k as u32))?;
             }
         }

@@ -168,7 +168,7 @@ impl Work<'_> {
             self.close(f);
             let last = self.mesh.points.len() as u32;
             for s in first..last {
-                if matches!(self.origin(s), Some(Origin::Face(_))) {
+                if matches!(self.origin(s), Some(Origin::Face)) {
                     self.suppress(s)?;
                 }
             }

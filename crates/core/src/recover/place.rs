@@ -90,7 +90,7 @@ impl Work<'_> {
         let vertices: BTreeSet<u32> = faces.as_flattened().iter().copied().collect();
         let far = vertices
             .iter()
-            .flat_map(|&w| self.mesh.points.from_to(s, w));
+            .flat_map(|&w| self.mesh.points.difference(s, w));
         (far.fold(0.0, |m, x| m.max(x.abs())), vertices)
     }
 
@@ -107,7 +107,7 @@ impl Work<'_> {
         }
         let at: std::collections::BTreeMap<u32, Point3> = vertices
             .iter()
-            .map(|&w| (w, self.mesh.points.from_to(s, w).map(|x| x / size)))
+            .map(|&w| (w, self.mesh.points.difference(s, w).map(|x| x / size)))
             .collect();
         let mut planes = Vec::with_capacity(faces.len());
         for [a, b, c] in faces {

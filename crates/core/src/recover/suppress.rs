@@ -15,8 +15,6 @@ use crate::error::{Error, Result};
 
 /// The tetrahedra of a point between faces.
 struct Sector {
-    /// The tetrahedra.
-    cells: Vec<u32>,
     /// The faces around them, seen from inside.
     faces: Vec<[u32; 3]>,
     /// The sum of the unit normals of the faces of the input, inward.
@@ -121,7 +119,7 @@ impl Work<'_> {
                 if turn(ear) != Sign::Positive || !self.is_ear(&rest, j, &turn) {
                     continue;
                 }
-                let d = self.mesh.points.from_to(ear[0], ear[2]);
+                let d = self.mesh.points.difference(ear[0], ear[2]);
                 let length = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
                 if best.is_none_or(|(least, _)| length < least) {
                     best = Some((length, j));
@@ -197,7 +195,7 @@ impl Work<'_> {
                     }
                 }
             }
-            found.push(self.closed(s, cells, outer, &sides, triangles));
+            found.push(self.closed(s, outer, &sides, triangles));
         }
         Ok(found)
     }
@@ -206,7 +204,6 @@ impl Work<'_> {
     fn closed(
         &self,
         s: u32,
-        cells: Vec<u32>,
         mut faces: Vec<[u32; 3]>,
         sides: &BTreeMap<u32, Sign>,
         triangles: &BTreeMap<u32, Vec<[u32; 3]>>,
@@ -215,7 +212,7 @@ impl Work<'_> {
         for (f, &side) in sides {
             let [a, b, c] = self.faces[*f as usize];
             let points = &self.mesh.points;
-            let normal = cross(unit(points.from_to(a, b)), unit(points.from_to(a, c)));
+            let normal = cross(unit(points.difference(a, b)), unit(points.difference(a, c)));
             let sign = if side == Sign::Positive { 1.0 } else { -1.0 };
             let normal = unit(normal).map(|x| x * sign);
             for &[p, q, r] in &triangles[f] {
@@ -226,7 +223,7 @@ impl Work<'_> {
                 });
             }
             let middle = [a, b, c].iter().fold([0.0; 3], |m, &v| {
-                let d = points.from_to(s, v);
+                let d = points.difference(s, v);
                 [0, 1, 2].map(|k| m[k] + d[k] / 3.0)
             });
             let middle = unit(middle);
@@ -236,7 +233,6 @@ impl Work<'_> {
             }
         }
         Sector {
-            cells,
             faces,
             inward,
             along,

@@ -17,7 +17,7 @@ pub enum Origin {
     /// On a segment.
     Segment(u32),
     /// On a face of the input.
-    Face(u32),
+    Face,
     /// Strictly between the faces: it may move.
     Free,
 }

@@ -135,9 +135,9 @@ impl<const D: usize> Ground<D> {
             heaviest: f64::NEG_INFINITY,
         };
         for (p, &w) in sites.points.iter().zip(sites.weights) {
-            for k in 0..D {
-                ground.low[k] = ground.low[k].min(p[k]);
-                ground.high[k] = ground.high[k].max(p[k]);
+            for (k, &x) in p.iter().enumerate() {
+                ground.low[k] = ground.low[k].min(x);
+                ground.high[k] = ground.high[k].max(x);
             }
             ground.heaviest = ground.heaviest.max(w);
         }
@@ -342,8 +342,7 @@ fn copy<const N: usize>(
     for (t, &own) in number.iter().enumerate().filter(|(_, own)| **own >= 0) {
         let corners = arrays.simplices[t].map(|v| v + start);
         simplices[own as usize] = corners;
-        for corner in 0..N {
-            let other = arrays.neighbors[t][corner];
+        for (corner, &other) in arrays.neighbors[t].iter().enumerate() {
             let other = if other < 0 {
                 -1
             } else {
@@ -383,12 +382,12 @@ fn flood<const N: usize>(
     let all = facets.is_empty();
     let mut number = filled(seam.simplices.len(), -1_i32)?;
     let mut stack = Vec::new();
-    for t in 0..seam.simplices.len() {
+    for (t, own) in number.iter_mut().enumerate() {
         if t.is_multiple_of(WATCH_EVERY) {
             watch.check()?;
         }
         if all || (0..N).any(|k| border(t, k).is_some_and(|(_, outside)| outside)) {
-            number[t] = 0;
+            *own = 0;
             push(&mut stack, t)?;
         }
     }
