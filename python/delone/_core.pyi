@@ -1651,6 +1651,7 @@ def sphere_dual(
     vectors: NDArray[np.float64],
     simplices: NDArray[np.int32],
     neighbors: NDArray[np.int32],
+    merged: bool,
     workers: int,
 ) -> SphereDual: ...
 def sphere_spans(

@@ -166,13 +166,15 @@ pub struct SphereDual {
     pub ridges: Column<i32>,
 }
 
-/// Returns the dual of a triangulation of at least four directions.
+/// Returns the dual of a triangulation of at least four directions; facets of one circle share a
+/// vertex if `merged`.
 #[pyfunction]
 pub fn sphere_dual(
     py: Python<'_>,
     vectors: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     neighbors: PyReadonlyArray2<'_, i32>,
+    merged: bool,
     workers: usize,
 ) -> PyResult<SphereDual> {
     let (vectors, simplices) = given(&vectors, &simplices).map_err(|e| raise(py, &e))?;
@@ -188,6 +190,7 @@ pub fn sphere_dual(
             vectors,
             &facets.simplices,
             &facets.neighbors,
+            merged,
             workers,
             watch,
         )?;

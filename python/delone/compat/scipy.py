@@ -23,8 +23,9 @@ than rounded or unmasked. A masked query is treated as NaN, and is therefore in 
 
 `Voronoi` and `voronoi_plot_2d` are exported here; `delone.compat.scipy_voronoi` documents their
 differences. So are `ConvexHull` of `delone.compat.scipy_hull`, `HalfspaceIntersection` of
-`delone.compat.scipy_halfspaces`, `delaunay_plot_2d` and `convex_hull_plot_2d`, and the
-interpolators of ``scipy.interpolate``, whose differences are in `delone.compat.interpolate`.
+`delone.compat.scipy_halfspaces`, `SphericalVoronoi` of `delone.compat.scipy_sphere`,
+`delaunay_plot_2d` and `convex_hull_plot_2d`, and the interpolators of ``scipy.interpolate``, whose
+differences are in `delone.compat.interpolate`.
 """
 
 from __future__ import annotations
@@ -41,6 +42,7 @@ from delone.compat.scipy_delaunay import Delaunay, tsearch
 from delone.compat.scipy_halfspaces import HalfspaceIntersection
 from delone.compat.scipy_hull import ConvexHull
 from delone.compat.scipy_plot import convex_hull_plot_2d, delaunay_plot_2d
+from delone.compat.scipy_sphere import SphericalVoronoi
 from delone.compat.scipy_voronoi import Voronoi, voronoi_plot_2d
 
 __all__ = [
@@ -52,6 +54,7 @@ __all__ = [
     "LinearNDInterpolator",
     "NearestNDInterpolator",
     "QhullError",
+    "SphericalVoronoi",
     "Voronoi",
     "convex_hull_plot_2d",
     "delaunay_plot_2d",

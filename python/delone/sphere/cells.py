@@ -65,7 +65,7 @@ def cells_of(mesh: Delaunay) -> Cells:
 
 def _dual_cells(vectors: Floats, simplices: Indices, neighbors: Indices, workers: int) -> Cells:
     """Return the dual of a triangulation of at least four directions."""
-    made = _core.sphere_dual(vectors, simplices, neighbors, workers)
+    made = _core.sphere_dual(vectors, simplices, neighbors, True, workers)
     corners = made.simplices[made.facet]
     return Cells(
         vertices=_core.sphere_circumcenters(vectors, corners, workers),

@@ -46,11 +46,12 @@ struct Facets<'a> {
     neighbors: &'a [[i32; 3]],
 }
 
-/// The dual of facets of at least four directions.
+/// The dual of facets of at least four directions. Unless `merged`, each facet has a vertex of its own.
 pub fn dual(
     vectors: &[Point3],
     simplices: &[[i32; 3]],
     neighbors: &[[i32; 3]],
+    merged: bool,
     workers: usize,
     watch: &Watch,
 ) -> Result<Dual> {
@@ -58,7 +59,11 @@ pub fn dual(
         simplices,
         neighbors,
     };
-    let tied = facets.tied(vectors, workers, watch)?;
+    let tied = if merged {
+        facets.tied(vectors, workers, watch)?
+    } else {
+        filled(simplices.len(), 0)?
+    };
     let mut pace = Pace::new(watch, WATCH_EVERY);
     let (vertex, facet) = facets.vertices(&tied, &mut pace)?;
     let mut made = Dual {

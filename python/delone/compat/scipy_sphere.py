@@ -1,0 +1,186 @@
+"""Drop-in replacement for ``scipy.spatial.SphericalVoronoi``.
+
+>>> from delone.compat.scipy import SphericalVoronoi
+>>> points = [(0, 0, 1), (0, 0, -1), (1, 0, 0), (0, 1, 0), (0, -1, 0), (-1, 0, 0)]
+>>> sv = SphericalVoronoi(points)
+>>> sv.vertices.shape, sv.calculate_areas().round(4)[0]
+((8, 3), np.float64(2.0944))
+
+`delone.compat.scipy` exports it. Differences from SciPy:
+
+* Facets are those of the exact convex hull of the directions from the center, in delone's order, so
+that vertices are in another order; regions are sorted from the start.
+* Areas keep their bits for tiny cells.
+* Points in two dimensions or more than three are rejected.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_workers
+from delone.compat.qhull import DimensionError
+from delone.voronoi.rows import as_lists
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["SphericalVoronoi"]
+
+
+class SphericalVoronoi:
+    """Voronoi diagram on a sphere with the interface of ``scipy.spatial.SphericalVoronoi``.
+
+    Parameters
+    ----------
+    points : array_like, shape (npoints, 3)
+        The generators, on the sphere.
+    radius : float, optional
+        Radius of the sphere.
+    center : array_like, shape (3,), optional
+        Its center; by default the origin.
+    threshold : float, optional
+        Relative to the radius: generators that are closer are duplicates, and they may miss the
+        sphere by less.
+
+    Attributes
+    ----------
+    points : ndarray of float64, shape (npoints, 3)
+        The generators.
+    radius : float
+        Radius of the sphere.
+    center : ndarray of float64, shape (3,)
+        Its center.
+    vertices : ndarray of float64, shape (2 npoints - 4, 3)
+        The vertices, one for each facet of the hull: several may be in one place.
+    regions : list of list of int
+        For each generator the vertices of its region, counter-clockwise seen from outside.
+
+    Raises
+    ------
+    ValueError
+        The generators are on one circle or fewer than four, some are duplicates, or miss the
+        sphere; `radius` is None.
+    DimensionError
+        The generators do not have three coordinates.
+    NonFiniteError
+        A coordinate is NaN or infinite.
+
+    See Also
+    --------
+    delone.sphere.Voronoi : The diagram with one vertex for each place, and of any input.
+
+    Notes
+    -----
+    The documentation of the module lists the differences from SciPy.
+
+    Examples
+    --------
+    >>> from delone.compat.scipy import SphericalVoronoi
+    >>> sv = SphericalVoronoi([(2, 0, 0), (-2, 0, 0), (0, 2, 0), (0, 0, 2)], radius=2)
+    >>> sv.sort_vertices_of_regions()
+    >>> len(sv.vertices), [len(region) for region in sv.regions]
+    (4, [3, 3, 3, 3])
+    """
+
+    def __init__(
+        self,
+        points: ArrayLike,
+        radius: float = 1,
+        center: ArrayLike | None = None,
+        threshold: float = 1e-06,
+    ) -> None:
+        if radius is None:
+            raise ValueError(
+                "`radius` is `None`. Please provide a floating point number (i.e. `radius=1`)."
+            )
+        self.radius = float(radius)
+        self.points: Floats = np.array(points).astype(np.float64)
+        self._dim = self.points.shape[1]
+        if self._dim != 3:
+            raise DimensionError(
+                f"only points with three coordinates are supported, got {self._dim}"
+            )
+        self.center: Floats
+        self.center = np.zeros(3) if center is None else np.array(center, dtype=float)
+        tolerance = threshold * self.radius
+        self._rank = np.linalg.matrix_rank(self.points - self.points[0], tol=tolerance)
+        if self._rank < self._dim:
+            raise ValueError(f"Rank of input points must be at least {self._dim}")
+        self._vectors = self.points - self.center
+        self._refuse_lengths(tolerance)
+        workers = as_workers(None)
+        mesh = _core.sphere_delaunay(self._vectors, workers)
+        if len(mesh.duplicates):
+            raise ValueError("Duplicate generators present.")
+        self._dual = _core.sphere_dual(
+            self._vectors, mesh.simplices, mesh.neighbors, False, workers
+        )
+        self._refuse_duplicates(tolerance)
+
+    def _refuse_lengths(self, tolerance: float) -> None:
+        squares = np.einsum("ij,ij->i", self._vectors, self._vectors)
+        away = np.sqrt([squares.min(), squares.max()])
+        # Not a number is for the triangulation to refuse.
+        if np.abs(away - self.radius).max() >= tolerance:
+            raise ValueError("Radius inconsistent with generators.")
+
+    def _refuse_duplicates(self, tolerance: float) -> None:
+        """Compare ends of the edges, among which is the closest pair."""
+        tails, heads = self._dual.around[:, 0], self._dual.around[:, 1]
+        steps = self.points[tails] - self.points[heads]
+        if np.einsum("ij,ij->i", steps, steps).min() <= tolerance**2:
+            raise ValueError("Duplicate generators present.")
+
+    @property
+    def _simplices(self) -> NDArray[np.int32]:
+        """The facets of the hull."""
+        return self._dual.simplices
+
+    @cached_property
+    def vertices(self) -> Floats:
+        """The vertices, one for each facet of the hull."""
+        workers = as_workers(None)
+        units = _core.sphere_circumcenters(self._vectors, self._dual.simplices, workers)
+        found: Floats = self.radius * units + self.center
+        return found
+
+    @cached_property
+    def regions(self) -> list[list[int]]:
+        """The vertices of each region, counter-clockwise seen from outside."""
+        return as_lists(self._dual.starts, self._dual.vertices)
+
+    def sort_vertices_of_regions(self) -> None:
+        """Sort the vertices of regions around their generators; they are sorted from the start.
+
+        Examples
+        --------
+        See the class.
+        """
+
+    def calculate_areas(self) -> Floats:
+        """Return the areas of the regions, which sum to 4 pi times the square of the radius.
+
+        Returns
+        -------
+        ndarray of float64, shape (npoints,)
+            The areas.
+
+        Examples
+        --------
+        >>> from delone.compat.scipy import SphericalVoronoi
+        >>> points = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+        >>> SphericalVoronoi(points).calculate_areas().sum().round(9)
+        np.float64(12.566370614)
+        """
+        spans = _core.sphere_spans(self._vectors, self._dual.around, as_workers(None))
+        sites: Any = self._dual.around[:, :2].ravel()
+        shares = np.repeat(spans[:, 1], 2)
+        found: Floats = np.bincount(sites, shares, minlength=len(self.points))
+        return found * self.radius**2
