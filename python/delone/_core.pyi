@@ -50,7 +50,6 @@ __all__ = [
     "RegularFaults3",
     "RegularTriangulation",
     "SphereDual",
-    "SphereWeights",
     "SphereLocator",
     "SphereTriangulation",
     "SphereWeights",

@@ -105,7 +105,8 @@ CORE: dict[str, set[str]] = {
     "locate3": {"locate", "points", "wide", "delone_predicates"} | GROUND,
     "wide": {"delone_predicates"},
     "distributed": {"locate", "points", "parallel", "delone_predicates"} | GROUND,
-    "regular": {"delaunay2", "order", "points", "proof", "wide", "delone_predicates"} | GROUND,
+    "regular": {"parallel", "delaunay2", "order", "points", "proof", "wide", "delone_predicates"}
+    | GROUND,
     "voronoi": {
         "measure",
         "regular",
@@ -146,6 +147,7 @@ CORE: dict[str, set[str]] = {
         "delone_predicates",
     }
     | GROUND,
+    "recover": {"delaunay3", "points", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "surface": {
         "constrained",
         "delaunay2",
@@ -204,6 +206,7 @@ BINDINGS = {
     "regular",
     "regular3",
     "sphere",
+    "recover",
     "surface",
     "voronoi",
     "voronoi3",

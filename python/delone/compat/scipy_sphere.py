@@ -181,6 +181,7 @@ class SphericalVoronoi:
         """
         spans = _core.sphere_spans(self._vectors, self._dual.around, as_workers(None))
         sites: Any = self._dual.around[:, :2].ravel()
-        shares = np.repeat(spans[:, 1], 2)
-        found: Floats = np.bincount(sites, shares, minlength=len(self.points))
-        return found * self.radius**2
+        shares: Any = np.repeat(spans[:, 1], 2)
+        found: Any = np.bincount(sites, shares, minlength=len(self.points))
+        areas: Floats = found * self.radius**2
+        return areas

@@ -400,10 +400,9 @@ fn flood<const N: usize>(
             }
         }
     }
-    let mut next = out.simplices.len() as i32;
-    for number in number.iter_mut().filter(|number| **number == 0) {
+    let kept = number.iter_mut().filter(|number| **number == 0);
+    for (number, next) in kept.zip(out.simplices.len() as i32..) {
         *number = next;
-        next += 1;
     }
     for (t, &own) in number.iter().enumerate().filter(|(_, own)| **own >= 0) {
         let mut around = [-1; N];
