@@ -81,6 +81,8 @@ EXPECTED_SKIPS = {
     ("tests/refine/test_gaps.py*", "needs the countries*"): "data that are not shipped",
     ("tests/sphere/*", "needs the countries*"): "data that are not shipped",
     ("tests/sphere/*", "needs the grids of models"): "data that are not shipped",
+    ("tests/surface/*", "needs public surfaces"): "data that are not shipped",
+    ("tests/tetrahedra/*", "needs public surfaces"): "data that are not shipped",
     ("tests/terrain/test_delft.py*", "needs lidar and the map*"): "data that are not shipped",
     ("tests/explore/*", "no Chromium is installed"): "a browser is not a package of Python",
     ("tests/learn/*", "no Chromium is installed"): "a browser is not a package of Python",

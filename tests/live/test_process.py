@@ -64,7 +64,7 @@ def start(code: str, kind: tuple[int, int, bool]) -> subprocess.Popen[str]:
 
 
 def interrupted(process: subprocess.Popen[str]) -> str:
-    """Sends Ctrl-C until a line comes: Python drops one that arrives where nothing can be raised."""
+    """Sends Ctrl-C until a line comes: one that arrives between two calls may be lost."""
     assert process.stdout is not None
     answered = threading.Event()
 

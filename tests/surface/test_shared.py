@@ -17,7 +17,7 @@ FOLDER = Path(__file__).parents[3] / "shared" / "data" / "surfaces"
 # Its faces are polygons with up to seven corners, which are not convex.
 POLYGONS = {"mpi.off"}
 
-pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="the shared surfaces are not there")
+pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="needs public surfaces")
 
 
 def read(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

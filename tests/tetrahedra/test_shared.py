@@ -23,7 +23,7 @@ ADDED = {
     "spool": 6,
 }
 
-pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="the shared surfaces are not there")
+pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="needs public surfaces")
 
 
 @pytest.mark.parametrize("name", sorted(ADDED))
