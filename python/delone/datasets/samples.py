@@ -134,7 +134,7 @@ def land() -> dict[str, Any]:
     >>> from delone.datasets import land
     >>> polygons = land()["coordinates"]
     >>> len(polygons), [len(ring) for ring in polygons[0]]
-    (127, [1303, 39])
+    (127, [1303, 52])
     """
     columns = _columns("land.npz")
     corners = (np.column_stack((columns["x"], columns["y"])) / 1000).tolist()
