@@ -81,10 +81,13 @@ def compare(
         (arguments.into / SAID).write_text(json.dumps(said))
         return
     found: dict[str, Runs] = {name: Runs() for name in arguments.ways.split(",")}
+    turns = list(found.items())
     for _ in range(arguments.runs):
-        for name, runs in found.items():
+        for name, runs in turns:
             if not runs.ended:
                 _run(name, runs, arguments.limit)
+        # Another way begins: the first process of a round pays for pages that the host took back.
+        turns.append(turns.pop(0))
     print(machine())
     print(_table(found))
 
