@@ -2,8 +2,8 @@
 
 Tables: the land polygons of Natural Earth (where ``--coastline`` or the environment variable
 DELONE_COASTLINE names ``ne_10m_land.geojson``, gzipped or not), a million points and a fractal
-ring, a thousand long segments that cross, and polygons to fill. Each Python package works in a
-process of its own, in turns; compiled peers follow, one program after the other.
+ring, a thousand long segments that cross, and polygons to fill. Each Python package and each
+compiled peer works in processes of its own, cold and warm, and all take turns.
 """
 
 import os
@@ -12,11 +12,11 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import argparse
 import signal
-import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import crates
 import line_adapters
@@ -25,15 +25,25 @@ import lines
 import numpy as np
 import polygons
 import report
-from wheels import wanted
-from worker import Peer
+from rounds import HEAD, Module, Program, Times, compete
 
 from delone import Delaunay
 
 Corners = np.ndarray
 Judge = Callable[[Corners], str]
 UNCONSTRAINED = ("delone-no-segments", "delone, no segments")
-HEAD = ["peer", "seconds", "times delone", "runs", "result"]
+# What each compiled program can run, without crossings and with.
+COMPILED = {
+    False: (
+        "delone",
+        "delone, 2 workers",
+        "delone, no segments",
+        "spade bulk_load_cdt",
+        "spade bulk_load",
+    ),
+    True: ("delone", "spade add_constraint_and_split"),
+}
+CGAL = {False: ("CGAL", "CGAL, Delaunay first"), True: ("CGAL",)}
 
 
 def options() -> argparse.Namespace:
@@ -42,19 +52,20 @@ def options() -> argparse.Namespace:
     parser.add_argument("--coastline", default=os.environ.get("DELONE_COASTLINE"), help="GeoJSON")
     parser.add_argument("--n", type=int, default=1_000_000, help="points around the ring")
     parser.add_argument("--segments", type=int, default=1000, help="long segments that cross")
-    parser.add_argument("--runs", type=int, default=5, help="runs for each peer (default 5)")
+    parser.add_argument("--rounds", type=int, default=5, help="processes of each peer (default 5)")
+    parser.add_argument("--warm", type=int, default=1, help="warm runs in each (default 1)")
     parser.add_argument("--limit", type=float, default=60.0, help="seconds a run may take")
     parser.add_argument("--tables", default="coastline,ring,crossings,polygons", help="which")
     parser.add_argument("--write", type=Path, help="only write the inputs to this folder")
     return parser.parse_known_args()[0]
 
 
-def build() -> list[Path]:
-    """Build the compiled peers and return their programs."""
+def build() -> dict[Path, dict[bool, tuple[str, ...]]]:
+    """Build the compiled peers; return their programs with what each can run."""
     crates.build()
-    programs = [crates.CRATE / "target" / "release" / "constrained"]
+    programs = {crates.CRATE / "target" / "release" / "constrained": COMPILED}
     cgal = crates.build_cgal("cgal_constrained")
-    return programs + ([cgal] if cgal else [])
+    return programs | ({cgal: CGAL} if cgal else {})
 
 
 def write(given: lines.Lines, file: Path) -> None:
@@ -63,65 +74,47 @@ def write(given: lines.Lines, file: Path) -> None:
     given.segments.astype("<u4").tofile(f"{file}.segments")
 
 
-def python_rows(given: lines.Lines, split: bool, judge: Judge, runs: int, limit: float) -> list:
-    """Return the table of the Python packages."""
-    names = line_adapters.SPLITTING if split else line_adapters.CONSTRAINED
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "lines.npz"
-        lines.save(given, file)
-        peers = [Peer(n, file, Path(folder) / f"{n}.npy", "line_adapters") for n in names]
-        for turn in range(runs):
-            for peer in peers:
-                if turn < wanted(peer, runs):
-                    peer.run(limit)
-        for peer in peers:
-            peer.stop()
-        times = {f"{p.name} {p.version}": [run.seconds for run in p.runs] or p.ended for p in peers}
-        answers = {f"{p.name} {p.version}": p.answer_file for p in peers}
-        return rows(times, lambda name: judge(np.load(answers[name])))
+def measure(
+    given: lines.Lines, split: bool, judge: Judge, arguments: argparse.Namespace
+) -> tuple[str, str]:
+    """Return the tables of the Python packages and of the compiled peers; all take turns."""
 
+    def corners(peer: Program) -> Corners:
+        return np.fromfile(f"{raw}.{peer.times.name}", "<f8").reshape(-1, 3, 2)
 
-def compiled_rows(
-    given: lines.Lines, split: bool, judge: Judge, runs: int, programs: list[Path]
-) -> list:
-    """Return the table of the compiled peers."""
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "lines"
-        write(given, file)
-        times: dict[str, list[float] | str] = {}
-        for program in programs:
-            command = [str(program), str(runs), str(file), *(["split"] if split else [])]
-            done = subprocess.run(
-                command, capture_output=True, text=True, check=False, timeout=crates.LIMIT
-            )
-            found = crates.runs_of(done.stdout)
-            times |= {peer: seconds or "failed" for peer, seconds in found.items()}
-            if done.returncode:
-                times[f"{program.name}, the program"] = f"ended with code {done.returncode}"
-        return rows(
-            times, lambda name: judge(np.fromfile(f"{file}.{name}", "<f8").reshape(-1, 3, 2))
+        arrays, raw = Path(folder) / "lines.npz", Path(folder) / "lines"
+        lines.save(given, arrays)
+        write(given, raw)
+        modules = [
+            Module(name, arrays, module="line_adapters", limit=arguments.limit)
+            for name in (line_adapters.SPLITTING if split else line_adapters.CONSTRAINED)
+        ]
+        more = ["split"] if split else []
+        programs = [
+            Program(program, raw, name, name, *more, limit=crates.LIMIT)
+            for program, names in arguments.programs.items()
+            for name in names[split]
+        ]
+        compete([*modules, *programs], arguments.rounds, arguments.warm)
+        return (
+            table("Python", modules, lambda peer: judge(np.load(peer.answer))),
+            table("compiled", programs, lambda peer: judge(corners(peer))),
         )
 
 
-def rows(times: dict[str, list[float] | str], judged: Callable[[str], str]) -> list[list[str]]:
-    """Return the lines of a table; the first peer that works is the base of the ratios."""
-    base = next((report.median(t) for t in times.values() if not isinstance(t, str)), 1.0)
-    table = []
-    for name, seconds in times.items():
-        if isinstance(seconds, str):
-            table.append([name, seconds, "", "", ""])
-            continue
-        middle = report.median(seconds)
-        ratio = report.ratio(middle / base)
+def table(kind: str, peers: list[Any], judged: Callable[[Any], str]) -> str:
+    """Return a table; the first peer that works is the base of the ratios."""
+    base = next((peer.times for peer in peers if peer.times.warm), Times(""))
+    rows = []
+    for peer in peers:
         # The triangulation without segments is there to be compared with, not to be right.
-        verdict = "" if name.startswith(UNCONSTRAINED) else judged(name)
-        table.append([name, report.seconds(middle), ratio, str(len(seconds)), verdict])
-    return table
+        right = not peer.times.warm or peer.times.name.startswith(UNCONSTRAINED)
+        rows.append([peer.times.name, *peer.times.cells(base), "" if right else judged(peer)])
+    return report.table([f"{kind} peer", *HEAD, "result"], rows)
 
 
-def compare(
-    title: str, given: lines.Lines, split: bool, arguments: argparse.Namespace, programs: list[Path]
-) -> None:
+def compare(title: str, given: lines.Lines, split: bool, arguments: argparse.Namespace) -> None:
     """Print both tables of one input."""
     expected = 0 if split else len(Delaunay(given.points).simplices)
 
@@ -130,12 +123,9 @@ def compare(
             return line_judge.tiling(corners)
         return line_judge.verdict(given, corners, expected)
 
-    runs = arguments.runs
     print(f"{title}: {len(given.points):,} points, {len(given.segments):,} segments\n")
-    table = python_rows(given, split, judge, runs, arguments.limit)
-    print(report.table(["Python " + HEAD[0], *HEAD[1:]], table) + "\n", flush=True)
-    table = compiled_rows(given, split, judge, runs, programs)
-    print(report.table(["compiled " + HEAD[0], *HEAD[1:]], table) + "\n", flush=True)
+    for text in measure(given, split, judge, arguments):
+        print(text + "\n", flush=True)
 
 
 def inputs(arguments: argparse.Namespace) -> dict[str, tuple[str, lines.Lines, bool]]:
@@ -166,12 +156,12 @@ def main() -> None:
         for name, (_, arrays, _) in given.items():
             write(arrays, arguments.write / name)
         return
-    print(f"Constrained triangulations, {arguments.runs} runs; {report.machine()}\n")
-    programs = build() if given else []
+    print(f"Constrained triangulations; {report.machine()}\n")
+    arguments.programs = build() if given else {}
     for title, arrays, split in given.values():
-        compare(title, arrays, split, arguments, programs)
+        compare(title, arrays, split, arguments)
     if "polygons" in arguments.tables.split(","):
-        print(polygons.tables(arguments.runs))
+        print(polygons.tables(arguments.rounds))
 
 
 if __name__ == "__main__":

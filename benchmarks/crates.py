@@ -74,7 +74,7 @@ def measure(crates: Path, cgal: Path | None, name: str, given: argparse.Namespac
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "points"
         points.astype("<f8").tofile(file)
-        peers = [Program(crates, file, peer, which=peer, limit=LIMIT) for peer in PEERS]
+        peers = [Program(crates, file, peer, peer, limit=LIMIT) for peer in PEERS]
         peers += [Program(cgal, file, "CGAL", limit=LIMIT)] if cgal else []
         compete(peers, given.rounds, given.warm)
         done = [peer.times for peer in peers if peer.times.warm]

@@ -1,9 +1,9 @@
 """Location and interpolation side by side with SciPy, CGAL, startinpy and MetPy.
 
 Sites are uniform in a square, queries as well: in random order, and in rows as a raster has them.
-One thread for everybody unless a line says more; medians of some runs, of one where it is slow. A
-peer that is slow is asked for as many of the queries as it answers in a few seconds, and the line
-says how many. ``python benchmarks/interpolate.py --help`` has options.
+One thread for everybody unless a line says more; medians of warm calls, which take turns, all
+equally often. A peer that is slow is asked for as many of the queries as it answers in a second,
+and the line says how many. ``python benchmarks/interpolate.py --help`` has options.
 """
 
 import argparse
@@ -11,7 +11,6 @@ import importlib.util
 import statistics
 import subprocess
 import tempfile
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -20,36 +19,36 @@ import numpy as np
 import scipy.interpolate
 import scipy.spatial
 from crates import build_cgal, runs_of
+from rounds import alternate
 
 from delone import Delaunay
 from delone.interpolate import CloughTocher, Linear, NaturalNeighbor
 
-# A call that takes longer is not repeated.
-SLOW = 3.0
-# Queries of the first, short call to a peer, and the seconds that it may take in all.
-FEW, PATIENCE = 20, 10.0
+# Queries of the first, short call to a peer, and the seconds that each call may take.
+FEW, PATIENCE = 20, 1.0
 HEAD = ("", "delone", "a query", "peer", "seconds", "a query", "times delone")
+Call = Callable[[], Any]
 
 
-def median(call: Callable[[], Any], runs: int) -> float:
-    """Seconds of a call, the median of some runs; of one where it is slow."""
-    times: list[float] = []
-    for _ in range(runs):
-        start = time.perf_counter()
-        call()
-        times.append(time.perf_counter() - start)
-        if times[-1] > SLOW:
-            break
-    return statistics.median(times)
+def median(call: Call, runs: int) -> float:
+    """Seconds of a warm call, the median of some runs."""
+    return alternate({"": call}, runs)[""]
 
 
-def patient(call: Callable[[Any], Any], queries: Any, runs: int) -> tuple[float, int]:
-    """Seconds for as many of the queries as there is patience for, and their number."""
+def patient(call: Callable[[Any], Any], queries: Any) -> tuple[Call, int]:
+    """Return a call with as many of the queries as there is patience for, and their number."""
     # The first call may have to make what later ones use.
     call(queries[:1])
     each = median(lambda: call(queries[:FEW]), 1) / FEW
     count = int(min(len(queries), max(FEW, PATIENCE / each)))
-    return median(lambda: call(queries[:count]), runs), count
+    return lambda: call(queries[:count]), count
+
+
+def against(ours: Call, theirs: tuple[Call, int], runs: int) -> tuple[float, tuple[float, int]]:
+    """Seconds of both, in turns, and how many queries the peer was asked."""
+    call, count = theirs
+    own, peer = alternate({"delone": ours, "peer": call}, runs).values()
+    return own, (peer, count)
 
 
 def amount(seconds: float) -> str:
@@ -108,24 +107,21 @@ def location(sites: int, count: int, runs: int) -> None:
     print(f"\n{sites:,} sites, {count:,} queries:\n")
     head()
     for order, queries in orders(count).items():
-        mesh.find_simplex(queries[:1])
-        ours = median(lambda q=queries: mesh.find_simplex(q), runs)
-        theirs = patient(scipys, queries, runs)
+        ask = lambda q=queries: mesh.find_simplex(q)  # noqa: E731
+        ours, theirs = against(ask, patient(scipys, queries), runs)
         line(f"`find_simplex`, {order}", ours, len(queries), "SciPy", theirs)
         if order == "random" and (found := cgal(points, queries, min(runs, 3))):
             line("", ours, len(queries), "CGAL, sorting", (found["locate"], count))
-        twin.find_simplex(queries[:1])
         two = median(lambda q=queries: twin.find_simplex(q), runs)
         line(f"two threads: {ours / two:.2f} times one", two, len(queries))
     singles = list(np.random.default_rng(3).random((2000, 2)))
     few = singles[:FEW]
-    line(
-        "`find_simplex`, one at a time",
-        median(lambda: [mesh.find_simplex(q) for q in singles], runs),
-        len(singles),
-        "SciPy",
-        (median(lambda: [scipys(q) for q in few], 1), len(few)),
+    ours, theirs = against(
+        lambda: [mesh.find_simplex(q) for q in singles],
+        (lambda: [scipys(q) for q in few], len(few)),
+        runs,
     )
+    line("`find_simplex`, one at a time", ours, len(singles), "SciPy", theirs)
     empty = np.empty((0, 2))
     ours = median(lambda: [mesh.find_simplex(empty) for _ in range(2000)], runs)
     line("the call itself, without a query", ours, 2000)
@@ -150,10 +146,13 @@ def linear(points: Any, values: Any, queries: Any, order: str, runs: int) -> Non
         "CloughTocher": (CloughTocher, scipy.interpolate.CloughTocher2DInterpolator),
     }
     for name, (own, scipys) in pairs.items():
-        ours = median(lambda f=own: f(points, values, workers=1)(queries), runs)
-        theirs = patient(scipys(points, values), queries, 1)
-        building = median(lambda f=scipys: f(points, values), 1)
-        theirs = (building * theirs[1] / count + theirs[0], theirs[1])
+        calls = {
+            "ours": lambda f=own: f(points, values, workers=1)(queries),
+            "build": lambda f=scipys: f(points, values),
+        }
+        ask, asked = patient(scipys(points, values), queries)
+        ours, building, asking = alternate(calls | {"ask": ask}, runs).values()
+        theirs = (building * asked / count + asking, asked)
         line(f"`{name}`, points to values, {order}", ours, count, "SciPy", theirs)
     made = Linear(points, values, workers=1)
     made(queries[:1])
@@ -183,13 +182,14 @@ def natural(points: Any, values: Any, queries: Any, order: str, runs: int) -> No
         mesh = startinpy.DT()
         mesh.insert(np.column_stack((points, values)))
         call = lambda q: mesh.interpolate({"method": "NNI"}, q)  # noqa: E731
-        line("", ours, count, "startinpy NNI", patient(call, queries, 1))
+        ask, asked = patient(call, queries)
+        line("", ours, count, "startinpy NNI", (median(ask, runs), asked))
     if importlib.util.find_spec("metpy"):
         from metpy.interpolate import natural_neighbor_to_points
 
         call = lambda q: natural_neighbor_to_points(points, values, q)  # noqa: E731
         # It triangulates in the call.
-        line("", ours, count, "MetPy natural", (median(lambda: call(queries[:FEW]), 1), FEW))
+        line("", ours, count, "MetPy natural", (median(lambda: call(queries[:FEW]), runs), FEW))
 
 
 def head() -> None:

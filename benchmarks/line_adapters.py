@@ -18,7 +18,7 @@ def corners(_: Lines, answer: Any) -> NDArray[np.float64]:
     return np.asarray(answer.points[answer.simplices])
 
 
-def delone(workers: int = 1, crossing: str = "error") -> Adapter:
+def delone(workers: int = 1, crossing: str = "raise") -> Adapter:
     """Delone itself: triangles, neighbours and constrained edges are there on return."""
     import delone as library
 

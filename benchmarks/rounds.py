@@ -8,7 +8,9 @@ it: settings of the environment are left out.
 from __future__ import annotations
 
 import os
+import random
 import subprocess
+import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
@@ -16,7 +18,7 @@ import report
 from worker import Peer, Run
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
 
 HEAD = ("cold", "times", "warm", "times", "runs", "peak MB")
@@ -86,12 +88,12 @@ class Module:
 
 
 class Program:
-    """A compiled peer: a program that takes the number of runs, a file and perhaps a name."""
+    """A compiled peer: a program that takes the number of runs, a file and perhaps more."""
 
     def __init__(
-        self, program: Path, points: Path, name: str, *, which: str = "", limit: float = 600.0
+        self, program: Path, points: Path, name: str, *more: str, limit: float = 600.0
     ) -> None:
-        self.start = [str(program)], [str(points), *([which] if which else [])]
+        self.start = [str(program)], [str(points), *more]
         self.limit = limit
         self.times = Times(name)
 
@@ -119,15 +121,29 @@ class Program:
 def compete(peers: Iterable[Contender], rounds: int, warm: int) -> None:
     """Let the peers take turns, round by round, as long as they do not fail.
 
-    Each round begins with another peer: on a virtual machine the first process of a round may pay
-    for pages that the host took back, which the next ones find in place.
+    Each round has an order of its own, the same in every run of the program: what a process leaves
+    behind in the memory of a virtual machine decides what the first call of the next one costs.
     """
     peers = list(peers)
-    for first in range(rounds):
-        start = first % len(peers)
-        for peer in peers[start:] + peers[:start]:
+    for seed in range(rounds):
+        for peer in random.Random(seed).sample(peers, len(peers)):
             if not peer.times.ended:
                 peer.round(warm)
+
+
+def alternate(calls: Mapping[str, Callable[[], object]], runs: int) -> dict[str, float]:
+    """Return the median seconds of calls in this process, which take turns, all equally often.
+
+    A first call of each is not counted: these are warm.
+    """
+    seconds: dict[str, list[float]] = {name: [] for name in calls}
+    for run in range(1 + runs):
+        for name, call in calls.items():
+            start = time.perf_counter()
+            call()
+            if run:
+                seconds[name].append(time.perf_counter() - start)
+    return {name: report.median(each) for name, each in seconds.items()}
 
 
 def median(runs: Sequence[Run]) -> float:

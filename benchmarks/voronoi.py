@@ -173,7 +173,7 @@ def main() -> None:
         np.save(file, points)
         np.save(cut, sites)
         cut.with_suffix(".wkb").write_bytes(shapely.to_wkb(outline))
-        programs = [Program(cgal, raw, name, which=name) for name in CGAL] if cgal else []
+        programs = [Program(cgal, raw, name, name) for name in CGAL] if cgal else []
         table(f"{given.n:,} uniform sites, whole diagram", WHOLE, file, programs, given)
         corners = shapely.get_num_coordinates(outline)
         title = f"{given.cells:,} sites in an outline of {corners:,} corners"

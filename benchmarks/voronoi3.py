@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
 # Cells whose hulls are timed of SciPy's way to volumes.
 SAMPLE = 2000
-# Peers slower than this, in seconds, run once.
-SLOW = 20.0
 
 
 def arrays(points: Any, workers: int) -> None:
@@ -68,8 +66,6 @@ def table(title: str, peers: dict[str, Callable[[], float | None]], runs: int) -
     times: dict[str, list[float]] = {name: [] for name in peers}
     for _ in range(runs):
         for name, work in peers.items():
-            if times[name] and times[name][0] > SLOW:
-                continue
             start = time.perf_counter()
             own = work()
             times[name].append(time.perf_counter() - start if own is None else own)
@@ -110,7 +106,7 @@ def main() -> None:
     options.add_argument("--n", type=int, default=100_000)
     options.add_argument("--queries", type=int, default=100_000)
     options.add_argument("--runs", type=int, default=3)
-    given = options.parse_args()
+    given = options.parse_known_args()[0]
     rng = np.random.default_rng(0)
     points = rng.random((given.n, 3))
     weights = rng.random(given.n) * given.n ** (-2 / 3) / 4

@@ -33,7 +33,7 @@ def options() -> argparse.Namespace:
     parser.add_argument("--warm", type=int, default=1, help="warm runs in each (default 1)")
     parser.add_argument("--limit", type=float, default=60.0, help="seconds a run may take")
     parser.add_argument("--peers", default=",".join(adapters.PEERS), help="which peers take part")
-    return parser.parse_args()
+    return parser.parse_known_args()[0]
 
 
 def row(peer: Module, base: Module, points: adapters.Points, expected: int) -> list[str]:

@@ -100,11 +100,12 @@ void time_run(const char* name, Call call, const Points& points, const Segments&
 }
 
 int main(int count, char** arguments) {
-    const bool split = count == 4 && std::string(arguments[3]) == "split";
-    if (count != 3 && !split) {
-        std::fputs("usage: cgal_constrained RUNS FILE [split]\n", stderr);
+    const bool split = count == 5 && std::string(arguments[4]) == "split";
+    if (count != 4 && !split) {
+        std::fputs("usage: cgal_constrained RUNS FILE PEER [split]\n", stderr);
         return 2;
     }
+    const std::string peer = arguments[3];
     const std::string file = arguments[2];
     const auto numbers = read<double>(file);
     const auto rows = read<std::uint32_t>(file + ".segments");
@@ -120,10 +121,11 @@ int main(int count, char** arguments) {
         const std::string answer = run == 0 ? file : "";
         if (split) {
             time_run<Splitting>("CGAL", insert_constraints<Splitting>, points, segments, answer);
-            continue;
+        } else if (peer == "CGAL") {
+            time_run<Plain>("CGAL", insert_constraints<Plain>, points, segments, answer);
+        } else {
+            time_run<Plain>("CGAL, Delaunay first", delaunay_first, points, segments, answer);
         }
-        time_run<Plain>("CGAL", insert_constraints<Plain>, points, segments, answer);
-        time_run<Plain>("CGAL, Delaunay first", delaunay_first, points, segments, answer);
     }
     return 0;
 }

@@ -1,6 +1,6 @@
-//! Delone's core and spade on points and segments, in turns.
+//! Delone's core or spade on points and segments.
 //!
-//! `constrained RUNS FILE [split]` reads points as `delone-peers` does and pairs of their rows, 32
+//! `constrained RUNS FILE PEER [split]` reads points as `delone-peers` does and pairs of their rows, 32
 //! bits each, from `FILE.segments`. Segments may cross only with `split`. Timed is the call from
 //! points and segments to finished triangles; what each library asks for as input is made before the
 //! clock starts. `benchmarks/constrained.py` makes the files and the tables.
@@ -171,15 +171,18 @@ fn spade_splitting(lines: &Lines) -> Result<Outcome, Failure> {
 
 fn main() -> Result<(), Failure> {
     let arguments: Vec<String> = env::args().collect();
-    let (runs, file, split) = match &arguments[1..] {
-        [runs, file] => (runs, file, false),
-        [runs, file, word] if word == "split" => (runs, file, true),
-        _ => return Err("usage: constrained RUNS FILE [split]".into()),
+    let [_, runs, file, peer, split @ ..] = &arguments[..] else {
+        return Err("usage: constrained RUNS FILE PEER [split]".into());
     };
     let lines = Lines {
         points: points(file)?,
         segments: segments(&format!("{file}.segments"))?,
     };
-    let peers: &[Peer<Lines>] = if split { &SPLITTING } else { &PEERS };
-    compete(peers, &lines, runs.parse()?, file)
+    let peers: &[Peer<Lines>] = if split.is_empty() { &PEERS } else { &SPLITTING };
+    let wanted: Vec<_> = peers
+        .iter()
+        .filter(|(name, _)| name == peer)
+        .copied()
+        .collect();
+    compete(&wanted, &lines, runs.parse()?, file)
 }
