@@ -1719,6 +1719,9 @@ class RecoveredFaces:
     def neighbors(self) -> NDArray[np.int32]:
         """The tetrahedron opposite each vertex, -1 if there is none, (t, 4)."""
     @property
+    def walls(self) -> NDArray[np.int32]:
+        """The row of the face opposite each vertex, -1 if there is none, (t, 4)."""
+    @property
     def nadded(self) -> int:
         """How many points were added."""
     @property

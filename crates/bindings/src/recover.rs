@@ -43,6 +43,8 @@ pub struct RecoveredFaces {
     pub tetrahedra: Table<i32>,
     /// The tetrahedron opposite each vertex, -1 if there is none, (t, 4).
     pub neighbors: Table<i32>,
+    /// The row of the face opposite each vertex, -1 if there is none, (t, 4).
+    pub walls: Table<i32>,
     /// How many points were added.
     pub nadded: usize,
     /// What happened.
@@ -86,6 +88,7 @@ fn arrays_of(py: Python<'_>, made: Recovered, given: usize) -> PyResult<Recovere
         points: table(py, made.points)?,
         tetrahedra: table(py, made.tetrahedra)?,
         neighbors: table(py, made.neighbors)?,
+        walls: table(py, made.walls)?,
         counts: Py::new(py, counts_of(made.counts))?,
         crowded: numbers(py, made.crowded),
     })

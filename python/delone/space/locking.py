@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from delone import _core
+from delone.space.topology import FACES
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int32]
     Keys = NDArray[np.int64]
 
-__all__ = ["Sides", "cells", "is_odd", "sides"]
+__all__ = ["Sides", "cells", "directions", "is_odd", "sides"]
 
 # Whether the face opposite each corner of a positive tetrahedron, ascending, is turned outward.
 _OUTWARD = np.array([1, -1, 1, -1], dtype=np.int8)
@@ -65,6 +66,19 @@ def _keys(lines: Keys, triangles: Keys, npoints: int) -> Keys:
     at = np.minimum(np.searchsorted(lines, first), len(lines) - 1)
     found: Keys = np.where(lines[at] == first, at * npoints + triangles[:, 2], -1)
     return found
+
+
+def directions(simplices: Indices, faces: Indices, face: Indices) -> NDArray[np.int8]:
+    """Return `Sides.out`, if it is known which triangle is opposite each corner; O(m)."""
+    tetrahedron, corner = np.nonzero(face >= 0)
+    outward = simplices[tetrahedron[:, None], np.array(FACES)[corner]]
+    given = faces[face[tetrahedron, corner]]
+    # Turned so that both begin with the same vertex.
+    first = np.argmax(given == outward[:, :1], axis=1)
+    same = given[np.arange(len(given)), (first + 1) % 3] == outward[:, 1]
+    out = np.ones(simplices.shape, dtype=np.int8)
+    out[tetrahedron, corner] = np.where(same, 1, -1)
+    return out
 
 
 def is_odd(simplices: Indices) -> NDArray[np.bool_]:

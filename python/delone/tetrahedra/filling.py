@@ -17,7 +17,7 @@ from delone._arrays import (
 )
 from delone.counting import counted, listed
 from delone.errors import CrowdedFacesError, DanglingFacesError, InputError, ShapeError
-from delone.space.locking import cells, sides
+from delone.space.locking import Sides, cells, directions
 from delone.surface import check_surface
 from delone.tetmesh.tetmesh import TetMesh
 from delone.tetrahedra import arguments, seeds, sources
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone._core import RecoveryCounts
-    from delone.space.locking import Sides
     from delone.surface import SurfaceCheck
     from delone.tetrahedra.arguments import Task
     from delone.tetrahedra.covering import Parts
@@ -182,6 +181,8 @@ class _Everything(NamedTuple):
     """All tetrahedra that faces enclose."""
 
     tiling: Tiling
+    # (m, 4): the row of the face opposite each corner, or -1.
+    walls: Indices
     nadded: int
     counts: RecoveryCounts
 
@@ -193,9 +194,10 @@ class _Solid(NamedTuple):
     cell: Indices
 
     @classmethod
-    def of(cls, tiling: Tiling) -> _Solid:
-        found = sides(tiling.simplices, tiling.faces, len(tiling.points))
-        return cls(found, cells(tiling.neighbors, found.face >= 0))
+    def of(cls, found: _Everything) -> _Solid:
+        tiling, walls = found.tiling, found.walls
+        turned = directions(tiling.simplices, tiling.faces, walls)
+        return cls(Sides(walls, turned), cells(tiling.neighbors, walls >= 0))
 
 
 class _Stages(NamedTuple):
@@ -221,7 +223,7 @@ class _Stages(NamedTuple):
             _require_inside(found.tiling, self.task.extra, workers)
             found = self._recovered(parts, self.task.extra)
         self._tell("select", 0.75)
-        solid = _Solid.of(found.tiling)
+        solid = _Solid.of(found)
         made = self._mesh(found, solid, self._inside(found.tiling, solid, parts), parts, check)
         self._tell("done", 1.0)
         return made
@@ -243,7 +245,7 @@ class _Stages(NamedTuple):
         rows = np.concatenate((used, len(points) + np.arange(len(further)))).astype(np.int32)
         everywhere = np.concatenate((points, further))
         tiling = Tiling(everywhere, rows[made.tetrahedra], made.neighbors, parts.faces)
-        return _Everything(tiling, made.nadded, made.counts)
+        return _Everything(tiling, made.walls, made.nadded, made.counts)
 
     def _inside(self, tiling: Tiling, solid: _Solid, parts: Parts) -> Bools:
         """Return which tetrahedra remain."""

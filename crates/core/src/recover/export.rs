@@ -4,15 +4,49 @@ use std::collections::BTreeSet;
 
 use delone_predicates::{Sign, lexicographic, orient3d};
 
-use super::mesh::{Corners, FACES, NONE, ascending, internal, number};
+use super::mesh::{Corners, NONE, ascending, internal, number as rank};
 use super::task::{Recovered, Task};
 use super::work::Work;
 use crate::error::Result;
 use crate::memory::{filled, push, with_room};
 
+/// The rows of the input.
+#[derive(Clone, Copy)]
+pub struct Rows<'a> {
+    /// Of each vertex.
+    pub points: &'a [u32],
+    /// Of each face.
+    pub faces: &'a [u32],
+}
+
 impl Work<'_> {
+    /// The face of the input of which each face of the mesh is a part, [`NONE`] if there is none.
+    pub fn walls(&mut self) -> Result<Vec<[u32; 4]>> {
+        let mut walls = filled(self.mesh.corners.len(), [NONE; 4])?;
+        for t in 0..self.mesh.corners.len() as u32 {
+            self.pace.spend(1)?;
+            if !self.mesh.is_there(t) {
+                continue;
+            }
+            for k in 0..4 {
+                let u = self.mesh.across[t as usize][k];
+                // From one side for both.
+                if u != NONE && u < t {
+                    continue;
+                }
+                if let Some(f) = self.locked_faces.get(ascending(self.mesh.face(t, k))) {
+                    walls[t as usize][k] = f;
+                    if let Some(i) = self.mesh.back(t, k) {
+                        walls[u as usize][i] = f;
+                    }
+                }
+            }
+        }
+        Ok(walls)
+    }
+
     /// The tetrahedra that the far vertices reach without crossing a face of the input.
-    pub fn outside(&mut self) -> Result<Vec<bool>> {
+    pub fn outside(&self, walls: &[[u32; 4]]) -> Result<Vec<bool>> {
         let mut out = filled(self.mesh.corners.len(), false)?;
         let mut open = vec![self.mesh.at[self.far as usize]];
         out[open[0] as usize] = true;
@@ -22,10 +56,7 @@ impl Work<'_> {
                 if u == NONE || out[u as usize] {
                     continue;
                 }
-                if !self
-                    .locked_faces
-                    .contains_key(&ascending(self.mesh.face(t, k)))
-                {
+                if walls[t as usize][k] == NONE {
                     out[u as usize] = true;
                     push(&mut open, u)?;
                 }
@@ -36,60 +67,84 @@ impl Work<'_> {
 
     /// Checks that each tetrahedron is positive or has a point of wide coordinates outside, that
     /// faces pair up, and that each face of the input is there.
-    pub fn verify(&mut self, out: &[bool]) -> Result<()> {
-        let mut sides: Vec<u128> = with_room(4 * self.mesh.corners.len())?;
-        for (&v, &is_out) in self.mesh.corners.iter().zip(out) {
+    ///
+    /// Positive tetrahedra that are linked in pairs across each face, from both sides of it, cover
+    /// the points off their faces equally often: a path from one point to another changes one
+    /// tetrahedron for one other at a time. Where only the faces of the far tetrahedron have no
+    /// second side, that is once. So nothing overlaps, and no face has more than two sides.
+    pub fn verify(&mut self, walls: &[[u32; 4]], out: &[bool]) -> Result<()> {
+        let mut there = filled(self.faces.len(), false)?;
+        let mut outer = Vec::new();
+        for t in 0..self.mesh.corners.len() as u32 {
             self.pace.spend(1)?;
+            let v = self.mesh.corners[t as usize];
             if v[0] == NONE {
                 continue;
             }
             if !self.mesh.points.positive(v) {
                 return Err(internal("a tetrahedron is not positive"));
             }
-            if !is_out {
+            let plain = v.iter().all(|&v| self.mesh.points.is_double(v));
+            if !plain && !out[t as usize] {
                 let [a, b, c, d] = v.map(|v| self.mesh.points.near(v));
                 if orient3d(a, b, c, d) != Sign::Positive {
                     return Err(internal("a tetrahedron of doubles is not positive"));
                 }
             }
-            for f in FACES {
-                let face = f.map(|i| v[i]);
-                sides.push(number(ascending(face)) << 1 | u128::from(odd(face)));
+            for k in 0..4 {
+                if self.mesh.across[t as usize][k] == NONE {
+                    push(&mut outer, ascending(self.mesh.face(t, k)))?;
+                } else if !self.is_linked(t, k) {
+                    return Err(internal("two sides of a face do not match"));
+                }
+                let f = walls[t as usize][k];
+                if f != NONE && self.faces[f as usize] == ascending(self.mesh.face(t, k)) {
+                    there[f as usize] = true;
+                }
             }
         }
-        sides.sort_unstable();
-        let far = FACES.map(|f| number(ascending(f.map(|i| self.far + i as u32))));
-        let mut rest = sides.as_slice();
-        let mut all: Vec<u128> = with_room(sides.len() / 2 + 4)?;
-        while let Some((&side, others)) = rest.split_first() {
-            all.push(side >> 1);
-            match others.first() {
-                Some(&other) if other == side ^ 1 => rest = &others[1..],
-                _ if far.contains(&(side >> 1)) => rest = others,
-                _ => return Err(internal("a face has no other side")),
-            }
+        outer.sort_unstable();
+        let expected =
+            [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]].map(|f| f.map(|i| self.far + i));
+        if outer != expected {
+            return Err(internal("a face has no other side"));
         }
-        if all.windows(2).any(|w| w[0] == w[1]) {
-            return Err(internal("a face has more than two sides"));
-        }
-        let there = |&f: &[u32; 3]| all.binary_search(&number(f)).is_ok();
-        if !self.faces.iter().all(there) {
+        if there.contains(&false) {
             return Err(internal("a face of the input is not in the mesh"));
         }
         Ok(())
     }
 
+    /// Whether the tetrahedron behind a face links back, and has the same face from the other side.
+    fn is_linked(&self, t: u32, k: usize) -> bool {
+        let u = self.mesh.across[t as usize][k];
+        let face = self.mesh.face(t, k);
+        let back = (0..4).find(|&i| !face.contains(&self.mesh.corners[u as usize][i]));
+        back.is_some_and(|i| {
+            let other = self.mesh.face(u, i);
+            self.mesh.across[u as usize][i] == t
+                && ascending(other) == ascending(face)
+                && odd(other) != odd(face)
+        })
+    }
+
     /// The result in rows, without the outside.
-    pub fn export(self, task: Task, rows: &[u32], out: &[bool]) -> Result<Recovered> {
+    pub fn export(
+        self,
+        task: Task,
+        rows: Rows,
+        walls: &[[u32; 4]],
+        out: &[bool],
+    ) -> Result<Recovered> {
         let mesh = &self.mesh;
         let inside = |t: &u32| mesh.is_there(*t) && !out[*t as usize];
         let kept = (0..mesh.corners.len() as u32).filter(inside);
-        let mut order: Vec<(Corners, u32)> = with_room(mesh.corners.len())?;
+        let mut order: Vec<(u128, u32)> = with_room(mesh.corners.len())?;
         let mut added = BTreeSet::new();
         for t in kept {
             let v = mesh.corners[t as usize];
             added.extend(v.into_iter().filter(|&v| v >= self.given));
-            order.push((v, t));
+            order.push((0, t));
         }
         let mut added: Vec<u32> = added.into_iter().collect();
         added.sort_unstable_by(|&p, &q| lexicographic(mesh.points.near(p), mesh.points.near(q)));
@@ -100,9 +155,11 @@ impl Work<'_> {
             place[v as usize] = i;
         }
         let n = self.far;
-        let row = |i: u32| if i < n { rows[i as usize] } else { i };
-        for entry in &mut order {
-            entry.0 = rotated(entry.0.map(|v| place[v as usize]));
+        let row = |i: u32| if i < n { rows.points[i as usize] } else { i };
+        for (key, t) in &mut order {
+            *key = rank(rotated(
+                mesh.corners[*t as usize].map(|v| place[v as usize]),
+            ));
         }
         order.sort_unstable();
         let mut number = filled(mesh.corners.len() + 1, -1)?;
@@ -116,19 +173,23 @@ impl Work<'_> {
             points,
             tetrahedra: with_room(order.len())?,
             neighbors: with_room(order.len())?,
+            walls: with_room(order.len())?,
             counts: self.counts,
             crowded: Vec::new(),
         };
-        for (v, t) in &order {
+        for (key, t) in &order {
+            let v = [key >> 96, key >> 64, key >> 32, *key].map(|i| i as u32);
             made.tetrahedra.push(v.map(|i| row(i) as i32));
-            let across = v.map(|i| {
-                let k = mesh.corner(*t, sorted[i as usize]).unwrap_or(0);
-                match mesh.across[*t as usize][k] {
+            let corner = v.map(|i| mesh.corner(*t, sorted[i as usize]).unwrap_or(0));
+            made.neighbors
+                .push(corner.map(|k| match mesh.across[*t as usize][k] {
                     NONE => -1,
                     u => number[u as usize],
-                }
-            });
-            made.neighbors.push(across);
+                }));
+            made.walls.push(corner.map(|k| match walls[*t as usize][k] {
+                NONE => -1,
+                f => rows.faces[f as usize] as i32,
+            }));
         }
         Ok(made)
     }

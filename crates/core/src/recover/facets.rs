@@ -102,11 +102,11 @@ impl Work<'_> {
             };
             let r = ring.vertices.iter().find(inner);
             let r = *r.ok_or_else(|| internal("a part of a face is missing"))?;
-            if self.locked_faces.insert(ascending([p, q, r]), f).is_some() {
+            if self.locked_faces.insert(ascending([p, q, r]), f) {
                 continue;
             }
             for [x, y] in [[q, r], [r, p]] {
-                if !self.locked_edges.contains_key(&pair(x, y)) {
+                if !self.locked_edges.has(pair(x, y)) {
                     // Seen from the other side.
                     open.push([y, x]);
                 }

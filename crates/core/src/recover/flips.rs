@@ -150,7 +150,7 @@ impl Work<'_> {
         (depth, slack): (usize, usize),
         tries: &mut usize,
     ) -> Result<bool> {
-        if *tries == 0 || self.locked_edges.contains_key(&pair(a, b)) {
+        if *tries == 0 || self.locked_edges.has(pair(a, b)) {
             return Ok(false);
         }
         *tries -= 1;
@@ -213,7 +213,7 @@ impl Work<'_> {
         let Some((below, b)) = self.mesh.apex(t, k) else {
             return Ok(false);
         };
-        if self.locked_faces.contains_key(&ascending(face)) {
+        if self.locked_faces.has(ascending(face)) {
             return Ok(false);
         }
         let new = [[u, v, b, a], [v, w, b, a], [w, u, b, a]];

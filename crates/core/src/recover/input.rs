@@ -3,7 +3,7 @@
 use delone_predicates::{Point3, Sign, lexicographic, orient3d};
 
 use super::coordinates::Coordinates;
-use super::mesh::{Mesh, NONE, ascending};
+use super::mesh::{Mesh, NONE, ascending, number};
 use super::task::Task;
 use crate::delaunay3::triangulate;
 use crate::error::{Error, Result};
@@ -61,20 +61,21 @@ pub fn import(task: Task, watch: &Watch) -> Result<Imported> {
 
 /// The faces in terms of vertices, and their rows, sorted.
 fn sorted_faces(task: Task, place: &[u32]) -> Result<(Vec<[u32; 3]>, Vec<u32>)> {
-    let mut all: Vec<([u32; 3], u32)> = with_room(task.faces.len())?;
+    let mut all: Vec<u128> = with_room(task.faces.len())?;
     for (row, face) in (0..).zip(task.faces) {
         let face = ascending(face.map(|v| place[v as usize]));
         if face[0] == face[1] || face[1] == face[2] {
             return Err(Error::Shape(format!("face {row} has a vertex twice")));
         }
-        all.push((face, row));
+        all.push(number([face[0], face[1], face[2], row]));
     }
     all.sort_unstable();
-    if let Some(same) = all.windows(2).find(|w| w[0].0 == w[1].0) {
-        let [a, b] = [same[0].1, same[1].1];
+    if let Some(same) = all.windows(2).find(|w| w[0] >> 32 == w[1] >> 32) {
+        let [a, b] = [same[0], same[1]].map(|x| x as u32);
         return Err(Error::Shape(format!("faces {a} and {b} are the same")));
     }
-    Ok(all.into_iter().unzip())
+    let face = |x: u128| [x >> 96, x >> 64, x >> 32].map(|v| v as u32);
+    Ok(all.into_iter().map(|x| (face(x), x as u32)).unzip())
 }
 
 /// Four vertices whose tetrahedron contains all points, far from them.

@@ -33,13 +33,14 @@ pub fn pair(a: u32, b: u32) -> [u32; 2] {
 }
 
 /// Three vertices, ascending.
-pub fn ascending(mut v: [u32; 3]) -> [u32; 3] {
-    v.sort_unstable();
-    v
+#[inline]
+pub fn ascending([a, b, c]: [u32; 3]) -> [u32; 3] {
+    let (low, high) = (a.min(b), a.max(b));
+    [low.min(c), high.min(low.max(c)), high.max(c)]
 }
 
-/// Three vertices as one number, which takes less time to sort.
-pub fn number(v: [u32; 3]) -> u128 {
+/// Vertices as one number, which takes less time to sort.
+pub fn number<const N: usize>(v: [u32; N]) -> u128 {
     v.iter().fold(0, |n, &x| n << 32 | u128::from(x))
 }
 
@@ -115,8 +116,13 @@ impl Mesh {
     /// The corner of the tetrahedron behind a face that is not on it.
     pub fn apex(&self, t: u32, k: usize) -> Option<(u32, u32)> {
         let u = self.across[t as usize][k];
-        let back = (u != NONE).then(|| (0..4).find(|&i| self.across[u as usize][i] == t))??;
-        Some((u, self.corners[u as usize][back]))
+        Some((u, self.corners[u as usize][self.back(t, k)?]))
+    }
+
+    /// Which corner of the tetrahedron behind a face is not on it.
+    pub fn back(&self, t: u32, k: usize) -> Option<usize> {
+        let u = self.across[t as usize][k];
+        (u != NONE).then(|| (0..4).find(|&i| self.across[u as usize][i] == t))?
     }
 
     /// Starts a search that has seen nothing.

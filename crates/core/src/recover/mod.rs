@@ -32,6 +32,7 @@ mod export;
 mod facets;
 mod flips;
 mod input;
+mod locks;
 mod mesh;
 mod place;
 mod segments;
@@ -43,9 +44,10 @@ mod work;
 pub use task::{Counts, Recovered, Task};
 
 use crate::error::Result;
-use crate::memory::with_room;
+use crate::memory::filled;
 use crate::watch::Watch;
-use mesh::{NONE, PAIRS, ascending, number, pair};
+use export::Rows;
+use mesh::{NONE, PAIRS, ascending, pair};
 use work::{Origin, Work};
 
 /// Sweeps that look for doubles.
@@ -62,7 +64,7 @@ const DEPTH: usize = 1;
 /// a face: none, if the faces close nothing.
 pub fn recover(task: Task, watch: &Watch) -> Result<Recovered> {
     let imported = input::import(task, watch)?;
-    let mut work = Work::new(imported.mesh, imported.faces, task.max_points, watch);
+    let mut work = Work::new(imported.mesh, imported.faces, task.max_points, watch)?;
     let (mut segments, mut faces) = work.missing()?;
     work.counts.missing_edges = segments.len();
     work.counts.missing_faces = faces.len();
@@ -79,7 +81,9 @@ pub fn recover(task: Task, watch: &Watch) -> Result<Recovered> {
     }
     work.cut_faces(&faces)?;
     work.thin(work.given)?;
-    let out = work.finish(task.flips)?;
+    work.finish(task.flips)?;
+    let walls = work.walls()?;
+    let out = work.outside(&walls)?;
     let crowded = work.crowded(&out);
     if !crowded.is_empty() {
         let rows = crowded.iter().map(|&f| imported.face_rows[f as usize]);
@@ -88,46 +92,68 @@ pub fn recover(task: Task, watch: &Watch) -> Result<Recovered> {
             points: Vec::new(),
             tetrahedra: Vec::new(),
             neighbors: Vec::new(),
+            walls: Vec::new(),
             counts: work.counts,
             crowded,
         });
     }
-    work.verify(&out)?;
-    work.export(task, &imported.rows, &out)
+    work.verify(&walls, &out)?;
+    let rows = Rows {
+        points: &imported.rows,
+        faces: &imported.face_rows,
+    };
+    work.export(task, rows, &walls, &out)
 }
 
 impl Work<'_> {
     /// Segments and faces that the mesh lacks; locks the others.
     fn missing(&mut self) -> Result<(Vec<u32>, Vec<u32>)> {
-        let cells = self.mesh.corners.len();
-        let mut edges: Vec<u64> = with_room(6 * cells)?;
-        let mut all: Vec<u128> = with_room(4 * cells)?;
-        let packed = |[a, b]: [u32; 2]| u64::from(a) << 32 | u64::from(b);
-        for (t, v) in (0..).zip(&self.mesh.corners) {
+        let mut there = filled(self.segments.len(), false)?;
+        for v in &self.mesh.corners {
             self.pace.spend(1)?;
-            edges.extend(PAIRS.map(|[i, j, ..]| packed(pair(v[i], v[j]))));
-            all.extend([0, 1, 2, 3].map(|k| number(ascending(self.mesh.face(t, k)))));
+            for [i, j, ..] in PAIRS {
+                if let Some(s) = self.locked_edges.row(pair(v[i], v[j])) {
+                    there[s as usize] = true;
+                }
+            }
         }
-        edges.sort_unstable();
-        all.sort_unstable();
-        let (mut segments, mut faces) = (Vec::new(), Vec::new());
-        for (s, e) in (0..).zip(&self.segments) {
-            if edges.binary_search(&packed(*e)).is_ok() {
-                self.locked_edges.insert(*e, s);
+        let mut segments = Vec::new();
+        for (s, &edge) in (0..).zip(&self.segments) {
+            if there[s as usize] {
+                self.locked_edges.insert(edge, s);
             } else {
                 segments.push(s);
             }
         }
+        let there = self.faces_there()?;
+        let mut faces = Vec::new();
         for f in 0..self.faces.len() as u32 {
-            let face = self.faces[f as usize];
-            if all.binary_search(&number(face)).is_ok() {
-                self.locked_faces.insert(face, f);
+            if there[f as usize] {
+                self.locked_faces.insert(self.faces[f as usize], f);
                 self.close(f);
             } else {
                 faces.push(f);
             }
         }
         Ok((segments, faces))
+    }
+
+    /// Which faces of the input are faces of the mesh.
+    fn faces_there(&mut self) -> Result<Vec<bool>> {
+        let mut there = filled(self.faces.len(), false)?;
+        for t in 0..self.mesh.corners.len() as u32 {
+            self.pace.spend(1)?;
+            for k in 0..4 {
+                // From one of both sides.
+                let u = self.mesh.across[t as usize][k];
+                if self.mesh.is_there(t) && (u == NONE || t < u) {
+                    if let Some(f) = self.locked_faces.row(ascending(self.mesh.face(t, k))) {
+                        there[f as usize] = true;
+                    }
+                }
+            }
+        }
+        Ok(there)
     }
 
     /// Notes that a face is recovered.
@@ -195,15 +221,16 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Moves free points to doubles and takes away what is not needed; returns what is outside.
-    fn finish(&mut self, flips: bool) -> Result<Vec<bool>> {
+    /// Moves free points to doubles and takes away what is not needed.
+    fn finish(&mut self, flips: bool) -> Result<()> {
         for sweep in 0..SWEEPS {
             let before = self.free_points().len();
             if before == 0 {
                 break;
             }
             if flips {
-                let out = self.outside()?;
+                let walls = self.walls()?;
+                let out = self.outside(&walls)?;
                 self.thin_by_flips(sweep.min(DEEPEST), &out)?;
             }
             for v in self.free_points() {
@@ -216,10 +243,14 @@ impl Work<'_> {
                 break;
             }
         }
-        let mut out = self.outside()?;
         for _ in 0..SWEEPS {
-            let wide = self.wide_inside(&out);
-            if wide.is_empty() {
+            let double = |v| self.mesh.points.is_double(v);
+            if self.free_points().into_iter().all(double) {
+                break;
+            }
+            let walls = self.walls()?;
+            let out = self.outside(&walls)?;
+            if self.wide_inside(&out).is_empty() {
                 break;
             }
             for v in self.free_points() {
@@ -227,9 +258,8 @@ impl Work<'_> {
                 self.center_free(v);
             }
             self.thin(self.given)?;
-            out = self.outside()?;
         }
-        Ok(out)
+        Ok(())
     }
 
     /// Points inside that are not doubles.
@@ -250,7 +280,7 @@ impl Work<'_> {
                         for k in 0..4 {
                             let face = ascending(self.mesh.face(u, k));
                             let near = face.contains(&w) && self.mesh.across[u as usize][k] != NONE;
-                            if let Some(&f) = self.locked_faces.get(&face).filter(|_| near) {
+                            if let Some(f) = self.locked_faces.get(face).filter(|_| near) {
                                 found.insert(f);
                             }
                         }

@@ -73,7 +73,7 @@ impl Work<'_> {
                 let Some(i) = face.iter().position(|&v| v == s) else {
                     continue;
                 };
-                let Some(&f) = self.locked_faces.get(&face) else {
+                let Some(f) = self.locked_faces.get(face) else {
                     continue;
                 };
                 if let std::collections::btree_map::Entry::Vacant(entry) = asides.entry(f) {
@@ -178,7 +178,7 @@ impl Work<'_> {
                         outer.push(face);
                         continue;
                     }
-                    if let Some(&f) = self.locked_faces.get(&ascending(face)) {
+                    if let Some(f) = self.locked_faces.get(ascending(face)) {
                         let [a, b, c] = self.faces[f as usize];
                         let apex = self.mesh.corners[t as usize][k];
                         let side = self.orient(a, b, c, apex);
@@ -258,7 +258,7 @@ impl Work<'_> {
         for (&f, polygon) in polygons {
             for i in 0..polygon.len() {
                 let [p, q] = [polygon[i], after(polygon, i)];
-                self.locked_faces.remove(&ascending([s, p, q]));
+                self.locked_faces.remove(ascending([s, p, q]));
             }
             for &triangle in &triangles[&f] {
                 self.locked_faces.insert(ascending(triangle), f);
@@ -271,8 +271,8 @@ impl Work<'_> {
             let p = if i == 0 { a } else { chain[i - 1] };
             let q = chain.get(i + 1).copied().unwrap_or(b);
             chain.remove(i);
-            self.locked_edges.remove(&pair(p, s));
-            self.locked_edges.remove(&pair(s, q));
+            self.locked_edges.remove(pair(p, s));
+            self.locked_edges.remove(pair(s, q));
             self.locked_edges.insert(pair(p, q), segment);
         }
     }

@@ -51,6 +51,8 @@ pub struct Recovered {
     pub tetrahedra: Vec<[i32; 4]>,
     /// The tetrahedron opposite each corner, -1 if there is none.
     pub neighbors: Vec<[i32; 4]>,
+    /// The face of the input opposite each corner, -1 if there is none.
+    pub walls: Vec<[i32; 4]>,
     /// What happened.
     pub counts: Counts,
     /// Faces near which no double is left for a point: then there are no tetrahedra.

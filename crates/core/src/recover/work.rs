@@ -6,9 +6,11 @@ use delone_predicates::Sign;
 use num_bigint::BigInt;
 
 use super::coordinates::Wide;
-use super::mesh::{Mesh, Ring, ascending, pair};
+use super::locks::Locks;
+use super::mesh::{Mesh, Ring, ascending, number as rank, pair};
 use super::task::Counts;
 use crate::error::{Crowd, Error, Result};
+use crate::memory::{filled, push, with_room};
 use crate::watch::{Pace, Watch};
 
 /// Where an added point lies.
@@ -48,9 +50,9 @@ pub struct Work<'a> {
     /// The segments of each face, opposite its corners.
     pub sides: Vec<[u32; 3]>,
     /// Parts of segments, with the segment of each.
-    pub locked_edges: HashMap<[u32; 2], u32>,
+    pub locked_edges: Locks<2>,
     /// Parts of faces, with the face of each.
-    pub locked_faces: HashMap<[u32; 3], u32>,
+    pub locked_faces: Locks<3>,
     /// Points on segments, in order, where there are any.
     pub chains: HashMap<u32, Vec<u32>>,
     /// Where each added point lies.
@@ -67,22 +69,36 @@ pub struct Work<'a> {
 
 impl<'a> Work<'a> {
     /// The state before anything is recovered.
-    pub fn new(mesh: Mesh, faces: Vec<[u32; 3]>, limit: usize, watch: &'a Watch<'a>) -> Self {
+    pub fn new(
+        mesh: Mesh,
+        faces: Vec<[u32; 3]>,
+        limit: usize,
+        watch: &'a Watch<'a>,
+    ) -> Result<Self> {
         let given = mesh.points.len() as u32;
-        let edges = |f: &[u32; 3]| [pair(f[1], f[2]), pair(f[0], f[2]), pair(f[0], f[1])];
-        let mut segments: Vec<[u32; 2]> = faces.iter().flat_map(edges).collect();
-        segments.sort_unstable();
-        segments.dedup();
-        let mut open_faces = vec![0; segments.len()];
-        let mut sides = Vec::with_capacity(faces.len());
-        for face in &faces {
-            let found = edges(face).map(|e| segments.binary_search(&e).unwrap_or(0) as u32);
-            for s in found {
-                open_faces[s as usize] += 1;
-            }
-            sides.push(found);
+        let mut edges: Vec<u128> = with_room(3 * faces.len())?;
+        for (f, &[a, b, c]) in (0..).zip(&faces) {
+            // Opposite the corners; faces are ascending, so these are, too.
+            edges.extend([[b, c, f, 0], [a, c, f, 1], [a, b, f, 2]].map(rank));
         }
-        Self {
+        edges.sort_unstable();
+        let mut segments: Vec<[u32; 2]> = with_room(edges.len() / 2)?;
+        let mut open_faces = with_room(edges.len() / 2)?;
+        let mut sides = filled(faces.len(), [0; 3])?;
+        for x in edges {
+            let [a, b, f, corner] = [x >> 96, x >> 64, x >> 32, x].map(|v| v as u32);
+            let edge = [a, b];
+            if segments.last() != Some(&edge) {
+                push(&mut segments, edge)?;
+                push(&mut open_faces, 0)?;
+            }
+            let s = segments.len() - 1;
+            open_faces[s] += 1;
+            sides[f as usize][corner as usize] = s as u32;
+        }
+        let locked_edges = Locks::new(&segments, mesh.points.len())?;
+        let locked_faces = Locks::new(&faces, mesh.points.len())?;
+        Ok(Self {
             mesh,
             given,
             far: given - 4,
@@ -90,15 +106,15 @@ impl<'a> Work<'a> {
             segments,
             open_faces,
             sides,
-            locked_edges: HashMap::new(),
-            locked_faces: HashMap::new(),
+            locked_edges,
+            locked_faces,
             chains: HashMap::new(),
             origin: Vec::new(),
             alive: 0,
             limit,
             counts: Counts::default(),
             pace: Pace::new(watch, 1 << 8),
-        }
+        })
     }
 
     /// Where an added point lies; `None` for a vertex of the input.
@@ -161,8 +177,8 @@ impl<'a> Work<'a> {
     /// Whether the edge of a ring or a face at it is locked.
     pub fn ring_is_locked(&self, ring: &Ring) -> bool {
         let [a, b] = ring.ends;
-        let face = |&v: &u32| self.locked_faces.contains_key(&ascending([a, b, v]));
-        self.locked_edges.contains_key(&pair(a, b)) || ring.vertices.iter().any(face)
+        let face = |&v: &u32| self.locked_faces.has(ascending([a, b, v]));
+        self.locked_edges.has(pair(a, b)) || ring.vertices.iter().any(face)
     }
 }
 
