@@ -42,6 +42,24 @@ def test_figures(tmp_path, figures):
     assert figures("tetrahedralize", source, "--inside", "parity")["volume"] == pytest.approx(63)
 
 
+def test_triangles_in_one_plane_are_cut_again(tmp_path, figures, command):
+    corners = np.array([(-1, 3), *((k, k * k) for k in range(6))]) / 4
+    points = np.concatenate([np.column_stack((corners, np.full(7, z))) for z in (0.0, 1)])
+    # The ends are fans of their first corners.
+    faces = [f for k in range(1, 6) for f in ((0, k + 1, k), (7, 7 + k, 8 + k))]
+    faces += [
+        f
+        for k in range(7)
+        for f in ((k, (k + 1) % 7, k + 7), ((k + 1) % 7, (k + 1) % 7 + 7, k + 7))
+    ]
+    source = save(tmp_path / "part.ply", points, np.array(faces))
+    found = figures("tetrahedralize", source, "--boundary", "surface")
+    assert not found["kept"] and found["recut"]["count"] > 0
+    assert figures("tetrahedralize", source)["kept"]
+    code, _, err = command("tetrahedralize", source, "--boundary", "edges")
+    assert code == 2 and "surface" in err
+
+
 def test_improved(tmp_path, figures):
     source = save(tmp_path / "part.ply", *solids.torus())
     found = figures("tetrahedralize", source, "--improve", "-o", tmp_path / "part.npz")

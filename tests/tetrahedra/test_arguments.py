@@ -80,7 +80,7 @@ def test_no_room_for_a_double(ulps: int) -> None:
 @pytest.mark.parametrize(
     ("change", "error", "words"),
     [
-        ({"boundary": "surface"}, delone.InputError, "boundary must be one of 'faces'"),
+        ({"boundary": "edges"}, delone.InputError, "boundary must be one of 'faces', 'surface'"),
         ({"inside": "odd"}, delone.InputError, "inside must be one of"),
         ({"holes": [(9, 9, 9)]}, delone.InputError, "holes: 1 seed outside"),
         ({"holes": [(1, 1, 4)]}, delone.InputError, "holes: 1 seed on a face"),

@@ -129,6 +129,9 @@ def _check_recovery(**arrays: NDArray[Any]) -> None:
     _check_range("recovery", arrays["recovery"], 0, 2**63)
     require(arrays["recovery"][0] == arrays["added"][0], "the report counts other added points")
     _check_range("duplicate_points", arrays["duplicate_points"], 0, len(arrays["points"]))
+    _check_range("recut", arrays["recut"], 0, len(arrays["points"]))
+    _check_range("recut_source", arrays["recut_source"], 0, 2**31)
+    require(len(arrays["recut"]) == len(arrays["recut_source"]), "recut has not one source each")
     for name in ("subdivided", "repeated", "degenerate", "dangling", "outside"):
         _check_range(name, arrays[name], 0, 2**31)
         require((np.diff(arrays[name]) > 0).all(), f"{name} is out of order")

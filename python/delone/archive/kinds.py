@@ -105,6 +105,8 @@ _TET_MESH = Kind(
         "degenerate": ("<i8", 0),
         "dangling": ("<i8", 0),
         "outside": ("<i8", 0),
+        "recut": ("<i8", 3),
+        "recut_source": ("<i8", 2),
         "angles": ("<f8", 0),
         "counts": ("<i8", 0),
         "bounds": ("<f8", 0),

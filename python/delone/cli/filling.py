@@ -53,7 +53,7 @@ _OF_SURFACE = (
     OpenSurfaceError,
 )
 _COUNTS = ("missing_edges", "missing_faces", "flips")
-_ROWS = ("duplicate_points", "subdivided", "repeated", "degenerate", "dangling", "outside")
+_ROWS = ("duplicate_points", "subdivided", "repeated", "degenerate", "dangling", "outside", "recut")
 _FIRST = 10
 
 
@@ -72,6 +72,12 @@ def fill(
             help="What is filled: winding (numbers other than 0), parity (odd) or enclosed (all)."
         ),
     ] = "winding",
+    boundary: Annotated[
+        str,
+        typer.Option(
+            help="What is kept: faces, or surface (triangles in one plane are cut again)."
+        ),
+    ] = "faces",
     hole: Annotated[
         list[str] | None,
         typer.Option(metavar="X,Y,Z", help="Leave the region around a point empty; repeatable."),
@@ -92,12 +98,15 @@ def fill(
 ) -> None:
     """Fill a closed surface with tetrahedra; its triangles are kept exactly.
 
+    With ``--boundary surface``, triangles in one plane are cut again, which adds fewer points.
+
     A PNG file shows the tetrahedra behind a cut.
     """
     with writing():
         protect_inputs(output or (), source)
         writers = {path: _ready(path) for path in output or ()}
     options = {
+        "boundary": boundary,
         "inside": inside,
         "holes": _numbers(hole, "--hole", 3),
         "regions": _numbers(region, "--region", 4),

@@ -1,8 +1,8 @@
 """Drop-in replacement for the package ``tetgen``: its class, with `delone.tetrahedralize` inside.
 
 That package wraps H. Si's program TetGen. Here the names are the same, but delone does the work; no
-code of either is used. All triangles of the input are kept, and points are added strictly between
-them only, as with TetGen's switch Y. Tetrahedra of bounded quality are not supported.
+code of either is used. Points are added strictly between the triangles only. Triangles in one plane
+may be cut again, but not with TetGen's switch Y. Tetrahedra of bounded quality are not supported.
 """
 
 from __future__ import annotations
@@ -216,7 +216,9 @@ class TetGen:
         minratio, mindihedral : float, optional
             Bounds on quality, without effect if `quality` is False.
         nobisect : bool, optional
-            Without effect: no point is ever added on a triangle.
+            Whether all triangles are faces of the result. Otherwise, triangles in one plane may be
+            cut again, as with ``boundary="surface"`` of `delone.tetrahedralize`; no point is ever
+            added on the surface.
         steinerleft : int, optional
             The maximum number of points that exist besides those of the input at any time; -1 for
             no limit of one's own.
@@ -259,7 +261,7 @@ class TetGen:
         See `TetGen`.
         """
         if switches:
-            limit, regionattrib, facesout = _switched(switches)
+            limit, regionattrib, facesout, nobisect = _switched(switches)
         else:
             _refuse_quality(quality, order, bgmesh, others)
             if not as_flag(plc, name="plc"):
@@ -269,6 +271,7 @@ class TetGen:
         self.mesh = tetrahedralize(
             self.v,
             self.f,
+            boundary="faces" if as_flag(nobisect, name="nobisect") else "surface",
             inside="enclosed",
             holes=self._holes or None,
             regions=regions or None,
@@ -367,8 +370,8 @@ def _refuse_quality(quality: bool, order: int, bgmesh: Any, others: dict[str, An
             raise InputError(f"the argument {name} is not supported")
 
 
-def _switched(switches: str) -> tuple[int | None, bool, bool]:
-    """Return the limit on points, and whether regions and all faces are wanted."""
+def _switched(switches: str) -> tuple[int | None, bool, bool, bool]:
+    """Return the limit on points, whether regions and all faces are wanted, and all are kept."""
     rest = _SWITCH.sub("", switches)
     if rest:
         raise InputError(f"switches has {rest!r}, which is no switch")
@@ -383,7 +386,8 @@ def _switched(switches: str) -> tuple[int | None, bool, bool]:
             raise InputError(f"the switch {letter} is not known")
     if "p" not in known:
         raise InputError("switches must contain p: delone.Delaunay triangulates points alone")
-    return limit, "A" in known, "f" in known
+    # M: facets in one plane are not merged.
+    return limit, "A" in known, "f" in known, "Y" in known or "M" in known
 
 
 def _labels(mesh: TetMesh, *, given: bool) -> Floats:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from delone.counting import agreed, counted, listed
 from delone.immutable import ReadOnly
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     Rows = NDArray[np.int64]
@@ -37,6 +38,8 @@ RECOVERY_ROWS = (
     "degenerate",
     "dangling",
     "outside",
+    "recut",
+    "recut_source",
 )
 _SHOWN = 5
 
@@ -78,6 +81,12 @@ class RecoveryReport(ReadOnly):
     outside : ndarray of int64, shape (k,)
         Input faces without a tetrahedron on either side, at least in part: they are outside, or
         between parts that are left out.
+    recut : ndarray of int64, shape (k, 3)
+        With ``boundary="surface"``, triangles that others replace in their planes: input faces, or
+        parts of them, as rows of points.
+    recut_source : ndarray of int64, shape (k, 2)
+        The input face of each of these, and the `face_source` of the faces that replace them. The
+        union of all triangles with one value there is that of the faces.
 
     Attributes
     ----------
@@ -111,11 +120,13 @@ class RecoveryReport(ReadOnly):
     degenerate: Rows
     dangling: Rows
     outside: Rows
+    recut: Rows
+    recut_source: Rows
 
     @property
     def ok(self) -> bool:
         """True if each input face is one face of the mesh."""
-        changed = (self.subdivided, self.repeated, self.degenerate, self.outside)
+        changed = (self.subdivided, self.repeated, self.degenerate, self.outside, self.recut)
         return not any(map(len, changed))
 
     def __bool__(self) -> bool:
@@ -148,6 +159,7 @@ class RecoveryReport(ReadOnly):
         union = "a union of faces of the mesh", "unions of faces of the mesh"
         return [
             (self.subdivided, (f"is {union[0]}", f"are {union[1]}")),
+            (np.unique(self.recut_source[:, 0]), ("cut again", "cut again")),
             (self.repeated, ("is covered by earlier ones", "are covered by earlier ones")),
             (self.degenerate, ("without area", "without area")),
             (self.dangling, ("inside a region", "inside a region")),

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from delone.counting import counted
 from delone.errors import DtypeError
+from delone.tetmesh.planes import differing
 from delone.tetmesh.recovery import RECOVERY_COUNTS, RECOVERY_ROWS, RecoveryReport
 from delone.tetmesh.report import CAUSES, COUNTS, ImproveReport
 from delone.tetmesh.validation import TetMeshReport, faults
@@ -41,6 +43,8 @@ _UNRECOVERED: dict[str, NDArray[Any]] = {
     "recovery": _NO_COUNTS,
     **dict.fromkeys(RECOVERY_ROWS, _NO_COUNTS),
     "duplicate_points": np.empty((0, 2), dtype=np.int64),
+    "recut": np.empty((0, 3), dtype=np.int64),
+    "recut_source": np.empty((0, 2), dtype=np.int64),
 }
 
 
@@ -61,7 +65,8 @@ class TetMesh(Triangulation):
     input_faces : ndarray of int32, shape (k, 3)
         The triangles of the surface, which are faces of tetrahedra, oriented as in the input.
     face_source : ndarray of int32, shape (k,)
-        The row of the input face that each of these is, or is a part of.
+        The row of the input face that each of these is, or is a part of; of faces that were cut
+        again, one in the same plane part (see `RecoveryReport`).
     face_markers : ndarray of int32, shape (k,)
         The marker of that input face.
     nadded : int
@@ -207,6 +212,7 @@ class TetMesh(Triangulation):
             these are neighbors of each other. If there are `input_faces`, each is a face of a
             tetrahedron, each face of the boundary is one of them, the boundary neither crosses nor
             touches itself, and the volume of the tetrahedra equals the volume that it encloses.
+            Faces that were cut again cover what they replace.
 
         Notes
         -----
@@ -223,7 +229,12 @@ class TetMesh(Triangulation):
         >>> print(delone.tetrahedralize(points, faces).validate())
         a mesh of tetrahedra
         """
-        return faults(self._points, self._simplices, self._neighbors, self._input_faces)
+        found = faults(self._points, self._simplices, self._neighbors, self._input_faces)
+        if isinstance(self._report, RecoveryReport) and len(self._report.recut):
+            given = self._report.recut, self._report.recut_source[:, 1]
+            wrong = differing(self._points, given, (self._input_faces, self._face_source))
+            found = replace(found, uncovered=wrong)
+        return found
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Draw the surface and the tetrahedra with small dihedral angles (extra ``pyvista``).

@@ -44,6 +44,8 @@ class TetMeshReport(SpaceReport):
         vertices and edges.
     volume : ndarray of int, shape (1,) or (0,)
         The sign of the volume of the tetrahedra minus that inside the boundary, if not 0.
+    uncovered : ndarray of int, shape (k,)
+        Values of `face_source` whose faces do not cover what they replace in one plane.
 
     Examples
     --------
@@ -58,6 +60,7 @@ class TetMeshReport(SpaceReport):
     walls: NDArray[np.integer] = field(default_factory=no_rows)
     touching: NDArray[np.integer] = field(default_factory=no_rows)
     volume: NDArray[np.integer] = field(default_factory=no_rows)
+    uncovered: NDArray[np.integer] = field(default_factory=no_rows)
 
     _SUBJECT: ClassVar[str] = "a mesh of tetrahedra"
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {
@@ -77,6 +80,10 @@ class TetMeshReport(SpaceReport):
         "volume": (
             "sign of the difference of volumes is not 0",
             "signs of the differences of volumes are not 0",
+        ),
+        "uncovered": (
+            "part in one plane is not covered by its faces",
+            "parts in one plane are not covered by their faces",
         ),
     }
 

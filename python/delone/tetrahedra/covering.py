@@ -114,22 +114,22 @@ def _turn(flat: Floats, a: Indices, b: Indices, c: Indices) -> NDArray[np.int8]:
     return _core.orient2d(flat[a], flat[b], flat[c])
 
 
-def counts_of(counts: RecoveryCounts, nadded: int) -> dict[str, int]:
+def counts_of(counts: RecoveryCounts, nadded: int) -> dict[str, Any]:
     """Return the counts of a report; some of the points added may have been left out."""
     return {name: getattr(counts, name, nadded) for name in RECOVERY_COUNTS}
 
 
 def reported(
-    counts: dict[str, Any], faces: Indices, parts: Parts, there: Bools, check: SurfaceCheck
+    entries: dict[str, Any], faces: Indices, parts: Parts, there: Bools, check: SurfaceCheck
 ) -> RecoveryReport:
-    """Return the report of a mesh that has those parts which are `there`."""
+    """Return the report, with `entries`, of a mesh that has those parts which are `there`."""
     own = np.bincount(parts.source, minlength=len(faces))
     degenerate = np.union1d(check.collinear, check.repeated_vertices)
     whole = np.zeros(len(faces), dtype=bool)
     ascending = np.sort(_first_rows(faces, check)[parts.source], axis=1)
     whole[parts.source[(ascending == np.sort(parts.faces, axis=1)).all(axis=1)]] = True
     return RecoveryReport(
-        **counts,
+        **entries,
         duplicate_points=check.duplicate_points,
         subdivided=np.flatnonzero((own > 0) & ~whole),
         repeated=np.setdiff1d(np.flatnonzero(own == 0), degenerate),
