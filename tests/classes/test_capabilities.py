@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import delone
-from delone import datasets
+from delone import datasets, sphere
 from delone.terrain import TIN
 
 if TYPE_CHECKING:
@@ -35,6 +35,11 @@ MAKE: dict[str, Callable[[], Any]] = {
     "Voronoi 3-D": lambda: delone.Voronoi(SOLID, clip="box", workers=2),
     "Dynamic": lambda: delone.Dynamic(FLAT, workers=2),
     "AlphaComplex": lambda: delone.AlphaComplex(FLAT, workers=2),
+    "sphere.Delaunay": lambda: sphere.Delaunay(lonlat=60 * FLAT, workers=2),
+    "sphere.ConstrainedDelaunay": lambda: sphere.ConstrainedDelaunay(
+        lonlat=60 * FLAT, segments=[(0, 1)], workers=2
+    ),
+    "sphere.Voronoi": lambda: sphere.Voronoi(lonlat=60 * FLAT, workers=2),
 }
 # Libraries of the exports, which may be missing.
 NEEDS = {
@@ -68,7 +73,8 @@ CASES = [pytest.param(*case, id="-".join(case)) for case in TABLE]
 
 def exercise(made: Any, capability: str, tmp_path: Path) -> None:
     """Use a capability, and look at what comes of it."""
-    d = made.ndim
+    # Directions are three coordinates of what is drawn in 2-D.
+    d = getattr(made, "ndim", 2)
     if capability == "save":
         made.save(tmp_path / "a.npz")
         assert (tmp_path / "a.npz").stat().st_size > 100
@@ -121,8 +127,9 @@ def test_each_gap_has_a_reason() -> None:
 
 def test_each_class_has_a_column() -> None:
     public = {
-        name
-        for name in delone.__all__
-        if isinstance(getattr(delone, name), type) and hasattr(getattr(delone, name), "save")
+        f"{before}{name}"
+        for module, before in ((delone, ""), (sphere, "sphere."))
+        for name in module.__all__
+        if isinstance(getattr(module, name), type) and hasattr(getattr(module, name), "save")
     }
     assert public | {"TIN", "Dynamic"} == {name.split()[0] for name in MAKE}

@@ -10,7 +10,7 @@ import pytest
 import shapely
 
 import delone
-from delone import FileFormatError, datasets
+from delone import FileFormatError, datasets, sphere
 from delone.terrain import TIN
 
 if TYPE_CHECKING:
@@ -44,6 +44,14 @@ MAKE: dict[str, Callable[[], Any]] = {
     "Voronoi 2-D": lambda: delone.Voronoi(SQUARE, clip="box"),
     "Voronoi 3-D": lambda: delone.Voronoi(SOLID, clip="box"),
     "ConvexHull": lambda: delone.ConvexHull(SOLID),
+    "sphere.Delaunay": lambda: sphere.Delaunay(xyz=[*SOLID - 0.5, 2 * SOLID[0] - 1]),
+    "sphere.Delaunay, a hull": lambda: sphere.Delaunay(lonlat=[*SQUARE, SQUARE[3]]),
+    "sphere.ConstrainedDelaunay": lambda: sphere.ConstrainedDelaunay(
+        lonlat=9 * SQUARE, segments=[*SIDES, (0, 2), (1, 6), (3, 3)], crossing="split"
+    ),
+    "sphere.from_geometry": lambda: sphere.from_geometry(shapely.Polygon(SQUARE[:4], [SQUARE[4:]])),
+    "sphere.Voronoi": lambda: sphere.Voronoi(lonlat=SQUARE, radius=6371.0),
+    "sphere.Voronoi, a circle": lambda: sphere.Voronoi(lonlat=[(x, 0) for x in range(5)]),
 }
 EDITS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "zeroed": np.zeros_like,
@@ -130,6 +138,16 @@ CONTRADICTIONS: list[tuple[str, str, Callable[[np.ndarray], np.ndarray], str]] =
     ("Mesh", "counts", np.zeros_like, "counts"),
     ("Mesh", "on", lambda a: a * 0 - 1, "on"),
     ("Mesh", "on", lambda a: np.where(a < 0, 0, a), "on"),
+    ("sphere.Delaunay", "options", lambda a: a + 2, "options"),
+    ("sphere.Delaunay", "duplicates", lambda a: a - 1, "duplicates"),
+    ("sphere.Delaunay", "vectors", lambda a: a * 0, "vector"),
+    ("sphere.ConstrainedDelaunay", "options", lambda a: np.add(a, (0, 3, 0)), "options"),
+    ("sphere.ConstrainedDelaunay", "options", lambda a: np.subtract(a, (0, 0, 1)), "input"),
+    ("sphere.ConstrainedDelaunay", "crossings", lambda a: a[:0], "crossings"),
+    ("sphere.ConstrainedDelaunay", "geometries", lambda a: a[:-1], "geometries"),
+    ("sphere.ConstrainedDelaunay", "outer", lambda a: ~a, "outer"),
+    ("sphere.Voronoi", "radius", lambda a: -a, "radius"),
+    ("sphere.Voronoi", "options", lambda a: a + 1, "options"),
     ("TetMesh", "angles", lambda a: a * np.nan, "angles"),
     ("TetMesh", "angles", lambda a: a[::-1], "angles"),
     ("TetMesh", "counts", lambda a: a * 0 - 5, "counts"),

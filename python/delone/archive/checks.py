@@ -38,6 +38,8 @@ __all__ = [
     "check_graph",
     "check_input",
     "check_mesh",
+    "check_range",
+    "check_segments",
     "check_surface",
     "check_tetrahedra",
     "require",
@@ -63,7 +65,7 @@ def check_delaunay(
     """Check triangles or tetrahedra that tile a convex hull."""
     n, m = len(points), len(simplices)
     _check_simplices(points, simplices, neighbors)
-    _check_range("duplicates", duplicates, 0, n)
+    check_range("duplicates", duplicates, 0, n)
     _check_duplicates(points, simplices, duplicates)
     if points.shape[1] == 3:
         _check_closed(boundary_faces(simplices, neighbors), n, convex=True)
@@ -85,7 +87,7 @@ def check_surface(**arrays: NDArray[Any]) -> None:
     require(np.isfinite(arrays["z"]).all(), "a height is not finite")
     require(len(arrays["kept"]) == len(simplices), "kept and triangles do not match")
     require(arrays["kept"].any(), "it has no triangle")
-    _check_range("breaklines", arrays["breaklines"], 0, len(points))
+    check_range("breaklines", arrays["breaklines"], 0, len(points))
     require(len(arrays["soft"]) == len(arrays["breaklines"]), "soft and breaklines do not match")
     ends = simplices[:, [[1, 2], [2, 0], [0, 1]]]
     edges = edge_keys(ends[..., 0], ends[..., 1], len(points)).ravel()
@@ -113,12 +115,12 @@ def check_tetrahedra(**arrays: NDArray[Any]) -> None:
 def _check_faces(**arrays: NDArray[Any]) -> None:
     """Check that input faces are faces of tetrahedra, and the number of added points."""
     points, faces = arrays["points"], arrays["input_faces"]
-    _check_range("input_faces", faces, 0, len(points))
-    _check_range("face_source", arrays["face_source"], 0, 2**31)
+    check_range("input_faces", faces, 0, len(points))
+    check_range("face_source", arrays["face_source"], 0, 2**31)
     for name in ("face_source", "face_markers"):
         require(len(arrays[name]) == len(faces), f"{name} and input_faces do not match")
     require(len(arrays["added"]) == 1, "added is not one number")
-    _check_range("added", arrays["added"], 0, len(points) + 1)
+    check_range("added", arrays["added"], 0, len(points) + 1)
     found = sides(arrays["simplices"], faces, len(points)).face
     require(len(np.unique(found[found >= 0])) == len(faces), "an input face is not in the mesh")
 
@@ -126,14 +128,14 @@ def _check_faces(**arrays: NDArray[Any]) -> None:
 def _check_recovery(**arrays: NDArray[Any]) -> None:
     """Check the report of a recovery, with which there is none of an improvement."""
     require(len(arrays["recovery"]) == 11, "the report is incomplete")
-    _check_range("recovery", arrays["recovery"], 0, 2**63)
+    check_range("recovery", arrays["recovery"], 0, 2**63)
     require(arrays["recovery"][0] == arrays["added"][0], "the report counts other added points")
-    _check_range("duplicate_points", arrays["duplicate_points"], 0, len(arrays["points"]))
-    _check_range("recut", arrays["recut"], 0, len(arrays["points"]))
-    _check_range("recut_source", arrays["recut_source"], 0, 2**31)
+    check_range("duplicate_points", arrays["duplicate_points"], 0, len(arrays["points"]))
+    check_range("recut", arrays["recut"], 0, len(arrays["points"]))
+    check_range("recut_source", arrays["recut_source"], 0, 2**31)
     require(len(arrays["recut"]) == len(arrays["recut_source"]), "recut has not one source each")
     for name in ("subdivided", "repeated", "degenerate", "dangling", "outside"):
-        _check_range(name, arrays[name], 0, 2**31)
+        check_range(name, arrays[name], 0, 2**31)
         require((np.diff(arrays[name]) > 0).all(), f"{name} is out of order")
 
 
@@ -148,15 +150,15 @@ def _check_improvement(**arrays: NDArray[Any]) -> None:
     require((angles >= 0).all() and (angles <= 180).all(), "angles has one outside 0 to 180")
     require((angles[1:3] <= angles[3:]).all(), "angles has a smallest one above the largest")
     require((bounds >= 0).all() and (bounds[1:] > bounds[:-1]).all(), "bounds are out of order")
-    _check_range("counts", counts, 0, 2**63)
+    check_range("counts", counts, 0, 2**63)
     require(counts[7] <= 1, "counts does not end with a flag")
     for name in ("before", "after"):
-        _check_range(name, arrays[name], 0, 2**63)
+        check_range(name, arrays[name], 0, 2**63)
     nsimplex = len(arrays["simplices"])
     require(arrays["after"].sum() == nsimplex, "after does not count all tetrahedra")
-    _check_range("below", arrays["below"], 0, nsimplex)
+    check_range("below", arrays["below"], 0, nsimplex)
     require((np.diff(arrays["below"]) > 0).all(), "below is out of order")
-    _check_range("cause", arrays["cause"], 0, 4)
+    check_range("cause", arrays["cause"], 0, 4)
 
 
 def check_input(**arrays: NDArray[Any]) -> None:
@@ -186,7 +188,7 @@ def check_graph(
 ) -> None:
     """Check the edges of a graph, and which rows repeat others."""
     require(np.isfinite(points).all(), "a coordinate is not finite")
-    _check_range("edges", edges, 0, len(points))
+    check_range("edges", edges, 0, len(points))
     require(len(directed) == 1, "directed is not one flag")
     tail, head = edges.T.astype(np.int64)
     require((tail != head).all(), "an edge joins a point to itself")
@@ -217,7 +219,7 @@ def _check_polyhedron(
     require(len(starts) == len(planes) + 1, "faces and planes do not match")
     require(starts[0] == 0 and starts[-1] == len(faces), "faces are out of range")
     require((np.diff(starts) > 2).all(), "a face has fewer than three corners")
-    _check_range("faces", faces, 0, len(corners))
+    check_range("faces", faces, 0, len(corners))
     following = np.arange(1, len(faces) + 1)
     following[starts[1:] - 1] = starts[:-1]
     closed = _is_closed(faces, faces[following], len(corners), once=True)
@@ -236,8 +238,8 @@ def _check_simplices(
     require(np.isfinite(points).all(), "a coordinate is not finite")
     require(len(simplices) > 0, "it has no simplices")
     require(neighbors.shape == simplices.shape, "it has no neighbors of simplices")
-    _check_range("simplices", simplices, 0, len(points))
-    _check_range("neighbors", neighbors, -1, len(simplices))
+    check_range("simplices", simplices, 0, len(points))
+    check_range("neighbors", neighbors, -1, len(simplices))
     _check_sound(points, simplices, neighbors)
 
 
@@ -279,7 +281,8 @@ def _check_sound(
     raise ContradictionError(f"{'triangle' if flat else 'tetrahedron'} {row} {wrong}")
 
 
-def _check_range(name: str, indices: NDArray[np.int32], lowest: int, end: int) -> None:
+def check_range(name: str, indices: NDArray[np.int32], lowest: int, end: int) -> None:
+    """Check that indices are from `lowest` up to below `end`."""
     inside = indices.size == 0 or (indices.min() >= lowest and indices.max() < end)
     require(inside, f"{name} has an index outside {lowest} to {end - 1}")
 
@@ -302,13 +305,26 @@ def check_constrained(**arrays: NDArray[Any]) -> None:
     names = ("points", "simplices", "neighbors", "duplicates")
     check_delaunay(**{name: arrays[name] for name in names})
     _check_options(arrays["options"])
-    points, constrained = arrays["points"], arrays["constrained"]
-    n, m = len(points), len(arrays["simplices"])
-    require(constrained.shape == (m, 3), "it has no flags of edges")
-    ninput = n - len(arrays["added"])
+    points = arrays["points"]
+    ninput = len(points) - len(arrays["added"])
     require(ninput > 0 and (arrays["added"] == points[ninput:]).all(), "added points lie elsewhere")
-    _check_range("input", arrays["input"], 0, ninput)
-    _check_range("segments", arrays["segments"], 0, n)
+    check_segments(arrays, ninput, conforming=bool(arrays["options"][3]))
+    seeds = np.concatenate((arrays["holes"], arrays["regions"]))
+    require(np.isfinite(seeds).all(), "a seed is not finite")
+    require(len(arrays["parts"]) == len(arrays["input"]), "geometries and segments do not match")
+    check_range("parts", arrays["parts"], -1, 2**31 - 1)
+    check_range("labels", arrays["labels"], 0, 2**31)
+    require(len(arrays["regions"]) == len(arrays["labels"]), "seeds and labels do not match")
+
+
+def check_segments(
+    arrays: Mapping[str, NDArray[Any]], ninput: int, *, conforming: bool = False
+) -> None:
+    """Check that segments, of which the last points were added, fit the triangles."""
+    n, m = len(arrays["points"]), len(arrays["simplices"])
+    require(arrays["constrained"].shape == (m, 3), "it has no flags of edges")
+    check_range("input", arrays["input"], 0, ninput)
+    check_range("segments", arrays["segments"], 0, n)
     _check_flags(arrays)
     _check_sources(arrays)
     rows = len(arrays["input"])
@@ -319,18 +335,12 @@ def check_constrained(**arrays: NDArray[Any]) -> None:
         ("crossings", arrays["crossings"][:, :2], rows),
         ("crossings", arrays["crossings"][:, 2], n),
     ):
-        _check_range(name, indices, 0, end)
-    _check_vertices(arrays, ninput)
-    seeds = np.concatenate((arrays["holes"], arrays["regions"]))
-    require(np.isfinite(seeds).all(), "a seed is not finite")
-    geometries, rings, parts = (arrays[name] for name in ("geometries", "rings", "parts"))
-    matched = len(geometries) == len(rings) == len(parts) == rows
-    require(matched, "geometries and segments do not match")
+        check_range(name, indices, 0, end)
+    _check_vertices(arrays, ninput, conforming)
+    geometries, rings = arrays["geometries"], arrays["rings"]
+    require(len(geometries) == len(rings) == rows, "geometries and segments do not match")
     require((geometries[rings] >= 0).all(), "the side of a ring has no geometry")
-    _check_range("geometries", geometries, -1, 2**31)
-    _check_range("parts", parts, -1, 2**31 - 1)
-    _check_range("labels", arrays["labels"], 0, 2**31)
-    require(len(arrays["regions"]) == len(arrays["labels"]), "seeds and labels do not match")
+    check_range("geometries", geometries, -1, 2**31)
 
 
 def _check_options(options: NDArray[np.int64]) -> None:
@@ -357,10 +367,10 @@ def _check_sources(arrays: Mapping[str, NDArray[Any]]) -> None:
     )
     require((np.diff(start) > 0).all(), "a segment has no source")
     require(len(arrays["forward"]) == len(source), "directions of segments are out of range")
-    _check_range("source", source, 0, len(arrays["input"]))
+    check_range("source", source, 0, len(arrays["input"]))
 
 
-def _check_vertices(arrays: Mapping[str, NDArray[Any]], ninput: int) -> None:
+def _check_vertices(arrays: Mapping[str, NDArray[Any]], ninput: int, conforming: bool) -> None:
     """Check that rows contain the vertices that are listed, and that others were added."""
     through, crossings = arrays["through"], arrays["crossings"]
     n = len(arrays["points"])
@@ -379,7 +389,6 @@ def _check_vertices(arrays: Mapping[str, NDArray[Any]], ninput: int) -> None:
     require((crossings[:, 0] < crossings[:, 1]).all(), "crossings has a row that crosses itself")
     known = np.zeros(n, dtype=bool)
     known[first[crossings[:, 2]]] = True
-    conforming = bool(arrays["options"][3])
     require(conforming or known[ninput:].all(), "added has a point that is not in crossings")
     known[ninput:] = True
     known[first[np.concatenate((arrays["input"].ravel(), through[:, 1]))]] = True
@@ -401,7 +410,7 @@ def check_mesh(**arrays: NDArray[Any]) -> None:
         ("source", arrays["source"], 0, 2**31),
         ("counts", arrays["counts"], 0, 2**63),
     ):
-        _check_range(name, indices, least, end)
+        check_range(name, indices, least, end)
     for wanted, names in (
         (m, ("region",)),
         (n, ("on", "point_source", "point_markers")),

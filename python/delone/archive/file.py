@@ -32,7 +32,7 @@ _LONGEST_TEXT = 1 << 18
 
 def write(path: str | os.PathLike[str], arrays: Mapping[str, NDArray[Any]], name: str) -> None:
     """Write the arrays of an object of a class to a file, atomically; texts have shape ()."""
-    kind = next(kind for kind in KINDS[name] if kind.fits(arrays["points"]))
+    kind = next(kind for kind in KINDS[name] if kind.fits(arrays))
     texts = {name: arrays[name] for name in kind.texts if name in arrays}
     columns: dict[str, Any] = {name: arrays[name] for name in kind.layout} | texts
     with replacing(_path(path)) as beside, beside.open("wb") as file:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from delone.archive import checks
+from delone.archive import checks, directions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    import numpy as np
     from numpy.typing import NDArray
 
 __all__ = ["KINDS", "Kind"]
@@ -25,9 +24,10 @@ class Kind(NamedTuple):
     # Names of texts, which may be missing.
     texts: tuple[str, ...] = ()
 
-    def fits(self, points: NDArray[np.float64]) -> bool:
-        """Tell whether points have the columns of this layout."""
-        return self.layout["points"][1] == int(points.shape[1])
+    def fits(self, arrays: Mapping[str, NDArray[Any]]) -> bool:
+        """Tell whether the first array, which has the points, has the columns of this layout."""
+        name, (_, columns) = next(iter(self.layout.items()))
+        return columns == int(arrays[name].shape[1])
 
 
 def _simplices(ndim: int) -> dict[str, tuple[str, int]]:
@@ -42,22 +42,26 @@ def _delaunay(ndim: int) -> dict[str, tuple[str, int]]:
     return _simplices(ndim) | {"duplicates": ("<i4", 2)}
 
 
+# Segments, and what they came from.
+_ARCS = {
+    "constrained": ("|b1", 3),
+    "segments": ("<i4", 2),
+    "source_start": ("<i8", 0),
+    "source": ("<i4", 0),
+    "forward": ("|b1", 0),
+    "zero": ("<i4", 0),
+    "through": ("<i4", 2),
+    "crossings": ("<i4", 3),
+    "input": ("<i4", 2),
+    "geometries": ("<i4", 0),
+    "rings": ("|b1", 0),
+}
 _CONSTRAINED = Kind(
     "delone.ConstrainedDelaunay",
     _delaunay(2)
+    | _ARCS
     | {
-        "constrained": ("|b1", 3),
         "added": ("<f8", 2),
-        "segments": ("<i4", 2),
-        "source_start": ("<i8", 0),
-        "source": ("<i4", 0),
-        "forward": ("|b1", 0),
-        "zero": ("<i4", 0),
-        "through": ("<i4", 2),
-        "crossings": ("<i4", 3),
-        "input": ("<i4", 2),
-        "geometries": ("<i4", 0),
-        "rings": ("|b1", 0),
         "parts": ("<i4", 0),
         "holes": ("<f8", 2),
         "regions": ("<f8", 2),
@@ -119,6 +123,12 @@ _TET_MESH = Kind(
     checks.check_tetrahedra,
 )
 
+_DIRECTIONS = {
+    "vectors": ("<f8", 3),
+    "simplices": ("<i4", 3),
+    "neighbors": ("<i4", 3),
+    "duplicates": ("<i4", 2),
+}
 _TIN = Kind(
     "delone.terrain.TIN",
     {
@@ -201,4 +211,25 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
     ),
     "ConvexHull": tuple(_input("ConvexHull", ndim) for ndim in (2, 3)),
     "TIN": (_TIN,),
+    "sphere.Delaunay": (
+        Kind(
+            "delone.sphere.Delaunay",
+            _DIRECTIONS | {"options": ("<i8", 0)},
+            directions.check_delaunay,
+        ),
+    ),
+    "sphere.ConstrainedDelaunay": (
+        Kind(
+            "delone.sphere.ConstrainedDelaunay",
+            _DIRECTIONS | _ARCS | {"outer": ("|b1", 0), "options": ("<i8", 0)},
+            directions.check_constrained,
+        ),
+    ),
+    "sphere.Voronoi": (
+        Kind(
+            "delone.sphere.Voronoi",
+            {"vectors": ("<f8", 3), "radius": ("<f8", 0), "options": ("<i8", 0)},
+            directions.check_sites,
+        ),
+    ),
 }

@@ -18,7 +18,7 @@ from delone.plane.topology import among, edge_keys
 from delone.validation import SENTENCES, ValidationReport
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["ConstrainedReport"]
+__all__ = ["ConstrainedReport", "bent_rows", "uncovered_rows"]
 
 
 def _none() -> NDArray[np.int64]:
@@ -117,7 +117,7 @@ def validate(
         count=faults.count,
         flags=np.flatnonzero((wanted != made.constrained).any(axis=1)),
         absent=made.segments[~among(segments, edges.ravel())],
-        uncovered=_uncovered(made, ends, len(points)),
+        uncovered=uncovered_rows(made, ends, len(points)),
         bent=_no_pairs() if conforming else _bent(points, made, ends),
     )
 
@@ -138,12 +138,12 @@ def _directed(made: _core.ConstrainedTriangulation) -> tuple[Indices, Indices, I
     return made.source, tail, head
 
 
-def _uncovered(made: _core.ConstrainedTriangulation, ends: Indices, npoints: int) -> Indices:
+def uncovered_rows(made: _core.ConstrainedTriangulation, ends: Indices, npoints: int) -> Indices:
     """Return the rows whose subsegments do not form a simple path from end to end.
 
     Each vertex except the first must be the head of exactly one subsegment, and each except the
     last the tail of exactly one. Then the subsegments are one path and possibly cycles; cycles
-    would be bent.
+    would be bent. `ends` are those of the rows, and `npoints` counts the vertices of `made`.
     """
     row, tail, head = _directed(made)
     rows = np.arange(len(ends))
@@ -163,25 +163,39 @@ def _pair(row: NDArray[np.integer], vertex: Indices, npoints: int) -> NDArray[np
 
 
 def _bent(points: Floats, made: _core.ConstrainedTriangulation, ends: Indices) -> Indices:
+    def is_off(first: Indices, last: Indices, vertex: Indices) -> Bools:
+        off: Bools = _core.orient2d(points[first], points[last], points[vertex]) != 0
+        # On the line, but not between the ends.
+        low = np.minimum(points[first], points[last])
+        high = np.maximum(points[first], points[last])
+        return off | ((points[vertex] < low) | (points[vertex] > high)).any(axis=1)
+
+    return bent_rows(made, ends, len(points), len(points) - len(made.added), is_off)
+
+
+def bent_rows(
+    made: _core.ConstrainedTriangulation,
+    ends: Indices,
+    npoints: int,
+    ninput: int,
+    is_off: Callable[[Indices, Indices, Indices], Bools],
+) -> Indices:
     """Return vertices off their row, for rows that have no reason to bend.
 
     Reasons are a crossing, an added vertex, and a row with one of these that bends at the same
-    vertex: bent pieces may cross rows that their segments do not meet.
+    vertex: bent pieces may cross rows that their segments do not meet. Of the `npoints` vertices of
+    `made` those from `ninput` on were added; `is_off` tells for `ends` of rows and a vertex each
+    whether it is not between them.
     """
     row, tail, head = _directed(made)
-    first, last = ends[row, 0], ends[row, 1]
-    off = _core.orient2d(points[first], points[last], points[head]) != 0
-    # On the line, but not between the ends.
-    low = np.minimum(points[first], points[last])
-    high = np.maximum(points[first], points[last])
-    off |= ((points[head] < low) | (points[head] > high)).any(axis=1)
+    off = is_off(ends[row, 0], ends[row, 1], head)
     may_bend = np.zeros(len(ends), dtype=bool)
     # A crossing may have been rounded to an existing vertex.
     may_bend[made.crossings[:, :2]] = True
-    may_bend[row[np.maximum(tail, head) >= len(points) - len(made.added)]] = True
+    may_bend[row[np.maximum(tail, head) >= ninput]] = True
     count = -1
     while count < (count := int(may_bend.sum())):
-        met = np.zeros(len(points), dtype=bool)
+        met = np.zeros(npoints, dtype=bool)
         met[tail[may_bend[row]]] = met[head[may_bend[row]]] = True
         may_bend[row[off & met[head]]] = True
     off &= ~may_bend[row]

@@ -21,14 +21,16 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone.constrained.segments import SegmentReport
+    from delone.sphere.validation import ConstrainedSphereReport
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["ConstrainedDelaunay", "Given", "most_added"]
+__all__ = ["WINDINGS", "ConstrainedDelaunay", "Given", "most_added"]
 
 _CROSSINGS = ("raise", "split")
+WINDINGS = ("ccw", "cw", "smaller")
 # How many vertices a call may add by default.
 _MOST_ADDED = 1_000_000
 
@@ -214,6 +216,58 @@ class ConstrainedDelaunay(Delaunay):
     def __reduce__(self) -> tuple[Any, ...]:
         values = (self._vectors, self._given, self._made, self._degrees, self._workers)
         return type(self)._restored, values
+
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        made, given = self._made, self._given
+        names = "segments", "source_start", "source", "forward", "zero", "through", "crossings"
+        options = self._degrees, WINDINGS.index(given.winding), given.npoints
+        return (
+            self._arrays()
+            | {"constrained": made.constrained}
+            | {name: getattr(made, name) for name in names}
+            | {"input": given.segments, **given.origin._asdict()}
+            | {"options": np.array(options, dtype=np.int64)}
+        )
+
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        degrees, winding, npoints = arrays["options"].tolist()
+        origin = Origin(*(arrays[name] for name in Origin._fields))
+        given = Given(arrays["input"], origin, WINDINGS[winding], npoints)
+        made = _core.ConstrainedTriangulation(
+            np.empty((0, 2)),
+            *(arrays[name] for name in ("simplices", "neighbors", "constrained", "duplicates")),
+            *(arrays[name] for name in ("segments", "source_start", "source", "forward")),
+            *(arrays[name] for name in ("zero", "through", "crossings")),
+        )
+        return cls._restored(arrays["vectors"], given, made, bool(degrees), None)
+
+    def validate(self) -> ConstrainedSphereReport:
+        """Prove that this is the canonical constrained triangulation, or list the faults.
+
+        Returns
+        -------
+        ConstrainedSphereReport
+            Truthy if there are no faults: triangles are counter-clockwise and tile the sphere or
+            the exact hull, each edge is a subsegment or locally Delaunay, ties are broken
+            canonically, and the subsegments of each row form a path from one end to the other,
+            which is straight if the row has no crossings.
+
+        Notes
+        -----
+        As for `Delaunay.validate`.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> sites = [(0, 0), (90, 0), (0, 90), (-135, -35)]
+        >>> print(sphere.ConstrainedDelaunay(lonlat=sites, segments=[(0, 1)]).validate())
+        a canonical constrained Delaunay triangulation of directions
+        """
+        from delone.sphere.validation import validate_constrained
+
+        ends = self.duplicate_of[self._given.segments]
+        return validate_constrained(self._vectors, self.points, self._made, ends, self.nadded)
 
     def _counts(self) -> str:
         return f"{super()._counts()} and {counted(len(self._given.segments), 'segment')}"

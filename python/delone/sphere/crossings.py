@@ -17,13 +17,15 @@ import numpy as np
 
 from delone import _core
 from delone.errors import BudgetExceededError, CrossingSegmentsError
+from delone.sphere.exact import cross, dot, whole
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
-    Vector = tuple[int, int, int]
+
+    from delone.sphere.exact import Vector
 
 __all__ = ["Split", "split"]
 
@@ -86,7 +88,7 @@ def _parted(parts: _Parts, pairs: list[list[int]]) -> _Parts:
     stops: dict[int, list[int]] = defaultdict(list)
     crossings = set(parts.crossings)
     for s, t in pairs:
-        a, b, c, d = (_whole(vectors[v].tolist()) for v in (*rows[s], *rows[t]))
+        a, b, c, d = (whole(vectors[v].tolist()) for v in (*rows[s], *rows[t]))
         x = _crossing(a, b, c, d)
         at = known.setdefault(x, len(vectors) + len(added))
         if at == len(vectors) + len(added):
@@ -108,44 +110,23 @@ def _along(vectors: Floats, u: int, v: int, stops: list[int]) -> list[int]:
     """Return the rows of crossings of an arc in their order along it, each once."""
     if len(stops) == 1:
         return stops
-    a, b = (_whole(vectors[w].tolist()) for w in (u, v))
-    normal = _cross(a, b)
-    whole = {w: _whole(vectors[w].tolist()) for w in stops}
+    a, b = (whole(vectors[w].tolist()) for w in (u, v))
+    normal = cross(a, b)
+    place = {w: whole(vectors[w].tolist()) for w in stops}
 
     def before(s: int, t: int) -> int:
-        turn = _dot(normal, _cross(whole[s], whole[t]))
+        turn = dot(normal, cross(place[s], place[t]))
         return (turn < 0) - (turn > 0)
 
-    return sorted(whole, key=cmp_to_key(before))
-
-
-def _whole(vector: list[float]) -> Vector:
-    """Return integers in the same direction, exactly."""
-    ratios = [x.as_integer_ratio() for x in vector]
-    # Denominators are powers of two.
-    scale = max(q for _, q in ratios)
-    x, y, z = (p * (scale // q) for p, q in ratios)
-    return x, y, z
-
-
-def _cross(a: Vector, b: Vector) -> Vector:
-    return (
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    )
-
-
-def _dot(a: Vector, b: Vector) -> int:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    return sorted(place, key=cmp_to_key(before))
 
 
 def _crossing(a: Vector, b: Vector, c: Vector, d: Vector) -> tuple[float, ...]:
     """Return the direction inside both arcs: each coordinate by the largest, rounded."""
-    first = _cross(a, b)
-    x = _cross(first, _cross(c, d))
+    first = cross(a, b)
+    x = cross(first, cross(c, d))
     # Inside the arc a b it is left of a and right of b, seen along it.
-    ahead = _dot(first, _cross(a, x)) > 0
+    ahead = dot(first, cross(a, x)) > 0
     top = max(map(abs, x)) * (1 if ahead else -1)
     return tuple(k / top + 0.0 for k in x)
 

@@ -9,13 +9,11 @@ import numpy as np
 from delone._arrays import as_choice, as_flag
 from delone.constrained import geodata
 from delone.duplicates import first_rows
-from delone.sphere.constrained import ConstrainedDelaunay, Given, most_added
+from delone.sphere.constrained import WINDINGS, ConstrainedDelaunay, Given, most_added
 from delone.sphere.coordinates import directions_of
 from delone.sphere.land import Origin
 
 __all__ = ["from_geometry"]
-
-_WINDINGS = ("ccw", "cw", "smaller")
 
 
 def from_geometry(
@@ -93,7 +91,7 @@ def from_geometry(
     [12.287, 0.249, 0.03]
     """
     as_flag(degrees, name="degrees")
-    as_choice(winding, _WINDINGS, name="winding")
+    as_choice(winding, WINDINGS, name="winding")
     most = most_added(crossing, max_points)
     parts = geodata.parts_of(geometries)
     geodata.require_finite_parts(parts)

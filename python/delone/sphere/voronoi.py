@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone._arrays import as_workers
+from delone.complex import Stored
 from delone.counting import counted
 from delone.errors import DegenerateInputError, DtypeError, InputError
-from delone.immutable import Immutable, kept, sealed
+from delone.immutable import kept, sealed
 from delone.sphere.cells import Cells, around_circle, cells_of, lunes
 from delone.sphere.coordinates import directions_of, lonlat_of, units_of
 from delone.sphere.delaunay import Delaunay
@@ -19,13 +20,15 @@ from delone.voronoi.rows import as_lists, of_pairs
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone.sphere.validation import SphereReport
+
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
 __all__ = ["Voronoi"]
 
 
-class Voronoi(Immutable):
+class Voronoi(Stored):
     """The Voronoi diagram of directions: which site is nearest on a sphere.
 
     Parameters
@@ -130,14 +133,13 @@ class Voronoi(Immutable):
     np.float64(510000000.0)
     """
 
-    __slots__ = ("_cells", "_degrees", "_mesh", "_radius", "_vectors", "_workers")
+    __slots__ = ("_cells", "_degrees", "_mesh", "_radius", "_vectors")
 
     _cells: Cells
     _degrees: bool
     _mesh: Delaunay | None
     _radius: float
     _vectors: Floats
-    _workers: int | None
 
     def __init__(
         self,
@@ -230,14 +232,30 @@ class Voronoi(Immutable):
         given = self._vectors if self._mesh is None else self._mesh
         return self._again, (given, self._radius, self._degrees, self._workers)
 
-    def __repr__(self) -> str:
-        if not hasattr(self, "_cache"):  # the constructor failed, or has not run
-            return f"<{type(self).__name__} of nothing yet>"
+    @classmethod
+    def _stored_as(cls) -> str:
+        return "sphere.Voronoi"
+
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        return {
+            "vectors": self._vectors,
+            "radius": np.array([self._radius]),
+            "options": np.array([self._degrees], dtype=np.int64),
+        }
+
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        made = cls.__new__(cls)
+        (radius,), (degrees,) = arrays["radius"].tolist(), arrays["options"].tolist()
+        made._fill(arrays["vectors"], radius, bool(degrees), None)
+        return made
+
+    def _described(self) -> str:
         points = counted(self.npoints, "direction")
         if duplicates := int((self._cells.cell < 0).sum()):
             points += f" ({counted(duplicates, 'duplicate')})"
         parts = [counted(len(self.vertices), "vertex"), counted(len(self.ridge_points), "ridge")]
-        return f"<{type(self).__name__} of {points}: {', '.join(parts)}>"
+        return f"{points}: {', '.join(parts)}"
 
     @property
     def triangulation(self) -> Delaunay | None:
@@ -270,11 +288,6 @@ class Voronoi(Immutable):
     def npoints(self) -> int:
         """Number of rows, duplicates included."""
         return len(self._vectors)
-
-    @property
-    def workers(self) -> int | None:
-        """Maximum number of threads; None for one per core. The result does not depend on it."""
-        return self._workers
 
     @property
     @kept
@@ -409,6 +422,25 @@ class Voronoi(Immutable):
                 "all sites are on one great circle, where nearest needs a triangulation: add a site"
             )
         return self._mesh.nearest(xi)
+
+    def validate(self) -> SphereReport:
+        """Prove that the triangulation whose dual this is is correct.
+
+        Returns
+        -------
+        SphereReport
+            That of `triangulation`: truthy if it is correct. Empty, so truthy, if all sites are on
+            one great circle, whose order is exact.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> bool(sphere.Voronoi(lonlat=[(0, 0), (90, 0), (0, 90), (45, 45)]).validate())
+        True
+        """
+        from delone.sphere.validation import SphereReport
+
+        return SphereReport() if self._mesh is None else self._mesh.validate()
 
     def plot(
         self,

@@ -1,0 +1,98 @@
+"""Checks of the arrays of files with triangulations of directions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import _core
+from delone.archive.checks import check_range, check_segments, require
+from delone.plane.topology import boundary_edges, boundary_next, neighbors
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["check_constrained", "check_delaunay", "check_sites"]
+
+
+def check_sites(**arrays: NDArray[Any]) -> None:
+    """Check vectors, the radius, and the unit of angles."""
+    _check_vectors(arrays["vectors"])
+    radius, options = arrays["radius"], arrays["options"]
+    require(len(radius) == 1 and 0 < radius[0] < np.inf, "radius is not one positive number")
+    require(len(options) == 1 and options[0] in (0, 1), "options is not one flag")
+
+
+def check_delaunay(**arrays: NDArray[Any]) -> None:
+    """Check triangles that tile the sphere or a hull on it."""
+    _check_triangles(**arrays)
+    options = arrays["options"]
+    require(len(options) == 1 and options[0] in (0, 1), "options is not one flag")
+
+
+def check_constrained(**arrays: NDArray[Any]) -> None:
+    """Check the triangles as those of a Delaunay triangulation, and that arcs fit them."""
+    _check_triangles(**arrays)
+    options, n = arrays["options"], len(arrays["vectors"])
+    limits = 1, 2, n
+    valid = len(options) == 3 and (options >= 0).all() and (options <= limits).all()
+    require(valid and options[2] > 0, "its options are invalid")
+    check_segments(arrays | {"points": arrays["vectors"]}, int(options[2]))
+    require(len(arrays["outer"]) == len(arrays["rings"]), "outer and rings do not match")
+    require((arrays["rings"] | ~arrays["outer"]).all(), "outer has a side that is not of a ring")
+
+
+def _check_triangles(**arrays: NDArray[Any]) -> None:
+    vectors, simplices, duplicates = (
+        arrays[name] for name in ("vectors", "simplices", "duplicates")
+    )
+    n, m = len(vectors), len(simplices)
+    _check_vectors(vectors)
+    require(m > 0, "it has no triangles")
+    require(arrays["neighbors"].shape == simplices.shape, "it has no neighbors of triangles")
+    check_range("simplices", simplices, 0, n)
+    check_range("duplicates", duplicates, 0, n)
+    tail, head = (simplices[:, k].ravel().astype(np.int64) for k in ([1, 2, 0], [2, 0, 1]))
+    keys = np.sort(tail * n + head)
+    require((keys[1:] > keys[:-1]).all(), "simplices has an edge twice")
+    expected = neighbors(simplices, n)
+    require((arrays["neighbors"] == expected).all(), "neighbors are not those of simplices")
+    a, b, c = (vectors[simplices[:, k]] for k in range(3))
+    require((_core.orient3d(np.zeros_like(a), a, b, c) > 0).all(), "a triangle is turned over")
+    h = _sides(boundary_edges(simplices, expected))
+    triangles = 2 * (n - len(duplicates)) - (h + 2 if h else 4)
+    require(m == triangles, f"it has {m} triangles, {triangles} are expected")
+    _check_duplicates(vectors, simplices, duplicates)
+
+
+def _sides(boundary: NDArray[np.int32]) -> int:
+    """Return the number of sides of a boundary, which must be one cycle or nothing."""
+    if len(boundary):
+        cycle = boundary_next(boundary, int(boundary[0, 0]))
+        require(len(cycle) == len(boundary), "the boundary is not one cycle")
+    return len(boundary)
+
+
+def _check_vectors(vectors: NDArray[np.float64]) -> None:
+    require(len(vectors) > 0, "it has no vectors")
+    require(np.isfinite(vectors).all(), "a coordinate is not finite")
+    require(vectors.any(axis=1).all(), "a vector is zero")
+
+
+def _check_duplicates(
+    vectors: NDArray[np.float64], simplices: NDArray[np.int32], duplicates: NDArray[np.int32]
+) -> None:
+    row, first = duplicates.T
+    require((row[1:] > row[:-1]).all() and (first < row).all(), "duplicates are out of order")
+    a, b = vectors[row], vectors[first]
+    same = (np.sign(a) == np.sign(b)).all()
+    for pair in ([0, 1], [1, 2], [2, 0]):
+        one, other = (np.ascontiguousarray(each[:, pair]) for each in (a, b))
+        same = same and not _core.orient2d(np.zeros_like(one), one, other).any()
+    require(same, "a duplicate has another direction")
+    is_vertex = np.zeros(len(vectors), dtype=bool)
+    is_vertex[simplices] = True
+    others = np.ones(len(vectors), dtype=bool)
+    others[row] = False
+    require((is_vertex == others).all(), "vertices and duplicates are not all the vectors")
