@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["ConstrainedReport", "bent_rows", "uncovered_rows"]
+__all__ = ["ConstrainedReport"]
 
 
 def _none() -> NDArray[np.int64]:
