@@ -51,6 +51,9 @@ MAKE: dict[str, Callable[[], Any]] = {
     ),
     "sphere.from_geometry": lambda: sphere.from_geometry(shapely.Polygon(SQUARE[:4], [SQUARE[4:]])),
     "sphere.Voronoi": lambda: sphere.Voronoi(lonlat=SQUARE, radius=6371.0),
+    "sphere.Voronoi, clipped": lambda: sphere.Voronoi(
+        lonlat=SQUARE, clip=shapely.Polygon(SQUARE[:4], [SQUARE[4:]])
+    ),
     "sphere.Voronoi, a circle": lambda: sphere.Voronoi(lonlat=[(x, 0) for x in range(5)]),
 }
 EDITS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
@@ -147,7 +150,12 @@ CONTRADICTIONS: list[tuple[str, str, Callable[[np.ndarray], np.ndarray], str]] =
     ("sphere.ConstrainedDelaunay", "geometries", lambda a: a[:-1], "geometries"),
     ("sphere.ConstrainedDelaunay", "outer", lambda a: ~a, "outer"),
     ("sphere.Voronoi", "radius", lambda a: -a, "radius"),
-    ("sphere.Voronoi", "options", lambda a: a + 1, "options"),
+    ("sphere.Voronoi", "degrees", lambda a: a[:0], "degrees"),
+    ("sphere.Voronoi, clipped", "winding", lambda a: a + 3, "winding"),
+    ("sphere.Voronoi, clipped", "sides", lambda a: a + 1, "sides"),
+    ("sphere.Voronoi, clipped", "sides", lambda a: a[:0], "sides"),
+    ("sphere.Voronoi, clipped", "outer", lambda a: a[1:], "outer"),
+    ("sphere.Voronoi, clipped", "corners", lambda a: a * 0, "vector"),
     ("TetMesh", "angles", lambda a: a * np.nan, "angles"),
     ("TetMesh", "angles", lambda a: a[::-1], "angles"),
     ("TetMesh", "counts", lambda a: a * 0 - 5, "counts"),

@@ -17,11 +17,20 @@ __all__ = ["check_constrained", "check_delaunay", "check_sites"]
 
 
 def check_sites(**arrays: NDArray[Any]) -> None:
-    """Check vectors, the radius, and the unit of angles."""
+    """Check vectors, the radius, the unit of angles, and the clip."""
     _check_vectors(arrays["vectors"])
-    radius, options = arrays["radius"], arrays["options"]
+    radius, winding = arrays["radius"], arrays["winding"]
     require(len(radius) == 1 and 0 < radius[0] < np.inf, "radius is not one positive number")
-    require(len(options) == 1 and options[0] in (0, 1), "options is not one flag")
+    require(len(arrays["degrees"]) == 1, "degrees is not one flag")
+    require(len(winding) == 1 and winding[0] in (0, 1, 2), "winding is unknown")
+    corners, sides = arrays["corners"], arrays["sides"]
+    for name in ("geometries", "outer"):
+        require(len(arrays[name]) == len(sides), f"{name} and sides do not match")
+    check_range("geometries", arrays["geometries"], 0, 2**31)
+    check_range("sides", sides, 0, len(corners))
+    if len(corners):
+        _check_vectors(corners)
+        require(len(sides) > 0, "corners have no sides")
 
 
 def check_delaunay(**arrays: NDArray[Any]) -> None:

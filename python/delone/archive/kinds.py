@@ -228,7 +228,17 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
     "sphere.Voronoi": (
         Kind(
             "delone.sphere.Voronoi",
-            {"vectors": ("<f8", 3), "radius": ("<f8", 0), "options": ("<i8", 0)},
+            {
+                "vectors": ("<f8", 3),
+                "radius": ("<f8", 0),
+                "degrees": ("|b1", 0),
+                # The clip; without one these are empty.
+                "corners": ("<f8", 3),
+                "sides": ("<i4", 2),
+                "geometries": ("<i4", 0),
+                "outer": ("|b1", 0),
+                "winding": ("<i8", 0),
+            },
             directions.check_sites,
         ),
     ),

@@ -16,6 +16,7 @@ from delone import _core
 from delone._arrays import as_plain_array, as_points, as_vectors, as_workers, require_finite
 from delone.counting import agreed, counted
 from delone.errors import DirectionError, DtypeError, ShapeError
+from delone.georeference import caller_level
 from delone.immutable import own_copy
 
 if TYPE_CHECKING:
@@ -132,4 +133,4 @@ def _warn_of_turns(angles: Floats, *, degrees: bool) -> None:
             f"{longitudes[east]:g} (row {east}): they are taken modulo {turn:g}, so 190 and -170 "
             "degrees are one meridian"
         )
-        warnings.warn(message, LongitudeWarning, stacklevel=4)
+        warnings.warn(message, LongitudeWarning, stacklevel=caller_level())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,7 +13,12 @@ from delone.sphere.constrained import WINDINGS, ConstrainedDelaunay, Given, most
 from delone.sphere.coordinates import directions_of
 from delone.sphere.land import Origin
 
-__all__ = ["from_geometry"]
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["from_geometry", "read"]
 
 
 def from_geometry(
@@ -91,9 +96,22 @@ def from_geometry(
     [12.287, 0.249, 0.03]
     """
     as_flag(degrees, name="degrees")
-    as_choice(winding, WINDINGS, name="winding")
     most = most_added(crossing, max_points)
-    parts = geodata.parts_of(geometries)
+    vectors, given = read(geometries, winding, degrees=degrees, workers=workers)
+    return ConstrainedDelaunay._of_geometries(vectors, given, most, degrees, workers)
+
+
+def read(
+    geometries: Any,
+    winding: str,
+    *,
+    degrees: bool,
+    workers: int | None,
+    name: str = "geometries",
+) -> tuple[Floats, Given]:
+    """Return the vectors of the distinct coordinates of geometries, and their segments."""
+    as_choice(winding, WINDINGS, name="winding")
+    parts = geodata.parts_of(geometries, name=name)
     geodata.require_finite_parts(parts)
     first = first_rows(parts.coordinates)
     distinct = first == np.arange(len(first))
@@ -107,5 +125,4 @@ def from_geometry(
         kinds >= geodata.EXTERIOR,
         kinds == geodata.EXTERIOR,
     )
-    given = Given(vertex[ends], origin, winding, len(vectors))
-    return ConstrainedDelaunay._of_geometries(vectors, given, most, degrees, workers)
+    return vectors, Given(vertex[ends], origin, winding, len(vectors))

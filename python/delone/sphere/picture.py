@@ -20,12 +20,10 @@ def plot_mesh(mesh: Any, ax: Any, points: bool | None, options: dict[str, Any]) 
     from delone.plot.globe import plot_globe
 
     tails, heads = (mesh.points[mesh.edges[:, k]] for k in (0, 1))
-    steps = heads - tails
-    length = 2 * np.arcsin(np.minimum(np.linalg.norm(steps, axis=1) / 2, 1.0))
     return plot_globe(
         ax,
         points=mesh.points,
-        arcs=(tails, _towards(tails, np.cross(tails, steps)), length),
+        arcs=_between(tails, heads),
         count=mesh.nsimplex,
         found=mesh.find_simplex,
         sites=points,
@@ -37,26 +35,36 @@ def plot_diagram(diagram: Any, ax: Any, points: bool | None, options: dict[str, 
     """Draw a diagram; values are those of rows."""
     from delone.plot.globe import plot_globe
 
-    mesh, sites = diagram.triangulation, diagram.points
+    sites, left = diagram.points, diagram._left
+    if left is None:
+        one, other = (sites[diagram.ridge_points[:, k]] for k in (0, 1))
+        start = diagram.vertices[diagram.ridge_vertices[:, 0]]
+        arcs = start, _towards(start, one - other), diagram.ridge_lengths / diagram.radius
+        found = diagram._nearest
+    else:
+        arcs = _between(*(left.mesh.points[ends] for ends in left.border_edges()))
+        cell = np.append(left.cell, np.int32(-1))
 
-    def found(places: Floats) -> Indices:
-        if mesh is not None:
-            rows: Indices = mesh.nearest(places)
+        def found(places: Floats) -> Indices:
+            rows: Indices = cell[left.mesh._ask(places, left.mesh._locator.find)]
             return rows
-        near = [(part @ sites.T).argmax(axis=1) for part in np.array_split(places, 1000)]
-        return np.concatenate(near).astype(np.int32)
 
-    left, right = (sites[diagram.ridge_points[:, k]] for k in (0, 1))
-    start = diagram.vertices[diagram.ridge_vertices[:, 0]]
     return plot_globe(
         ax,
         points=sites,
-        arcs=(start, _towards(start, left - right), diagram.ridge_lengths / diagram.radius),
+        arcs=arcs,
         count=diagram.npoints,
         found=found,
         sites=points,
         **options,
     )
+
+
+def _between(tails: Floats, heads: Floats) -> tuple[Floats, Floats, Floats]:
+    """Where arcs start, where they lead from there, and their lengths."""
+    steps = heads - tails
+    length = 2 * np.arcsin(np.minimum(np.linalg.norm(steps, axis=1) / 2, 1.0))
+    return tails, _towards(tails, np.cross(tails, steps)), length
 
 
 def _towards(start: Floats, normals: Floats) -> Floats:

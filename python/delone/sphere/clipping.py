@@ -1,0 +1,290 @@
+"""Cells of directions clipped to a region of polygons with arcs of great circles as sides.
+
+The ridges of the diagram and the sides of the region are arcs of one constrained triangulation,
+whose crossings are split. Each part between arcs is in one cell, and inside the region or not; its
+triangles are the cell's. So cells may be in several parts and have holes, and their areas sum to
+that of the region, whatever is rounded.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone import _core
+from delone.errors import InputError
+from delone.plane.topology import half_edges
+from delone.sphere.constrained import WINDINGS, ConstrainedDelaunay, Given, most_added
+from delone.sphere.coordinates import lonlat_of
+from delone.sphere.geometry import read
+from delone.sphere.land import Origin
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from delone.sphere.cells import Cells
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = [
+    "Clipped",
+    "Region",
+    "Whole",
+    "as_region",
+    "clipped",
+    "loaded_region",
+    "saved_region",
+    "sums",
+]
+
+# Ridges may be half a great circle long; pieces up to this length have one shorter arc.
+_LONGEST = np.pi / 2
+# Parts narrower than this come from rounded vertices and crossings, which are off by some 2e-16.
+_WIDTH = 2.0**-49
+
+
+class Whole(NamedTuple):
+    """What is clipped: the cells, lengths of ridges and unit vectors of sites of a diagram."""
+
+    cells: Cells
+    lengths: Floats
+    points: Floats
+    # The sites nearest to vectors.
+    nearest: Callable[[Floats], Indices]
+
+
+class Region(NamedTuple):
+    """Polygons: the vectors of their corners, and their sides."""
+
+    vectors: Floats
+    given: Given
+
+
+def as_region(clip: Any, winding: str, *, degrees: bool, workers: int | None) -> Region | None:
+    """Return the region of the arguments of `Voronoi`; None without one."""
+    if clip is None or isinstance(clip, Region):
+        return clip
+    vectors, given = read(clip, winding, degrees=degrees, workers=workers, name="clip")
+    if not len(given.origin.rings) or not given.origin.rings.all():
+        raise InputError("clip must be polygons, and nothing else")
+    return Region(vectors, given)
+
+
+def saved_region(region: Region | None) -> dict[str, NDArray[Any]]:
+    """Return a region as arrays of a file; without one they are empty."""
+    if region is None:
+        none = np.empty((0, 2), dtype=np.int32)
+        region = Region(np.empty((0, 3)), Given(none, Origin.of_arrays(0), "ccw", 0))
+    given = region.given
+    return {
+        "corners": region.vectors,
+        "sides": given.segments,
+        "geometries": given.origin.geometries,
+        "outer": given.origin.outer,
+        "winding": np.array([WINDINGS.index(given.winding)], dtype=np.int64),
+    }
+
+
+def loaded_region(arrays: dict[str, NDArray[Any]]) -> Region | None:
+    """Return the region of the arrays that `saved_region` has returned."""
+    sides = arrays["sides"]
+    if not len(sides):
+        return None
+    origin = Origin(arrays["geometries"], np.ones(len(sides), dtype=bool), arrays["outer"])
+    corners = arrays["corners"]
+    return Region(corners, Given(sides, origin, WINDINGS[arrays["winding"][0]], len(corners)))
+
+
+@dataclass(frozen=True, eq=False)
+class Clipped:
+    """Clipped cells."""
+
+    # The triangulation of ridges and sides.
+    mesh: ConstrainedDelaunay
+    # (m,): the row of the site whose cell a triangle is part of; -1 outside of the region.
+    cell: Indices
+
+    def areas(self, npoints: int) -> Floats:
+        """Return the areas of the cells by the rows of their sites, (n,), on the unit sphere."""
+        inside = self.cell >= 0
+        return sums(self.cell[inside], self.mesh.areas[inside], npoints)
+
+    def ridges(self) -> tuple[NDArray[np.int64], Floats]:
+        """Return the pairs of cells that share a border, (r, 2), and its length on the unit sphere.
+
+        Borders as short as roundings are left out.
+        """
+        mesh = self.mesh
+        t, k = np.nonzero(self.border)
+        beside = self.cell[mesh.neighbors[t, k]]
+        once = self.cell[t] < beside
+        t, k, beside = t[once], k[once], beside[once]
+        tail, head = (mesh.points[each] for each in half_edges(mesh.simplices, t, k))
+        length = 2 * np.arcsin(np.minimum(np.linalg.norm(tail - head, axis=1) / 2, 1.0))
+        every = np.column_stack((self.cell[t], beside)).astype(np.int64)
+        pairs, row = np.unique(every, axis=0, return_inverse=True)
+        total = sums(row.ravel(), length, len(pairs))
+        return pairs[total > _WIDTH], total[total > _WIDTH]
+
+    @cached_property
+    def border(self) -> Bools:
+        """Whether the cell ends at the edge opposite each corner of a triangle, (m, 3)."""
+        beside = np.append(self.cell, np.int32(-1))[self.mesh.neighbors]
+        found: Bools = (self.cell >= 0)[:, None] & (beside != self.cell[:, None])
+        return found
+
+    def border_edges(self) -> tuple[Indices, Indices]:
+        """Return tails and heads of the edges at which cells end, each once."""
+        t, k = np.nonzero(self.border)
+        tail, head = half_edges(self.mesh.simplices, t, k)
+        beside = np.append(self.cell, np.int32(-1))[self.mesh.neighbors[t, k]]
+        once = (beside < 0) | (tail < head)
+        return tail[once], head[once]
+
+    def rings(self) -> list[tuple[int, int, list[int]]]:
+        """Return the rings of all cells: the cell, the part of it, and corners as rows."""
+        mesh, border = self.mesh, self.border.ravel()
+        neighbors = mesh.neighbors
+        edges = np.flatnonzero(border)
+        # From the head of each edge, past the triangles of the same cell, to the next edge.
+        after = _next_in_triangle(edges)
+        active = np.flatnonzero(~border[after])
+        # Terminates: the turn around a vertex comes back to the edge itself, which is a border.
+        while len(active):
+            t, k = np.divmod(after[active], 3)
+            across = neighbors[t, k]
+            twin = 3 * across + (neighbors[across] == t[:, None]).argmax(axis=1)
+            after[active] = _next_in_triangle(twin)
+            active = active[~border[after[active]]]
+        tails = half_edges(mesh.simplices, *np.divmod(edges, 3))[0].tolist()
+        place = np.full(len(border), -1)
+        place[edges] = np.arange(len(edges))
+        follows = place[after].tolist()
+        part = _core.components2(neighbors, self.border | (self.cell < 0)[:, None])[edges // 3]
+        found, seen = [], [False] * len(edges)
+        for start, (cell, piece) in enumerate(zip(self.cell[edges // 3], part, strict=True)):
+            ring: list[int] = []
+            at = start
+            while not seen[at]:
+                seen[at] = True
+                ring.append(tails[at])
+                at = follows[at]
+            if ring:
+                found.append((int(cell), int(piece), ring))
+        return found
+
+    def polygons(self, npoints: int) -> list[list[list[Floats]]]:
+        """Return for each row the parts of its cell, each as rings of longitudes and latitudes."""
+        parts: dict[tuple[int, int], list[list[int]]] = {}
+        for cell, piece, ring in self.rings():
+            parts.setdefault((cell, piece), []).append(ring)
+        found: list[list[list[Floats]]] = [[] for _ in range(npoints)]
+        lonlat, points = lonlat_of(self.mesh.vectors), self.mesh.points
+        for (cell, _), rings in sorted(parts.items()):
+            if len(rings) > 1:
+                rings.sort(key=lambda ring: _area_left(points[ring]))
+            found[cell].append([lonlat[ring] for ring in rings])
+        return found
+
+
+def clipped(whole: Whole, region: Region, workers: int | None) -> Clipped:
+    """Return the clipped cells of a diagram."""
+    vectors, ends = _pieces(whole.cells, whole.lengths, whole.points)
+    sides, origin = region.given.segments, region.given.origin
+    given = Given(
+        np.concatenate((ends, sides + np.int32(len(vectors)))),
+        Origin(
+            np.concatenate((np.full(len(ends), -1, dtype=np.int32), origin.geometries)),
+            np.concatenate((np.zeros(len(ends), dtype=bool), origin.rings)),
+            np.concatenate((np.zeros(len(ends), dtype=bool), origin.outer)),
+        ),
+        region.given.winding,
+        len(vectors) + len(region.vectors),
+    )
+    every = np.concatenate((vectors, region.vectors))
+    mesh = ConstrainedDelaunay._of_geometries(
+        every, given, most_added("split", None), True, workers
+    )
+    component = mesh._component
+    # A place in each part between arcs: in its largest triangle.
+    order = np.lexsort((-mesh.areas, component))
+    first = order[np.searchsorted(component[order], np.arange(component.max() + 1))]
+    cell = whole.nearest(mesh.points[mesh.simplices[first]].sum(axis=1))
+    cell[mesh.polygon[first] < 0] = -1
+    if not (cell >= 0).any():
+        raise InputError("clip has no area")
+    cell = _without_slivers(mesh, component, cell)[component]
+    return Clipped(mesh, cell)
+
+
+def _without_slivers(mesh: ConstrainedDelaunay, component: Indices, cell: Indices) -> Indices:
+    """Give parts inside that are as narrow as roundings to the cells along their longest sides."""
+    count = len(cell)
+    t, k = np.nonzero(mesh.constrained & (mesh.neighbors >= 0))
+    tails, heads = (mesh.points[each] for each in half_edges(mesh.simplices, t, k))
+    length = np.linalg.norm(tails - heads, axis=1)
+    here, there = component[t], component[mesh.neighbors[t, k]]
+    area, perimeter = sums(component, mesh.areas, count), sums(here, length, count)
+    thin = (cell >= 0) & (area < _WIDTH / 2 * perimeter)
+    if not thin.any():
+        return cell
+    of_thin = np.flatnonzero(thin[here])
+    of_thin = of_thin[np.argsort(-length[of_thin], kind="stable")]
+    found, open_ = cell.copy(), thin.copy()
+    # Each round settles the parts beside settled ones; enclosed ones stay as they are.
+    for _ in range(count):
+        beside = of_thin[
+            open_[here[of_thin]] & ~open_[there[of_thin]] & (found[there[of_thin]] >= 0)
+        ]
+        part, row = np.unique(here[beside], return_index=True)
+        if not len(part):
+            break
+        found[part] = found[there[beside[row]]]
+        open_[part] = False
+    return found
+
+
+def _pieces(cells: Cells, lengths: Floats, points: Floats) -> tuple[Floats, Indices]:
+    """Return vectors, and pieces of ridges as pairs of their rows."""
+    start, end = cells.ends.T
+    long = np.flatnonzero(lengths > _LONGEST)
+    left, right = (points[cells.sites[long, j]] for j in (0, 1))
+    ahead = np.cross(left - right, cells.vertices[start[long]])
+    ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
+    half = lengths[long, None] / 2
+    middle = np.cos(half) * cells.vertices[start[long]] + np.sin(half) * ahead
+    number = np.arange(len(long), dtype=np.int32) + len(cells.vertices)
+    first = np.column_stack((start, end))
+    first[long, 1] = number
+    second = np.column_stack((number, end[long]))
+    vectors = np.concatenate((cells.vertices, middle))
+    return vectors, np.concatenate((first, second)).astype(np.int32)
+
+
+def sums(rows: NDArray[np.integer], shares: Floats, count: int) -> Floats:
+    """Return the sum of the shares of each row, (count,)."""
+    return np.bincount(rows, weights=shares, minlength=count).astype(np.float64)
+
+
+def _next_in_triangle(edges: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the edges that start where others end; 3 t + k is opposite corner k of triangle t."""
+    found: NDArray[np.int64] = edges - edges % 3 + (edges + 1) % 3
+    return found
+
+
+def _area_left(ring: Floats) -> float:
+    """Return the area to the left of a ring of unit vectors, 0 to 4 pi, rounded."""
+    before, after = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
+    arriving, leaving = np.cross(before, ring), np.cross(ring, after)
+    turns = np.arctan2(
+        np.einsum("ij,ij->i", np.cross(arriving, leaving), ring),
+        np.einsum("ij,ij->i", arriving, leaving),
+    )
+    return float((2 * np.pi - turns.sum()) % (4 * np.pi))
