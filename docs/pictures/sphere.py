@@ -3,7 +3,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from delone import sphere
+from delone import datasets, sphere
 from delone.interpolate import Linear
 
 # Sites on the globe, and waves in each field, some 5000 km long.
@@ -66,3 +66,13 @@ def triangles() -> None:
         ax.triplot(*view.T, made[seen[made].all(axis=1)], linewidth=0.6)
         ax.plot([0, 0], [-0.5, 0.5], color="tab:red", linewidth=0.8)
         ax.set(title=name, aspect="equal", xticks=[], yticks=[], xlim=(-0.3, 0.3), ylim=(-0.3, 0.3))
+
+
+def clipped() -> None:
+    """Cells clipped to the land, seen from two sides."""
+    sites = np.random.default_rng(6).normal(size=(300, 3))
+    diagram = sphere.Voronoi(xyz=sites, clip=datasets.land())
+    colors = np.random.default_rng(6).permutation(300) % 10
+    _, axes = plt.subplots(1, 2, figsize=(8.4, 4.2), layout="constrained")
+    for ax, view in zip(axes, ((20, 20), (180, 40)), strict=True):
+        diagram.plot(ax, values=colors, view=view, cmap="tab10", colorbar=False, points=False)

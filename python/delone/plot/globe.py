@@ -93,7 +93,10 @@ def plot_globe(
             axes.figure.colorbar(shown, ax=axes, shrink=0.8)
     if coast is not None:
         chords: Any = _front(_coast(coast), frame)
-        axes.add_collection(LineCollection(chords, colors=_COAST, linewidths=0.8, zorder=2))
+        # Below edges without colors, above them where colors would hide it.
+        color, halo, order = (_COAST, 0.0, 2.0) if values is None else ("black", 2.4, 3.5)
+        axes.add_collection(LineCollection(chords, colors="white", linewidths=halo, zorder=order))
+        axes.add_collection(LineCollection(chords, colors=color, linewidths=1.1, zorder=order))
     width = thin(len(arcs[2])) if linewidth is None else linewidth
     edges: Any = _chords(arcs, frame)
     axes.add_collection(LineCollection(edges, colors=_EDGE, linewidths=width, zorder=3))
