@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +28,7 @@ from delone.interpolate import (
     interpolator,
 )
 from delone.io import GeometrySet, PointSet, read_points
+from delone.terrain import TIN
 
 POINTS = np.random.default_rng(0).random((30, 2)) * [300, 150] - [150, 75]
 VALUES = np.arange(30.0)
@@ -48,7 +52,17 @@ MAKERS: dict[str, Any] = {
     "nearest_neighbors": lambda data, **told: delone.graphs.nearest_neighbors(data, 3, **told),
     "single_linkage": delone.cluster.single_linkage,
     "DBSCAN": lambda data, **told: delone.cluster.DBSCAN(eps=9.0, **told).fit(data),
+    "Dynamic": delone.Dynamic,
+    "insert": lambda data, **told: delone.Dynamic(**told).insert(data),
+    "TIN": lambda data, **told: TIN.from_points(with_heights(data), **told),
 }
+
+
+def with_heights(data: Any) -> Any:
+    """The same with heights."""
+    if isinstance(data, PointSet):
+        return replace(data, z=VALUES)
+    return np.column_stack((data, VALUES))
 
 
 def survey(**facts: Any) -> PointSet:
@@ -74,6 +88,28 @@ def test_what_is_plainly_degrees_is_warned_of(name: str, facts: dict[str, Any]) 
         make(survey(crs="EPSG:28992", columns=("lon", "lat")))
     with pytest.raises(DtypeError, match="planar must be True or False"):
         make(survey(), planar="yes")
+
+
+def test_tiles(tmp_path: Path) -> None:
+    pytest.importorskip("pyarrow")
+    from delone import distributed
+
+    with pytest.warns(GeographicWarning, match=r"delone\.sphere, or give planar=True") as caught:
+        distributed.triangulate(POINTS, tmp_path / "a", crs="EPSG:4326")
+    assert [Path(each.filename).name for each in caught] == ["test_degrees.py"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        distributed.triangulate(POINTS, tmp_path / "b", crs="EPSG:4326", planar=True)
+        distributed.triangulate(POINTS, tmp_path / "c", crs="EPSG:28992")
+        distributed.triangulate(POINTS, tmp_path / "d")
+
+
+def test_copies_stay_declared() -> None:
+    live = delone.Dynamic(survey(crs="EPSG:4326"), planar=True)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for each in (live, copy.copy(live), pickle.loads(pickle.dumps(live))):
+            each.insert(survey(crs="EPSG:4326"))
 
 
 def test_tables_by_the_names_of_their_columns() -> None:

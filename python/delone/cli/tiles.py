@@ -103,6 +103,8 @@ def tile(
                 nan=nan,
                 progress=tell,
                 crs=crs,
+                # A note below takes the place of the warning.
+                planar=True,
                 **options,
             )
         except OSError as error:

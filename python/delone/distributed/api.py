@@ -19,7 +19,7 @@ from delone.distributed.run.sources import Choice, find
 from delone.distributed.store.files import Store
 from delone.errors import InputError
 from delone.extras import require
-from delone.georeference import as_crs
+from delone.georeference import as_crs, is_geographic, warn_of_degrees
 
 if TYPE_CHECKING:
     import os
@@ -44,6 +44,7 @@ def triangulate(
     nan: str = "raise",
     progress: Callable[[Progress], None] | None = None,
     crs: Any = None,
+    planar: bool = False,
 ) -> TiledDelaunay:
     """Triangulate more points than fit into memory, in tiles that form one triangulation.
 
@@ -74,6 +75,8 @@ def triangulate(
     crs : str, int or pyproj.CRS, optional
         The reference system of the coordinates, by default that of the files. Nothing is
         transformed.
+    planar : bool, optional
+        Treat longitudes and latitudes as coordinates of a plane, without a warning.
 
     Returns
     -------
@@ -103,6 +106,12 @@ def triangulate(
     DeloneError
         The scheduler or too many workers were lost. Finished work is kept.
 
+    Warns
+    -----
+    GeographicWarning
+        The reference system has longitudes and latitudes. The warning comes when the run has
+        finished and the range of the coordinates is known.
+
     Notes
     -----
     The plane is partitioned by a k-d tree over a sample. A tile triangulates its points, those of
@@ -130,6 +139,7 @@ def triangulate(
     True
     """
     nan = as_choice(nan, ("raise", "drop"), name="nan")
+    planar = as_flag(planar, name="planar")
     folder = as_path(output, name="output")
     tell = as_callback(progress, name="progress") or _silent
     go_on = as_flag(resume, name="resume")
@@ -147,7 +157,10 @@ def triangulate(
     finally:
         if isinstance(worker, Processes):
             worker.close()
-    return open(folder)
+    made = open(folder)
+    by = made.crs if made.crs is not None and is_geographic(made.crs) else None
+    warn_of_degrees(source, np.reshape(made.bounds, (2, 2)), planar=planar or by is None, by=by)
+    return made
 
 
 def plan(

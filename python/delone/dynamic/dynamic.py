@@ -23,6 +23,7 @@ from delone.dynamic.segments import (
     saved_segments,
 )
 from delone.errors import DtypeError, InputError, ShapeError
+from delone.georeference import warn_of_degrees
 from delone.immutable import own_copy, sealed
 from delone.plane.dimension import PLANE
 from delone.space.dimension import SPACE
@@ -61,6 +62,9 @@ class Dynamic(Segmented):
     workers : int, optional
         Maximum number of threads where the points are triangulated at once; by default one per
         core. The result does not depend on it.
+    planar : bool, optional
+        Treat longitudes and latitudes as coordinates of a plane, without a warning, here and in
+        `insert`.
 
     Raises
     ------
@@ -72,6 +76,11 @@ class Dynamic(Segmented):
         There are more than 2**28 points, 2**27 in 3-D, or 2**32 - 2 handles have been given.
     MemoryError
         There is not enough memory.
+
+    Warns
+    -----
+    GeographicWarning
+        The points are longitudes and latitudes; `delone.sphere` triangulates them on the sphere.
 
     See Also
     --------
@@ -125,11 +134,13 @@ class Dynamic(Segmented):
     <Delaunay of 4 points: 3 triangles>
     """
 
-    __slots__ = ("__weakref__", "_index", "_present")
+    __slots__ = ("__weakref__", "_index", "_planar", "_present")
 
     _live: _core.Live2 | _core.Live3
     # An object of its own for each state, and the arrays of the state when they were made.
     _edit: object
+    # Whether degrees cause no warning.
+    _planar: bool
     _present: tuple[object, _core.LiveArrays2 | _core.LiveArrays3] | None
     # What finds simplices, and the arrays that it is for.
     _index: tuple[_core.LiveArrays2 | _core.LiveArrays3, Locator] | None
@@ -143,6 +154,7 @@ class Dynamic(Segmented):
         crossing: str | None = None,
         ndim: int | None = None,
         workers: int | None = None,
+        planar: bool = False,
     ) -> None:
         dimension = _as_ndim(ndim)
         if points is None:
@@ -153,6 +165,7 @@ class Dynamic(Segmented):
             segments = points.input_segments if segments is None else segments
             crossing = crossing or points._options.crossing
         own = own_copy(given, ndim=dimension)
+        warn_of_degrees(given, own, planar=planar)
         core = _live(own.shape[1])(own, None, 0, as_workers(workers))
         split = as_choice(crossing or "raise", ("raise", "split"), name="crossing") == "split"
         if isinstance(core, _core.Live2):
@@ -160,19 +173,24 @@ class Dynamic(Segmented):
             given_segments(core, () if segments is None else segments, as_workers(workers))
         elif segments is not None:
             raise InputError("segments are for 2-D points; these are 3-D")
-        self._begin(core, workers)
+        self._begin(core, workers, bool(planar))
 
-    def _begin(self, core: _core.Live2 | _core.Live3, workers: int | None) -> None:
+    def _begin(
+        self, core: _core.Live2 | _core.Live3, workers: int | None, planar: bool = False
+    ) -> None:
         self._live = core
+        self._planar = planar
         self._workers = workers
         self._edit = object()
         self._present = None
         self._index = None
 
     @classmethod
-    def _of(cls, core: _core.Live2 | _core.Live3, workers: int | None) -> Self:
+    def _of(
+        cls, core: _core.Live2 | _core.Live3, workers: int | None, planar: bool = False
+    ) -> Self:
         made = cls.__new__(cls)
-        made._begin(core, workers)
+        made._begin(core, workers, planar)
         return made
 
     @classmethod
@@ -181,27 +199,30 @@ class Dynamic(Segmented):
         points: Floats,
         handles: Handles,
         total: int,
-        workers: int | None,
+        options: tuple[int | None, bool],
         segments: tuple[Any, ...] | None = None,
     ) -> Self:
-        """Return the triangulation of a pickle."""
+        """Return the triangulation of a pickle; options are `workers` and `planar`."""
+        workers, planar = options
         if segments is not None:
             kept = ~np.isin(handles, segments[4])
             points, handles = points[kept], handles[kept]
         core = _live(points.shape[1])(points, handles, total, as_workers(workers))
         if segments is not None and isinstance(core, _core.Live2):
             adopt(core, segments, as_workers(workers))
-        return cls._of(core, workers)
+        return cls._of(core, workers, planar)
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Of one state, whatever other threads do.
         core = self._live.state().open()
         handles, points = core.points()
-        saved = (points, handles, core.counts()[3], self._workers, saved_segments(core))
+        counts = core.counts()[3]
+        options = self._workers, self._planar
+        saved = (points, handles, counts, options, saved_segments(core))
         return type(self)._again, saved
 
     def __copy__(self) -> Self:
-        return self._of(self._live.state().open(), self._workers)
+        return self._of(self._live.state().open(), self._workers, self._planar)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         return self.__copy__()
@@ -249,6 +270,11 @@ class Dynamic(Segmented):
         NonFiniteError, ShapeError, DtypeError, LimitError, MemoryError
             As for the constructor; nothing has changed.
 
+        Warns
+        -----
+        GeographicWarning
+            As for the constructor.
+
         Examples
         --------
         >>> from delone import Dynamic
@@ -258,7 +284,9 @@ class Dynamic(Segmented):
         >>> live.duplicates
         array([[4, 0]])
         """
-        made = self._live.insert(_own(points, self.ndim), self._threads(points))
+        own = _own(points, self.ndim)
+        warn_of_degrees(points, own, planar=self._planar)
+        made = self._live.insert(own, self._threads(points))
         self._edit = object()
         return made
 
