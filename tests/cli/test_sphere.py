@@ -76,6 +76,29 @@ def test_edges_other_formats_and_radians(world, tmp_path, command):
     assert (meshio.read(lines).points == want.points).all()
 
 
+def test_images_show_the_globe(world, tmp_path, command):
+    image = pytest.importorskip("matplotlib.image")
+    found = []
+    for name, more in {
+        "heights": (),
+        "edges": ("--edges",),
+        "pole": ("--view", "0,90"),
+        "far": ("--view=180,-20",),
+    }.items():
+        target = tmp_path / f"{name}.png"
+        assert command("sphere", world, "-o", target, "-q", *more) == (0, "", "")
+        found.append(image.imread(target)[..., :3])
+        # A globe on white, with more than edges.
+        assert (found[-1][0] == 1).all()
+        assert 0.3 < (found[-1].min(axis=2) < 0.99).mean() < 0.9
+    colored, edges, pole, far = (each[400:900, 300:800] for each in found)
+    assert np.ptp(colored, axis=2).mean() > 3 * np.ptp(edges, axis=2).mean()
+    assert not (colored == pole).all() and not (pole == far).all()
+    target = tmp_path / "globe.svg"
+    assert command("sphere", world, "-o", target, "-q")[0] == 0
+    assert "<svg" in target.read_text()
+
+
 def test_conventions_of_longitudes_are_noted(tmp_path, command):
     file = stations(tmp_path, [(0, -170), (0, 350), (20, 10), (80, 90), (-80, 0)], "lat,lon")
     code, _, err = command("sphere", file)
@@ -90,9 +113,12 @@ def test_what_is_refused(world, tmp_path, command):
     assert code == 4 and "latitude beyond a pole" in err and "line 3 of" in err
     circle = stations(tmp_path / "other", [(0, 0), (1, 0), (2, 0), (3, 0)], "lon,lat")
     assert command("sphere", circle)[0] == 4
-    target = tmp_path / "mesh.svg"
+    target = tmp_path / "mesh.gpkg"
     code, _, err = command("sphere", world, "-o", target)
-    assert code == 2 and ".vtu" in err and not target.exists()
+    assert code == 2 and ".vtu" in err and ".png" in err and not target.exists()
+    for view in ("5", "1,2,3", "1,91", "x,y"):
+        code, _, err = command("sphere", world, "--view", view)
+        assert code == 2 and "--view" in err
     code, _, err = command("sphere", world, "--crs", "EPSG:28992")
     assert code == 2 and "EPSG:28992" in err and "delone triangulate" in err
     assert command("sphere", world, "--crs", "EPSG:4326", "-q")[0] == 0

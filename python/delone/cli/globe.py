@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from delone import __version__, sphere
+from delone import __version__, datasets, sphere
 from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.options import Classes, Columns, Json, Layer, Quiet, Workers, class_numbers, split
@@ -18,6 +18,7 @@ from delone.cli.outputs import write_all
 from delone.cli.referenced import Crs, note, require_known
 from delone.cli.report import Stopwatch, peak_memory
 from delone.cli.show import print_json, print_report, spinner
+from delone.extras import require
 from delone.georeference import is_geographic
 from delone.io import input_suffixes, read_points
 from delone.io.registry import writer
@@ -33,6 +34,7 @@ __all__ = ["globe"]
 _SUFFIXES = (".vtu", ".ply", ".obj", ".stl", ".msh", ".xdmf", ".inp")
 # Formats that store values of points.
 _WITH_VALUES = (".vtu", ".ply", ".msh")
+_IMAGES = (".png", ".svg", ".pdf")
 _FIRST = 5
 
 
@@ -51,7 +53,7 @@ def globe(
             "--output",
             "-o",
             metavar="OUTPUT",
-            help="File to write, once or more: " + " ".join(_SUFFIXES),
+            help="File to write, once or more: " + " ".join(_SUFFIXES + _IMAGES),
         ),
     ] = None,
     columns: Columns = None,
@@ -63,6 +65,13 @@ def globe(
     edges: Annotated[
         bool, typer.Option("--edges", help="Write edges instead of triangles.")
     ] = False,
+    view: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LON,LAT",
+            help="Images: the place in the center, in degrees; by default the mean direction.",
+        ),
+    ] = None,
     workers: Workers = None,
     crs: Crs = None,
     as_json: Json = False,
@@ -71,12 +80,14 @@ def globe(
     """Triangulate longitudes and latitudes on the sphere, report, and write meshes.
 
     The points of a mesh are on the unit sphere, in the order of the file. Heights are values at the
-    points, in .vtu, .ply and .msh.
+    points, in .vtu, .ply and .msh. Images show the globe with the coast; triangles have the colors
+    of their mean heights.
     """
     require_known(crs)
+    center = _view(view)
     with writing():
         protect_inputs(output or (), source)
-        writers = {path: _ready(path) for path in output or ()}
+        writers = {path: _ready(path, center) for path in output or ()}
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
@@ -112,14 +123,59 @@ def globe(
         print_report(str(source), _rows(figures), figures)
 
 
-def _ready(path: Path) -> Callable[..., None]:
-    if path.suffix.lower() not in _SUFFIXES:
+def _view(text: str | None) -> tuple[float, float] | None:
+    """The place in the center of an image."""
+    if text is None:
+        return None
+    try:
+        lon, lat = (float(part) for part in text.split(","))
+    except ValueError:
+        lon = lat = math.nan
+    if not (math.isfinite(lon) and abs(lat) <= 90):
+        raise Failure(f"--view must be a longitude and a latitude, got {text!r}", Exit.USAGE)
+    return lon, lat
+
+
+def _ready(path: Path, center: tuple[float, float] | None) -> Callable[..., None]:
+    suffix = path.suffix.lower()
+    if suffix in _IMAGES:
+        figures = require("matplotlib.figure", extra="plot", what="drawing")
+        check_target(path)
+        return partial(_draw, figures=figures, center=center)
+    if suffix not in _SUFFIXES:
         raise Failure(
-            f"{path}: meshes of the sphere can only be written to {' '.join(_SUFFIXES)}", Exit.USAGE
+            f"{path}: the sphere can only be written to {' '.join(_SUFFIXES + _IMAGES)}",
+            Exit.USAGE,
         )
     write = writer(path, surface=True)
     check_target(path)
     return write
+
+
+def _draw(
+    path: Path,
+    mesh: sphere.Delaunay,
+    *,
+    figures: Any,
+    center: tuple[float, float] | None,
+    attributes: dict[str, Any] | None,
+    edges: bool,
+) -> None:
+    """Draw the front half of the globe; in colors of heights, unless only edges are wanted."""
+    name, heights = next(iter((attributes or {}).items()), ("", None))
+    values = None if heights is None or edges else heights[mesh.simplices].mean(axis=1)
+    figure = figures.Figure(figsize=(8.0, 8.0), dpi=160, layout="constrained")
+    ax = figure.add_subplot()
+    mesh.plot(
+        ax,
+        values=values,
+        view=center,
+        coast=datasets.land(),
+        title=f"{mesh.npoints:,} points, {mesh.nsimplex:,} triangles",
+    )
+    if values is not None:
+        ax.figure.axes[-1].set_ylabel(name)
+    figure.savefig(path, facecolor="white")
 
 
 def _require_angles(survey: PointSet, crs: str | None) -> None:
@@ -154,7 +210,7 @@ def _values(survey: PointSet) -> dict[str, Any]:
 
 
 def _held(path: Path, values: dict[str, Any], *, edges: bool) -> dict[str, Any] | None:
-    return None if edges or path.suffix.lower() not in _WITH_VALUES else values
+    return None if edges or path.suffix.lower() not in (*_WITH_VALUES, *_IMAGES) else values
 
 
 def _measures(mesh: sphere.Delaunay) -> dict[str, Any]:
