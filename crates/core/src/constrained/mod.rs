@@ -13,6 +13,7 @@ mod edges;
 pub(crate) mod inserted;
 pub mod intersection;
 pub(crate) mod marked;
+mod near;
 pub mod pairs;
 mod polygon;
 mod present;
@@ -26,10 +27,10 @@ mod subsegments;
 use delone_predicates::{Point2, lexicographic, orient2d};
 
 pub use self::components::components;
+pub(crate) use self::near::{Band, is_near, passes};
 pub use self::polygon::{Filled, Rule, polygon};
-pub(crate) use self::reroute::{Band, is_near};
 pub use self::ring::simple_ring;
-pub(crate) use self::split::{in_direction, passes};
+pub(crate) use self::split::in_direction;
 pub use self::subsegments::Subsegments;
 
 use self::inserted::Inserted;

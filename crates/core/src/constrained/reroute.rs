@@ -14,19 +14,18 @@
 
 use std::collections::BTreeSet;
 
-use delone_predicates::{Point2, Sign, orient2d};
+use delone_predicates::{Point2, orient2d};
 
 use super::edges::{Edges, edge};
 use super::inserted::Inserted;
 use super::marked::{Marked, turn};
-use super::pairs::overlap;
+use super::near::{Seen, is_near, passes};
 use super::segment::{Cavity, Step};
-use super::split::{far, passes, route};
+use super::split::route;
 use super::{Crossings, Work, pairs};
 use crate::error::Result;
 use crate::memory::{filled, push, with_room};
-use crate::mesh2::{next, prev, triangle};
-use crate::points::Extent;
+use crate::mesh2::{next, prev};
 use crate::watch::Watch;
 
 /// How many segments may wait: this many, or one in `ONE_IN`.
@@ -35,49 +34,6 @@ const ONE_IN: usize = 32;
 /// One crossing per this many points, plus a few: inserted one by one they cost more than all
 /// points at once.
 const POINTS: usize = 4;
-
-/// The stamp of no row.
-const NEVER: u32 = u32::MAX;
-
-/// A segment and the size of the pixels in its box.
-pub(crate) struct Band {
-    from: Point2,
-    along: Point2,
-    /// Its box.
-    pub(crate) extent: Extent,
-    pixel: f64,
-}
-
-impl Band {
-    /// Of the segment from p to q.
-    pub(crate) fn of(p: Point2, q: Point2) -> Self {
-        let along = [q[0] - p[0], q[1] - p[1]];
-        let largest = (p.iter().chain(&q)).fold(0.0, |m: f64, x| m.max(x.abs()));
-        let unit = largest * f64::EPSILON + f64::MIN_POSITIVE;
-        Self {
-            from: p,
-            along,
-            extent: Extent::of([p, q]),
-            pixel: 2.0 * (along[0].abs() + along[1].abs()) * unit,
-        }
-    }
-
-    /// The side of the line on which x lies; zero at least if x is no farther from it than a
-    /// pixel's width.
-    #[inline]
-    pub(crate) fn side(&self, x: Point2) -> Sign {
-        let left = self.along[0] * (x[1] - self.from[1]);
-        let right = self.along[1] * (x[0] - self.from[0]);
-        let rounding = 4.0 * f64::EPSILON * (left.abs() + right.abs()) + f64::MIN_POSITIVE;
-        let det = left - right;
-        // False also after overflow, when the value is NaN.
-        if det.abs() > self.pixel + rounding {
-            Sign::of(det)
-        } else {
-            Sign::Zero
-        }
-    }
-}
 
 impl Work<'_> {
     /// How many segments may wait.
@@ -130,7 +86,7 @@ impl Work<'_> {
         own.sort_unstable();
         // Compute all stops first, so that they are independent of the order of the rows.
         let mut routes = with_room(rows.len())?;
-        let mut seen = filled(self.marked.triangles() as usize, NEVER)?;
+        let mut seen = Seen::default();
         for meets in own.chunk_by(|a, b| a[0] == b[0]) {
             watch.check()?;
             let row = meets[0][0];
@@ -138,8 +94,17 @@ impl Work<'_> {
             let own: Vec<_> = meets.iter().map(|m| m[1]).collect();
             let through = &mut inserted.through;
             let rounded = |w: u32| w as usize >= before;
-            let stops = route(&mut self.marked, ends, row, own.clone(), rounded, through)?;
-            if !self.is_clear(row, &stops, &own, &mut seen)? {
+            let meets = own.clone();
+            let stops = route(
+                &mut self.marked,
+                ends,
+                row,
+                meets,
+                rounded,
+                through,
+                &mut seen,
+            )?;
+            if !self.is_clear(ends, &stops, &own) {
                 return Ok(None);
             }
             routes.push((row, stops));
@@ -302,75 +267,13 @@ impl Work<'_> {
         Ok(false)
     }
 
-    /// Whether a segment passes through the pixel of no vertex except those on it and its crossings
-    /// `meets`, which are ascending. Independent of the mesh: each such vertex is reached from the
-    /// segment within its box, across edges that come as near.
-    fn is_clear(
-        &mut self,
-        row: u32,
-        stops: &[u32],
-        meets: &[u32],
-        seen: &mut [u32],
-    ) -> Result<bool> {
-        let [a, b] = self.ends[row as usize];
+    /// Whether a segment passes through no pixel but those of vertices on it and of its crossings
+    /// `meets`, which are ascending.
+    fn is_clear(&self, [a, b]: [u32; 2], stops: &[u32], meets: &[u32]) -> bool {
         let [p, q] = [a, b].map(|v| self.marked.at(v));
-        let on = |v: &u32| {
-            meets.binary_search(v).is_ok() || orient2d(p, q, self.marked.at(*v)).is_zero()
-        };
-        if !stops.iter().all(on) {
-            return Ok(false);
-        }
-        // Start from the triangles that the segment crosses and those around its stops.
-        let mut own = stops.to_vec();
-        own.sort_unstable();
-        let band = Band::of(p, q);
-        let mut stack = Vec::new();
-        self.marked.cross(a, b, |mesh, e| {
-            stack.extend([triangle(e), triangle(mesh.opposite(e))]);
-        })?;
-        let used = self.marked.triangles();
-        let Marked {
-            points, near, mesh, ..
-        } = &mut self.marked;
-        let mesh = &mesh.resume(used);
-        for &v in stops {
-            let start = near[v as usize];
-            let mut corner = start;
-            loop {
-                stack.push(triangle(corner));
-                corner = turn(mesh, corner);
-                if corner == start {
-                    break;
-                }
-            }
-        }
-        while let Some(t) = stack.pop() {
-            let corners = mesh.corners(t);
-            if seen[t as usize] == row || corners.contains(&mesh.infinite()) {
-                continue;
-            }
-            seen[t as usize] = row;
-            let at = corners.map(|v| points[v as usize]);
-            if !overlap(&band.extent, &Extent::of(at)) {
-                continue;
-            }
-            // A vertex whose pixel the segment meets blocks it, unless it is one of its own.
-            let sides = at.map(|x| band.side(x));
-            let met = |k: usize| {
-                sides[k].is_zero() && own.binary_search(&corners[k]).is_err() && passes(p, q, at[k])
-            };
-            if (0..3).any(met) {
-                return Ok(false);
-            }
-            // Continue across edges that come as near as a pixel.
-            for k in 0..3 {
-                let [u, v] = [sides[(k + 1) % 3], sides[(k + 2) % 3]];
-                if u == Sign::Zero || u != v {
-                    stack.push(triangle(mesh.opposite(8 * t + k as u32)));
-                }
-            }
-        }
-        Ok(true)
+        stops
+            .iter()
+            .all(|v| meets.binary_search(v).is_ok() || orient2d(p, q, self.marked.at(*v)).is_zero())
     }
 
     /// Inserts a segment through its `stops`; returns whether nothing blocked it.
@@ -394,15 +297,6 @@ impl Work<'_> {
         }
         Ok(true)
     }
-}
-
-/// Whether the edge `r s` may pass through the pixel of `p`.
-pub(crate) fn is_near(r: Point2, s: Point2, p: Point2) -> bool {
-    let beside = (0..2).any(|k| {
-        let unit = 2.0 * (p[k].abs() * f64::EPSILON + f64::MIN_POSITIVE);
-        p[k] < r[k].min(s[k]) - unit || p[k] > r[k].max(s[k]) + unit
-    });
-    !beside && !far(r, s, p)
 }
 
 #[cfg(test)]

@@ -137,54 +137,6 @@ impl<S: Sites> Marked<S> {
         }
     }
 
-    /// The vertices on the segment from `a` to `b`, except its ends, whatever edges are marked:
-    /// those exactly on it, and those beside it that `near` accepts. Terminates as `gather` does.
-    pub fn stops(&mut self, a: u32, b: u32, near: impl Fn(&Self, u32) -> bool) -> Result<Vec<u32>> {
-        let mut stops = Vec::new();
-        let mut from = a;
-        while from != b {
-            from = match self.leave(from, b)? {
-                Leave::Along(e, w) => {
-                    self.hidden(e, &near, &mut stops);
-                    w
-                }
-                Leave::Across(first) => {
-                    let mut e = first;
-                    let used = self.triangles();
-                    let mesh = self.mesh.resume(used);
-                    let mut beside = vec![mesh.vertex(next(e)), mesh.vertex(prev(e))];
-                    let end = loop {
-                        let (x, beyond) = behind(&mesh, &self.points, e, a, b)?;
-                        let Some(f) = beyond else { break x };
-                        e = f;
-                        beside.push(x);
-                    };
-                    stops.extend(beside.into_iter().filter(|&w| near(self, w)));
-                    end
-                }
-            };
-            stops.push(from);
-        }
-        stops.retain(|&w| w != a && w != b);
-        Ok(stops)
-    }
-
-    /// Adds to `stops` the vertices beside the edge `e`, on either side, that `near` accepts;
-    /// beyond each there may be others. Terminates: no vertex is added twice.
-    fn hidden(&mut self, e: Code, near: impl Fn(&Self, u32) -> bool, stops: &mut Vec<u32>) {
-        let first = stops.len();
-        let mut stack = vec![e, self.patch().opposite(e)];
-        while let Some(e) = stack.pop() {
-            let mesh = self.patch();
-            let (apex, inf) = (mesh.vertex(e), mesh.infinite());
-            let beyond = [next(e), prev(e)].map(|e| mesh.opposite(e));
-            if apex != inf && !stops[first..].contains(&apex) && near(self, apex) {
-                stops.push(apex);
-                stack.extend(beyond);
-            }
-        }
-    }
-
     /// Calls `visit` for each edge that the segment from `a` to `b` crosses, except those that it
     /// only touches. Terminates as `gather` does.
     pub fn cross(&mut self, a: u32, b: u32, mut visit: impl FnMut(&Patch, Code)) -> Result<()> {

@@ -32,7 +32,8 @@ use super::crowd::crowd;
 use super::inserted::Inserted;
 use super::intersection::intersection;
 use super::marked::Marked;
-use super::segment::{Cavity, Step};
+use super::near::{Seen, passes};
+use super::segment::{Cavity, Met, Step};
 use crate::error::{Error, Result};
 use crate::mesh2::{next, prev};
 use crate::order;
@@ -129,6 +130,7 @@ impl<'a> Splitter<'a> {
             self.crossings.push([s, t, w]);
         }
         order::sort(&mut own, self.pace.watch())?;
+        let mut seen = Seen::default();
         for i in 0..self.segments.len() {
             self.pace.spend(1)?;
             let ([a, b], row) = self.segments[i];
@@ -142,7 +144,9 @@ impl<'a> Splitter<'a> {
                 meets,
                 &is_rounded,
                 &mut self.through,
+                &mut seen,
             )?;
+            self.pace.spend(seen.visited / TRIANGLES)?;
             for pair in stops.windows(2).rev() {
                 self.enqueue([pair[0], pair[1]], &[2 * i as Cover])?;
             }
@@ -175,7 +179,7 @@ impl<'a> Splitter<'a> {
     fn insert_job(&mut self, job: Job) -> Result<()> {
         let [a, b] = job.ends;
         match self.marked.join(a, b, &mut self.cavity)? {
-            Step::Crossed(e) => self.repair(e, job),
+            Step::Crossed(_) => self.resolve(job),
             Step::Joined { from, to, .. } => {
                 let far = a ^ b ^ from;
                 if to != far {
@@ -189,6 +193,29 @@ impl<'a> Splitter<'a> {
                 self.add(ends, &job.covers)
             }
         }
+    }
+
+    /// Splits a queued piece, which a marked edge blocks: at the vertices exactly on it, or at the
+    /// first such edge. Which one that is does not depend on the end from which it was inserted,
+    /// which is chosen by degree.
+    fn resolve(&mut self, job: Job) -> Result<()> {
+        let [a, b] = job.ends;
+        let (mut stops, mut first) = (Vec::new(), None);
+        self.marked.trace(a, b, |mesh, met| match met {
+            Met::Vertex(v) => stops.push(v),
+            Met::Across(e) if mesh.is_marked(e) => first = first.or(Some(e)),
+            _ => {}
+        })?;
+        if stops.is_empty() {
+            let none = || Error::Internal(format!("nothing blocks the piece {a} {b}"));
+            return self.repair(first.ok_or_else(none)?, job);
+        }
+        stops.insert(0, a);
+        stops.push(b);
+        for ends in stops.windows(2).rev() {
+            self.enqueue([ends[0], ends[1]], &job.covers)?;
+        }
+        Ok(())
     }
 
     fn add(&mut self, [u, v]: [u32; 2], covers: &[Cover]) -> Result<()> {
@@ -315,17 +342,17 @@ pub(super) fn route(
     meets: Vec<u32>,
     is_rounded: impl Fn(u32) -> bool,
     through: &mut Vec<[u32; 2]>,
+    seen: &mut Seen,
 ) -> Result<Vec<u32>> {
     let [p, q] = [a, b].map(|v| marked.at(v));
     let snaps = !meets.is_empty();
-    let near = |marked: &Marked, w: u32| (snaps || is_rounded(w)) && passes(p, q, marked.at(w));
-    let mut stops = marked.stops(a, b, near)?;
+    let mut stops = marked.stops([a, b], &meets, |w| snaps || is_rounded(w), seen)?;
+    stops.extend(meets.into_iter().filter(|&w| w != a && w != b));
     for &w in &stops {
         if orient2d(p, q, marked.at(w)).is_zero() {
             through.push([row, w]);
         }
     }
-    stops.extend(meets.into_iter().filter(|&w| w != a && w != b));
     stops.extend([a, b]);
     stops.sort_by(|&v, &w| in_direction([p, q], marked.at(v), marked.at(w)));
     stops.dedup();
@@ -357,37 +384,4 @@ fn in_order(marked: &Marked, segments: &[[u32; 2]], watch: &Watch) -> Result<Vec
         by(0).then_with(|| by(1)).then(i.cmp(j))
     })?;
     Ok(order)
-}
-
-/// Whether a point lies in the box of two others.
-fn in_box(x: Point2, p: Point2, q: Point2) -> bool {
-    (0..2).all(|k| p[k].min(q[k]) <= x[k] && x[k] <= p[k].max(q[k]))
-}
-
-/// Whether the segment `r s` meets the pixel of `p`, the points that round to it: at the abscissa
-/// of p it has an ordinate that rounds to that of p, or vice versa.
-pub(crate) fn passes(r: Point2, s: Point2, p: Point2) -> bool {
-    if !in_box(p, r, s) || p == r || p == s || far(r, s, p) {
-        return false;
-    }
-    if orient2d(r, s, p).is_zero() {
-        return true;
-    }
-    // From here on both sides of the box have a positive length.
-    (0..2).any(|k| {
-        let other = 1 - k;
-        let (mut below, mut above) = (p, p);
-        below[other] = r[other].min(s[other]);
-        above[other] = r[other].max(s[other]);
-        intersection(r, s, below, above)[other] == p[other]
-    })
-}
-
-/// Whether p is farther from the line r s than its pixel can be wide; most points are.
-pub(super) fn far(r: Point2, s: Point2, p: Point2) -> bool {
-    let (left, right) = ((s[0] - r[0]) * (p[1] - r[1]), (s[1] - r[1]) * (p[0] - r[0]));
-    let unit = |x: f64| x.abs() * f64::EPSILON + f64::MIN_POSITIVE;
-    let pixel = (s[0] - r[0]).abs() * unit(p[1]) + (s[1] - r[1]).abs() * unit(p[0]);
-    let rounding = 4.0 * f64::EPSILON * (left.abs() + right.abs()) + f64::MIN_POSITIVE;
-    (left - right).abs() > 2.0 * pixel + rounding
 }
