@@ -1,5 +1,6 @@
 //! Costs of edits of a live triangulation of uniform points, in microseconds per point, beside those of
-//! a build: `cargo run --release -p delone-core --example live -- 1000000 100000`.
+//! a build: `cargo run --release -p delone-core --example live -- 1000000 100000`. A batch has at most
+//! a tenth of the points, of which there are at least 100.
 
 use std::time::Instant;
 
@@ -33,15 +34,23 @@ fn timed<T>(name: &str, count: usize, work: impl FnOnce() -> T) -> T {
     result
 }
 
-/// Every `n / count`-th row in a scattered order, each once.
+/// The smallest number of points.
+const LEAST: usize = 100;
+/// One in this many points, at most, is in a batch: batches of rows that are shifted by less share no
+/// row.
+const STEP: usize = 10;
+
+/// Every `total / count`-th row.
 fn sampled(total: usize, count: usize) -> Vec<i64> {
     (0..count).map(|i| (i * (total / count)) as i64).collect()
 }
 
 fn main() {
-    let mut arguments = std::env::args().skip(1).map_while(|a| a.parse().ok());
-    let n: usize = arguments.next().unwrap_or(1_000_000);
-    let m: usize = arguments.next().unwrap_or(100_000);
+    let mut arguments = std::env::args()
+        .skip(1)
+        .map_while(|a| a.parse::<usize>().ok());
+    let n = arguments.next().unwrap_or(1_000_000).max(LEAST);
+    let m = arguments.next().unwrap_or(100_000).clamp(1, n / STEP);
     let watch = Watch::idle();
     let points = scattered(n, 1);
     let more = scattered(m, 2);
@@ -71,7 +80,7 @@ fn main() {
         timed("move a batch by several spacings", m, || {
             live.relocate(&rows, &far, 1, &watch).unwrap()
         });
-        let one = 100_000.min(n);
+        let one = 100_000.min(n / STEP);
         let there = scattered(one, 5);
         timed("insert one by one, anywhere", one, || {
             for &p in &there {

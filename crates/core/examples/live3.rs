@@ -26,9 +26,12 @@ fn timed<T>(call: impl FnOnce() -> T) -> (T, f64) {
 }
 
 fn main() {
-    let mut given = std::env::args().skip(1).filter_map(|a| a.parse().ok());
-    let n = given.next().unwrap_or(1_000_000);
-    let m = given.next().unwrap_or(1000);
+    let mut given = std::env::args()
+        .skip(1)
+        .filter_map(|a| a.parse::<usize>().ok());
+    let n = given.next().unwrap_or(1_000_000).max(100);
+    // Three batches share no row.
+    let m = given.next().unwrap_or(1000).clamp(1, n / 3);
     let watch = Watch::idle();
     let points = scattered(n, 1);
     let (_, build) = timed(|| triangulate(&points, 1, &watch).expect("a triangulation"));
