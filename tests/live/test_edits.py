@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import pickle
+import sys
 import threading
 from pathlib import Path
 from typing import Any
@@ -189,6 +190,34 @@ def test_a_snapshot_is_read_while_another_thread_edits() -> None:
         reader.join()
     assert not wrong
     assert live.validate()
+
+
+def test_interpolation_is_of_one_state() -> None:
+    """The two states differ in which rows are at the first two corners of a square."""
+    live = Dynamic([(0, 0), (1, 0), (0, 1), (1, 1)])
+    first = live.snapshot()
+    live.remove([0])
+    live.insert([(0, 0)])
+    second = live.snapshot()
+    found, is_over = set(), threading.Event()
+
+    def read() -> None:
+        for _ in range(4000):
+            found.add(tuple(live.interpolate([10, 20, 30, 40], [(0, 0), (1, 0)]).tolist()))
+        is_over.set()
+
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        reader = threading.Thread(target=read)
+        reader.start()
+        while not is_over.is_set():
+            live.restore(first)
+            live.restore(second)
+        reader.join()
+    finally:
+        sys.setswitchinterval(before)
+    assert found <= {(10.0, 20.0), (40.0, 10.0)}
 
 
 def test_large_batches_and_few_points_give_the_same() -> None:

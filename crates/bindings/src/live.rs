@@ -1,5 +1,6 @@
 //! Live triangulations: edited by one thread at a time, from any number of threads.
 
+use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::{Mutex, TryLockError};
 
 use delone::{Error, Point2, Result};
@@ -17,10 +18,16 @@ const FEW: usize = 16;
 
 type Points<'py> = PyReadonlyArray2<'py, f64>;
 type Handles<'py> = PyReadonlyArray1<'py, i64>;
+/// Corners, weights, the number of edits, and perhaps all handles.
+pub type Weights = (Table<i64>, Table<f64>, i64, Option<Column<i64>>);
 
 /// A 2-D Delaunay triangulation that is edited.
 #[pyclass(frozen, module = "delone._core")]
-pub struct Live2(Mutex<Plane>);
+pub struct Live2 {
+    live: Mutex<Plane>,
+    /// How many edits there have been; read and changed with the lock.
+    edits: AtomicI64,
+}
 
 /// A state of a `Live2`, which never changes.
 #[pyclass(frozen, module = "delone._core")]
@@ -59,13 +66,33 @@ pub struct LiveSegments2 {
 }
 
 impl Live2 {
+    fn of(plane: Plane) -> Self {
+        Self {
+            live: Mutex::new(plane),
+            edits: AtomicI64::new(0),
+        }
+    }
+
     fn with<T: Send>(
         &self,
         py: Python<'_>,
         count: usize,
         work: impl FnOnce(&mut Plane, &Watch) -> delone_core::error::Result<T> + Send,
     ) -> PyResult<T> {
-        locked(&self.0, py, count, work)
+        locked(&self.live, py, count, work)
+    }
+
+    /// The same for an edit.
+    fn edit<T: Send>(
+        &self,
+        py: Python<'_>,
+        count: usize,
+        work: impl FnOnce(&mut Plane, &Watch) -> delone_core::error::Result<T> + Send,
+    ) -> PyResult<T> {
+        self.with(py, count, |plane, watch| {
+            self.edits.fetch_add(1, Ordering::Relaxed);
+            work(plane, watch)
+        })
     }
 }
 
@@ -137,7 +164,7 @@ impl Live2 {
             Some(own) => Plane::of(points, &own, total, workers, watch),
             None => Plane::new(points, workers, watch),
         })?;
-        Ok(Self(Mutex::new(plane)))
+        Ok(Self::of(plane))
     }
 
     /// Numbers: points, vertices, triangles, and the next handle.
@@ -155,7 +182,7 @@ impl Live2 {
     /// Inserts points and returns their handles.
     fn insert(&self, py: Python<'_>, points: Points<'_>, workers: usize) -> PyResult<Column<i64>> {
         let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
-        let made = self.with(py, points.len(), |plane, watch| {
+        let made = self.edit(py, points.len(), |plane, watch| {
             plane.insert(points, workers, watch)
         })?;
         Ok(column(py, (made.start as i64..made.end as i64).collect()))
@@ -164,7 +191,7 @@ impl Live2 {
     /// Removes points.
     fn remove(&self, py: Python<'_>, handles: Handles<'_>, workers: usize) -> PyResult<()> {
         let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
-        self.with(py, handles.len(), |plane, watch| {
+        self.edit(py, handles.len(), |plane, watch| {
             plane.remove(handles, workers, watch)
         })
     }
@@ -179,7 +206,7 @@ impl Live2 {
     ) -> PyResult<()> {
         let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
         let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
-        self.with(py, handles.len(), |plane, watch| {
+        self.edit(py, handles.len(), |plane, watch| {
             plane.relocate(handles, points, workers, watch)
         })
     }
@@ -238,7 +265,7 @@ impl Live2 {
         workers: usize,
     ) -> PyResult<Column<i64>> {
         let ends: &[[i64; 2]] = rows(&ends, "ends").map_err(|e| raise(py, &e))?;
-        let made = self.with(py, usize::MAX, |plane, watch| {
+        let made = self.edit(py, usize::MAX, |plane, watch| {
             plane.insert_segments(ends, workers, watch)
         })?;
         Ok(column(py, (made.start as i64..made.end as i64).collect()))
@@ -252,7 +279,7 @@ impl Live2 {
         workers: usize,
     ) -> PyResult<()> {
         let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
-        self.with(py, usize::MAX, |plane, watch| {
+        self.edit(py, usize::MAX, |plane, watch| {
             plane.remove_segments(handles, workers, watch)
         })
     }
@@ -273,7 +300,7 @@ impl Live2 {
         let given = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
         let added = flat(&added, "added").map_err(|e| raise(py, &e))?;
         let numbers = checked_handles(given, ends.len(), total).map_err(|e| raise(py, &e))?;
-        self.with(py, usize::MAX, |plane, watch| {
+        self.edit(py, usize::MAX, |plane, watch| {
             let added = checked_handles(added, places.len(), plane.total());
             let added = added.map_err(|_| {
                 delone_core::error::Error::Shape("handles of crossings are wrong".into())
@@ -343,6 +370,30 @@ impl Live2 {
         Ok((table(py, found.rows)?, table(py, found.weights)?))
     }
 
+    /// The same, and the number of edits so far; and if that is not `known`, the handles of all points.
+    fn weights(&self, py: Python<'_>, xi: Points<'_>, known: i64) -> PyResult<Weights> {
+        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+        let edits = || self.edits.load(Ordering::Relaxed);
+        let count = if edits() == known {
+            queries.len()
+        } else {
+            usize::MAX
+        };
+        let (found, edit, own) = self.with(py, count, |plane, watch| {
+            let edit = edits();
+            let found = plane.corners(queries, watch)?;
+            let own = if edit == known {
+                None
+            } else {
+                Some(plane.points(watch)?.0)
+            };
+            Ok((found, edit, own))
+        })?;
+        let weights = table(py, found.weights)?;
+        let own = own.map(|own| column(py, own));
+        Ok((table(py, found.rows)?, weights, edit, own))
+    }
+
     /// The handle of the nearest point to each query, -1 if there is none.
     fn nearest(&self, py: Python<'_>, xi: Points<'_>) -> PyResult<Column<i64>> {
         let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
@@ -367,7 +418,7 @@ impl Live2 {
     /// Restores a state.
     fn restore(&self, py: Python<'_>, state: &LiveState2) -> PyResult<()> {
         let state = &state.0;
-        self.with(py, usize::MAX, |plane, watch| plane.restore(state, watch))
+        self.edit(py, usize::MAX, |plane, watch| plane.restore(state, watch))
     }
 }
 
@@ -380,7 +431,7 @@ impl LiveState2 {
             plane.restore(&self.0, watch)?;
             Ok::<_, Error>(plane)
         })?;
-        Ok(Live2(Mutex::new(plane)))
+        Ok(Live2::of(plane))
     }
 
     /// Bytes that are not shared with another state.

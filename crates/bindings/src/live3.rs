@@ -1,6 +1,7 @@
 //! Live 3-D triangulations: edited by one thread at a time, from any number of threads.
 
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicI64, Ordering};
 
 use delone::Error;
 use delone_core::live::space::{Space, State};
@@ -10,7 +11,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, flat, number_rows, rows, table};
 use crate::errors::raise;
-use crate::live::{checked_handles, locked};
+use crate::live::{Weights, checked_handles, locked};
 use crate::signals::watched;
 
 type Points<'py> = PyReadonlyArray2<'py, f64>;
@@ -18,7 +19,11 @@ type Handles<'py> = PyReadonlyArray1<'py, i64>;
 
 /// A 3-D Delaunay triangulation that is edited.
 #[pyclass(frozen, module = "delone._core")]
-pub struct Live3(Mutex<Space>);
+pub struct Live3 {
+    live: Mutex<Space>,
+    /// How many edits there have been; read and changed with the lock.
+    edits: AtomicI64,
+}
 
 /// A state of a `Live3`, which never changes.
 #[pyclass(frozen, module = "delone._core")]
@@ -40,13 +45,33 @@ pub struct LiveArrays3 {
 }
 
 impl Live3 {
+    fn of(space: Space) -> Self {
+        Self {
+            live: Mutex::new(space),
+            edits: AtomicI64::new(0),
+        }
+    }
+
     fn with<T: Send>(
         &self,
         py: Python<'_>,
         count: usize,
         work: impl FnOnce(&mut Space, &Watch) -> delone_core::error::Result<T> + Send,
     ) -> PyResult<T> {
-        locked(&self.0, py, count, work)
+        locked(&self.live, py, count, work)
+    }
+
+    /// The same for an edit.
+    fn edit<T: Send>(
+        &self,
+        py: Python<'_>,
+        count: usize,
+        work: impl FnOnce(&mut Space, &Watch) -> delone_core::error::Result<T> + Send,
+    ) -> PyResult<T> {
+        self.with(py, count, |space, watch| {
+            self.edits.fetch_add(1, Ordering::Relaxed);
+            work(space, watch)
+        })
     }
 }
 
@@ -70,7 +95,7 @@ impl Live3 {
             Some(own) => Space::of(points, &own, total, workers, watch),
             None => Space::new(points, workers, watch),
         })?;
-        Ok(Self(Mutex::new(space)))
+        Ok(Self::of(space))
     }
 
     /// Numbers: points, vertices, tetrahedra, and the next handle.
@@ -88,7 +113,7 @@ impl Live3 {
     /// Inserts points and returns their handles.
     fn insert(&self, py: Python<'_>, points: Points<'_>, workers: usize) -> PyResult<Column<i64>> {
         let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
-        let made = self.with(py, points.len(), |space, watch| {
+        let made = self.edit(py, points.len(), |space, watch| {
             space.insert(points, workers, watch)
         })?;
         Ok(column(py, (made.start as i64..made.end as i64).collect()))
@@ -97,7 +122,7 @@ impl Live3 {
     /// Removes points.
     fn remove(&self, py: Python<'_>, handles: Handles<'_>, workers: usize) -> PyResult<()> {
         let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
-        self.with(py, handles.len(), |space, watch| {
+        self.edit(py, handles.len(), |space, watch| {
             space.remove(handles, workers, watch)
         })
     }
@@ -112,7 +137,7 @@ impl Live3 {
     ) -> PyResult<()> {
         let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
         let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
-        self.with(py, handles.len(), |space, watch| {
+        self.edit(py, handles.len(), |space, watch| {
             space.relocate(handles, points, workers, watch)
         })
     }
@@ -157,6 +182,30 @@ impl Live3 {
         Ok((table(py, found.rows)?, table(py, found.weights)?))
     }
 
+    /// The same, and the number of edits so far; and if that is not `known`, the handles of all points.
+    fn weights(&self, py: Python<'_>, xi: Points<'_>, known: i64) -> PyResult<Weights> {
+        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+        let edits = || self.edits.load(Ordering::Relaxed);
+        let count = if edits() == known {
+            queries.len()
+        } else {
+            usize::MAX
+        };
+        let (found, edit, own) = self.with(py, count, |space, watch| {
+            let edit = edits();
+            let found = space.corners(queries, watch)?;
+            let own = if edit == known {
+                None
+            } else {
+                Some(space.points(watch)?.0)
+            };
+            Ok((found, edit, own))
+        })?;
+        let weights = table(py, found.weights)?;
+        let own = own.map(|own| column(py, own));
+        Ok((table(py, found.rows)?, weights, edit, own))
+    }
+
     /// The handle of the nearest point to each query, -1 if there is none.
     fn nearest(&self, py: Python<'_>, xi: Points<'_>) -> PyResult<Column<i64>> {
         let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
@@ -181,7 +230,7 @@ impl Live3 {
     /// Restores a state.
     fn restore(&self, py: Python<'_>, state: &LiveState3) -> PyResult<()> {
         let state = &state.0;
-        self.with(py, usize::MAX, |space, watch| space.restore(state, watch))
+        self.edit(py, usize::MAX, |space, watch| space.restore(state, watch))
     }
 }
 
@@ -194,7 +243,7 @@ impl LiveState3 {
             space.restore(&self.0, watch)?;
             Ok::<_, Error>(space)
         })?;
-        Ok(Live3(Mutex::new(space)))
+        Ok(Live3::of(space))
     }
 
     /// Bytes that are not shared with another state.

@@ -134,7 +134,7 @@ class Dynamic(Segmented):
     <Delaunay of 4 points: 3 triangles>
     """
 
-    __slots__ = ("__weakref__", "_index", "_planar", "_present")
+    __slots__ = ("__weakref__", "_index", "_known", "_planar", "_present")
 
     _live: _core.Live2 | _core.Live3
     # An object of its own for each state, and the arrays of the state when they were made.
@@ -144,6 +144,8 @@ class Dynamic(Segmented):
     _present: tuple[object, _core.LiveArrays2 | _core.LiveArrays3] | None
     # What finds simplices, and the arrays that it is for.
     _index: tuple[_core.LiveArrays2 | _core.LiveArrays3, Locator] | None
+    # The number of an edit, and the handles of all points after it.
+    _known: tuple[int, Handles]
     _workers: int | None
 
     def __init__(
@@ -184,6 +186,7 @@ class Dynamic(Segmented):
         self._edit = object()
         self._present = None
         self._index = None
+        self._known = -1, np.empty(0, dtype=np.int64)
 
     @classmethod
     def _of(
@@ -284,9 +287,11 @@ class Dynamic(Segmented):
         >>> live.duplicates
         array([[4, 0]])
         """
-        own = _own(points, self.ndim)
-        warn_of_degrees(points, own, planar=self._planar)
-        made = self._live.insert(own, self._threads(points))
+        array, threads = as_points(points, ndim=self.ndim), 1
+        if len(array) > FEW:
+            array, threads = own_copy(array, ndim=self.ndim), as_workers(self._workers)
+        warn_of_degrees(points, array, planar=self._planar)
+        made = self._live.insert(array, threads)
         self._edit = object()
         return made
 
@@ -361,10 +366,8 @@ class Dynamic(Segmented):
             raise
         self._edit = object()
 
-    def _threads(self, items: Any) -> int:
-        if self._workers is None and (not hasattr(items, "__len__") or len(items) <= FEW):
-            return 1
-        return as_workers(self._workers)
+    def _threads(self, items: Handles) -> int:
+        return 1 if len(items) <= FEW else as_workers(self._workers)
 
     def _refuse(self, handles: Handles) -> None:
         gone, twice = self._live.faults(handles)
@@ -732,16 +735,23 @@ class Dynamic(Segmented):
         array(6.)
         """
         given = np.asarray(values, dtype=np.float64)
-        own = self.handles
+        queries = as_vectors(xi, self.ndim, name="xi")
+        flat = np.ascontiguousarray(queries.reshape(-1, self.ndim))
+        # One call for all that must be of one state, whatever other threads do.
+        edit, own = self._known
+        corners, weights, now, changed = self._live.weights(flat, edit)
+        if changed is not None:
+            own = changed
+            self._known = now, own
         if given.ndim == 0 or len(given) != len(own):
             raise ShapeError(f"values must have {len(own)} rows, one per point, got {given.shape}")
-        corners, weights = self.corners(xi)
+        shape = (*queries.shape[:-1], *given.shape[1:])
         if not len(own):
-            return np.full((*corners.shape[:-1], *given.shape[1:]), np.nan)
+            return np.full(shape, np.nan)
         rows = np.searchsorted(own, corners).clip(max=len(own) - 1)
         shares = weights.reshape(*weights.shape, *(1,) * (given.ndim - 1))
-        found = (shares * given[rows]).sum(axis=weights.ndim - 1)
-        return np.asarray(found)
+        found = (shares * given[rows]).sum(axis=1)
+        return np.asarray(found).reshape(shape)
 
 
 def _live(ndim: int) -> type[_core.Live2] | type[_core.Live3]:
