@@ -262,6 +262,39 @@ def test_errors_of_segments_name_them_and_change_nothing() -> None:
     assert live.insert_segments([(4, 1)]).tolist() == [1]
 
 
+@pytest.mark.parametrize("count", [1, 600, 2900])
+def test_an_error_takes_back_all_of_a_batch(count: int) -> None:
+    """A segment crosses after points one by one, or so many that all are triangulated again."""
+    draw = np.random.default_rng(9)
+    square = [(-1.0, -1.0), (2.0, -1.0), (2.0, 2.0), (-1.0, 2.0), (3.0, 0.0), (3.0, -0.5)]
+    live = Dynamic(np.vstack((draw.random((3000, 2)), square)))
+    live.insert_segments([(3000, 3002), (3004, 3005)])
+    live.remove(np.arange(0, 3000, 50))
+    free = np.setdiff1d(np.arange(3000), np.arange(0, 3000, 50))[:count]
+
+    def state() -> list[Any]:
+        arrays = live.handles, live.points, live.simplices, live.constrained, live.input_segments
+        return [array.tolist() for array in arrays]
+
+    before = state()
+    live.changes()
+    kept = live.snapshot()
+    for edit in range(3):
+        with pytest.raises(CrossingSegmentsError):
+            live.move(np.append(free, 3004), np.vstack((draw.random((count, 2)), [(-3.0, 0.5)])))
+        if edit == 1:
+            live.restore(kept)
+        assert state() == before
+    gone, new = live.changes()
+    assert not len(gone)
+    assert not len(new)
+    live.move(free, draw.random((count, 2)))
+    assert live.insert([(0.5, 0.5)]).tolist() == [3006]
+    assert live.insert_segments([(3001, 3004)]).tolist() == [2]
+    fresh = ConstrainedDelaunay(live.points, np.searchsorted(live.handles, live.input_segments))
+    assert triangles(live.simplices) == triangles(fresh.simplices)
+
+
 def test_points_are_located_in_the_present_triangles() -> None:
     draw = np.random.default_rng(8)
     live = Dynamic(draw.random((300, 2)), crossing="split")

@@ -11,6 +11,7 @@
 use std::ops::{Index, Range};
 use std::sync::Arc;
 
+use super::journal::Journal;
 use crate::error::Result;
 use crate::memory::{filled, make_room, with_room};
 use crate::watch::{Pace, Watch};
@@ -38,6 +39,7 @@ pub struct Chunks<T> {
     /// Whether a chunk may differ from that of the last snapshot.
     marked: Vec<bool>,
     last: Image<T>,
+    journal: Journal<T>,
 }
 
 /// An immutable array that shares chunks with others.
@@ -85,6 +87,7 @@ impl<T: Copy> Chunks<T> {
             marked: filled(items.len().div_ceil(Self::SIZE), true)?,
             items,
             last: Image::default(),
+            journal: Journal::default(),
         })
     }
 
@@ -109,7 +112,40 @@ impl<T: Copy> Chunks<T> {
     #[inline]
     pub fn get_mut(&mut self, i: usize) -> &mut T {
         self.marked[i / Self::SIZE] = true;
+        if self.journal.guards(i) {
+            self.journal.record(i, self.items[i]);
+        }
         &mut self.items[i]
+    }
+
+    /// Marks the chunk of item `i`, whose meaning changes, as changed.
+    #[inline]
+    pub fn mark(&mut self, i: usize) {
+        self.marked[i / Self::SIZE] = true;
+    }
+
+    /// Starts an edit that [`Self::take_back`] may end. Before each step of it, callers make room for
+    /// what it changes.
+    pub fn begin(&mut self) -> Result<()> {
+        self.journal.begin(self.items.len())
+    }
+
+    /// Makes room for changes of `n` items, during an edit that may be taken back.
+    #[inline]
+    pub fn room(&mut self, n: usize) -> Result<()> {
+        self.journal.room(n)
+    }
+
+    /// Ends an edit that stays.
+    pub fn commit(&mut self) {
+        self.journal.end();
+    }
+
+    /// Ends an edit, all changes of which are taken back. Returns whether none was missed.
+    pub fn take_back(&mut self) -> bool {
+        let is_whole = self.journal.put_back(&mut self.items);
+        self.marked.truncate(self.items.len().div_ceil(Self::SIZE));
+        is_whole
     }
 
     /// Whether a free item is to be used before one is appended, where about `free` are. The next
@@ -358,6 +394,38 @@ mod tests {
         assert_eq!(image(&mut other).to_vec().unwrap(), vec![9; SIZE + 1]);
         other.restore(&before).unwrap();
         assert!(other.items().iter().copied().eq(0..3 * SIZE as u32));
+    }
+
+    #[test]
+    fn an_edit_is_taken_back() {
+        let mut array = array(3 * GROUP * SIZE + 5);
+        let before = image(&mut array);
+        let items = array.items().to_vec();
+        for round in 0..3 {
+            array.begin().unwrap();
+            for i in (0..array.len()).step_by(7 + round) {
+                array.room(2).unwrap();
+                *array.get_mut(i) += 1;
+                *array.get_mut(i) ^= 9;
+            }
+            for x in 0..2 * SIZE as u32 {
+                array.push(x).unwrap();
+            }
+            *array.get_mut(items.len() + SIZE) += 1;
+            if round == 1 {
+                array.commit();
+                array.restore(&before).unwrap();
+            } else {
+                assert!(array.take_back());
+            }
+            assert_eq!(array.items(), items);
+            // Without an edit nothing is recorded.
+            *array.get_mut(round) += 1;
+            assert!(array.take_back());
+            assert_ne!(array.items(), items);
+            *array.get_mut(round) -= 1;
+            assert_eq!(image(&mut array).to_vec().unwrap(), items);
+        }
     }
 
     #[test]

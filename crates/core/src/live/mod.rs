@@ -29,9 +29,11 @@
 //!
 //! Edits reserve memory before they change anything. A batch that fails in the middle, because memory
 //! is refused or the caller wants to stop, is taken back by the inverse edits in reverse order; as each
-//! state is unique, they lead to the triangles of the start.
+//! state is unique, they lead to the triangles of the start. Among segments, what an edit replaces is
+//! recorded (see `journal`).
 
 pub mod chunks;
+mod journal;
 pub mod plane;
 pub mod rows;
 pub mod space;

@@ -33,6 +33,8 @@ const GONE: Row = Row {
 pub struct Rows {
     rows: Chunks<Row>,
     live: usize,
+    /// The same at the start of an edit.
+    before: usize,
 }
 
 /// A snapshot of rows.
@@ -51,6 +53,7 @@ impl Rows {
         Ok(Self {
             rows: Chunks::of(rows)?,
             live: 0,
+            before: 0,
         })
     }
 
@@ -166,6 +169,28 @@ impl Rows {
         self.rows.get_mut(before as usize).after = after;
         self.rows.get_mut(after as usize).before = before;
         if row == head { after } else { head }
+    }
+
+    /// Starts an edit that [`Self::take_back`] may end.
+    pub fn begin(&mut self) -> Result<()> {
+        self.before = self.live;
+        self.rows.begin()
+    }
+
+    /// Makes room for another step of such an edit.
+    pub fn room(&mut self) -> Result<()> {
+        self.rows.room(0)
+    }
+
+    /// Ends an edit that stays.
+    pub fn commit(&mut self) {
+        self.rows.commit();
+    }
+
+    /// Ends an edit, all changes of which are taken back. Returns whether none was missed.
+    pub fn take_back(&mut self) -> bool {
+        self.live = self.before;
+        self.rows.take_back()
     }
 
     /// For each row, how many rows that are at vertices come before it.

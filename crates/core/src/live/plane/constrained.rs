@@ -27,8 +27,8 @@
 //!
 //! # All or nothing
 //!
-//! An edit starts with a snapshot, which costs what the edit before has changed, and an error restores
-//! it.
+//! What an edit replaces is recorded, and an error puts it back (see `atomic`). So each step of an edit
+//! makes room in that record before it changes anything.
 
 use std::ops::Range;
 
@@ -43,7 +43,7 @@ use crate::constrained::passes;
 use crate::error::{Error, Result};
 use crate::memory::{filled, push, with_room};
 use crate::order::{order_of, sort};
-use crate::watch::{IDLE, Pace, Watch};
+use crate::watch::{Pace, Watch};
 
 /// Edits between two checks for interruption.
 const LOT: usize = 1 << 6;
@@ -92,21 +92,6 @@ impl Plane {
         self.segments.split
     }
 
-    /// Runs an edit; on any error nothing has changed.
-    fn atomically<T>(
-        &mut self,
-        watch: &Watch,
-        edit: impl FnOnce(&mut Self) -> Result<T>,
-    ) -> Result<T> {
-        let before = self.state(watch)?;
-        let (rows, segments) = (self.rows.total(), self.segments.total());
-        let made = edit(self);
-        if made.is_err() {
-            self.reset(&before, rows, segments, &IDLE)?;
-        }
-        made
-    }
-
     /// Inserts segments between rows and returns their numbers. On any error nothing has changed.
     pub fn insert_segments(
         &mut self,
@@ -118,7 +103,7 @@ impl Plane {
             self.require_point(row)?;
         }
         let first = self.segments.total();
-        self.atomically(watch, |plane| {
+        self.atomically(|plane| {
             let mut pace = Pace::new(watch, LOT);
             let mut loose = Loose::default();
             for pair in ends {
@@ -141,12 +126,13 @@ impl Plane {
         workers: usize,
         watch: &Watch,
     ) -> Result<()> {
-        self.atomically(watch, |plane| {
+        self.atomically(|plane| {
             let mut pace = Pace::new(watch, LOT);
             let mut outcome = Outcome::Done;
             let mut loose = Loose::default();
             for &number in numbers {
                 pace.spend(1)?;
+                plane.room()?;
                 if plane.segments.ends(number).is_none() {
                     let message = format!("segment {number} is not there");
                     return Err(Error::Shape(message));
@@ -178,7 +164,7 @@ impl Plane {
         let mut old = with_room(places.len())?;
         old.extend(places.iter().map(|&(row, p)| (p, row)));
         crate::order::sort_by(&mut old, watch, |a, b| lexicographic(a.0, b.0))?;
-        self.atomically(watch, |plane| {
+        self.atomically(|plane| {
             plane.segments.insert_known(known, total)?;
             let input = plane.present(|_, p| Some(p))?;
             plane.rebuild_all(input, &old, workers, watch)
@@ -194,7 +180,7 @@ impl Plane {
         watch: &Watch,
     ) -> Result<Range<usize>> {
         let first = self.rows.total();
-        self.atomically(watch, |plane| {
+        self.atomically(|plane| {
             let mut targets = filled(input.len(), 0u32)?;
             let mut outcome = if whole {
                 Outcome::Rebuild
@@ -242,7 +228,7 @@ impl Plane {
                 return Err(Error::Shape(message));
             }
         }
-        self.atomically(watch, |plane| {
+        self.atomically(|plane| {
             let mut pace = Pace::new(watch, LOT);
             let mut outcome = if whole {
                 Outcome::Rebuild
@@ -254,6 +240,7 @@ impl Plane {
                     break;
                 }
                 pace.spend(1)?;
+                plane.room()?;
                 if plane.rows.is_single(row) {
                     outcome = plane.drop_vertex(v)?;
                     if outcome == Outcome::Done {
@@ -287,7 +274,7 @@ impl Plane {
         for &(_, row, _) in moves {
             self.require_point(i64::from(row))?;
         }
-        self.atomically(watch, |plane| {
+        self.atomically(|plane| {
             let mut places: Vec<(u32, Point2)> = with_room(moves.len())?;
             places.extend(moves.iter().map(|&(_, row, p)| (row, p)));
             crate::order::sort_by(&mut places, watch, |a, b| a.0.cmp(&b.0))?;
@@ -309,6 +296,7 @@ impl Plane {
             let mut loose = Loose::default();
             for &segment in &moved {
                 pace.spend(1)?;
+                plane.room()?;
                 if outcome == Outcome::Done {
                     outcome = plane.unlink_segment(segment, &mut loose)?;
                 }
@@ -316,12 +304,14 @@ impl Plane {
             }
             for &(_, row, p) in moves {
                 pace.spend(1)?;
+                plane.room()?;
                 if outcome == Outcome::Done {
                     outcome = plane.relocate_vertex(row, p, watch)?;
                 }
             }
             for &segment in &moved {
                 pace.spend(1)?;
+                plane.room()?;
                 plane.segments.list(segment);
                 if outcome == Outcome::Done
                     && (loose.segments.contains(&segment) || !plane.link_segment(segment)?)

@@ -33,7 +33,7 @@ impl Mesh {
                 push(&mut self.stack, (e, 0))?;
             }
         }
-        self.legalize();
+        self.legalize()?;
         Ok(ghosts)
     }
 

@@ -204,6 +204,7 @@ impl Plane {
     /// Appends rows at these vertices; room is reserved.
     pub(super) fn attach_all(&mut self, targets: &[u32]) -> Result<()> {
         for &v in targets {
+            self.room()?;
             let row = self.rows.push()?;
             self.attach(row, v);
         }

@@ -60,6 +60,8 @@ impl Mesh {
             push(&mut self.stack, (uw, start))?;
         }
         self.work += self.dead.len();
+        // For each edge around the cavity a triangle, what is beyond, and a vertex.
+        self.room(3 * self.rim.len())?;
         crate::memory::make_room(&mut self.dead, 2)?;
         Ok(ghosts)
     }

@@ -179,6 +179,7 @@ impl Plane {
                 outcome = Outcome::Rebuild;
                 break;
             }
+            self.room()?;
             self.detach(row, v);
             self.mesh.free_site(v);
             gone.insert(row);

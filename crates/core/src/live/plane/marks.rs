@@ -6,6 +6,7 @@
 use delone_predicates::{Sign, lexicographic, orient2d};
 
 use super::mesh::{INFINITE, Mesh};
+use super::shift::FLIP;
 use crate::error::{Error, Result};
 use crate::memory::push;
 use crate::mesh2::{Code, next, prev, triangle};
@@ -78,6 +79,7 @@ impl Mesh {
     /// Marks the edge from `u` to `v`, which exists.
     pub fn add_mark(&mut self, u: u32, v: u32, mark: u32) -> Result<()> {
         let e = self.edge(u, v).ok_or_else(|| missing(u, v))?;
+        self.room(2)?;
         let old = self.mark(e);
         self.set_mark(e, old | mark);
         Ok(())
@@ -86,10 +88,11 @@ impl Mesh {
     /// Removes the mark of the edge from `u` to `v`, which exists, and flips.
     pub fn remove_mark(&mut self, u: u32, v: u32) -> Result<()> {
         let e = self.edge(u, v).ok_or_else(|| missing(u, v))?;
+        self.room(2)?;
         self.set_mark(e, 0);
         self.stack.clear();
         push(&mut self.stack, (e, 0))?;
-        self.legalize();
+        self.legalize()?;
         Ok(())
     }
 
@@ -139,6 +142,7 @@ impl Mesh {
                 push(&mut crossed, [u, w])?;
                 continue;
             }
+            self.room(FLIP)?;
             self.flip(e);
             let [from, to] = [self.at(a), self.at(end)];
             let [left, right] = [p, q].map(|v| orient2d(from, to, self.at(v)));
@@ -152,7 +156,7 @@ impl Mesh {
             }
         }
         self.add_mark(a, end, STRAIGHT)?;
-        self.legalize();
+        self.legalize()?;
         Ok(Reach::Vertex(end))
     }
 

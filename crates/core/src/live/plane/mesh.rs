@@ -69,6 +69,9 @@ pub struct Mesh {
     pub stack: Vec<(Code, u32)>,
     /// Triangles to be replaced.
     pub dead: Vec<u32>,
+    /// At the start of an edit: what the mesh counted, the triangle where the next walk started, and
+    /// whether there were segments.
+    before: (Counts, u32, bool),
 }
 
 impl Mesh {
@@ -86,7 +89,39 @@ impl Mesh {
             rim: Vec::new(),
             stack: Vec::new(),
             dead: Vec::new(),
+            before: (counts, last, false),
         }
+    }
+
+    /// Starts an edit that [`Self::take_back`] may end.
+    pub fn begin(&mut self) -> Result<()> {
+        self.before = (self.counts, self.last, self.has_segments);
+        self.records.begin()?;
+        self.sites.begin()
+    }
+
+    /// Makes room for a step of such an edit that changes `n` records and vertices, and a few more.
+    #[inline]
+    pub fn room(&mut self, n: usize) -> Result<()> {
+        self.records.room(n)?;
+        self.sites.room(n)
+    }
+
+    /// Ends an edit that stays.
+    pub fn commit(&mut self) {
+        self.records.commit();
+        self.sites.commit();
+    }
+
+    /// Ends an edit, all changes of which are taken back. Returns whether none was missed.
+    pub fn take_back(&mut self) -> bool {
+        (self.counts, self.last, self.has_segments) = self.before;
+        let sites = self.sites.len();
+        let is_whole = self.records.take_back() & self.sites.take_back();
+        if self.sites.len() < sites {
+            self.jump = None;
+        }
+        is_whole
     }
 
     /// Whether there is no triangle: all points are on one line.
@@ -208,7 +243,7 @@ impl Mesh {
         }
         let mut corner = near;
         loop {
-            self.records.get_mut(triangle(corner) as usize);
+            self.records.mark(triangle(corner) as usize);
             corner = self.turn(corner);
             if corner == near {
                 return;

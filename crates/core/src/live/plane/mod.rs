@@ -1,5 +1,6 @@
 //! A live Delaunay triangulation in 2-D.
 
+mod atomic;
 mod build;
 mod constrained;
 mod ears;
@@ -33,6 +34,14 @@ use crate::watch::Watch;
 use mesh::Mesh;
 use segments::Segments;
 
+/// The triangulation before an edit that may be taken back.
+#[derive(Debug, Default)]
+struct Before {
+    is_kept: bool,
+    /// What has been replaced as a whole: the mesh, the rows, and the line.
+    replaced: Option<(Mesh, Rows, Vec<u32>)>,
+}
+
 /// A live Delaunay triangulation of points in 2-D.
 #[derive(Debug)]
 pub struct Plane {
@@ -43,6 +52,8 @@ pub struct Plane {
     segments: Segments,
     /// The state at the last call of `changes`.
     seen: Option<State>,
+    /// During an edit that may be taken back, what has been replaced.
+    before: Before,
 }
 
 impl Plane {
@@ -70,6 +81,7 @@ impl Plane {
             line,
             segments: Segments::new(false)?,
             seen: None,
+            before: Before::default(),
         })
     }
 

@@ -55,6 +55,8 @@ impl Mesh {
         if lost > 0 && k as u32 - 2 == finite && self.is_line() {
             return Ok(Removed::Flat);
         }
+        // For each edge of the hole a triangle, what is beyond, and a vertex.
+        self.room(3 * k)?;
         let gained = if self.has_segments {
             self.fill_with_ears(self.at(v))?
         } else {

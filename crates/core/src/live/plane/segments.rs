@@ -58,6 +58,8 @@ pub struct Segments {
     pub split: bool,
     /// What is not straight.
     pub tangle: Arc<Tangle>,
+    /// How many there were at the start of an edit, and what was not straight.
+    before: (usize, Arc<Tangle>),
 }
 
 /// A snapshot of segments.
@@ -79,6 +81,7 @@ impl Segments {
             live: 0,
             split,
             tangle: Arc::default(),
+            before: (0, Arc::default()),
         })
     }
 
@@ -147,6 +150,7 @@ impl Segments {
             self.first.push(NONE)?;
         }
         let i = self.push()?;
+        self.room()?;
         self.items.get_mut(i as usize).ends = ends;
         self.list(i);
         self.live += 1;
@@ -205,6 +209,32 @@ impl Segments {
                 self.items.get_mut(after as usize / 2).before[after as usize % 2] = before;
             }
         }
+    }
+
+    /// Starts an edit that [`Self::take_back`] may end.
+    pub fn begin(&mut self) -> Result<()> {
+        self.before = (self.live, Arc::clone(&self.tangle));
+        self.items.begin()?;
+        self.first.begin()
+    }
+
+    /// Makes room for another step of such an edit.
+    pub fn room(&mut self) -> Result<()> {
+        self.items.room(0)?;
+        self.first.room(0)
+    }
+
+    /// Ends an edit that stays.
+    pub fn commit(&mut self) {
+        self.before.1 = Arc::default();
+        self.items.commit();
+        self.first.commit();
+    }
+
+    /// Ends an edit, all changes of which are taken back. Returns whether none was missed.
+    pub fn take_back(&mut self) -> bool {
+        (self.live, self.tangle) = std::mem::take(&mut self.before);
+        self.items.take_back() & self.first.take_back()
     }
 
     /// A snapshot.

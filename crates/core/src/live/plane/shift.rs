@@ -7,6 +7,9 @@ use crate::error::Result;
 use crate::memory::{clear_with_room, push};
 use crate::mesh2::{Code, next, prev, triangle};
 
+/// Records and vertices that a flip changes, with some to spare.
+pub const FLIP: usize = 16;
+
 impl Mesh {
     /// Moves vertex `v`, which is in the mesh, to `p` if its star keeps its orientation, and flips until
     /// the triangulation is canonical. Otherwise, or at the hull, nothing changes.
@@ -21,6 +24,7 @@ impl Mesh {
             }
         }
         clear_with_room(&mut self.stack, 8 * k)?;
+        self.room(1)?;
         self.sites.get_mut(v as usize).at = p;
         for i in 0..k {
             // The edge around the star, and the one to its end, by their codes in the star.
@@ -29,16 +33,17 @@ impl Mesh {
             self.stack.push((next(e), 0));
         }
         self.work += k;
-        self.legalize();
+        self.legalize()?;
         Ok(true)
     }
 
     /// Flips edges, starting from those on the stack, until none must be flipped. Where memory for the
-    /// stack is refused, all edges are searched instead.
-    pub fn legalize(&mut self) {
+    /// stack is refused, all edges are searched instead. Fails in edits only that may be taken back.
+    pub fn legalize(&mut self) -> Result<()> {
         let mut is_missing = false;
         while let Some((e, _)) = self.stack.pop() {
             if self.must_flip(e) {
+                self.room(FLIP)?;
                 let other = self.flip(e);
                 for outer in [e, prev(e), other, next(other)] {
                     is_missing |= push(&mut self.stack, (outer, 0)).is_err();
@@ -50,12 +55,14 @@ impl Mesh {
             for t in 0..self.records.len() as u32 {
                 for e in 8 * t..8 * t + 3 {
                     if self.is_live(t) && self.must_flip(e) {
+                        self.room(FLIP)?;
                         self.flip(e);
                         is_missing = true;
                     }
                 }
             }
         }
+        Ok(())
     }
 
     /// Whether the perturbed circle of the triangle of `e`, which is not marked, contains the corner

@@ -59,17 +59,7 @@ impl Plane {
     /// Restores a state, of this triangulation or of any other. Rows and segments that were inserted
     /// since are gone, and their numbers are not used again.
     pub fn restore(&mut self, state: &State, watch: &Watch) -> Result<()> {
-        self.reset(state, self.rows.total(), self.segments.total(), watch)
-    }
-
-    /// Restores a state, with at least these numbers of rows and segments that ever were.
-    pub fn reset(
-        &mut self,
-        state: &State,
-        total: usize,
-        segments: usize,
-        watch: &Watch,
-    ) -> Result<()> {
+        let (total, segments) = (self.rows.total(), self.segments.total());
         let mut line = Vec::new();
         if state.counts.ghosts == 0 {
             let sites = state.sites.to_vec()?;

@@ -75,7 +75,7 @@ impl Plane {
     /// Replaces the mesh by that of points without segments.
     fn replace(&mut self, input: &Input, workers: usize, watch: &Watch) -> Result<()> {
         let made = build::built(&input.points, &input.rows, input.total, workers, watch)?;
-        (self.mesh, self.rows, self.line) = made;
+        self.substitute(made);
         self.mesh.has_segments = self.has_segments();
         Ok(())
     }

@@ -214,6 +214,7 @@ impl Plane {
                         Some(place) => place.1,
                         None => self.rows.push()?,
                     };
+                    self.room()?;
                     self.attach(row, v);
                     fresh.insert(v);
                     v
