@@ -302,6 +302,7 @@ def test_too_few_directions_and_great_circles():
         with pytest.raises(delone.DegenerateInputError) as caught:
             sphere.Delaunay(xyz=np.array(vectors, dtype=float).reshape(-1, 3))
         assert caught.value.reason == "too few points"
+        assert "`error.chain` has the first row of each" in str(caught.value)
         assert len(caught.value.chain) == len({tuple(np.sign(v)) for v in vectors})
     # A meridian, from degrees: rows in order around it.
     latitudes = [10.0, 90.0, -45.0, 80.0, -90.0, 0.0]

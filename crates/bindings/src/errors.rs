@@ -84,7 +84,7 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
             let message = if few {
                 format!(
                     "{} too few for a triangle: at least three that are not on one great circle \
-                     are needed",
+                     are needed; `error.chain` has the first row of each",
                     distinct(rows.len())
                 )
             } else {
