@@ -1,10 +1,10 @@
-"""Triangulations of directions beside stripy and delone's own in the plane; in turns.
+"""Triangulations of directions beside stripy, SciPy and delone's own in the plane; in turns.
 
 The directions are uniform on the sphere, and points as many are uniform in a square. Beside stripy
-both take longitudes and latitudes in radians; otherwise delone takes vectors. stripy is left out
-where it is not installed. It is asked for a part of the queries, and its seconds are for all of
-them at that rate. Memory is what one call needs beyond what the process held, each in a process
-of its own. ``python benchmarks/sphere.py --help`` has options.
+both take longitudes and latitudes in radians; otherwise delone takes vectors. stripy and SciPy are
+left out where they are not installed. stripy is asked for a part of the queries, and its seconds
+are for all of them at that rate. Memory is what one call needs beyond what the process held, each
+in a process of its own. ``python benchmarks/sphere.py --help`` has options.
 """
 
 import argparse
@@ -95,6 +95,31 @@ def beside_stripy(n: int, runs: int) -> None:
     table(f"linear, {n:,} queries", asked, runs, {"stripy": min(FEW, n) / n})
 
 
+def everything(made: Any) -> Any:
+    """The vertices, the regions as sorted lists, and the areas of a `SphericalVoronoi`."""
+    made.sort_vertices_of_regions()
+    return made.vertices, made.regions, made.calculate_areas()
+
+
+def beside_scipy(n: int, runs: int) -> None:
+    """Voronoi diagrams: all that `SphericalVoronoi` has, and what is computed first."""
+    from delone.compat import scipy as ours
+
+    vectors = directions(n)
+    whole: Calls = {"delone": lambda: everything(ours.SphericalVoronoi(vectors))}
+    first: Calls = {"delone": lambda: ours.SphericalVoronoi(vectors).vertices}
+    if importlib.util.find_spec("scipy"):
+        from scipy.spatial import SphericalVoronoi
+
+        theirs = everything(SphericalVoronoi(vectors))[2]
+        difference = np.abs(theirs - everything(ours.SphericalVoronoi(vectors))[2])
+        whole["SciPy"] = lambda: everything(SphericalVoronoi(vectors))
+        first["SciPy"] = lambda: SphericalVoronoi(vectors).vertices
+        print(f"\nareas differ from SciPy's by {difference.max():.1g} at most")
+    table(f"SphericalVoronoi, sorted, with areas, {n:,} directions", whole, runs)
+    table(f"SphericalVoronoi without them, {n:,} directions", first, runs)
+
+
 def beside_the_plane(n: int, runs: int) -> None:
     """The same number of directions and of points, with one worker and with two."""
     vectors, points = directions(n), np.random.default_rng(1).random((n, 2))
@@ -137,6 +162,7 @@ def main() -> None:
         held(options.held)
         return
     beside_stripy(options.n, options.runs)
+    beside_scipy(options.n, options.runs)
     beside_the_plane(options.many, options.runs)
     peaks(options.many)
 

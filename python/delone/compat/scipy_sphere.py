@@ -33,6 +33,10 @@ if TYPE_CHECKING:
 
 __all__ = ["SphericalVoronoi"]
 
+# Between generators that are closer, rounded vertices are too coarse for areas: they have relative
+# errors of some 1e-16 divided by this distance.
+_CLOSE = 1e-3
+
 
 class SphericalVoronoi:
     """Voronoi diagram on a sphere with the interface of ``scipy.spatial.SphericalVoronoi``.
@@ -133,9 +137,11 @@ class SphericalVoronoi:
 
     def _refuse_duplicates(self, tolerance: float) -> None:
         """Compare ends of the edges, among which is the closest pair."""
-        tails, heads = self._dual.around[:, 0], self._dual.around[:, 1]
-        steps = self.points[tails] - self.points[heads]
-        if np.einsum("ij,ij->i", steps, steps).min() <= tolerance**2:
+        tails, heads = (_columns(self.points, self._dual.around[:, k]) for k in (0, 1))
+        steps = tails - heads
+        # Between the two generators of each ridge.
+        self._squares: Floats = (steps * steps).sum(axis=0)
+        if self._squares.min() <= tolerance**2:
             raise ValueError("Duplicate generators present.")
 
     @property
@@ -144,11 +150,15 @@ class SphericalVoronoi:
         return self._dual.simplices
 
     @cached_property
+    def _units(self) -> Floats:
+        """The unit vectors of the vertices."""
+        workers = as_workers(None)
+        return _core.sphere_circumcenters(self._vectors, self._dual.simplices, workers)
+
+    @cached_property
     def vertices(self) -> Floats:
         """The vertices, one for each facet of the hull."""
-        workers = as_workers(None)
-        units = _core.sphere_circumcenters(self._vectors, self._dual.simplices, workers)
-        found: Floats = self.radius * units + self.center
+        found: Floats = self.radius * self._units + self.center
         return found
 
     @cached_property
@@ -179,9 +189,32 @@ class SphericalVoronoi:
         >>> SphericalVoronoi(points).calculate_areas().sum().round(9)
         np.float64(12.566370614)
         """
-        spans = _core.sphere_spans(self._vectors, self._dual.around, as_workers(None))
-        sites: Any = self._dual.around[:, :2].ravel()
-        shares: Any = np.repeat(spans[:, 1], 2)
-        found: Any = np.bincount(sites, shares, minlength=len(self.points))
+        workers = as_workers(None)
+        dual, units = self._dual, _core.sphere_units(self._vectors, workers)
+        corners = (
+            _columns(units, dual.around[:, 0]),
+            *(_columns(self._units, dual.ends[:, k]) for k in (1, 0)),
+        )
+        shares = _triangles(*corners)
+        close = np.flatnonzero(self._squares < (_CLOSE * self.radius) ** 2)
+        spans = _core.sphere_spans(self._vectors, dual.around[close], workers)
+        shares[close] = spans[:, 1]
+        sites: Any = dual.around[:, :2].ravel()
+        found: Any = np.bincount(sites, np.repeat(shares, 2), minlength=len(self.points))
         areas: Floats = found * self.radius**2
         return areas
+
+
+def _columns(rows: Floats, chosen: NDArray[np.int32]) -> Floats:
+    """Return the coordinates of some rows, (3, k)."""
+    return np.ascontiguousarray(rows.T).take(chosen, axis=1)
+
+
+def _triangles(a: Floats, b: Floats, c: Floats) -> Floats:
+    """Return the areas of triangles of unit vectors (Van Oosterom and Strackee, 1983)."""
+    p, q = b - a, c - a
+    volume = a[0] * (p[1] * q[2] - p[2] * q[1])
+    volume += a[1] * (p[2] * q[0] - p[0] * q[2])
+    volume += a[2] * (p[0] * q[1] - p[1] * q[0])
+    found: Floats = 2 * np.arctan2(volume, 1 + (a * b).sum(0) + (a * c).sum(0) + (b * c).sum(0))
+    return found

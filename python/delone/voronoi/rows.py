@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import itertools
 from typing import TYPE_CHECKING
 
@@ -31,7 +32,14 @@ def of_pairs(
 def as_lists(indptr: Indices, indices: Indices) -> list[list[int]]:
     """Return compressed rows as lists."""
     starts, entries = indptr.tolist(), indices.tolist()
-    return [entries[a:b] for a, b in itertools.pairwise(starts)]
+    # Lists of integers have no cycles, and looking for some takes longer than making the lists.
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        return [entries[a:b] for a, b in itertools.pairwise(starts)]
+    finally:
+        if collects:
+            gc.enable()
 
 
 def one_gap(starts: Indices, entries: Indices) -> tuple[Indices, Indices]:
