@@ -98,8 +98,14 @@ pub fn frozen<T: Element + Copy, const D: usize>(
     Ok(array.unbind())
 }
 
-/// A vector as a one-dimensional array that owns it.
+/// Up to this number of items a copy is cheaper than an array that owns a vector.
+const FEW: usize = 16;
+
+/// A vector as a one-dimensional array.
 pub fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Column<T> {
+    if values.len() <= FEW {
+        return PyArray1::from_slice(py, &values).unbind();
+    }
     PyArray1::from_vec(py, values).unbind()
 }
 

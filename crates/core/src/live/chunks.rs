@@ -20,7 +20,7 @@ use crate::watch::{Pace, Watch};
 const CHUNK: usize = 1 << 10;
 
 /// Chunks in a group.
-const GROUP: usize = 1 << 6;
+const GROUP: usize = 1 << 4;
 
 /// Chunks between two checks for interruption.
 const LOT: usize = 1 << 12;

@@ -78,7 +78,9 @@ impl<T: Copy> Journal<T> {
     }
 
     /// Records an item that is guarded, unless it has been.
-    #[inline]
+    // Apart from the callers, which stay short for edits that record nothing.
+    #[cold]
+    #[inline(never)]
     pub fn record(&mut self, i: usize, item: T) {
         if self.edits[i] == self.now {
             return;

@@ -170,9 +170,11 @@ impl Plane {
         let mut pace = Pace::new(watch, LOT);
         let mut budget = self.budget(input.len());
         for part in order_of(input, 1, watch)? {
-            for i in part {
+            // Gathered first: one by one, each insertion would wait for its point.
+            let mut points = with_room(part.len())?;
+            points.extend(part.iter().map(|&i| input[i as usize].map(|x| x + 0.0)));
+            for (i, p) in part.into_iter().zip(points) {
                 pace.spend(1)?;
-                let p = input[i as usize].map(|x| x + 0.0);
                 targets[i as usize] = match self.mesh.place(p, watch)? {
                     Place::At(v) => v,
                     Place::In(t) => {

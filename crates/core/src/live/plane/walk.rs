@@ -133,23 +133,32 @@ impl Mesh {
         } else {
             usize::MAX
         };
+        let [mut a, mut b] = [next(e), prev(e)].map(|c| self.at(self.vertex(c)));
         let found = loop {
-            // The walk came across e; two edges are left to test.
-            let [first, second] = match self.has_segments && is_odd(steps) {
-                true => [prev(e), next(e)],
-                false => [next(e), prev(e)],
+            //       c          The walk came across e = a b; two edges are left to test, and only
+            //     /   \        the corner c is new.
+            //    a --- b
+            let c = self.at(self.vertex(e));
+            let is_beyond = |p: Point2, r: Point2| orient2d(p, r, q) == Sign::Negative;
+            let (over_bc, over_ca) = if self.has_segments && is_odd(steps) {
+                let over_ca = is_beyond(c, a);
+                (!over_ca && is_beyond(b, c), over_ca)
+            } else {
+                let over_bc = is_beyond(b, c);
+                (over_bc, !over_bc && is_beyond(c, a))
             };
-            let across = if beyond(self, first) {
-                self.opposite(first)
-            } else if beyond(self, second) {
-                self.opposite(second)
+            e = if over_bc {
+                a = c;
+                self.opposite(next(e))
+            } else if over_ca {
+                b = c;
+                self.opposite(prev(e))
             } else {
                 break triangle(e);
             };
-            if self.vertex(across) == INFINITE {
-                break triangle(across);
+            if self.vertex(e) == INFINITE {
+                break triangle(e);
             }
-            e = across;
             steps += 1;
             if steps > patience {
                 break self.search(q);
