@@ -51,12 +51,8 @@ impl Work<'_> {
         let mut open = vec![self.mesh.at[self.far as usize]];
         out[open[0] as usize] = true;
         while let Some(t) = open.pop() {
-            for k in 0..4 {
-                let u = self.mesh.across[t as usize][k];
-                if u == NONE || out[u as usize] {
-                    continue;
-                }
-                if walls[t as usize][k] == NONE {
+            for (&u, &wall) in self.mesh.across[t as usize].iter().zip(&walls[t as usize]) {
+                if u != NONE && wall == NONE && !out[u as usize] {
                     out[u as usize] = true;
                     push(&mut open, u)?;
                 }
@@ -91,13 +87,12 @@ impl Work<'_> {
                     return Err(internal("a tetrahedron of doubles is not positive"));
                 }
             }
-            for k in 0..4 {
+            for (k, &f) in walls[t as usize].iter().enumerate() {
                 if self.mesh.across[t as usize][k] == NONE {
                     push(&mut outer, ascending(self.mesh.face(t, k)))?;
                 } else if !self.is_linked(t, k) {
                     return Err(internal("two sides of a face do not match"));
                 }
-                let f = walls[t as usize][k];
                 if f != NONE && self.faces[f as usize] == ascending(self.mesh.face(t, k)) {
                     there[f as usize] = true;
                 }

@@ -146,10 +146,11 @@ impl Work<'_> {
             for k in 0..4 {
                 // From one of both sides.
                 let u = self.mesh.across[t as usize][k];
-                if self.mesh.is_there(t) && (u == NONE || t < u) {
-                    if let Some(f) = self.locked_faces.row(ascending(self.mesh.face(t, k))) {
-                        there[f as usize] = true;
-                    }
+                if !self.mesh.is_there(t) || (u != NONE && u < t) {
+                    continue;
+                }
+                if let Some(f) = self.locked_faces.row(ascending(self.mesh.face(t, k))) {
+                    there[f as usize] = true;
                 }
             }
         }
