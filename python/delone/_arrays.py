@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar
 
 import numpy as np
 
-from delone._masks import refuse_masks
+from delone._masks import is_masked, refuse_masks
 from delone.counting import agreed, counted
 from delone.errors import DtypeError, InputError, LimitError, NonFiniteError, ShapeError
 
@@ -185,8 +185,7 @@ def as_limit(n: int, *, name: str) -> int:
 def as_number(value: float, *, name: str) -> float:
     """Return a real number, including NaN and infinity, as a float; no booleans, no text."""
     if isinstance(value, np.ndarray):
-        masked = isinstance(value, np.ma.MaskedArray)
-        plain = not masked and value.ndim == 0 and value.dtype.kind in "iuf"
+        plain = not is_masked(value) and value.ndim == 0 and value.dtype.kind in "iuf"
     else:
         plain = not isinstance(value, bool | np.bool_ | str | bytes)
     if plain:
@@ -227,7 +226,7 @@ def as_workers(workers: int | None) -> int:
 
 
 def _as_integer(value: int, least: int, wanted: str) -> int:
-    if isinstance(value, bool | np.bool_ | np.ma.MaskedArray):
+    if isinstance(value, bool | np.bool_) or is_masked(value):
         raise DtypeError(f"{wanted}, got {value}")
     try:
         number = operator.index(value)

@@ -211,6 +211,23 @@ print([name for name in late if name in set(sys.modules) - before])
     assert done.stdout.split("\n")[:2] == ["[]", "[]"]
 
 
+def test_a_first_call_does_not_import_masked_arrays() -> None:
+    code = """
+import sys, numpy
+if "numpy.ma" in sys.modules:  # as in NumPy 1
+    print([])
+    sys.exit()
+import delone
+from delone.interpolate import Linear
+found = delone.Delaunay([(0, 0), (4, 0), (0, 3)], workers=1)
+Linear(found, [1, 2, 3])([(1, 1)])
+found.nearest([(1, 1)])
+print([name for name in sys.modules if name == "numpy.ma"])
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
+
+
 def test_no_function_hides_a_module() -> None:
     """``delone.x.y`` is the module wherever there is a file of that name."""
     hidden = []

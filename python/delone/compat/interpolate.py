@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import delaunay
+from delone._masks import is_masked
 from delone.compat.qhull import DimensionError, QhullError, as_low_points, unboxed, unmasked
 from delone.compat.scipy_delaunay import Delaunay
 from delone.errors import DegenerateInputError, InputError, MissingExtraError, ShapeError
@@ -526,7 +527,7 @@ def _coordinates(points: Any) -> Floats:
 
 def _real_points(points: ArrayLike) -> NDArray[Any]:
     """Sites as a plain array; masked entries raise."""
-    if isinstance(points, np.ma.MaskedArray) and np.ma.is_masked(points):
+    if is_masked(points) and np.ma.is_masked(points):
         mask = np.ma.getmaskarray(points)
         row = int(np.flatnonzero(mask.reshape(len(mask), -1).any(axis=1))[0])
         raise InputError(f"points: row {row} is masked; remove unknown points")

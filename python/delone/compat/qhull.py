@@ -10,6 +10,7 @@ import numpy as np
 
 from delone import delaunay
 from delone._arrays import as_points, as_vectors
+from delone._masks import is_masked
 from delone.compat.furthest import furthest_site as furthest_triangles
 from delone.compat.qhull_options import DELAUNAY, QhullOptionError, QhullOptions
 from delone.errors import DegenerateInputError, DtypeError, InputError, NonFiniteError, ShapeError
@@ -196,7 +197,7 @@ def triangulate(points: Floats, furthest: bool, what: str = DELAUNAY) -> delauna
 def as_low_points(points: ArrayLike, most: int) -> Floats:
     """Convert as SciPy does if that is exact; errors have SciPy's types. At most `most` axes."""
     ndim = 2 if most == 2 else None
-    if isinstance(points, np.ma.MaskedArray):
+    if is_masked(points):
         return as_points(points, ndim=ndim)  # which names it in its error
     try:
         array = np.asarray(points)
@@ -228,7 +229,7 @@ def unboxed(array: NDArray[Any], name: str = "points") -> Floats:
 
 def unmasked(array: NDArray[Any]) -> NDArray[Any]:
     """A plain array, with NaN for masked entries; the same array if nothing is masked."""
-    if not isinstance(array, np.ma.MaskedArray):
+    if not is_masked(array):
         return array
     plain = np.asarray(array.data)
     if not np.ma.is_masked(array):

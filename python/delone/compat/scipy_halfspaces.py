@@ -31,6 +31,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import hull
+from delone._masks import is_masked
 from delone.compat import dual_facets as duals
 from delone.compat.qhull import DimensionError, QhullError, read_options, told_as_qhull_does
 from delone.compat.qhull_options import HALFSPACES
@@ -207,7 +208,7 @@ class HalfspaceIntersection:
 
 def _as_rows(halfspaces: ArrayLike) -> Floats:
     """Half-spaces as rows of doubles, with errors of SciPy's types."""
-    if isinstance(halfspaces, np.ma.MaskedArray):
+    if is_masked(halfspaces):
         raise DtypeError("halfspaces must not be a masked array")
     given: NDArray[Any] = np.asarray(halfspaces)
     if given.dtype.kind not in "biufO":
