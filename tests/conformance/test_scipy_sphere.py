@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
+from delone import sphere
 from delone.compat import scipy as drop_in
 
 if TYPE_CHECKING:
@@ -123,3 +124,14 @@ def test_but_for_the_order_the_diagram_is_that_of_scipy(half: bool) -> None:
 def test_points_in_the_plane_are_refused() -> None:
     with pytest.raises(drop_in.DimensionError, match="three coordinates"):
         drop_in.SphericalVoronoi([(1, 0), (0, 1), (-1, 0)])
+
+
+@pytest.mark.parametrize("spread", [1e-2, 1e-4])
+def test_areas_of_generators_close_together(spread: float) -> None:
+    rng = np.random.default_rng(5)
+    points = rng.normal(size=(300, 3))
+    points[:150] = (1, 0, 0) + spread * rng.normal(size=(150, 3)) * (0, 1, 1)
+    points /= np.linalg.norm(points, axis=1, keepdims=True)
+    areas = drop_in.SphericalVoronoi(points, threshold=1e-12).calculate_areas()
+    expected = sphere.Voronoi(xyz=points).cell_areas
+    assert np.allclose(areas, expected, rtol=1e-11, atol=0)

@@ -12,7 +12,7 @@ import pytest
 import directions as oracle
 from delone import datasets, sphere
 from delone.plane import topology
-from delone.sphere.exact import circles, turns, turns_at, whole
+from delone.sphere.exact import _sign_of_roots, circles, turns, turns_at, whole
 from delone.sphere.validation import validate
 
 if TYPE_CHECKING:
@@ -203,3 +203,27 @@ def test_signs_against_integers(seed: int) -> None:
     place = whole(vectors[0].tolist())
     signs = turns_at(vectors, units, four[:, :2], place)
     assert signs.tolist() == [oracle.orient(given_[r[0]], given_[r[1]], place) for r in rows]
+
+
+def test_doubtful_signs_beyond_the_first_block() -> None:
+    vectors = np.array([*CUBE, (1.0, 2.0, 3.0)])
+    units = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+    # Faces of the cube tie; most rows do not.
+    # Four corners of a face tie; the other rows do not.
+    plain_row, tie = (6, 2, 7, 8), (7, 5, 1, 3)
+    assert oracle.orient(*(tuple(map(int, vectors[v])) for v in tie[:3])) != 0
+    rows = np.array([plain_row] * 66_000 + [tie] * 5, dtype=np.int32)
+    plain, broken = circles(vectors, units, rows)
+    assert (plain[:66_000] != 0).all()
+    assert (plain[66_000:] == 0).all()
+    assert (broken[66_000:] != 0).all()
+
+
+def test_sums_of_roots_that_almost_vanish() -> None:
+    for n in (10, 2**40, 2**60, 2**500):
+        # Of equal sums under the roots, those farther apart have the smaller sum of roots.
+        four = [n, n + 3, n + 1, n + 2]
+        assert _sign_of_roots(four, [1, 1, -1, -1]) == -1
+        assert _sign_of_roots(four, [-1, -1, 1, 1]) == 1
+        assert _sign_of_roots([n, n + 3, n + 3, n], [1, 1, -1, -1]) == 0
+        assert _sign_of_roots([4 * n, n, n, 0], [1, -1, -1, 0]) == 0
