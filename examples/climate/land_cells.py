@@ -27,7 +27,7 @@ crowded = (north > 30) & (north < 62) & ((np.abs(east + 95) < 35) | (np.abs(east
 stations = places[on_land & (crowded | (random.uniform(size=12000) < 0.05))]
 
 # %%
-# The cells end at the coast. Their areas sum to that of the land, and most cells by the sea are in several parts.
+# The cells end at the coast. Their areas sum to that of the land; where there are islands, a cell has several parts.
 
 cells = sphere.Voronoi(lonlat=stations, clip=land, radius=6371)
 total = cells.cell_areas.sum()
