@@ -1,15 +1,16 @@
-"""Triangulations that change: delone, CGAL, and startinpy if installed.
+"""Triangulations that change: delone, CGAL, spade, and startinpy if installed.
 
 Each peer works in a process of its own, on one thread, and they take turns run by run. The table
-has microseconds of processor time for each point; for snapshots, milliseconds and megabytes. CGAL
-is built where Debian's libcgal-dev is installed. startinpy is given a tenth of the points, along a
-curve. Run it:
+has microseconds of processor time for each point, of the clock for spade; for snapshots,
+milliseconds and megabytes. CGAL is built where Debian's libcgal-dev is installed, and spade where
+Cargo is. startinpy is given a tenth of the points, along a curve. Run it:
 ``python benchmarks/live.py [--n 1000000] [--m 100000] [--ndim 2] [--runs 5]``.
 """
 
 from __future__ import annotations
 
 import argparse
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -130,6 +131,8 @@ def compare(n: int, m: int, ndim: int, runs: int) -> str:
                     str(ndim),
                     *size,
                 ]
+        if ndim == 2 and shutil.which("cargo"):
+            peers["spade"] = [str(crates.build().with_name("live")), str(file), *size]
         if program := crates.build_cgal("cgal_live"):
             kind = "PLANE" if ndim == 2 else "SPACE"
             peers["CGAL"] = [str(program), kind, str(file), *size]
