@@ -77,9 +77,9 @@ def test_triangles(make: Any, suffix: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("make", [tetmesh, regular_solid])
-@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".xdmf", ".inp", ".su2"])
+@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".xdmf", ".med", ".inp", ".su2"])
 def test_tetrahedra(make: Any, suffix: str, tmp_path: Path) -> None:
-    if suffix == ".xdmf":
+    if suffix in (".xdmf", ".med"):
         pytest.importorskip("h5py")
     mesh, file = make(), tmp_path / f"a{suffix}"
     write_mesh(file, mesh)

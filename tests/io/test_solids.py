@@ -253,3 +253,38 @@ def test_what_a_format_has_no_place_for(tmp_path: Path) -> None:
     with pytest.raises(FileFormatError, match="cannot be chosen"):
         (tmp_path / "b.off").write_text("OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
         read_points(tmp_path / "b.off", columns=[0, 1])
+
+
+def test_regions_are_groups_of_med(tmp_path: Path) -> None:
+    meshio = pytest.importorskip("meshio")
+    pytest.importorskip("h5py")
+    both = solids.joined(solids.box((0, 0, 0), (4, 4, 4)), solids.box((1, 1, 1), (2, 2, 2)))
+    for regions in (None, [(1.5, 1.25, 1.5, 7)]):
+        mesh = tetrahedralize(*both, regions=regions)
+        write_mesh(tmp_path / "a.med", mesh)
+        found = meshio.read(tmp_path / "a.med")
+        assert np.array_equal(found.points, mesh.points)
+        assert np.array_equal(found.cells_dict["tetra"], mesh.simplices)
+        names = {-1: []} | {label: [f"region {label}"] for label in (0, 1, 7)}
+        of_tag = {0: []} | found.cell_tags
+        tags = found.cell_data["cell_tags"][0].tolist()
+        assert [of_tag[tag] for tag in tags] == [names[label] for label in mesh.region.tolist()]
+        assert len(set(tags)) == 2
+
+
+def test_markers_are_groups_of_med(tmp_path: Path) -> None:
+    meshio = pytest.importorskip("meshio")
+    pytest.importorskip("h5py")
+    square = [(0.0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+    mesh = delone.mesh(square, max_area=0.05, segment_markers=[1, 0, -3, 4])
+    write_mesh(tmp_path / "a.med", mesh)
+    found = meshio.read(tmp_path / "a.med")
+    lines = found.cells_dict["line"]
+    (at,) = (k for k, block in enumerate(found.cells) if block.type == "line")
+    of_tag = {0: []} | found.cell_tags
+    names = {
+        frozenset(p): of_tag[t]
+        for p, t in zip(lines.tolist(), found.cell_data["cell_tags"][at].tolist(), strict=True)
+    }
+    for pair, marker in zip(mesh.segments.tolist(), mesh.segment_markers.tolist(), strict=True):
+        assert names[frozenset(pair)] == ([f"marker {marker}"] if marker else [])

@@ -75,7 +75,7 @@ def of_kind(found: Any, name: str, kind: str) -> Any:
 
 
 def test_every_format_is_looked_at() -> None:
-    others = {".su2", ".node", ".ele", ".poly", ".gpkg", ".geojson", ".npz", ".stl"}
+    others = {".su2", ".med", ".node", ".ele", ".poly", ".gpkg", ".geojson", ".npz", ".stl"}
     surfaces = {".xml", ".landxml"}  # in tests/terrain
     surfaces |= {".off", ".smesh", ".face"}  # in test_solids
     assert {*MESHIO, *others, *surfaces, *PICTURES} == set(output_suffixes())

@@ -1,13 +1,14 @@
-"""Meshes for solvers: XDMF and INP (Abaqus) by meshio (extra ``mesh``), and SU2.
+"""Meshes for solvers: XDMF, MED (Salome) and INP (Abaqus) by meshio (extra ``mesh``), and SU2.
 
 Triangles or tetrahedra are written, and the segments of a mesh with their markers: as named parts
-of the boundary in SU2, as values in XDMF.
+of the boundary in SU2, as values in XDMF, as groups in MED, which has regions as well.
 """
 
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING
+from io import BytesIO
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = ["require_libraries", "write_mesh"]
 
-_MODULES = {".xdmf": "xdmf", ".inp": "abaqus"}
+_MODULES = {".xdmf": "xdmf", ".med": "med", ".inp": "abaqus"}
 # The numbers that SU2 has for cells, those of VTK.
 _LINE, _TRIANGLE, _TETRAHEDRON = 3, 5, 10
 
@@ -35,9 +36,9 @@ _LINE, _TRIANGLE, _TETRAHEDRON = 3, 5, 10
 def require_libraries(suffix: str) -> None:
     """Import what writing needs."""
     require("meshio", extra="mesh", what="writing meshes")
-    if suffix == ".xdmf":
+    if suffix in (".xdmf", ".med"):
         # meshio imports it for XDMF files that have all data in their text, too.
-        require("h5py", extra="mesh", what="writing XDMF files")
+        require("h5py", extra="mesh", what=f"writing {suffix[1:].upper()} files")
 
 
 def write_mesh(
@@ -62,7 +63,8 @@ def write_mesh(
         path.write_text(_su2(found.own), encoding="utf-8")
         return
     made = to_meshio(found.whole())
-    if suffix == ".inp":
+    families = _families(made) if suffix == ".med" else None
+    if suffix in (".inp", ".med"):
         made.point_data, made.cell_data = {}, {}
     for tag in TAGS:
         made.cell_data.pop(tag, None)
@@ -70,8 +72,31 @@ def write_mesh(
     if suffix == ".xdmf":
         # Everything in the one file: no second one beside it.
         module.write(path, made, data_format="XML")
+    elif families is not None:
+        made.cell_data, made.cell_tags = families
+        # HDF5 does not report a full disk as an OSError.
+        buffer = BytesIO()
+        module.write(buffer, made)
+        path.write_bytes(buffer.getvalue())
     else:
         module.write(path, made)
+
+
+def _families(mesh: Any) -> tuple[dict[str, list[NDArray[np.int64]]], dict[int, list[str]]]:
+    """The groups of an MED file: regions of cells and markers of lines, each by a negative number.
+
+    Where there is no region, or the marker is 0, the number is 0: no group.
+    """
+    tags = [np.zeros(len(block.data), dtype=np.int64) for block in mesh.cells]
+    names: dict[int, list[str]] = {}
+    for name, where, none in (("region", 0, -1), ("marker", 1, 0)):
+        values = mesh.cell_data.get(name, ())
+        for block, value in list(enumerate(values))[where : where + 1]:
+            for own in np.setdiff1d(value, none).tolist():
+                number = -1 - len(names)
+                names[number] = [f"{name} {own}"]
+                tags[block][value == own] = number
+    return {"cell_tags": tags}, names
 
 
 def _su2(parts: Parts) -> str:

@@ -253,7 +253,10 @@ class _Stages(NamedTuple):
         try:
             made = _core.recover_faces(places, faces, limit, True, workers)
         except ShapeError as error:
-            raise _dangling(parts) from error
+            alone = _alone(parts)
+            if not len(alone):
+                raise
+            raise _dangling(alone) from error
         if len(made.crowded):
             raise _crowded(parts.source[made.crowded])
         further = made.points[len(used) :]
@@ -364,12 +367,17 @@ def _crowded(faces: Indices) -> CrowdedFacesError:
     )
 
 
-def _dangling(parts: Parts) -> DanglingFacesError:
-    """Return the error that names the faces with an edge of one face."""
+def _alone(parts: Parts) -> Indices:
+    """Return the faces with an edge of no other face."""
     edges = np.sort(parts.faces[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1)
     _, of, count = np.unique(edges, axis=0, return_inverse=True, return_counts=True)
     alone = (count[of.reshape(-1)] == 1).reshape(-1, 3).any(axis=1)
-    rows = np.unique(parts.source[alone])
+    rows: Indices = np.unique(parts.source[alone])
+    return rows
+
+
+def _dangling(rows: Indices) -> DanglingFacesError:
+    """Return the error that names these faces."""
     return DanglingFacesError(
         f"{counted(len(rows), 'face')} with an edge of no other face cannot be kept: "
         f"{listed(rows, 10)}; extend them to other faces, or remove points and faces near them",
