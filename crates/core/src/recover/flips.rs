@@ -86,7 +86,8 @@ impl Work<'_> {
                 }
             }
             if !changed {
-                return Ok(false);
+                // A try that was given up may leave the segment behind.
+                return Ok(self.mesh.with_edge(s[0], s[1]).is_some());
             }
         }
         Ok(true)
@@ -118,7 +119,7 @@ impl Work<'_> {
                 }
             }
             if !changed {
-                return Ok(false);
+                return Ok(self.mesh.has_face(face));
             }
         }
         Ok(true)
