@@ -10,14 +10,18 @@
 //!
 //! Every triangle has a positive determinant, so the closed surface covers each direction equally often:
 //! once, as the axis lies inside the first half and in no triangle of the ring. Where one of these is not
-//! so, there is no answer, and the caller starts again with all directions.
+//! so, or where flips are so many that insertion is faster, there is no answer, and the caller starts
+//! again with all directions.
+//!
+//! Each loop has a bound that does not depend on the geometry: a ring has no more sides than there are
+//! records, the bridge makes one step for each side, and flips have a budget.
 
 use delone_predicates::Sign;
 
 use super::arrange::Halves;
 use super::directions::{Directions, turn};
 use super::fill::{Filled, fill};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::memory::{push, with_room};
 use crate::mesh2::{Code, Mesh2, Patch, next, prev, triangle};
 use crate::parallel;
@@ -27,6 +31,8 @@ use crate::watch::{Pace, Watch};
 const WATCH_EVERY: usize = 1 << 12;
 /// Vertices of the first ring from which a bridge is tried.
 const TRIES: usize = 64;
+/// Flips per triangle before the halves are given up; few triangles beside the seam need any.
+const FLIPS: usize = 16;
 
 /// An edge of a ring, from `tail` to the next one.
 #[derive(Clone, Copy)]
@@ -76,8 +82,10 @@ fn join_halves(
     let mut patch = mesh.resume(second.taken.end);
     // Seen from outside the first ring turns left and the second one right: both go the same way.
     let rings = [
-        ring(&patch, one, |patch, g| patch.after(g))?,
-        ring(&patch, other, |patch, g| patch.before(g))?,
+        ring(&patch, one, first.taken.len(), |patch, g| patch.after(g))?,
+        ring(&patch, other, second.taken.len(), |patch, g| {
+            patch.before(g)
+        })?,
     ];
     let around = Around { directions, axis };
     let is_inside = rings[0]
@@ -90,7 +98,10 @@ fn join_halves(
     let Some(stack) = zip(&mut patch, &around, &rings, start, &mut pace)? else {
         return Ok(None);
     };
-    flip(&mut patch, directions, stack, &mut pace)?;
+    let count = first.taken.len() + second.taken.len();
+    if !flip(&mut patch, directions, stack, FLIPS * count, &mut pace)? {
+        return Ok(None);
+    }
     // The records between the halves are free: the last ones move there.
     let mut end = second.taken.end;
     for hole in first.taken.end..second.taken.start {
@@ -100,7 +111,6 @@ fn join_halves(
         end -= 1;
         patch.relocate(end, hole);
     }
-    let count = first.taken.len() + second.taken.len();
     let mut repeats = first.repeats;
     repeats.extend(second.repeats);
     Ok(Some(Filled {
@@ -131,11 +141,17 @@ impl Around<'_> {
     }
 }
 
-/// The sides of a ring, each beginning where the one before ends in the direction of `step`.
-fn ring(patch: &Patch, start: Code, step: impl Fn(&Patch, Code) -> Code) -> Result<Vec<Side>> {
+/// The sides of a ring, each beginning where the one before ends in the direction of `step`; an error if
+/// there are more than `most`, the records of its half, as then the steps never come back to the start.
+fn ring(
+    patch: &Patch,
+    start: Code,
+    most: usize,
+    step: impl Fn(&Patch, Code) -> Code,
+) -> Result<Vec<Side>> {
     let mut sides = with_room(64)?;
     let mut g = start;
-    loop {
+    for _ in 0..most {
         push(
             &mut sides,
             Side {
@@ -150,6 +166,7 @@ fn ring(patch: &Patch, start: Code, step: impl Fn(&Patch, Code) -> Code) -> Resu
             return Ok(sides);
         }
     }
+    Err(Error::Internal("a ring of ghosts does not close".into()))
 }
 
 /// A side of each ring, where the arc between the first ends of both is outside of the rings: it leaves
@@ -190,7 +207,7 @@ fn zip(
     let (mut i, mut j) = (0, 0);
     let mut last: Option<Code> = None;
     let mut first = 0;
-    while i < n || j < m {
+    for _ in 0..n + m {
         pace.spend(1)?;
         //   a ---- a'     The bridge from a, above, to b, below, moves to a' or b'.
         //   |
@@ -231,31 +248,43 @@ fn zip(
             j += 1;
         }
     }
+    if (i, j) != (n, m) {
+        return Err(Error::Internal(
+            "the bridge between the rings does not come back".into(),
+        ));
+    }
     if let Some(code) = last {
         patch.link(code, first);
     }
     Ok(Some(stack))
 }
 
-/// Flips edges until all those of the `stack` and all beside a flip are Delaunay.
+/// Flips edges until all those of the `stack` and all beside a flip are Delaunay; false if that takes
+/// more than `most` flips.
 fn flip(
     patch: &mut Patch,
     directions: &Directions,
     mut stack: Vec<Code>,
+    most: usize,
     pace: &mut Pace,
-) -> Result<()> {
+) -> Result<bool> {
+    let mut flips = 0;
     while let Some(e) = stack.pop() {
         pace.spend(1)?;
         let o = patch.opposite(e);
         let corners = [next(e), prev(e), e, o].map(|c| patch.vertex(c));
         if directions.in_circle(corners) {
+            if flips == most {
+                return Ok(false);
+            }
+            flips += 1;
             let other = patch.flip(e);
             for code in [e, prev(e), other, next(other)] {
                 push(&mut stack, code)?;
             }
         }
     }
-    Ok(())
+    Ok(true)
 }
 
 #[cfg(test)]
