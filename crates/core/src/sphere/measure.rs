@@ -4,6 +4,7 @@ use delone_predicates::Point3;
 use delone_predicates::arithmetic::Pair;
 use delone_predicates::sphere::{Unit, leveled};
 
+use super::directions::units;
 use crate::error::Result;
 use crate::memory::filled;
 use crate::parallel;
@@ -37,18 +38,26 @@ pub fn circumcenters(
     mapped(vectors, simplices, circumcenter, workers, watch)
 }
 
+/// The values of a function of the vectors of three corners and of their directions.
 fn mapped<T: Copy + Default + Send>(
     vectors: &[Point3],
     simplices: &[[i32; 3]],
-    measure: fn([Point3; 3]) -> T,
+    measure: fn([Point3; 3], &[Unit; 3]) -> T,
     workers: usize,
     watch: &Watch,
 ) -> Result<Vec<T>> {
+    // Each direction is a corner of about six triangles.
+    let (heads, tails) = units(vectors, workers, watch)?;
     let mut values = filled(simplices.len(), T::default())?;
     let tasks = simplices.chunks(SHARE).zip(values.chunks_mut(SHARE));
     parallel::map_watched(workers, tasks.collect(), watch, |(simplices, values)| {
         for (value, corners) in values.iter_mut().zip(simplices) {
-            *value = measure(corners.map(|v| vectors[v as usize]));
+            let rows = corners.map(|v| v as usize);
+            let directions = rows.map(|v| Unit {
+                hi: heads[v],
+                lo: tails[v],
+            });
+            *value = measure(rows.map(|v| vectors[v]), &directions);
         }
         Ok(())
     })?;
@@ -86,9 +95,8 @@ fn dot(a: Point3, b: Point3) -> f64 {
 /// A. Van Oosterom and J. Strackee, "The solid angle of a plane triangle" (1983): the tangent of half
 /// of it is [a, b, c] / (1 + a b + b c + c a). The determinant is right to nearly all bits, so slivers
 /// are, too; the sum has no need to be, as the angle is near a right angle where terms cancel.
-fn area(corners: [Point3; 3]) -> f64 {
-    let units = corners.map(Unit::of);
-    let [a, b, c] = units.each_ref().map(pairs);
+fn area(corners: [Point3; 3], directions: &[Unit; 3]) -> f64 {
+    let [a, b, c] = directions.each_ref().map(pairs);
     let (p, q) = (minus(a, c), minus(b, c));
     let normal = cross(p, q);
     let det = (normal[0] * c[0] + normal[1] * c[1] + normal[2] * c[2]).hi;
@@ -98,7 +106,7 @@ fn area(corners: [Point3; 3]) -> f64 {
     } else {
         exact_determinant(corners)
     };
-    let [a, b, c] = units.map(|unit| unit.hi);
+    let [a, b, c] = directions.each_ref().map(|unit| unit.hi);
     2.0 * det.atan2(1.0 + dot(a, b) + dot(b, c) + dot(c, a))
 }
 
@@ -118,8 +126,8 @@ fn exact_determinant(corners: [Point3; 3]) -> f64 {
     ratio(&(determinant([a, b, c]) << 64_u32), &lengths, 0).unwrap_or_default()
 }
 
-fn circumcenter(corners: [Point3; 3]) -> Point3 {
-    let [a, b, c] = corners.map(|v| pairs(&Unit::of(v)));
+fn circumcenter(_: [Point3; 3], directions: &[Unit; 3]) -> Point3 {
+    let [a, b, c] = directions.each_ref().map(pairs);
     let n = cross(minus(a, c), minus(b, c)).map(|x| x.hi);
     // Differences may be tiny, and their products may underflow when squared.
     let n = leveled(n);

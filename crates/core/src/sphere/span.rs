@@ -16,6 +16,7 @@ use delone_predicates::arithmetic::Pair;
 use delone_predicates::sphere::{Unit, leveled};
 use num_bigint::BigInt;
 
+use super::directions::units;
 use super::measure::{cross, minus, pairs, size};
 use crate::error::Result;
 use crate::memory::filled;
@@ -39,11 +40,18 @@ pub fn spans(
     workers: usize,
     watch: &Watch,
 ) -> Result<Vec<[f64; 2]>> {
+    // Each direction is a corner of about twelve.
+    let (heads, tails) = units(vectors, workers, watch)?;
     let mut values = filled(around.len(), [0.0; 2])?;
     let tasks = around.chunks(SHARE).zip(values.chunks_mut(SHARE));
     parallel::map_watched(workers, tasks.collect(), watch, |(around, values)| {
         for (value, corners) in values.iter_mut().zip(around) {
-            *value = span(corners.map(|v| vectors[v as usize]));
+            let rows = corners.map(|v| v as usize);
+            let directions = rows.map(|v| Unit {
+                hi: heads[v],
+                lo: tails[v],
+            });
+            *value = span(rows.map(|v| vectors[v]), &directions);
         }
         Ok(())
     })?;
@@ -66,9 +74,9 @@ fn norm(p: &[Pair; 3]) -> Pair {
     root + Pair::from_double(rest)
 }
 
-fn span(corners: [Point3; 4]) -> [f64; 2] {
-    let units = corners.map(Unit::of);
-    let [a, b, c, d] = units.each_ref().map(pairs);
+/// The length and area of one ridge, from the vectors of its four corners and their directions.
+fn span(corners: [Point3; 4], directions: &[Unit; 4]) -> [f64; 2] {
+    let [a, b, c, d] = directions.each_ref().map(pairs);
     let [p, q, r] = [minus(b, a), minus(c, a), minus(d, a)];
     // A common factor of n and m, which may be tiny: p becomes about 1.
     let top = p.iter().fold(0.0, |top: f64, x| top.max(x.hi.abs()));
