@@ -36,7 +36,7 @@ def test_a_face_of_two_tetrahedra_that_are_not_neighbors(
     tmp_path: Path, mesh: delone.TetMesh, everywhere: bool
 ) -> None:
     neighbors = separated(mesh, everywhere)
-    wrong = delone.TetMesh._from_arrays(mesh._arrays() | {"neighbors": neighbors})
+    wrong = delone.TetMesh._of(mesh._arrays() | {"neighbors": neighbors}, mesh.report)
     report = wrong.validate()
     assert not report
     assert len(report.neighbors) == (mesh.nsimplex if everywhere else 2)

@@ -44,6 +44,9 @@ def names() -> dict[str, Any]:
         "sites": sites,
         "soundings": datasets.uniform(200),
         "depths": np.arange(200.0),
+        "stations": [360.0, 180.0] * (datasets.uniform(50) - 0.5),
+        "temperature": np.arange(50.0),
+        "grid": np.array([[180.0, 0.0], [0.0, 90.0]]),
     }
 
 
