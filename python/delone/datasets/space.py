@@ -36,7 +36,9 @@ def grid(n: int, *, seed: int | None = 0) -> Points:
     order.
     """
     n = as_count(n)
-    side = max(1, int(np.ceil(np.cbrt(n))))
+    # Cube roots differ between processors in their last bit; comparing integers does not.
+    side = max(1, round(n ** (1 / 3)))
+    side += side**3 < n
     rows = np.arange(n)
     columns = (rows // side**2, rows // side % side, rows % side)
     points = np.column_stack(columns).astype(np.float64)
