@@ -1,4 +1,4 @@
-"""Convex hulls, and location in space, side by side with SciPy.
+"""Convex hulls, and 3-D point location, side by side with SciPy.
 
 One thread for SciPy, which has no more; delone's hull works on one, its location on one and on all.
 Medians of warm calls, which take turns. ``python benchmarks/hull.py --help`` has options.
@@ -20,7 +20,7 @@ def line(name: str, ours: float, theirs: float) -> None:
 
 
 def hulls(n: int, runs: int) -> None:
-    """Points inside, all on the hull, in the plane and in space; few and many."""
+    """Points inside, all on the hull, in 2-D and in 3-D; few and many."""
     space = datasets.GENERATORS3
     flat = {"uniform square": datasets.uniform(n), "circle": datasets.circle(n // 10)}
     sets = {f"hull, {name}, {len(points):,}": points for name, points in flat.items()}

@@ -62,7 +62,7 @@ def row(n: int, dimensions: int, runs: int) -> list[str]:
         f"{both:.3g} s",
         ratio(2 * one / both),
     ]
-    return [f"{n:,} in {'plane' if dimensions == 2 else 'space'}", *cells]
+    return [f"{n:,} in {dimensions}-D", *cells]
 
 
 def main() -> None:

@@ -125,9 +125,9 @@ def main() -> None:
             None,
         )[1],
     }
-    table(f"{given.n:,} uniform sites in space", whole, given.runs)
+    table(f"{given.n:,} uniform sites in 3-D", whole, given.runs)
     values, queries = rng.random(given.n), rng.random((given.queries, 3))
-    title = f"{given.queries:,} queries among {given.n:,} sites in space"
+    title = f"{given.queries:,} queries among {given.n:,} sites in 3-D"
     table(title, interpolated(points, values, queries), given.runs)
 
 
