@@ -180,6 +180,25 @@ def test_by_points_alone(name: str) -> None:
     assert solids.filled(made.points, made.tetrahedra) == wanted
 
 
+@pytest.mark.parametrize(("thickness", "fits"), [(1, False), (2, True), (9, True)])
+def test_points_alone_among_the_smallest_doubles(thickness: int, fits: bool) -> None:
+    # Vectors between such points were too short for doubles, and the recovery ended with "a sector
+    # has no point". A slab one double thick has no room for points, and the error says so.
+    depth = (18, 18 + thickness)
+    points = np.array([(x, y, z) for x in (-6, -3) for y in depth for z in (-30, -2)])
+    faces = [(1, 3, 2), (1, 2, 0), (4, 6, 7), (4, 7, 5), (4, 5, 0), (5, 1, 0)]
+    faces += [(2, 3, 6), (3, 7, 6), (2, 6, 4), (2, 4, 0), (1, 5, 7), (1, 7, 3)]
+    rows = np.array(faces, dtype=np.int32)
+    for scale in (1.0, 5e-324):
+        made = _core.recover_faces(points * scale, rows, 1_000_000, False, 1)
+        if fits or scale == 1.0:
+            volume = solids.filled(made.points, made.tetrahedra)
+            assert volume == Fraction(3 * 28 * thickness) * Fraction(scale) ** 3
+        else:
+            assert not len(made.tetrahedra)
+            assert len(made.crowded)
+
+
 @pytest.mark.parametrize("name", ["Schoenhardt", "notches 2"])
 def test_points_alone_are_in_any_order_the_same(name: str) -> None:
     points, faces = SURFACES[name]()

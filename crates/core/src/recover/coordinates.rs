@@ -58,9 +58,10 @@ impl Wide {
         self.lowered(low) == other.lowered(low)
     }
 
-    /// The sum with a vector of doubles.
-    pub fn plus(&self, step: Point3) -> Self {
-        let other = Self::of(step);
+    /// The sum with a step.
+    pub fn plus(&self, step: Step) -> Self {
+        let mut other = Self::of(step.at);
+        other.exponent -= step.lift;
         let low = self.exponent.min(other.exponent);
         let (p, q) = (self.lowered(low), other.lowered(low));
         Self {
@@ -69,6 +70,38 @@ impl Wide {
         }
     }
 }
+
+/// A vector times 2^-lift: doubles alone are coarse among points that are 2^-1000 apart.
+#[derive(Debug, Clone, Copy)]
+pub struct Step {
+    /// The vector, finite.
+    pub at: Point3,
+    /// The exponent: a multiple of [`LIFT`].
+    pub lift: i64,
+}
+
+impl Step {
+    /// The nearest doubles, or nearly so where they are subnormal.
+    fn rounded(self) -> Point3 {
+        let times = self.lift / LIFT;
+        self.at.map(|x| (0..times).fold(x, |x, _| x / POWER))
+    }
+
+    /// The doubles next to a sum with a step.
+    pub fn from(self, near: Point3) -> Point3 {
+        let step = self.rounded();
+        [0, 1, 2].map(|k| near[k] + step[k] + 0.0)
+    }
+}
+
+/// The exponent by which vectors shorter than [`SHORT`] are lifted.
+pub const LIFT: i64 = 1000;
+
+/// 2^LIFT.
+pub const POWER: f64 = f64::from_bits((1023 + LIFT as u64) << 52);
+
+/// Lengths below which vectors are lifted: 2^-900.
+pub const SHORT: f64 = f64::from_bits((1023 - 900) << 52);
 
 /// The points of a mesh.
 #[derive(Debug, Default)]
@@ -167,16 +200,27 @@ impl Coordinates {
         self.orient(a, b, c, d) == Sign::Positive
     }
 
-    /// The vector from a point to another, each coordinate rounded once.
-    pub fn difference(&self, from: u32, to: u32) -> Point3 {
+    /// The exponent for vectors from a point to others, 0 or [`LIFT`].
+    pub fn lift(&self, from: u32, others: impl Iterator<Item = u32>) -> i64 {
+        let short = |v: u32| self.difference(from, v, 0).iter().all(|x| x.abs() < SHORT);
+        if others.into_iter().all(short) {
+            LIFT
+        } else {
+            0
+        }
+    }
+
+    /// The vector from a point to another times 2^lift, 0 or [`LIFT`], each coordinate rounded once.
+    pub fn difference(&self, from: u32, to: u32, lift: i64) -> Point3 {
         let (p, q) = (self.near(from), self.near(to));
-        let plain = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
+        let power = if lift == 0 { 1.0 } else { POWER };
+        let plain = [0, 1, 2].map(|k| (q[k] - p[k]) * power);
         if self.is_double(from) && self.is_double(to) {
             return plain;
         }
         let (exact, low) = self.integers(&[from, to]);
         let one = BigInt::from(1);
-        let difference = |k: usize| ratio(&(&exact[1][k] - &exact[0][k]), &one, low);
+        let difference = |k: usize| ratio(&(&exact[1][k] - &exact[0][k]), &one, low + lift);
         [0, 1, 2].map(|k| difference(k).unwrap_or(plain[k]))
     }
 }

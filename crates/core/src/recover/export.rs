@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use delone_predicates::{Sign, lexicographic, orient3d};
 
 use super::mesh::{Corners, NONE, ascending, internal, number as rank};
-use super::task::{Recovered, Task};
+use super::task::{Counts, Recovered, Task};
 use super::work::Work;
 use crate::error::Result;
 use crate::memory::{filled, push, with_room};
@@ -17,6 +17,21 @@ pub struct Rows<'a> {
     pub points: &'a [u32],
     /// Of each face.
     pub faces: &'a [u32],
+}
+
+impl Rows<'_> {
+    /// The result where no point fits between faces, which are given by their numbers.
+    pub fn crowded(self, counts: Counts, faces: Vec<u32>) -> Recovered {
+        let row = |f: u32| self.faces[f as usize];
+        Recovered {
+            points: Vec::new(),
+            tetrahedra: Vec::new(),
+            neighbors: Vec::new(),
+            walls: Vec::new(),
+            counts,
+            crowded: faces.into_iter().map(row).collect(),
+        }
+    }
 }
 
 impl Work<'_> {

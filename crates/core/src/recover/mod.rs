@@ -65,47 +65,50 @@ const DEPTH: usize = 1;
 pub fn recover(task: Task, watch: &Watch) -> Result<Recovered> {
     let imported = input::import(task, watch)?;
     let mut work = Work::new(imported.mesh, imported.faces, task.max_points, watch)?;
-    let (mut segments, mut faces) = work.missing()?;
-    work.counts.missing_edges = segments.len();
-    work.counts.missing_faces = faces.len();
-    if task.flips {
-        for depth in 0..=DEPTH {
-            segments = work.flip_segments(segments, depth)?;
-        }
-    }
-    work.split_segments(&segments, task.flips)?;
-    if task.flips {
-        for depth in 0..=DEPTH {
-            faces = work.flip_faces(faces, depth)?;
-        }
-    }
-    work.cut_faces(&faces)?;
-    work.thin(work.given)?;
-    work.finish(task.flips)?;
-    let walls = work.walls()?;
-    let out = work.outside(&walls)?;
-    let crowded = work.crowded(&out);
-    if !crowded.is_empty() {
-        let rows = crowded.iter().map(|&f| imported.face_rows[f as usize]);
-        let crowded = rows.collect();
-        return Ok(Recovered {
-            points: Vec::new(),
-            tetrahedra: Vec::new(),
-            neighbors: Vec::new(),
-            walls: Vec::new(),
-            counts: work.counts,
-            crowded,
-        });
-    }
-    work.verify(&walls, &out)?;
     let rows = Rows {
         points: &imported.rows,
         faces: &imported.face_rows,
     };
+    match work.recovered(task.flips) {
+        Ok(()) => {}
+        Err(_) if !work.stuck.is_empty() => {
+            let stuck = std::mem::take(&mut work.stuck);
+            return Ok(rows.crowded(work.counts, stuck));
+        }
+        Err(e) => return Err(e),
+    }
+    let walls = work.walls()?;
+    let out = work.outside(&walls)?;
+    let crowded = work.crowded(&out);
+    if !crowded.is_empty() {
+        return Ok(rows.crowded(work.counts, crowded));
+    }
+    work.verify(&walls, &out)?;
     work.export(task, rows, &walls, &out)
 }
 
 impl Work<'_> {
+    /// Recovers all segments and faces, and moves added points to doubles where these fit.
+    fn recovered(&mut self, flips: bool) -> Result<()> {
+        let (mut segments, mut faces) = self.missing()?;
+        self.counts.missing_edges = segments.len();
+        self.counts.missing_faces = faces.len();
+        if flips {
+            for depth in 0..=DEPTH {
+                segments = self.flip_segments(segments, depth)?;
+            }
+        }
+        self.split_segments(&segments, flips)?;
+        if flips {
+            for depth in 0..=DEPTH {
+                faces = self.flip_faces(faces, depth)?;
+            }
+        }
+        self.cut_faces(&faces)?;
+        self.thin(self.given)?;
+        self.finish(flips)
+    }
+
     /// Segments and faces that the mesh lacks; locks the others.
     fn missing(&mut self) -> Result<(Vec<u32>, Vec<u32>)> {
         let mut there = filled(self.segments.len(), false)?;

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use delone_predicates::Point3;
 
 use super::center::{Plane, center};
-use super::coordinates::{Wide, cross};
+use super::coordinates::{LIFT, POWER, SHORT, Step, Wide, cross};
 use super::suppress::unit;
 use super::work::{Origin, Work};
 use crate::error::Result;
@@ -27,8 +27,8 @@ impl Work<'_> {
     ) -> Result<Option<u32>> {
         let start = self.mesh.points.exact(s);
         let v = self.add(start.clone(), Origin::Free)?;
-        let (size, vertices) = self.size(s, faces);
-        if let Some(step) = self.step_to_center(s, faces, &vertices, size)
+        let (size, lift, vertices) = self.size(s, faces);
+        if let Some(step) = self.step_to_center(s, faces, &vertices, size, lift)
             && self.try_at(v, s, faces, step)
         {
             return Ok(Some(v));
@@ -41,11 +41,15 @@ impl Work<'_> {
                 continue;
             }
             let mut left = HALVINGS;
-            let mut length = size;
-            while left > 0 && length > 0.0 {
+            let (mut length, mut lift) = (size, lift);
+            while left > 0 {
                 left -= 1;
                 length /= 2.0;
-                let step = direction.map(|x| x * length);
+                if length < SHORT {
+                    (length, lift) = (length * POWER, lift + LIFT);
+                }
+                let at = direction.map(|x| x * length);
+                let step = Step { at, lift };
                 if self.try_double(v, s, faces, step) {
                     return Ok(Some(v));
                 }
@@ -57,7 +61,10 @@ impl Work<'_> {
         }
         if let Some(step) = wide {
             // Half as far is farther from the ends of the interval that sees.
-            let half = step.map(|x| x / 2.0);
+            let half = Step {
+                at: step.at.map(|x| x / 2.0),
+                ..step
+            };
             if self.try_wide(v, &start, faces, half) || self.try_wide(v, &start, faces, step) {
                 return Ok(Some(v));
             }
@@ -70,11 +77,12 @@ impl Work<'_> {
     pub fn center_free(&mut self, v: u32) -> bool {
         let star = self.mesh.star(v, usize::MAX);
         let faces = self.mesh.outer_faces(&star);
-        let (size, vertices) = self.size(v, &faces);
+        let (size, lift, vertices) = self.size(v, &faces);
         let old = self.mesh.points.exact(v);
-        if let Some(step) = self.step_to_center(v, &faces, &vertices, size) {
+        if let Some(whole) = self.step_to_center(v, &faces, &vertices, size, lift) {
             for part in [1.0, 0.5, 0.25, 0.125, 0.0] {
-                let step = step.map(|x| x * part);
+                let at = whole.at.map(|x| x * part);
+                let step = Step { at, ..whole };
                 self.mesh.points.place(v, old.clone());
                 if self.try_double(v, v, &faces, step) {
                     return true;
@@ -85,13 +93,13 @@ impl Work<'_> {
         false
     }
 
-    /// The largest difference from a vertex to those of faces, and these.
-    fn size(&self, s: u32, faces: &[[u32; 3]]) -> (f64, BTreeSet<u32>) {
+    /// The largest difference from a vertex to those of faces, its lift, and these.
+    fn size(&self, s: u32, faces: &[[u32; 3]]) -> (f64, i64, BTreeSet<u32>) {
         let vertices: BTreeSet<u32> = faces.as_flattened().iter().copied().collect();
-        let far = vertices
-            .iter()
-            .flat_map(|&w| self.mesh.points.difference(s, w));
-        (far.fold(0.0, |m, x| m.max(x.abs())), vertices)
+        let points = &self.mesh.points;
+        let lift = points.lift(s, vertices.iter().copied());
+        let far = vertices.iter().flat_map(|&w| points.difference(s, w, lift));
+        (far.fold(0.0, |m, x| m.max(x.abs())), lift, vertices)
     }
 
     /// The step from a point to the center of the kernel of faces.
@@ -101,13 +109,14 @@ impl Work<'_> {
         faces: &[[u32; 3]],
         vertices: &BTreeSet<u32>,
         size: f64,
-    ) -> Option<Point3> {
+        lift: i64,
+    ) -> Option<Step> {
         if !(size.is_finite() && size > 0.0) {
             return None;
         }
         let at: std::collections::BTreeMap<u32, Point3> = vertices
             .iter()
-            .map(|&w| (w, self.mesh.points.difference(s, w).map(|x| x / size)))
+            .map(|&w| (w, self.mesh.points.difference(s, w, lift).map(|x| x / size)))
             .collect();
         let mut planes = Vec::with_capacity(faces.len());
         for [a, b, c] in faces {
@@ -121,11 +130,12 @@ impl Work<'_> {
             planes.push(Plane { normal, offset });
         }
         let (x, _) = center(&planes)?;
-        Some(x.map(|x| x * size))
+        let at = x.map(|x| x * size);
+        Some(Step { at, lift })
     }
 
     /// Tries a step in doubles, then exactly.
-    fn try_at(&mut self, v: u32, s: u32, faces: &[[u32; 3]], step: Point3) -> bool {
+    fn try_at(&mut self, v: u32, s: u32, faces: &[[u32; 3]], step: Step) -> bool {
         self.try_double(v, s, faces, step) || {
             let start = self.mesh.points.exact(s);
             self.try_wide(v, &start, faces, step)
@@ -133,17 +143,16 @@ impl Work<'_> {
     }
 
     /// Places `v` at the double nearest to a step from `s`, if that sees all faces.
-    fn try_double(&mut self, v: u32, s: u32, faces: &[[u32; 3]], step: Point3) -> bool {
-        let near = self.mesh.points.near(s);
-        let p = [0, 1, 2].map(|k| near[k] + step[k] + 0.0);
+    fn try_double(&mut self, v: u32, s: u32, faces: &[[u32; 3]], step: Step) -> bool {
+        let p = step.from(self.mesh.points.near(s));
         p.iter().all(|x| x.is_finite())
             && self.mesh.points.place(v, Wide::of(p))
             && self.sees(faces, v)
     }
 
     /// The same without rounding.
-    fn try_wide(&mut self, v: u32, start: &Wide, faces: &[[u32; 3]], step: Point3) -> bool {
-        step.iter().all(|x| x.is_finite())
+    fn try_wide(&mut self, v: u32, start: &Wide, faces: &[[u32; 3]], step: Step) -> bool {
+        step.at.iter().all(|x| x.is_finite())
             && self.mesh.points.place(v, start.plus(step))
             && self.sees(faces, v)
     }

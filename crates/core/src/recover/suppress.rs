@@ -43,7 +43,10 @@ impl Work<'_> {
                     let v = self.point_in(s, &sector.faces, [sector.inward, sector.along])?;
                     match v {
                         Some(v) => (v, true),
-                        None => return Err(internal("a sector has no point")),
+                        None => {
+                            self.stuck = polygons.keys().copied().collect();
+                            return Err(internal("a sector has no point"));
+                        }
                     }
                 }
             };
@@ -119,7 +122,7 @@ impl Work<'_> {
                 if turn(ear) != Sign::Positive || !self.is_ear(&rest, j, &turn) {
                     continue;
                 }
-                let d = self.mesh.points.difference(ear[0], ear[2]);
+                let d = self.mesh.points.difference(ear[0], ear[2], 0);
                 let length = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
                 if best.is_none_or(|(least, _)| length < least) {
                     best = Some((length, j));
@@ -209,10 +212,15 @@ impl Work<'_> {
         triangles: &BTreeMap<u32, Vec<[u32; 3]>>,
     ) -> Sector {
         let (mut inward, mut along) = ([0.0; 3], [0.0; 3]);
+        let corners = sides.keys().flat_map(|&f| self.faces[f as usize]);
+        let lift = self.mesh.points.lift(s, corners);
         for (f, &side) in sides {
             let [a, b, c] = self.faces[*f as usize];
             let points = &self.mesh.points;
-            let normal = cross(unit(points.difference(a, b)), unit(points.difference(a, c)));
+            let normal = cross(
+                unit(points.difference(a, b, lift)),
+                unit(points.difference(a, c, lift)),
+            );
             let sign = if side == Sign::Positive { 1.0 } else { -1.0 };
             let normal = unit(normal).map(|x| x * sign);
             for &[p, q, r] in &triangles[f] {
@@ -223,7 +231,7 @@ impl Work<'_> {
                 });
             }
             let middle = [a, b, c].iter().fold([0.0; 3], |m, &v| {
-                let d = points.difference(s, v);
+                let d = points.difference(s, v, lift);
                 [0, 1, 2].map(|k| m[k] + d[k] / 3.0)
             });
             let middle = unit(middle);

@@ -61,6 +61,8 @@ pub struct Work<'a> {
     pub alive: usize,
     /// The limit of these.
     pub limit: usize,
+    /// Faces between which a point is needed and none was found; otherwise empty.
+    pub stuck: Vec<u32>,
     /// What happened.
     pub counts: Counts,
     /// The pace of interruption.
@@ -112,6 +114,7 @@ impl<'a> Work<'a> {
             origin: Vec::new(),
             alive: 0,
             limit,
+            stuck: Vec::new(),
             counts: Counts::default(),
             pace: Pace::new(watch, 1 << 8),
         })
