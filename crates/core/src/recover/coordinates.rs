@@ -272,10 +272,11 @@ mod tests {
             };
             let v = all.add(p).unwrap().unwrap();
             assert!(all.is_double(v));
-            let p = all
-                .exact(v)
-                .plus([1.0, 0.0, 0.0])
-                .plus([2_f64.powi(-200), 0.0, 0.0]);
+            let step = |x: f64| Step {
+                at: [x, 0.0, 0.0],
+                lift: 0,
+            };
+            let p = all.exact(v).plus(step(1.0)).plus(step(2_f64.powi(-200)));
             assert!(all.place(v, p));
             assert!(!all.is_double(v));
             assert_eq!(all.orient(0, 1, 2, v), sign);
