@@ -62,6 +62,16 @@ pub fn filled<T: Clone>(n: usize, value: T) -> Result<Vec<T>> {
     Ok(v)
 }
 
+/// `value` on the heap.
+pub fn boxed<T>(value: T) -> Result<Box<[T; 1]>> {
+    let mut v = with_room(1)?;
+    v.push(value);
+    let bytes = size_of::<T>();
+    v.into_boxed_slice()
+        .try_into()
+        .map_err(|_| Error::Memory { bytes })
+}
+
 /// Whether `bytes` more seem to be available. A system may promise memory that it does not have,
 /// and kill the process that uses it. Known on Linux only; elsewhere the allocator decides.
 pub fn is_plausible(bytes: usize) -> bool {
@@ -179,6 +189,12 @@ mod tests {
         assert_eq!(rows, [[0, 1], [-1, i32::MIN]]);
         assert_eq!((rows.as_ptr().addr(), rows.capacity()), (start, 9));
         assert!(signed::<3>(Vec::new()).is_empty());
+    }
+
+    #[test]
+    fn a_boxed_value_is_where_it_was_put() {
+        assert_eq!(boxed([7u64; 9]).unwrap()[0], [7; 9]);
+        assert_eq!(*boxed(()).unwrap(), [()]);
     }
 
     #[test]

@@ -47,7 +47,7 @@ use super::sphere::{
     Facets, LANES, RANGE, Ray, Rays, SLACK, Sphere, UNKNOWN, power, sphere, spheres,
 };
 use crate::error::{Error, Result};
-use crate::memory::{push, with_room};
+use crate::memory::{boxed, filled, push, with_room};
 use crate::mesh3::{Code, FACETS, Mesh3, corner, tetrahedron};
 
 /// The most vertices of a star that is linked by a table, and facets of such a star: 2 v - 4,
@@ -98,7 +98,7 @@ pub struct Kernel<'a> {
     cavity: Vec<Code>,
     /// The boundary facets of the cavity, seen from inside.
     rim: Vec<Code>,
-    star: Box<Star>,
+    star: Box<[Star; 1]>,
     work: usize,
 }
 
@@ -145,9 +145,9 @@ impl<'a> Kernel<'a> {
             place,
             doubt: if certain { 0.0 } else { f64::NAN },
             small: certain && lattice::is_small(&points[..points.len() - 1]),
-            cavity: vec![0; RIM],
-            rim: vec![0; RIM],
-            star: Box::new(Star {
+            cavity: filled(RIM, 0)?,
+            rim: filled(RIM, 0)?,
+            star: boxed(Star {
                 vertices: [NONE; 256],
                 rays: Rays::default(),
                 facets: Facets::default(),
@@ -156,7 +156,7 @@ impl<'a> Kernel<'a> {
                 across: [0; RIM],
                 records: [0; RIM],
                 table: [0; STAR * STAR],
-            }),
+            })?,
             work: 0,
         })
     }
@@ -334,7 +334,7 @@ impl<'a> Kernel<'a> {
     /// Records the corners of the boundary facets and numbers them; `false` if there are too many.
     #[inline(always)]
     fn number(&mut self, p: u32, gone: usize, rims: usize) -> bool {
-        let star = &mut *self.star;
+        let [star] = &mut *self.star;
         let (mesh, place) = (&self.mesh, &mut self.place[..]);
         let mut vertices = 0;
         // All corners of the cavity are on its boundary. Each record after the first adds at most
@@ -380,7 +380,7 @@ impl<'a> Kernel<'a> {
     #[inline(always)]
     fn fill(&mut self, p: u32, gone: usize, rims: usize, aim: Point3) -> Result<u32> {
         let more = self.records(gone, rims)?;
-        let star = &mut *self.star;
+        let [star] = &mut *self.star;
         let place = |place: u8| usize::from(place) & (STAR - 1);
         for (record, &e) in star.records.iter_mut().zip(&self.cavity[..gone + more]) {
             *record = tetrahedron(e);
