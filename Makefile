@@ -1,11 +1,16 @@
 # The commands of this repository; `make help` lists them.
 #
 # Everything is installed into .venv beside this file. A stamp in .venv/stamps stands for one set of
-# requirements; it is renewed when pyproject.toml or a Rust source changes, so a second call of a
-# target builds and installs nothing. `make PYTHON=python3.12 ...` chooses the interpreter.
+# requirements, and is renewed when pyproject.toml changes; the stamp `core` stands for the compiled
+# core, and is renewed when a Rust source changes. So a second call of a target builds and installs
+# nothing. `make PYTHON=python3.12 ...` chooses the interpreter.
 #
 # The core is built with the profile `dev` of Cargo.toml, in a minute; what is measured and published
 # is built with `release`, which takes several.
+
+# Compiled modules are kept: two processes that test compile 400 files each otherwise, and a program
+# that a test starts the whole package.
+unexport PYTHONDONTWRITEBYTECODE
 
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11 python; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && { echo $$p; break; }; done)
@@ -16,6 +21,10 @@ COUNTS ?=
 MUTANTS ?=
 # The order of the tests; any number, at random by default.
 SEED ?=
+# A part of what only the deep tier of the tests has, for `make test`: 2/5.
+PART ?=
+# What `make check` compares with; the last commit by default.
+SINCE ?=
 DEMO_DATA := examples/data/ahn3_crop_100m.laz
 
 VENV := .venv
@@ -24,10 +33,15 @@ STAMPS := $(VENV)/stamps
 SOURCES := pyproject.toml Cargo.toml $(wildcard Cargo.lock) $(wildcard crates/*/Cargo.toml) \
 	$(shell find crates -name '*.rs' 2>/dev/null)
 PYTHON_SOURCES := $(shell find python -name '*.py' -o -name '*.pyi')
-# The bindings crate is a Python extension: its tests are those of the Python package.
-CARGO_TEST := cargo test --workspace --exclude delone-bindings
-# One process for each processor; the tests of a file stay together.
-PYTEST := $(VENV)/bin/pytest -n auto --dist loadfile
+# All crates, though that of the bindings has no tests: so the features of the packages below are those
+# with which maturin builds, and nothing is compiled twice.
+CARGO_TEST := cargo test --quiet --workspace --lib --tests
+CARGO_DOCTEST := cargo test --quiet --workspace --doc
+# One process for each processor; those that are done take tests from the others.
+PYTEST := $(VENV)/bin/pytest -n auto --dist worksteal
+# Docstrings and pages, whose code runs in order; the programs that draw the pages are no part of them.
+DOCTEST = $(PYTEST) -p no:randomly --doctest-modules --doctest-glob='*.rst' \
+	$(addprefix --ignore-glob=,docs/*.py docs/*/*.py docs/*/*/*.py) python/delone docs
 
 VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 
@@ -39,13 +53,17 @@ EXTRAS := cli,dxf,explore,fem,geo,graph,landxml,las,mesh,plot,pyvista,raster,xar
 NEEDS_test := -E $(EXTRAS) -G test
 NEEDS_docs := -E $(EXTRAS) -G test,docs
 NEEDS_bench := --release -E $(EXTRAS) -G bench
+# Tests and lint use the environment of the documentation where there is one: it has all that they need.
+ENVIRONMENT ?= $(if $(wildcard $(STAMPS)/docs),docs,test)
 
-.PHONY: help need need-python build demo demo-says wheel web test lint docs linkcheck bench counts fuzz mutants map clean
+.PHONY: help need need-python build demo demo-says wheel web check test test-deep lint docs linkcheck bench counts fuzz mutants map clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo 'make demo    triangulate the lidar tile in examples/data: report, picture, mesh file'
-	@echo 'make test    every test: Rust, Python, doctests, pages, examples, layers'
+	@echo 'make check   after each change: what it touches, layers, lint; a minute and a half'
+	@echo 'make test    before each commit: Rust, Python, doctests, pages, layers; six minutes'
+	@echo 'make test-deep  before a release, and every night: all seeds, sizes, combinations, examples; 40 minutes'
 	@echo 'make lint    clippy, rustdoc, rustfmt, ruff, mypy, codespell, and the stub against the built module'
 	@echo 'make docs    the documentation, into docs/_build/html'
 	@echo 'make linkcheck  the links of the documentation to other sites (needs a network)'
@@ -86,16 +104,30 @@ need:
 	$(MAKE) --no-print-directory need-python || missing=1; \
 	exit $$missing
 
+# uv installs in seconds what takes pip minutes; where it has no wheel, pip does it.
 $(STAMPS)/tools: | need-python
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' 'maturin>=1.9,<2'
+	-@$(BIN)/python -m pip install --quiet --only-binary uv uv
 	@mkdir -p $(STAMPS) && touch $@
 
-$(STAMPS)/%: $(SOURCES) $(STAMPS)/tools | need
-	VIRTUAL_ENV=$(abspath $(VENV)) $(BIN)/maturin develop $(NEEDS_$*)
-	@touch $@
+MATURIN = VIRTUAL_ENV=$(abspath $(VENV)) PATH="$(abspath $(BIN)):$$PATH" $(BIN)/maturin develop
+UV = $$(test -x $(BIN)/uv && echo --uv)
 
-build: $(STAMPS)/build
+$(STAMPS)/%: pyproject.toml $(STAMPS)/tools | need
+	$(MATURIN) $(UV) $(NEEDS_$*)
+	@touch $@ $(STAMPS)/core
+
+# The release that is measured takes the place of the core that is tested, and the other way round.
+$(STAMPS)/bench: $(SOURCES) $(STAMPS)/tools | need
+	$(MATURIN) $(UV) $(NEEDS_bench)
+	@rm -f $(STAMPS)/core && touch $@
+
+$(STAMPS)/core: $(SOURCES) | need
+	$(MATURIN) --skip-install
+	@rm -f $(STAMPS)/bench && touch $@
+
+build: $(STAMPS)/build $(STAMPS)/core
 
 # Linked with zig against an old glibc, a wheel made on Linux runs on all distributions since 2014.
 wheel: $(STAMPS)/tools | need
@@ -132,7 +164,7 @@ $(STAMPS)/demo: $(SOURCES) $(PYTHON_SOURCES) | demo-says need-python
 		$(BIN)/python -m pip install --quiet --only-binary delone 'delone[$(DEMO_EXTRAS)]==$(VERSION)'; \
 	else false; fi || { \
 		$(MAKE) --no-print-directory need && \
-		VIRTUAL_ENV=$(abspath $(VENV)) $(BIN)/maturin develop $(NEEDS_demo); }
+		$(MATURIN) $(UV) $(NEEDS_demo); }
 	@touch $@
 
 demo: $(STAMPS)/demo
@@ -141,13 +173,26 @@ demo: $(STAMPS)/demo
 	@echo 'The picture: $(abspath demo/ahn3.png)'
 	@echo 'The mesh (open it in ParaView): $(abspath demo/ahn3.vtu)'
 
-test: $(STAMPS)/test
-	$(CARGO_TEST)
-	$(PYTEST) $(if $(SEED),--randomly-seed=$(SEED))
-	$(PYTEST) -p no:randomly --doctest-modules python/delone
-	$(PYTEST) -p no:randomly --doctest-glob='*.rst' docs
+.PHONY: environment
+environment: $(STAMPS)/$(ENVIRONMENT)
+	@$(MAKE) --no-print-directory $(STAMPS)/core
 
-lint: $(STAMPS)/test
+check: environment
+	$(BIN)/python tests/check.py $(if $(SINCE),--since $(SINCE))
+
+test: environment
+	$(CARGO_TEST)
+	$(CARGO_DOCTEST)
+	$(DOCTEST)
+	$(PYTEST) --times --tier=test$(if $(PART),+$(PART)) $(if $(SEED),--randomly-seed=$(SEED))
+
+test-deep: environment
+	DELONE_DEEP=1 $(CARGO_TEST)
+	$(CARGO_DOCTEST)
+	$(DOCTEST)
+	$(PYTEST) --times --tier=deep $(if $(SEED),--randomly-seed=$(SEED))
+
+lint: environment
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS='-D warnings' cargo doc --workspace --exclude delone-bindings --no-deps --quiet
@@ -162,6 +207,7 @@ lint: $(STAMPS)/test
 	cd python && ../$(BIN)/python -m mypy.stubtest delone._core
 
 docs: $(STAMPS)/docs
+	@$(MAKE) --no-print-directory $(STAMPS)/core
 	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
 	$(BIN)/python docs/check_site.py docs/_build/html
 	@echo 'The documentation: $(abspath docs/_build/html/index.html)'
@@ -188,7 +234,7 @@ bench: $(STAMPS)/bench
 counts: need
 	@$(PYTHON) benchmarks/counts.py $(COUNTS)
 
-mutants: $(STAMPS)/test
+mutants: environment
 	$(BIN)/python tests/mutants/run.py $(foreach name,$(MUTANTS),'$(name)')
 
 # The map needs Python alone.

@@ -1,4 +1,4 @@
-"""What all tests share: hypothesis settings, the corpus of hard inputs, expected skips.
+"""What all tests share: the tier of the run, the corpus of hard inputs, expected skips.
 
 The tests run in random order (pytest-randomly); the last lines of a run say how to repeat it.
 """
@@ -14,14 +14,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pytest
-from hypothesis import settings
+
+from tiers import MARKERS, Tiers, Times
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-# No test asserts a time, so an example that happens to be slow is no failure.
-settings.register_profile("delone", deadline=None, print_blob=True)
-settings.load_profile("delone")
 
 CORPUS = Path(__file__).parent / "corpus"
 
@@ -143,6 +140,18 @@ QUICK = {
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--quick", action="store_true", help="only the files listed in QUICK")
+    parser.addoption("--tier", default="test", help="test, deep, or a part of the rest: 2/5")
+    parser.addoption("--times", action="store_true", help="end with the slowest tests and rooms")
+    parser.addoption("--times-to", metavar="FILE", help="the same, and write the times of rooms")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    for marker in MARKERS:
+        config.addinivalue_line("markers", marker)
+    config.pluginmanager.register(Tiers(config.getoption("tier")), "tiers")
+    file = config.getoption("times_to")
+    if file or config.getoption("times"):
+        config.pluginmanager.register(Times(file), "times")
 
 
 def _is_quick(name: str, *, folder: bool) -> bool:

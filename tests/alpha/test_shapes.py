@@ -26,6 +26,7 @@ _SETS = {
 
 
 @pytest.mark.parametrize("name", _SETS)
+@pytest.mark.sampled(3)
 def test_polygons_are_valid_for_every_alpha(name):
     complex = delone.AlphaComplex(_SETS[name])
     corners = complex.points[complex.simplices(2)]
@@ -164,6 +165,7 @@ def test_boundary_of_a_solid_is_closed():
 
 @pytest.mark.parametrize("weighted", [False, True])
 @pytest.mark.parametrize("n", [1, 2, 7, 90])
+@pytest.mark.deep("90-False", "90-True")
 def test_complexes_on_the_torus(n, weighted):
     random = np.random.default_rng(n)
     points = (random.random((n, 2)) * 16).round(3 if n > 7 else 0) % 16

@@ -204,6 +204,7 @@ def test_as_a_process(survey, tmp_path):
     ],
     ids=" ".join,
 )
+@pytest.mark.sampled(3)
 def test_a_reader_that_goes_away(survey, tmp_path, arguments):
     reader, writer = os.pipe()
     os.close(reader)

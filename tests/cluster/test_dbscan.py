@@ -15,6 +15,7 @@ from delone.cluster import DBSCAN, single_linkage
 
 @pytest.mark.parametrize("name", SMALL)
 @pytest.mark.parametrize("samples", [1, 2, 3, 5, 9])
+@pytest.mark.sampled(15)
 def test_the_clusters_are_those_of_the_definition(name: str, samples: int) -> None:
     points = np.random.default_rng(3).permutation(SMALL[name])
     exact = [tuple(map(Fraction, row)) for row in points.tolist()]

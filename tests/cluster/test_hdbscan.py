@@ -22,6 +22,7 @@ CASES = [
 
 @pytest.mark.parametrize(("name", "samples"), CASES)
 @pytest.mark.parametrize("least", [2, 4])
+@pytest.mark.sampled(23)
 def test_the_condensed_tree_is_that_of_the_definition(name: str, samples: int, least: int) -> None:
     points = SMALL[name]
     n = len(points)
@@ -72,6 +73,13 @@ def root_of(square: density.Fraction) -> float:
     ],
     ids=str,
 )
+@pytest.mark.deep(
+    "{'least': 2, 'largest': 6, 'single': True}-mixed exponents-1",
+    "{'least': 2, 'largest': 6, 'single': True}-mixed exponents-2",
+    "{'least': 3, 'method': 'leaf'}-mixed exponents-2",
+    "{'least': 3, 'single': True}-mixed exponents-1",
+)
+@pytest.mark.sampled(70)
 def test_the_labels_are_those_of_the_definition(
     name: str, samples: int, options: dict[str, Any]
 ) -> None:

@@ -35,6 +35,7 @@ CASES = [pytest.param(name, survey, id=f"{name}-{survey}") for name in ALL for s
 
 
 @pytest.mark.parametrize(("name", "survey"), CASES)
+@pytest.mark.sampled(8)
 def test_rows_units_and_threads_do_not_matter(name: str, survey: str) -> None:
     points = LARGE[survey]
     one = ALL[name](points, 1.0, 1)

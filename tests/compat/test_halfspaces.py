@@ -95,6 +95,7 @@ def test_attributes_beside_scipy(d: int, count: int, far: float) -> None:
 
 @pytest.mark.parametrize("d", [2, 3])
 @pytest.mark.parametrize("seed", range(8))
+@pytest.mark.sampled(3)
 def test_corners_are_those_of_fractions(d: int, seed: int) -> None:
     """Small integers: many boundaries through one point, multiples and redundant half-spaces."""
     rng = np.random.default_rng(seed)

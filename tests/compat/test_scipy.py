@@ -71,6 +71,7 @@ def test_plane_distance_is_the_same(pair: Any) -> None:
     assert ours.plane_distance(queries[0, 0]).shape == (ours.nsimplex,)
 
 
+@pytest.mark.sampled(3)
 def test_find_simplex_is_the_same(pair: Any) -> None:
     ours, theirs, order = pair
     queries = np.random.default_rng(7).random((500, 2)) * [3, 1] + [1, 7]
@@ -81,6 +82,7 @@ def test_find_simplex_is_the_same(pair: Any) -> None:
     assert np.array_equal(tsearch(ours, queries), found)
 
 
+@pytest.mark.sampled(3)
 def test_arrays_are_those_of_scipy(pair: Any) -> None:
     ours, theirs, _ = pair
     for name in (

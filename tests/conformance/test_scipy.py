@@ -189,6 +189,7 @@ def calls_of_delone(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 @pytest.mark.skipif(MODULE is None, reason="SciPy is installed without its tests")
 @pytest.mark.parametrize(("test", "arguments"), CASES)
+@pytest.mark.deep("TestUtilities::test_more_barycentric_transforms")
 def test_holds(
     test: Callable[..., None], arguments: dict[str, Any], calls_of_delone: list[int]
 ) -> None:

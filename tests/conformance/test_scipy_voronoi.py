@@ -145,6 +145,12 @@ def replacement(calls: list[int]) -> type:
 
 @pytest.mark.skipif(not CASES, reason="SciPy is installed without its tests")
 @pytest.mark.parametrize(("module", "bind", "arguments"), CASES)
+@pytest.mark.deep(
+    "TestVoronoi::test_incremental?random-3d-chunk-16?",
+    "TestVoronoi::test_incremental?random-3d-chunk-1?",
+    "TestVoronoi::test_incremental?random-3d-chunk-4?",
+)
+@pytest.mark.sampled(8)
 def test_holds(
     module: ModuleType,
     bind: Callable[[], Callable[..., None]],

@@ -72,6 +72,7 @@ def test_outlines_exactly(polygon: tuple[np.ndarray, np.ndarray]) -> None:
     assert kept <= {tuple(t) for t in whole.simplices.tolist()}
 
 
+@pytest.mark.deep("earcut-water-huge")
 def test_crossings_are_those_of_a_direct_search(polygon: tuple[np.ndarray, np.ndarray]) -> None:
     points, segments = polygon
     wanted = crossing_pairs(points, segments)
@@ -113,6 +114,7 @@ def crosses(a: Any, b: Any, c: Any, d: Any) -> bool:
     return orient(a, b, c) * orient(a, b, d) < 0 and orient(c, d, a) * orient(c, d, b) < 0
 
 
+@pytest.mark.deep("earcut-water-huge")
 def test_regions_do_not_mix_inside_and_outside(polygon: tuple[np.ndarray, np.ndarray]) -> None:
     points, segments = polygon
     mesh = ConstrainedDelaunay(points, segments, crossing="split")

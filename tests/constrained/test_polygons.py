@@ -439,6 +439,7 @@ class TestWhatIsNoGeometry:
         with pytest.raises(errors.InputError):
             triangulate_polygon(deep)
 
+    @pytest.mark.deep
     def test_collections_of_shapely_are_followed_all_the_way(self) -> None:
         geometry = shapely.Polygon(RING)
         for _ in range(5000):

@@ -339,6 +339,7 @@ def test_workers_do_not_show_in_many_blocks() -> None:
 
 
 @pytest.mark.parametrize("name", sorted(datasets.GENERATORS))
+@pytest.mark.sampled(6)
 def test_every_generator_exactly(name: str) -> None:
     points = datasets.GENERATORS[name](1500, seed=8)
     order = np.lexsort(points.T[::-1])[::3]

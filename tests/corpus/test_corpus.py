@@ -33,6 +33,7 @@ def test_names_differ() -> None:
     assert len({path.stem for path in FILES}) == len(FILES) >= 50
 
 
+@pytest.mark.sampled(15)
 def test_reference_triangulates(corpus_case: tuple[str, np.ndarray, str]) -> None:
     points = corpus_case[1]
     # The reference is quadratic; a connected part of the large cases keeps what is hard in them.

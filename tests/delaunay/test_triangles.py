@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from delone import DegenerateInputError, Delaunay, _core, datasets, reference
 from delone.testing import assert_delaunay, same_triangles, triangle_set
+from tiers import examples
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -107,6 +108,7 @@ def test_exact_translations_keep_triangles(name: str, offset: tuple[float, float
 
 
 @pytest.mark.parametrize("method", METHODS)
+@pytest.mark.sampled(3)
 def test_workers_do_not_show(method: str) -> None:
     # Enough points for several blocks, each of which a thread may take.
     points = datasets.gaussian_clusters(60_000)
@@ -138,7 +140,7 @@ def test_every_method_is_documented_and_exact(method: str) -> None:
         assert_delaunay(points, mesh.simplices, neighbors=mesh.neighbors)
 
 
-@settings(max_examples=200)
+@settings(max_examples=examples(40, deep=400))
 @given(st.data())
 def test_small_lattices(data: st.DataObject) -> None:
     side = data.draw(st.integers(3, 6))
@@ -147,13 +149,13 @@ def test_small_lattices(data: st.DataObject) -> None:
     compare_with_reference(points)
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(20, deep=200))
 @given(st.lists(st.tuples(DOUBLE, DOUBLE), min_size=3, max_size=12))
 def test_any_doubles(points: list[tuple[float, float]]) -> None:
     compare_with_reference(points)
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(20, deep=200))
 @given(
     st.lists(
         st.tuples(st.integers(-2, 2), st.integers(-2, 2)), min_size=4, max_size=12, unique=True

@@ -38,6 +38,8 @@ GENERATORS = {
 
 @pytest.mark.parametrize("tiles", [1, 2, 5, 16, 64])
 @pytest.mark.parametrize("name", GENERATORS)
+@pytest.mark.deep("*-16", "*-64", "mixed_exponents-*")
+@pytest.mark.sampled(12)
 def test_tiles_agree_with_memory(
     name: str, tiles: int, tmp_path: Path, canonical: Callable[[Any], Any]
 ) -> None:
@@ -112,6 +114,7 @@ def test_the_order_of_rows_changes_nothing(tmp_path: Path, canonical: Callable[[
         [(x, y) for x in (-0.0, 0.0, 1.0) for y in (0.0, -0.0, 2.0)],
     ],
 )
+@pytest.mark.sampled(3)
 def test_few_points(points: Any, tmp_path: Path, canonical: Callable[[Any], Any]) -> None:
     tin = distributed.triangulate(np.array(points, float), tmp_path / "tin", tile_points=3)
     right = Delaunay(np.array(points, float))
@@ -121,6 +124,8 @@ def test_few_points(points: Any, tmp_path: Path, canonical: Callable[[Any], Any]
 
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("size", [5, 40])
+@pytest.mark.deep("*-5")
+@pytest.mark.sampled(19)
 def test_the_corpus_in_tiles(
     corpus_case: Any, size: int, tmp_path: Path, canonical: Callable[[Any], Any]
 ) -> None:

@@ -279,6 +279,7 @@ def renumber(columns: dict[str, Any]) -> None:
         ("vertices", disown, "points is 0 instead of"),
     ],
 )
+@pytest.mark.sampled(3)
 def test_what_is_wrong_is_found(
     tin: distributed.TiledDelaunay, table: str, change: Any, words: str, tmp_path: Path
 ) -> None:

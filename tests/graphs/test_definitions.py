@@ -104,6 +104,7 @@ def flat(request: pytest.FixtureRequest) -> Floats:
 
 
 @pytest.mark.parametrize("boundary", ["closed", "open"])
+@pytest.mark.sampled(16)
 def test_gabriel(points: Floats, boundary: str) -> None:
     expected = proximity.gabriel(proximity.exact(points), closed=boundary == "closed")
     assert pairs(graphs.gabriel(points, boundary=boundary)) == expected
@@ -111,6 +112,7 @@ def test_gabriel(points: Floats, boundary: str) -> None:
     assert pairs(found) == expected
 
 
+@pytest.mark.sampled(11)
 def test_relative_neighborhood(points: Floats) -> None:
     expected = proximity.relative_neighborhood(proximity.exact(points))
     assert pairs(graphs.relative_neighborhood(points)) == expected
@@ -119,6 +121,8 @@ def test_relative_neighborhood(points: Floats) -> None:
 
 @pytest.mark.parametrize("boundary", ["closed", "open"])
 @pytest.mark.parametrize("beta", [1 + 2**-52, 1.1, 1.25, 1.5, 2])
+@pytest.mark.deep("larger sphere-*")
+@pytest.mark.sampled(47)
 def test_lunes(points: Floats, beta: float, boundary: str) -> None:
     expected = proximity.lunes(proximity.exact(points), beta, closed=boundary == "closed")
     assert pairs(graphs.beta_skeleton(points, beta, boundary=boundary)) == expected
@@ -126,6 +130,7 @@ def test_lunes(points: Floats, beta: float, boundary: str) -> None:
 
 @pytest.mark.parametrize("boundary", ["closed", "open"])
 @pytest.mark.parametrize("beta", [1, 1 + 2**-52, 1.1, 1.25, 1.5, 2])
+@pytest.mark.sampled(32)
 def test_circles(flat: Floats, beta: float, boundary: str) -> None:
     expected = proximity.circles(proximity.exact(flat), beta, closed=boundary == "closed")
     found = graphs.beta_skeleton(flat, beta, kind="circle", boundary=boundary)

@@ -76,6 +76,7 @@ def by_points(points: Floats, found: NDArray[np.int32], *, directed: bool) -> An
 
 
 @pytest.mark.parametrize(("name", "survey"), CASES)
+@pytest.mark.sampled(14)
 def test_the_order_of_rows_does_not_matter(name: str, survey: str) -> None:
     points, directed = SURVEYS[survey], name == "directed"
     expected = by_points(points, edges(name, points), directed=directed)
@@ -85,6 +86,13 @@ def test_the_order_of_rows_does_not_matter(name: str, survey: str) -> None:
 
 
 @pytest.mark.parametrize(("name", "survey"), CASES)
+@pytest.mark.deep(
+    "gabriel-uniform in 3-D",
+    "lunes-uniform in 3-D",
+    "open gabriel-uniform in 3-D",
+    "relative-uniform in 3-D",
+)
+@pytest.mark.sampled(13)
 def test_units_and_threads_do_not_matter(name: str, survey: str) -> None:
     points = SURVEYS[survey]
     expected = edges(name, points, workers=1)
@@ -96,6 +104,7 @@ def test_units_and_threads_do_not_matter(name: str, survey: str) -> None:
 
 
 @pytest.mark.parametrize("survey", SURVEYS)
+@pytest.mark.deep("uniform", "uniform in 3-D")
 def test_each_graph_is_inside_the_next(survey: str) -> None:
     points = SURVEYS[survey]
 
@@ -112,6 +121,7 @@ def test_each_graph_is_inside_the_next(survey: str) -> None:
 
 
 @pytest.mark.parametrize("survey", SURVEYS)
+@pytest.mark.deep("uniform", "uniform in 3-D")
 def test_the_beta_skeletons_shrink(survey: str) -> None:
     points = SURVEYS[survey]
     for kind in ("lune", "circle") if points.shape[1] == 2 else ("lune",):

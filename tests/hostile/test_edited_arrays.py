@@ -104,6 +104,7 @@ def saved(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Any
 
 @pytest.mark.parametrize("edit", EDITS)
 @pytest.mark.parametrize("name", MAKE)
+@pytest.mark.sampled(21)
 def test_each_array_edited(saved, tmp_path: Path, name: str, edit: str) -> None:
     made, whole, arrays = saved(name)
     path = tmp_path / "a.npz"

@@ -88,6 +88,7 @@ def test_what_expands_without_end(tmp_path: Path, name: str) -> None:
 
 @pytest.mark.parametrize("method", [zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
 @pytest.mark.parametrize("read", [read_points, read_mesh, delone.Delaunay.load, READ["tile"]])
+@pytest.mark.sampled(4)
 def test_a_directory_that_lies(tmp_path: Path, read, method: int) -> None:
     path = tmp_path / "a.npz"
     expanding(path, SAVED["Delaunay 2-D"](), method)

@@ -39,6 +39,7 @@ def command(folder, *arguments):
         ("tile", "evil.geojson", "-o", "out.tin"),
     ],
 )
+@pytest.mark.sampled(3)
 def test_commands(tmp_path, canary, listener, arguments, source):
     source = source.format(file=canary.csv, url=listener.url)
     text = Template(VIRTUAL.read_text(encoding="utf-8")).substitute(source=source)

@@ -21,6 +21,7 @@ from delone import (
     datasets,
     predicates,
 )
+from tiers import examples
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -148,6 +149,7 @@ def layered() -> NDArray[np.float64]:
         pytest.param(np.round(in_ball(900, 6) * 40) * (1, 0, 0) + in_ball(900, 7) ** 9, id="spine"),
     ],
 )
+@pytest.mark.sampled(3)
 def test_what_cells_leave_out_is_inside(points: NDArray[np.float64]) -> None:
     """So many points that most are told to be inside by their direction and depth."""
     hull = check(points)
@@ -159,13 +161,13 @@ def test_what_cells_leave_out_is_inside(points: NDArray[np.float64]) -> None:
 
 
 @given(st.integers(2, 3).flatmap(lambda d: st.lists(st.tuples(*[SMALL] * d), max_size=16)))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(30, deep=300), deadline=None)
 def test_small_integers(points: list[Any]) -> None:
     attempt(points)
 
 
 @given(st.integers(2, 3).flatmap(lambda d: st.lists(st.tuples(*[DOUBLE] * d), max_size=10)))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(20, deep=200), deadline=None)
 def test_any_doubles(points: list[Any]) -> None:
     attempt(points)
 

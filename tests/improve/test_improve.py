@@ -131,6 +131,7 @@ def test_a_sliver_in_an_octahedron_goes() -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
+@pytest.mark.sampled(1)
 def test_slivers_of_uniform_points_go(seed: int) -> None:
     given = uniform(300, seed)
     mesh = checked(given)
@@ -200,6 +201,7 @@ def lifted(a: Any, weight: Fraction, b: Any) -> list[Fraction]:
     return [*e, dot(e, e) - weight]
 
 
+@pytest.mark.deep
 def test_exudation_alone_makes_a_regular_triangulation() -> None:
     """Across each face the far vertex is above the plane of the lifted corners, exactly."""
     given = uniform(300)

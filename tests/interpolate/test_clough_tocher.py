@@ -123,6 +123,7 @@ def test_too_few_sweeps_are_told() -> None:
         CloughTocher(points, bumps(points), tol=1e-14, max_iter=1)((0.5, 0.5))
 
 
+@pytest.mark.deep
 def test_agrees_with_scipy() -> None:
     interpolate = pytest.importorskip("scipy.interpolate")
     points = datasets.uniform(500, seed=12)

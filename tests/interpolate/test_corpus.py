@@ -28,6 +28,7 @@ def places(mesh: Delaunay) -> Any:
 
 
 @pytest.mark.parametrize("method", sorted(METHODS))
+@pytest.mark.sampled(71)
 def test_on_the_corpus(corpus_case: Any, method: str) -> None:
     mesh = Delaunay(corpus_case.points[:MOST])
     values = np.random.default_rng(2).random(mesh.npoints)[mesh.duplicate_of]

@@ -55,6 +55,7 @@ def test_sites_come_back_bit_for_bit(method: str, points: str) -> None:
 
 @pytest.mark.parametrize("points", SETS)
 @pytest.mark.parametrize("method", ALL)
+@pytest.mark.deep("farin-circle", "sibson-circle", "sibson1-circle")
 def test_inside_there_is_always_a_value(method: str, points: str) -> None:
     mesh = Delaunay(datasets.GENERATORS[points](200, seed=4))
     values = linear(mesh.points)
@@ -68,6 +69,7 @@ def test_inside_there_is_always_a_value(method: str, points: str) -> None:
 
 @pytest.mark.parametrize("points", SETS)
 @pytest.mark.parametrize("method", BETWEEN)
+@pytest.mark.deep("farin-circle", "sibson-circle", "sibson1-circle")
 def test_linear_functions_are_reproduced(method: str, points: str) -> None:
     mesh = Delaunay(datasets.GENERATORS[points](200, seed=5))
     made = interpolator(method, mesh, linear(mesh.points), extrapolate="linear")

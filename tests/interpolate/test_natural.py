@@ -39,6 +39,7 @@ def compare(points: Any, queries: Any, kind: str) -> int:
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", ["uniform", "grid", "circle", "integer_lattice"])
+@pytest.mark.sampled(3)
 def test_weights_are_those_of_the_definition(name: str, kind: str) -> None:
     points = np.unique(datasets.GENERATORS[name](16, seed=2), axis=0)
     rng = np.random.default_rng(3)

@@ -175,6 +175,7 @@ def test_inside_of_spheres_with_many_sites(seed: int) -> None:
 
 
 @pytest.mark.parametrize("path", sorted(CORPUS.glob("*.json")), ids=lambda path: path.stem)
+@pytest.mark.sampled(3)
 def test_on_the_corpus(path: Path) -> None:
     points = np.array(json.loads(path.read_text(encoding="utf-8"))["points"], dtype=float)
     # The definition is of distinct sites.

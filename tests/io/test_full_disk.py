@@ -138,6 +138,7 @@ def test_notes_and_arrays_of_tiles(tmp_path: Path) -> None:
     ],
     ids=lambda arguments: arguments[0],
 )
+@pytest.mark.deep("triangulate")
 def test_the_command(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
     arguments: list[str],
@@ -192,6 +193,7 @@ PLAIN = [case for case in WRITERS if case[0] in ("plane", "raster", "cells")]
 
 @pytest.mark.skipif(os.name == "nt", reason="characters that Windows has not in names")
 @pytest.mark.parametrize("case", PLAIN, ids=[f"{what}{suffix}" for what, suffix, _ in PLAIN])
+@pytest.mark.sampled(11)
 def test_names_are_no_patterns(tmp_path: Path, case: object) -> None:
     _, suffix, write = case  # type: ignore[misc]
     for name in ODD if suffix in (".vtu", ".csv") else ODD[-1:]:
@@ -207,6 +209,7 @@ def test_names_are_no_patterns(tmp_path: Path, case: object) -> None:
 
 
 @pytest.mark.parametrize("case", PLAIN, ids=[f"{what}{suffix}" for what, suffix, _ in PLAIN])
+@pytest.mark.sampled(11)
 def test_folders_are_no_patterns(tmp_path: Path, case: object) -> None:
     _, suffix, write = case  # type: ignore[misc]
     folder = tmp_path / "[a-z]*" / "a;b'{c}%d%s#$HOME ~ü"

@@ -104,6 +104,7 @@ def test_torn(tmp_path, mesh, suffix):
         (".msh", 3, b"$End"),
     ],
 )
+@pytest.mark.sampled(3)
 def test_meshes_are_refused_wherever_they_are_cut(tmp_path, suffix, dimension, end):
     file = tmp_path / f"a{suffix}"
     points = np.random.default_rng(7).random((8, dimension))

@@ -7,7 +7,6 @@ is in no layer or table fails: a new part needs a place. ARCHITECTURE.md shows e
 
 from __future__ import annotations
 
-import ast
 import re
 import shutil
 import tomllib
@@ -16,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from structure import knots, python_graph, rust_text, used_modules
+from structure import imports, knots, python_graph, rust_text, used_modules
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -222,34 +221,27 @@ def python_part(path: Path, package: Path) -> str:
     return "delone" if relative.stem == "__init__" else relative.stem
 
 
-def python_imports(path: Path, package: Path) -> set[str]:
+def python_imports(path: Path, parts: set[str]) -> set[str]:
     """The parts of delone that a module imports, wherever in the file."""
-    parts = {p.stem if p.is_file() else p.name for p in package.iterdir()} - {"__init__"}
     found = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{path}: imports are absolute"
-            names = [f"{node.module}.{alias.name}" for alias in node.names]
-        else:
-            continue
-        for name in names:
-            words = name.split(".")
-            if words[0] == "delone":
-                found.add(words[1] if len(words) > 1 and words[1] in parts else "delone")
+    for each in imports(path.read_text(encoding="utf-8")):
+        assert each.level == 0, f"{path}: imports are absolute"
+        words = each.module.split(".") + ([each.name] if each.name else [])
+        if words[0] == "delone":
+            found.add(words[1] if len(words) > 1 and words[1] in parts else "delone")
     return found
 
 
 def python_faults(package: Path) -> list[str]:
     level = {part: i for i, layer in enumerate(PYTHON) for part in layer}
+    parts = {p.stem if p.is_file() else p.name for p in package.iterdir()} - {"__init__"}
     faults = []
     for path in sorted(package.rglob("*.py")):
         part = python_part(path, package)
         if part not in level:
             faults.append(f"{path.relative_to(package)}: {part} is in no layer")
             continue
-        others = python_imports(path, package) - {part}
+        others = python_imports(path, parts) - {part}
         wrong = [name for name in others if level.get(name, level[part]) >= level[part]]
         wrong += sorted(others & INSIDE) if part in OUTSIDE else []
         wrong += sorted(others - GROUND_FLOOR) if part in ALONE else []

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 CONFTEST = Path(__file__).parents[1] / "conftest.py"
+ORACLES = CONFTEST.parent / "oracles"
 IN_A_TEST = "import pytest\ndef test_a(): pytest.importorskip('absent_library')\n"
 OF_A_MODULE = "import pytest\npytest.importorskip('absent_library')\ndef test_a(): pass\n"
 EXPECTED = "import pytest\ndef test_a(): pytest.skip('root may write anywhere')\n"
@@ -21,8 +22,9 @@ def run(tmp_path: Path, text: str, *, any_skip: str = "") -> tuple[int, str]:
     folder.mkdir(parents=True)
     shutil.copy(CONFTEST, tmp_path / "tests")
     (folder / "test_resume.py").write_text(text)
+    options = ["-q", "-p", "no:cacheprovider", "--rootdir", ".", "-o", f"pythonpath={ORACLES}"]
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir", ".", "tests"],
+        [sys.executable, "-m", "pytest", *options, "tests"],
         cwd=tmp_path, env={**os.environ, "DELONE_ANY_SKIP": any_skip}, capture_output=True,
         text=True, check=False,
     )  # fmt: skip

@@ -23,6 +23,7 @@ from delone import (
     NonFiniteError,
     ShapeError,
 )
+from tiers import examples
 
 CORPUS = Path(__file__).parents[1] / "corpus"
 
@@ -79,7 +80,7 @@ def sequences(draw: st.DrawFn) -> tuple[list[Any], list[Any]]:
 
 
 @given(sequences())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(30, deep=300), deadline=None)
 def test_every_edit_equals_a_fresh_build(sequence: tuple[list[Any], list[Any]]) -> None:
     start, edits = sequence
     live = Dynamic(np.array(start, dtype=float).reshape(-1, 2))

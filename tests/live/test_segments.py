@@ -164,6 +164,7 @@ def edges(simplices: np.ndarray, marked: np.ndarray) -> set[frozenset[int]]:
 
 @pytest.mark.parametrize("crossing", ["raise", "split"])
 @pytest.mark.parametrize("name", PLACES)
+@pytest.mark.sampled(3)
 def test_every_edit_equals_a_fresh_build(name: str, crossing: str) -> None:
     for seed in range(12):
         twin = Twin(random.Random(f"{name} {seed}"), PLACES[name], crossing)
@@ -189,6 +190,7 @@ def test_long_segments_through_many_points() -> None:
     assert live.validate()
 
 
+@pytest.mark.deep
 def test_edits_of_crossings_stay_local() -> None:
     draw = np.random.default_rng(5)
     live = Dynamic(draw.random((20_000, 2)), crossing="split")

@@ -23,6 +23,7 @@ from delone import (
     NonFiniteError,
     ShapeError,
 )
+from tiers import examples
 
 CORPUS = Path(__file__).parents[1] / "corpus"
 
@@ -94,7 +95,7 @@ def table(points: Any) -> np.ndarray:
 
 
 @given(sequences())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(30, deep=300), deadline=None)
 def test_every_edit_equals_a_fresh_build(sequence: tuple[list[Any], list[Any]]) -> None:
     start, edits = sequence
     live = Dynamic(table(start))

@@ -109,6 +109,7 @@ def inside(points: Floats, triangle: Any, a: Any, b: Any) -> tuple[Fraction, Fra
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.sampled(3)
 def test_segments_meet_what_they_cross_in_order(seed: int) -> None:
     rng = np.random.default_rng(seed)
     for points, triangles, queries in cases(seed):
@@ -171,6 +172,7 @@ def wheel(kind: str, count: int) -> Floats:
 
 @pytest.mark.parametrize("calls", ["one", "many"])
 @pytest.mark.parametrize("kind", ["hub", "parabola", "circle"])
+@pytest.mark.sampled(3)
 def test_the_nearest_vertex_beside_hubs(kind: str, calls: str) -> None:
     points = wheel(kind, 300)[np.random.default_rng(0).permutation(len(wheel(kind, 300)))]
     rng = np.random.default_rng(1)

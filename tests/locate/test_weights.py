@@ -74,6 +74,7 @@ def point_sets() -> dict[str, Floats]:
 
 
 @pytest.mark.parametrize("name", sorted(point_sets()))
+@pytest.mark.sampled(3)
 def test_sibson_weights_are_areas(name: str) -> None:
     points = point_sets()[name]
     mesh, index = locator(points)
@@ -208,6 +209,7 @@ def test_weights_and_values_agree() -> None:
     assert combined == pytest.approx(direct, abs=1e-13, nan_ok=True)
 
 
+@pytest.mark.deep
 def test_scipys_scheme_and_gradients() -> None:
     interpolate = pytest.importorskip("scipy.interpolate")
     rng = np.random.default_rng(11)

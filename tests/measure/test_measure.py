@@ -195,6 +195,7 @@ def test_many_simplices_are_measured_row_by_row(workers: int) -> None:
 
 
 @pytest.mark.parametrize("workers", [1, 2, 5])
+@pytest.mark.sampled(1)
 def test_many_edges_and_faces_are_each_listed_once(workers: int) -> None:
     plane = Delaunay(datasets.uniform(60_000, seed=1))
     found = _core.edges2(plane.simplices, plane.neighbors, plane.npoints, workers)

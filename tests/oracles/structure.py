@@ -10,6 +10,7 @@ import ast
 import itertools
 import re
 import textwrap
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
@@ -31,17 +32,38 @@ def python_files(package: Path = PACKAGE) -> dict[str, Path]:
     return found
 
 
+class Import(NamedTuple):
+    """What one name of an import statement says; `name` is None for ``import module``."""
+
+    module: str
+    name: str | None
+    known_as: str
+    level: int = 0
+
+
+@cache
+def imports(text: str) -> tuple[Import, ...]:
+    """All imports of a source, wherever in it. Tests ask for the same sources again and again."""
+    found = []
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.ImportFrom):
+            module = node.module or ""
+            found += [Import(module, a.name, a.asname or a.name, node.level) for a in node.names]
+        elif isinstance(node, ast.Import):
+            found += [Import(a.name, None, a.asname or a.name) for a in node.names]
+    return tuple(found)
+
+
 def python_graph(package: Path = PACKAGE) -> Graph:
     """What each file imports, wherever in the file, and for types alone, too."""
     files = python_files(package)
-    trees = {name: ast.parse(path.read_text(encoding="utf-8")) for name, path in files.items()}
+    found = {name: imports(path.read_text(encoding="utf-8")) for name, path in files.items()}
     exports = {
-        (name, alias.asname or alias.name): (node.module, alias.name)
-        for name, tree in trees.items()
+        (name, each.known_as): (each.module, each.name)
+        for name, each_import in found.items()
         if files[name].stem == "__init__"
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom) and node.module
-        for alias in node.names
+        for each in each_import
+        if each.name is not None
     }
 
     def home(module: str, name: str) -> str:
@@ -49,16 +71,13 @@ def python_graph(package: Path = PACKAGE) -> Graph:
             module, name = exports[module, name]
         return f"{module}.{name}" if f"{module}.{name}" in files else module
 
-    graph: Graph = {}
-    for file, tree in trees.items():
-        found = set()
-        for node in ast.walk(tree):
-            if isinstance(node, ast.ImportFrom) and node.module:
-                found |= {home(node.module, alias.name) for alias in node.names}
-            elif isinstance(node, ast.Import):
-                found |= {alias.name for alias in node.names}
-        graph[file] = (found & set(files)) - {file}
-    return graph
+    return {
+        file: {
+            each.module if each.name is None else home(each.module, each.name) for each in listed
+        }
+        & set(files) - {file}
+        for file, listed in found.items()
+    }
 
 
 def knots(graph: Graph) -> list[list[str]]:
@@ -238,7 +257,11 @@ def core_graph() -> Graph:
 
 def rust_text(path: Path) -> str:
     """Source without comments and strings."""
-    text = path.read_text(encoding="utf-8")
+    return _code(path.read_text(encoding="utf-8"))
+
+
+@cache
+def _code(text: str) -> str:
     text = re.sub(r"//[^\n]*", "", text)
     text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
     return re.sub(r'"(\\.|[^"\\])*"', '""', text)
@@ -261,12 +284,16 @@ def first_words(tree: str) -> list[str]:
 
 def used_modules(path: Path) -> set[str]:
     """Modules of the same crate that a file of Rust mentions in paths."""
-    text = rust_text(path)
-    return {
+    return set(_mentioned(rust_text(path)))
+
+
+@cache
+def _mentioned(text: str) -> frozenset[str]:
+    return frozenset(
         word
         for match in re.finditer(r"\bcrate::", text)
         for word in first_words(text[match.end() :])
-    }
+    )
 
 
 if __name__ == "__main__":

@@ -85,6 +85,7 @@ def test_an_example_opens_with_title_and_requirements(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", SCRIPTS, ids=name_of)
+@pytest.mark.deep
 def test_an_example_runs_as_a_script(path: Path, tmp_path: Path) -> None:
     missing = [name for name in needed(path) if importlib.util.find_spec(name) is None]
     if missing:

@@ -93,6 +93,7 @@ def field(places: Floats) -> Floats:
         (NaturalNeighbor, {"kind": "laplace"}),
     ],
 )
+@pytest.mark.sampled(3)
 def test_linear_fields_come_back(kind: Any, options: dict[str, str], order: str) -> None:
     points = surrounded(2, 2000, 5)
     asked = queries(order, 2)

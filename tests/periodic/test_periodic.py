@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from delone import Delaunay, periodic
 from delone.errors import DegenerateInputError, DtypeError, InputError, NonFiniteError
 from delone.periodic import PeriodicDelaunay
+from tiers import examples
 
 Corner = tuple[int, int, int]
 
@@ -49,7 +50,7 @@ SITES = st.lists(
 )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(30, deep=300), deadline=None)
 @given(SITES, st.sampled_from([(8, 6), (8, 8), (40, 6), (8.5, 6.25)]))
 def test_triangles_are_those_of_exact_copies(
     sites: list[tuple[int, int]], periods: tuple[float, float]
@@ -60,7 +61,7 @@ def test_triangles_are_those_of_exact_copies(
     assert mesh.nsimplex == 2 * len(sites) and len(mesh.edges) == 3 * len(sites)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(20, deep=200), deadline=None)
 @given(SITES, st.sampled_from([(8, None), (None, 6), (8.5, None), (None, 30)]))
 def test_one_period_is_enough(
     sites: list[tuple[int, int]], periods: tuple[float | None, float | None]
@@ -76,6 +77,7 @@ def test_one_period_is_enough(
     assert (mesh.neighbors < 0).any()
 
 
+@pytest.mark.deep
 def test_no_copy_is_in_a_circle_where_copies_are_no_doubles() -> None:
     rng = np.random.default_rng(1)
     points = rng.random((30, 2)) * [0.3, 1.1]

@@ -147,6 +147,7 @@ def test_walks_to_hidden_points_across_many_short_periods() -> None:
 @pytest.mark.parametrize("periods", [(3.0, 2.0), (3.0, None), (None, 2.0), (0.1 * 30, 0.7 * 3)])
 @pytest.mark.parametrize("weighted", [False, True])
 @pytest.mark.parametrize("seed", range(3))
+@pytest.mark.sampled(4)
 def test_the_verdict_is_that_of_fractions(periods: Periods, weighted: bool, seed: int) -> None:
     """Triangulations for other weights, at the weights in question."""
     rng = np.random.default_rng(seed)

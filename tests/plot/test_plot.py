@@ -150,6 +150,7 @@ def surface_colors(ax):
 
 @pytest.mark.parametrize("domain", ["points", "mesh"])
 @pytest.mark.parametrize("count", [1500, 3000, 100_000])
+@pytest.mark.sampled(3)
 def test_colors_are_those_of_the_color_bar(domain, count):
     if domain == "points":
         mesh = Delaunay(datasets.uniform(count))

@@ -90,6 +90,7 @@ def test_a_larger_budget_refines_what_a_smaller_one_leaves() -> None:
 @pytest.mark.parametrize("angle", [20, 30])
 @pytest.mark.parametrize("gap", [1e-9, 1e-12])
 @pytest.mark.parametrize("kind", ["triangles", "pairs", "corners"])
+@pytest.mark.sampled(5)
 def test_a_square_with_a_thousand_needles_is_refined_elsewhere(
     kind: str, gap: float, angle: float
 ) -> None:

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from delone import Delaunay
 from delone.errors import DegenerateInputError, NonFiniteError, ShapeError
 from delone.regular import RegularTriangulation
+from tiers import examples
 
 
 def triangles(mesh: Any) -> set[frozenset[int]]:
@@ -84,7 +85,7 @@ SITES = st.lists(
 )
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=examples(24, deep=240), deadline=None)
 @given(SITES, st.lists(st.integers(-3, 12), min_size=9, max_size=9))
 def test_triangles_are_the_lower_side_of_the_lifted_hull(
     sites: list[tuple[int, int]], weights: list[int]

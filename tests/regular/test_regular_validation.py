@@ -104,6 +104,7 @@ def test_the_corpus_is_proven(corpus_case: CorpusCase) -> None:
 
 @pytest.mark.parametrize("ndim", DIMENSIONS)
 @pytest.mark.parametrize("seed", range(40))
+@pytest.mark.sampled(22)
 def test_the_verdict_is_that_of_fractions(ndim: int, seed: int) -> None:
     """Triangulations for other weights, at the weights in question."""
     rng = np.random.default_rng(seed)

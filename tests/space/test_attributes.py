@@ -103,6 +103,8 @@ def test_transforms_give_barycentric_coordinates() -> None:
 
 @pytest.mark.parametrize("name", GENERATORS)
 @pytest.mark.parametrize("workers", [1, 3])
+@pytest.mark.deep("3-mixed_exponents")
+@pytest.mark.sampled(4)
 def test_find_simplex_by_definition(name: str, workers: int) -> None:
     points = datasets.GENERATORS3[name](60, seed=5)
     mesh = Delaunay(points, workers=workers)

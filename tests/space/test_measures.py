@@ -119,6 +119,7 @@ def test_single_tetrahedra(name: str) -> None:
 
 
 @pytest.mark.parametrize("exponent", range(6, 17, 2))
+@pytest.mark.sampled(3)
 def test_lattices_that_are_shaken(exponent: int) -> None:
     """Lattices shaken by little: some of their cubes hold slivers, nearly flat squares."""
     rng = np.random.default_rng(exponent)

@@ -20,6 +20,7 @@ from delone import (
     reference,
 )
 from delone.testing import assert_delaunay, same_tetrahedra
+from tiers import examples
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,6 +50,8 @@ def lattice(side: int) -> NDArray[np.float64]:
 
 @pytest.mark.parametrize("name", GENERATORS)
 @pytest.mark.parametrize("n", [8, 60, 600])
+@pytest.mark.deep("60-mixed_exponents", "600-mixed_exponents")
+@pytest.mark.sampled(6)
 def test_every_generator_exactly(name: str, n: int) -> None:
     check(datasets.GENERATORS3[name](n, seed=n))
 
@@ -110,13 +113,13 @@ def test_exact_translations_change_nothing() -> None:
 
 
 @given(st.lists(st.tuples(SMALL, SMALL, SMALL), min_size=0, max_size=14))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(30, deep=300), deadline=None)
 def test_small_integers_by_the_reference(points: list[Any]) -> None:
     compare(points)
 
 
 @given(st.lists(st.tuples(DOUBLE, DOUBLE, DOUBLE), min_size=4, max_size=9))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(20, deep=200), deadline=None)
 def test_any_doubles_by_the_reference(points: list[Any]) -> None:
     compare(points)
 

@@ -125,6 +125,7 @@ def test_areas_sum_to_that_of_the_region(name: str) -> None:
 
 @pytest.mark.parametrize("name", REGIONS)
 @pytest.mark.parametrize("kind", ["scattered", "cube", "hemisphere", "circle"])
+@pytest.mark.sampled(6)
 def test_sampled_places_are_in_the_right_cells(name: str, kind: str) -> None:
     rng = np.random.default_rng(len(name))
     sites: Any = {

@@ -75,6 +75,7 @@ def test_weights_are_those_of_rational_determinants():
         np.testing.assert_allclose(table.weights[part], want, rtol=1e-10, atol=1e-15)
 
 
+@pytest.mark.deep
 def test_constants_and_the_order_of_linear_functions():
     queries = scattered(3000, seed=3)
     slope = np.array([1.0, -2.0, 0.5])

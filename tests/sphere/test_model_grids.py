@@ -87,6 +87,8 @@ def test_all_cells_are_vertices_and_cover_the_sphere(name):
 
 
 @pytest.mark.parametrize("name", [*DEGREES, *RADIANS])
+@pytest.mark.deep("RLL 1 degree")
+@pytest.mark.sampled(4)
 def test_a_harmonic_is_interpolated(name):
     sites = (DEGREES | RADIANS)[name]()
     mesh = sphere.Delaunay(lonlat=sites, degrees=name in DEGREES)

@@ -35,6 +35,7 @@ def found(check: delone.SurfaceCheck) -> dict[tuple[int, int], tuple[str, bool]]
 
 
 @pytest.mark.parametrize(("points", "faces"), [pytest.param(*s[1:], id=s[0]) for s in soups()])
+@pytest.mark.sampled(18)
 def test_pairs_are_those_of_brute_force(points: Any, faces: Any) -> None:
     check = delone.check_surface(points, faces)
     assert found(check) == brute_pairs(points, faces)

@@ -31,6 +31,7 @@ def soup(seed: int) -> tuple[Any, Any]:
 
 
 @pytest.mark.parametrize("seed", range(15))
+@pytest.mark.sampled(3)
 def test_parts_conform_and_cover_their_sources(seed: int) -> None:
     points, faces = soup(seed)
     parts, source = delone.resolve_touches(points, faces)
@@ -57,6 +58,7 @@ def test_parts_conform_and_cover_their_sources(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
+@pytest.mark.sampled(3)
 def test_the_parts_do_not_depend_on_order_or_workers(seed: int) -> None:
     points, faces = soup(seed)
     rng = np.random.default_rng(seed)

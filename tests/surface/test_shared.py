@@ -51,6 +51,8 @@ def test_surfaces_that_cross_are_refused(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", files("tetgentests", ".off"))
+@pytest.mark.deep("bunny00.off", "turbine.off")
+@pytest.mark.sampled(8)
 def test_valid_surfaces(path: Path) -> None:
     check = delone.check_surface(*read(path))
     assert bool(check) == (path.name not in POLYGONS)

@@ -81,6 +81,7 @@ LEVELS = [0.5, 1, 2, 2.75, 3, 4]
 
 
 @pytest.mark.parametrize("tin", SURFACES)
+@pytest.mark.sampled(13)
 def test_contours_are_simple_and_never_cross(tin):
     found = tin.contours(LEVELS)
     lines = [found.coordinates(k) for k in range(len(found))]
@@ -148,6 +149,7 @@ def test_contours_do_not_depend_on_the_order_of_points(seed):
 
 
 @pytest.mark.parametrize("seed", range(12))
+@pytest.mark.sampled(3)
 def test_levels_a_few_roundings_apart(seed):
     # Contours are less than a unit in the last place of the coordinates apart: most would cross.
     rng = np.random.default_rng(seed)
@@ -213,6 +215,7 @@ def test_too_many_levels_are_refused_before_the_work():
 
 @pytest.mark.parametrize("rounds", [1, 2, 3, 5])
 @pytest.mark.parametrize("seed", range(8))
+@pytest.mark.sampled(6)
 def test_smoothed_contours_do_not_cross(seed, rounds):
     tin = lattice(5, seed)
     plain, smooth = tin.contours(interval=0.5), tin.contours(interval=0.5, smooth=rounds)

@@ -142,6 +142,7 @@ def test_a_pad_partly_in_cut_and_partly_in_fill():
 @pytest.mark.parametrize("shift", [0.0, 500_000.0])
 @pytest.mark.parametrize("lattice", [0.0, 5.0])
 @pytest.mark.parametrize("seed", range(6))
+@pytest.mark.sampled(6)
 def test_designs_are_between_cones(seed, lattice, shift):
     ground = rough(seed, shift, lattice)
     ring = star(seed, step=lattice) + shift
@@ -201,6 +202,7 @@ def test_a_tilted_pad_has_slopes_of_the_same_steepness():
         level().embank(SQUARE, (0.5, 0, 0), slope=0.5)
 
 
+@pytest.mark.deep
 def test_the_sharp_corner_of_a_tilted_pad_has_a_whole_cone():
     ring, plane = np.array([(40.0, 48), (80, 50), (40, 52)]), (0.4, 0.0, -26.0)
     places = np.random.default_rng(1).uniform(20, 80, (4000, 2))

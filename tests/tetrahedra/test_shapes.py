@@ -120,6 +120,8 @@ def judge(mesh: delone.TetMesh, points: Any, faces: Any) -> None:
 
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("inside", ["winding", "parity", "enclosed"])
+@pytest.mark.deep("parity-torus", "winding-torus")
+@pytest.mark.sampled(10)
 def test_judged_in_fractions(name: str, inside: str) -> None:
     points, faces = SHAPES[name]()
     mesh = delone.tetrahedralize(points, faces, inside=inside)

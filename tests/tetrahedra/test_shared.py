@@ -30,6 +30,7 @@ pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="needs public surfac
 
 
 @pytest.mark.parametrize("name", sorted(ADDED))
+@pytest.mark.sampled(3)
 def test_parts_are_filled_with_few_points(name: str) -> None:
     mesh = delone.tetrahedralize(FOLDER / f"{name}.off")
     assert mesh.validate()

@@ -14,6 +14,7 @@ from delone.datasets import tilted_grid, uniform
 from delone.errors import InputError
 from delone.voronoi import Voronoi
 from rational import area, exact
+from tiers import examples
 
 shapely = pytest.importorskip("shapely")
 
@@ -63,6 +64,8 @@ SITES = {
 
 @pytest.mark.parametrize("sites", SITES)
 @pytest.mark.parametrize("outline", OUTLINES)
+@pytest.mark.deep("fine star-line", "fine star-uniform")
+@pytest.mark.sampled(11)
 def test_cells_tile_the_outline(sites: str, outline: str) -> None:
     geometry = OUTLINES[outline]
     diagram = Voronoi(SITES[sites], clip=geometry)
@@ -107,7 +110,7 @@ def test_a_cell_may_have_several_parts_and_holes() -> None:
     assert total == pytest.approx(cell.area)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(40, deep=400), deadline=None)
 @given(
     st.lists(st.tuples(st.integers(0, 7), st.integers(0, 7)), min_size=1, max_size=20),
     st.tuples(st.integers(-3, 6), st.integers(-3, 6), st.integers(1, 9), st.integers(1, 9)),

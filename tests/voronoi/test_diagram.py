@@ -18,6 +18,7 @@ from delone.errors import DegenerateInputError, NonFiniteError, ShapeError
 from delone.predicates import incircle
 from delone.voronoi import Voronoi
 from rational import ulps
+from tiers import examples
 
 Exact = tuple[Fraction, Fraction]
 
@@ -126,7 +127,7 @@ def test_the_dictionary_has_each_ridge_between_its_sites() -> None:
     }
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(30, deep=300), deadline=None)
 @given(lattice_points(6))
 def test_regions_are_the_cycles_of_their_ridges(sites: list[tuple[int, int]]) -> None:
     diagram = Voronoi(sites)

@@ -84,6 +84,7 @@ def check(points: Any, outline: Any) -> Voronoi:
 
 
 @pytest.mark.parametrize("seed", range(6))
+@pytest.mark.sampled(3)
 def test_what_is_left_of_cells_is_that_of_fractions(seed: int) -> None:
     rng = np.random.default_rng(seed)
     outline = jagged(rng, 40) - shapely.Point(0.5, 0.5).buffer(0.1, quad_segs=3)

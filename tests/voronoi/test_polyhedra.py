@@ -18,6 +18,7 @@ from delone.errors import InputError
 from delone.voronoi.halfspaces import common_part
 from delone.voronoi.polyhedra import as_polyhedron
 from rational import Vector, cross, dot, exact, minus
+from tiers import examples
 
 CORPUS = Path(__file__).parent.parent / "corpus" / "space"
 
@@ -114,7 +115,7 @@ def check_faces(
 numbers = st.integers(-2, 2)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(60, deep=600), deadline=None)
 @given(st.lists(st.tuples(numbers, numbers, numbers, numbers), min_size=1, max_size=8))
 @example(TETRAHEDRON)
 @example(OPEN)
@@ -349,6 +350,7 @@ def exact_cells(points: list[Vector], rows: list[Vector]) -> list[list[set[Vecto
 
 
 @pytest.mark.parametrize("seed", range(6))
+@pytest.mark.sampled(3)
 def test_faces_of_a_hull_are_those_of_fractions(seed: int) -> None:
     """Polytopes of small integers, whose facets have many corners, and points in their middle."""
     rng = np.random.default_rng(seed)
@@ -390,6 +392,7 @@ def test_no_corner_of_a_hull_is_outside_of_its_planes(scale: float) -> None:
         assert (np.abs(farthest - body.planes[:, 3]) <= rounding).all()
 
 
+@pytest.mark.deep
 def test_half_spaces_around_a_ball_have_the_corners_of_fractions() -> None:
     rng = np.random.default_rng(11)
     normals = rng.normal(size=(400, 3))

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from delone.errors import DegenerateInputError, NonFiniteError, ShapeError
 from delone.voronoi import Voronoi
 from rational import area, exact
+from tiers import examples
 
 
 def weighted(n: int, spread: float, seed: int = 0) -> tuple[Any, Any]:
@@ -32,7 +33,7 @@ def test_a_random_query_is_in_the_cell_with_the_least_power(spread: float) -> No
         assert (along[:, 0] * towards[:, 1] - along[:, 1] * towards[:, 0] > -1e-12).all()
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(30, deep=300), deadline=None)
 @given(
     st.lists(
         st.tuples(st.integers(0, 5), st.integers(0, 5), st.integers(-4, 9)),

@@ -13,6 +13,7 @@ from delone import Delaunay, Voronoi
 from delone.errors import DegenerateInputError, InputError, ShapeError
 from delone.voronoi.rows import as_lists, from_the_gap, one_gap
 from rational import dot, exact, minus
+from tiers import examples
 
 
 def brute(points: Any, queries: Any) -> list[int]:
@@ -28,7 +29,7 @@ def brute(points: Any, queries: Any) -> list[int]:
 coordinates = st.integers(0, 5).map(lambda k: k / 4)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=examples(16, deep=160), deadline=None)
 @given(st.data())
 def test_the_nearest_site_is_that_of_fractions(data: Any) -> None:
     ndim = data.draw(st.sampled_from([2, 3]))

@@ -18,6 +18,7 @@ from delone.errors import DegenerateInputError, InputError, NonFiniteError, Shap
 from delone.predicates import insphere
 from rational import Vector, cross, dot, minus, ulps
 from rational import exact as exact_points
+from tiers import examples
 
 GRID = np.array(list(itertools.product(range(4), repeat=3)), dtype=float)
 
@@ -245,8 +246,9 @@ def test_volumes_are_those_of_rational_arithmetic() -> None:
     assert found == pytest.approx([float(v) for v in exact], rel=1e-13)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(12, deep=50), deadline=None)
 @given(st.lists(st.tuples(*[st.integers(0, 3)] * 3), min_size=5, max_size=9, unique=True))
+@pytest.mark.deep
 def test_cells_of_lattice_points_are_exact_in_a_box(sites: list[tuple[int, int, int]]) -> None:
     points = np.array(sites, dtype=float)
     bounds = ((-1.0, -1.0, -1.0), (4.0, 4.0, 4.0))
@@ -497,7 +499,7 @@ def least_power(mesh: RegularTriangulation) -> Fraction:
     return total
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(12, deep=120), deadline=None)
 @given(SITES)
 def test_the_lower_side_of_the_lifted_hull(sites: list[tuple[int, int, int, int]]) -> None:
     table = np.array(sites, dtype=float)
@@ -548,8 +550,9 @@ def test_a_light_site_is_hidden() -> None:
     assert not len(diagram.cell(8).neighbors)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(12, deep=50), deadline=None)
 @given(SITES.filter(lambda sites: len({s[:3] for s in sites}) == len(sites) < 10))
+@pytest.mark.deep
 def test_power_cells_in_a_box_are_those_of_all_half_spaces(
     sites: list[tuple[int, int, int, int]],
 ) -> None:

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from delone import PeriodicDelaunay, periodic
 from delone.errors import InputError, LimitError, NonFiniteError
 from delone.voronoi import Voronoi
+from tiers import examples
 
 
 def copies(points: Any, periods: tuple[float, float]) -> Any:
@@ -24,7 +25,7 @@ def corners(diagram: Voronoi, row: int) -> list[list[float]]:
     return sorted(np.round(diagram.cell(row).vertices, 9).tolist())
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=examples(16, deep=160), deadline=None)
 @given(
     st.lists(st.tuples(st.integers(0, 7), st.integers(0, 5)), min_size=1, max_size=12, unique=True),
     st.sampled_from([(8, 6), (8, 8), (24, 6)]),
@@ -105,7 +106,7 @@ def in_strip(points: Any, weights: Any, periods: Any, box: Any) -> tuple[Any, An
     return diagram, Voronoi(everyone, weights=heavy, clip=wide), lengths.max()
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=examples(24, deep=240), deadline=None)
 @given(
     st.lists(
         st.tuples(st.integers(0, 7), st.integers(0, 5), st.integers(-3, 6)),
@@ -178,7 +179,7 @@ def test_sites_on_a_line_along_the_period_have_strips() -> None:
     assert heavy.periods == (8.0, None)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=examples(16, deep=160), deadline=None)
 @given(
     st.lists(
         st.tuples(st.integers(0, 7), st.integers(0, 5), st.integers(-3, 6)),

@@ -1,5 +1,7 @@
 //! Constrained triangulations of points with many ties and touching segments, checked exactly.
 
+mod tier;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use delone_core::Point2;
@@ -9,6 +11,7 @@ use delone_core::error::{Error, Result};
 use delone_core::watch::Watch;
 use delone_predicates::{Sign, angle, incircle_canonical, lexicographic, orient2d};
 use proptest::prelude::*;
+use tier::cases;
 
 fn options(split: bool) -> Options {
     Options {
@@ -168,7 +171,7 @@ fn holds(points: &[Point2], segments: &[[u32; 2]]) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(cases(66, 800)))]
 
     #[test]
     fn lattices((points, segments) in lattice()) {
@@ -207,7 +210,7 @@ fn check_conforming(points: &[Point2], segments: &[[u32; 2]]) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(ProptestConfig::with_cases(cases(20, 200)))]
 
     #[test]
     fn conforming_lattices((points, segments) in lattice()) {

@@ -1,5 +1,7 @@
 //! Crossings of segments compared with rational numbers: the rounded point, and the pairs.
 
+mod tier;
+
 use delone_core::Point2;
 use delone_core::constrained::intersection::{crosses, intersection};
 use delone_core::constrained::pairs::{crossing_pairs, crossing_pairs_above};
@@ -8,6 +10,7 @@ use delone_core::watch::Watch;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 use proptest::prelude::*;
+use tier::cases;
 
 type Quad = [Point2; 4];
 
@@ -260,7 +263,7 @@ fn found(points: &[Point2], segments: &[[u32; 2]]) -> Vec<[u32; 2]> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(cases(66, 800)))]
 
     #[test]
     fn lattices(quad in lattice_quad()) {

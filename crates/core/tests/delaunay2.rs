@@ -1,5 +1,7 @@
 //! Whole triangulations: valid, canonical, the same for every method, order and number of workers.
 
+mod tier;
+
 use std::collections::BTreeSet;
 
 use delone_core::Point2;
@@ -9,6 +11,7 @@ use delone_core::delaunay2::{Method, Triangulation, triangulate};
 use delone_core::error::Error;
 use delone_core::watch::Watch;
 use proptest::prelude::*;
+use tier::cases;
 
 fn made(points: &[Point2], method: Method, workers: usize) -> Triangulation {
     triangulate(points, method, workers, &Watch::idle()).expect("a triangulation")
@@ -69,7 +72,7 @@ fn agree(points: &[Point2]) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(10_000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(1666, 20000)))]
 
     #[test]
     fn lattices_where_ties_are_everywhere(
@@ -82,7 +85,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(333, 4000)))]
 
     #[test]
     fn points_within_ulps_of_a_line(
@@ -100,7 +103,7 @@ proptest! {
 
 proptest! {
     // The sweep compares circles of any two sizes by integers of hundreds of limbs.
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig::with_cases(cases(50, 600)))]
 
     #[test]
     fn doubles_of_every_size(bits in prop::collection::vec(any::<(u64, u64)>(), 3..20)) {

@@ -1,5 +1,7 @@
 //! 3-D triangulations: valid, canonical, the same for every order and number of workers.
 
+mod tier;
+
 use std::collections::BTreeSet;
 
 use delone_core::Point3;
@@ -9,6 +11,7 @@ use delone_core::delaunay3::{Triangulation3, triangulate};
 use delone_core::error::Error;
 use delone_core::watch::Watch;
 use proptest::prelude::*;
+use tier::cases;
 
 fn made(points: &[Point3], workers: usize) -> Triangulation3 {
     triangulate(points, workers, &Watch::idle()).expect("a triangulation")
@@ -319,7 +322,7 @@ fn validation_distinguishes_ties_from_faults() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(333, 4000)))]
 
     #[test]
     fn lattices_where_ties_are_everywhere(
@@ -347,7 +350,7 @@ proptest! {
 
 proptest! {
     // The spheres of such doubles are compared by integers of hundreds of limbs.
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(ProptestConfig::with_cases(cases(20, 200)))]
 
     #[test]
     fn doubles_of_every_size(bits in prop::collection::vec(any::<[u64; 3]>(), 4..16)) {

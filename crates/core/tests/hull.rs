@@ -1,5 +1,7 @@
 //! 3-D hulls: around all points, with extreme points only, the same for every order of the rows.
 
+mod tier;
+
 use std::collections::BTreeSet;
 
 use delone_core::Point3;
@@ -7,6 +9,7 @@ use delone_core::hull::{Hull3, hull2, hull3};
 use delone_core::watch::Watch;
 use delone_predicates::{Point2, Sign, orient2d, orient3d};
 use proptest::prelude::*;
+use tier::cases;
 
 fn made(points: &[Point3]) -> Option<Hull3> {
     hull3(points, &Watch::idle()).expect("a hull")
@@ -106,7 +109,7 @@ fn sets() -> impl Strategy<Value = Vec<Point3>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(256))]
+    #![proptest_config(ProptestConfig::with_cases(cases(42, 512)))]
 
     #[test]
     fn hulls_are_right_and_the_same_for_every_order(points in sets(), by in any::<u64>()) {

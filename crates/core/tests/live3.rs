@@ -1,5 +1,7 @@
 //! Live 3-D triangulations against a fresh build after each edit.
 
+mod tier;
+
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -8,6 +10,7 @@ use delone_core::delaunay3::triangulate;
 use delone_core::live::space::Space;
 use delone_core::watch::Watch;
 use proptest::prelude::*;
+use tier::cases;
 
 fn idle() -> Watch<'static> {
     Watch::idle()
@@ -177,7 +180,7 @@ fn picked(rows: &[i64], at: impl Iterator<Item = usize>) -> Vec<i64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(333, 4000)))]
     #[test]
     fn every_edit_equals_a_fresh_build((points, edits) in edits()) {
         let mut twin = Twin::new(&points);

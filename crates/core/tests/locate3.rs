@@ -1,11 +1,14 @@
 //! 3-D point location against its definition, on triangulations and on parts of them.
 
+mod tier;
+
 use delone_core::Point3;
 use delone_core::delaunay3::triangulate;
 use delone_core::locate3::{Batch, Kept, Located, Locator, Tetrahedra, coordinates, find, nearest};
 use delone_core::watch::{IDLE, Watch};
 use delone_predicates::{Sign, nearer3, orient3d};
 use proptest::prelude::*;
+use tier::cases;
 
 type Rows = Vec<[i32; 4]>;
 
@@ -115,7 +118,7 @@ fn lattice() -> impl Strategy<Value = (Vec<Point3>, Vec<Point3>)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(128))]
+    #![proptest_config(ProptestConfig::with_cases(cases(21, 256)))]
 
     #[test]
     fn triangulations((points, queries) in lattice()) {

@@ -1,10 +1,14 @@
 //! The angle against integers without limit.
 
+#[path = "../../core/tests/tier/mod.rs"]
+mod tier;
+
 mod oracle;
 
 use delone_predicates::{Point2, Sign, angle};
 use oracle::{integers, sign_of};
 use proptest::prelude::*;
+use tier::cases;
 
 fn right(a: Point2, p: Point2, b: Point2) -> Sign {
     let v = integers(&[a, p, b]);
@@ -23,7 +27,7 @@ fn coordinate() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(666, 8000)))]
 
     #[test]
     fn angles(c in prop::array::uniform6(coordinate())) {

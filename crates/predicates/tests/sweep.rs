@@ -1,5 +1,8 @@
 //! The comparisons of the sweep against integers without limit.
 
+#[path = "../../core/tests/tier/mod.rs"]
+mod tier;
+
 mod oracle;
 
 use delone_predicates::sweep::{
@@ -11,6 +14,7 @@ use num_traits::{Signed, Zero};
 use oracle::points::power_of_two;
 use oracle::{integers, sign_of};
 use proptest::prelude::*;
+use tier::cases;
 
 /// Any finite double.
 fn double() -> impl Strategy<Value = f64> {
@@ -116,7 +120,7 @@ fn check_ends(s: [Point2; 3], t: [Point2; 3]) -> Result<bool, TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(166, 2000)))]
 
     #[test]
     fn parabolas(mut all in points::<3>()) {

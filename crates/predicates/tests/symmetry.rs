@@ -1,6 +1,9 @@
 //! Properties that hold for all finite doubles: an exchange of two points changes the sign, equal
 //! points give zero, a reflection changes the sign.
 
+#[path = "../../core/tests/tier/mod.rs"]
+mod tier;
+
 mod oracle;
 
 use delone_predicates::Sign;
@@ -8,6 +11,7 @@ use oracle::{INCIRCLE, INSPHERE, ORIENT2D, ORIENT3D, Predicate};
 use proptest::array::uniform;
 use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
 use proptest::prelude::*;
+use tier::cases;
 
 /// Any finite double, or a small integer times a power of two, so that ties happen.
 fn coordinate() -> impl Strategy<Value = f64> {
@@ -49,7 +53,7 @@ fn holds<const D: usize, const N: usize>(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(166, 2000)))]
 
     #[test]
     fn orient2d(p in points::<2, 3>(), i in 0..3_usize, j in 0..3_usize) {
