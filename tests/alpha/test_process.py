@@ -83,6 +83,7 @@ def test_ctrl_c_ends_one_call(ndim: int, name: str, call: str) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="RLIMIT_AS is kept on Linux alone")
+@pytest.mark.deep
 def test_memory_that_runs_out_on_the_way() -> None:
     process = start(
         """

@@ -18,6 +18,7 @@ SMALL = {
 
 
 @pytest.mark.parametrize("program", SMALL)
+@pytest.mark.sampled(2)
 def test_a_program_runs(program: str) -> None:
     pytest.importorskip("scipy")
     done = subprocess.run(

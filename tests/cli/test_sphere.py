@@ -76,6 +76,7 @@ def test_edges_other_formats_and_radians(world, tmp_path, command):
     assert (meshio.read(lines).points == want.points).all()
 
 
+@pytest.mark.deep
 def test_images_show_the_globe(world, tmp_path, command):
     image = pytest.importorskip("matplotlib.image")
     found = []

@@ -43,6 +43,7 @@ def finish(process: subprocess.Popen[str]) -> str:
     ],
     ids=["triangulate", "validate", "find_simplex"],
 )
+@pytest.mark.sampled(1)
 def test_ctrl_c_ends_one_call(name: str, call: str) -> None:
     # The profiler hears of each call of the core. Only an exception that leaves a call shows that
     # the signal came through from within: one that comes between two calls is tried again.
@@ -182,6 +183,7 @@ def test_memory_that_cannot_be_had() -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="RLIMIT_AS is kept on Linux alone")
+@pytest.mark.deep
 def test_memory_that_runs_out_on_the_way() -> None:
     process = start(
         """

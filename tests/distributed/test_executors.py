@@ -54,6 +54,7 @@ def test_a_process_that_dies_changes_nothing(
     assert np.array_equal(canonical(tin.simplices()), canonical(Delaunay(POINTS).simplices))
 
 
+@pytest.mark.deep
 def test_processes_that_die_on_and_on_are_an_error(started: list[Any], tmp_path: Path) -> None:
     def kill(progress: distributed.Progress) -> None:
         for worker in started if progress.stage == "begin" else []:

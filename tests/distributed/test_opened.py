@@ -345,6 +345,7 @@ def said(name: str) -> Callable[[dict[str, Any]], None]:
         ("vertices", holding("id", -1), "not a row of the source"),
     ],
 )
+@pytest.mark.sampled(6)
 def test_tables_of_another_kind_are_refused_by_name(
     tin: distributed.TiledDelaunay, table: str, change: Any, words: str, tmp_path: Path
 ) -> None:

@@ -65,6 +65,7 @@ def crash_at(at: int, how: Callable[[], None]) -> Callable[[str], None]:
     return step
 
 
+@pytest.mark.deep
 def test_a_crash_between_any_two_changes_is_survived(
     steps: int, tmp_path: Path, canonical: Callable[[Any], Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -56,6 +56,7 @@ def test_commands(tmp_path, canary, listener, arguments, source):
 
 
 @pytest.mark.parametrize("module", ["pickle", "numpy", "delone", "struct"])
+@pytest.mark.sampled(2)
 def test_workers_import_nothing_from_the_working_folder(tmp_path, monkeypatch, module):
     mark = tmp_path / "mark"
     (tmp_path / f"{module}.py").write_text(f"open({str(mark)!r}, 'w').close()\nraise SystemExit")

@@ -234,6 +234,7 @@ def test_nothing_is_done_without_leave() -> None:
         assert len(mesh.simplices) == len(given[1])
 
 
+@pytest.mark.deep
 def test_a_second_run_starts_where_the_first_ended() -> None:
     first = delone.improve(uniform(300), max_iter=1000)
     again = checked((first.points, first.simplices), max_iter=1000)
@@ -288,6 +289,7 @@ def test_regions_are_kept_apart() -> None:
     assert outside(mesh.simplices[mesh.region == 7]) == outside(again.simplices[again.region == 7])
 
 
+@pytest.mark.deep
 def test_fixed_points_stay() -> None:
     points, simplices = uniform(300)
     rows = np.arange(0, 300, 2)

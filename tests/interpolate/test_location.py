@@ -144,6 +144,7 @@ KINDS = ["constrained", "constrained comb", "mesh", "mesh comb"]
 
 
 @pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.sampled(2)
 def test_location_with_holes(kind: str) -> None:
     mesh = with_holes(kind)
     rng = np.random.default_rng(8)
@@ -176,6 +177,7 @@ def test_location_with_holes(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.sampled(2)
 def test_walks_skip_holes(kind: str) -> None:
     mesh = with_holes(kind)
     rng = np.random.default_rng(9)

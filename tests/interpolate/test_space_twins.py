@@ -136,6 +136,7 @@ def test_of_twins_at_any_gap(
 @example(-476, -199, [True, False, True], 1)
 @example(-476, -199, [True, False, True], 2)
 @example(-476, -199, [True, False, True], 3)
+@pytest.mark.deep
 def test_of_twins_far_closer_than_doubles_tell_elsewhere(
     exponent: int, scale: int, axes: list[bool], place: int
 ) -> None:

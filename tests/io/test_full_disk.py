@@ -82,6 +82,7 @@ def no_file_beyond(size: int) -> Iterator[None]:
 
 
 @pytest.mark.parametrize("case", WRITERS, ids=[f"{what}{suffix}" for what, suffix, _ in WRITERS])
+@pytest.mark.deep("raster.png", "raster.svg", "plane.svg")
 def test_every_format_says_so_and_leaves_nothing(tmp_path: Path, case: object) -> None:
     _, suffix, write = case  # type: ignore[misc]
     folder = tmp_path / "out"

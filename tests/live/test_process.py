@@ -93,6 +93,7 @@ def finish(process: subprocess.Popen[str]) -> str:
 
 @pytest.mark.skipif(os.name != "posix", reason="signals and limits of POSIX")
 @pytest.mark.parametrize("kind", LONG, ids=str)
+@pytest.mark.sampled(1)
 def test_ctrl_c_ends_a_batch_and_nothing_has_changed(kind: tuple[int, int, bool]) -> None:
     # Only an exception that leaves a call of the core shows that it heard the signal itself.
     process = start(
@@ -150,6 +151,7 @@ def test_ctrl_c_ends_a_batch_and_nothing_has_changed(kind: tuple[int, int, bool]
 
 @pytest.mark.skipif(sys.platform != "linux", reason="RLIMIT_AS is kept on Linux alone")
 @pytest.mark.parametrize("ndim", [2, 3])
+@pytest.mark.deep("3")
 def test_refused_memory_for_a_rebuild_takes_back_what_was_done(ndim: int) -> None:
     # A vertex with most others around it goes by a rebuild, and comes last.
     process = start(
@@ -188,6 +190,7 @@ def test_refused_memory_for_a_rebuild_takes_back_what_was_done(ndim: int) -> Non
 
 @pytest.mark.skipif(sys.platform != "linux", reason="RLIMIT_AS is kept on Linux alone")
 @pytest.mark.parametrize("kind", SHORT, ids=str)
+@pytest.mark.sampled(1)
 def test_refused_memory_changes_nothing(kind: tuple[int, int, bool]) -> None:
     process = start(
         """

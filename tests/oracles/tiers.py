@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import json
 import zlib
-from collections import defaultdict
+from collections import Counter, defaultdict
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -90,10 +90,12 @@ def sample(values: Sequence[dict[str, int]], keys: Sequence[str], count: int) ->
     """Choose `count` combinations or more, so that each value of each parameter is in one of them.
 
     `values` has what identifies the value of each parameter, `keys` what breaks ties: the choice
-    depends on nothing else. If there is one parameter, `count` of its values are chosen.
+    depends on nothing else. A value that only one combination has needs not occur, as those of a
+    single parameter.
     """
     order = sorted(range(len(values)), key=lambda i: (_digest(keys[i]), keys[i]))
-    pairs = [set(each.items()) if len(each) > 1 else set() for each in values]
+    times = Counter(pair for each in values for pair in each.items())
+    pairs = [{pair for pair in each.items() if times[pair] > 1} for each in values]
     missing = set[tuple[str, int]]().union(*pairs)
     chosen: list[int] = []
     while missing:

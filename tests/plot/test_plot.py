@@ -265,6 +265,7 @@ def test_pictures_are_of_2d_triangulations(tmp_path, other, instead):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.deep
 def test_files_of_heights_are_shaded_and_fields_are_not(tmp_path):
     square = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (1, 1), (0, 1)]]}
     mesh = delone.mesh(square, max_area=1 / 3000)

@@ -132,6 +132,7 @@ def test_plotters_and_axes_are_told_apart() -> None:
 
 
 @pytest.mark.parametrize("options", [{}, {"cut": "z"}, {"shrink": 0.5}, {"points": True}])
+@pytest.mark.sampled(1)
 def test_something_is_drawn(options: dict[str, Any]) -> None:
     mesh = solid()
     picture = image(mesh, values=mesh.volumes, colorbar=False, **options)

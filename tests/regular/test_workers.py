@@ -42,6 +42,7 @@ def weighted(n: int, heaviest: float) -> Any:
         *("equal", "light", "heavy", "hidden", "grid", "thin", "far", "duplicates", "space"),
     ],
 )
+@pytest.mark.sampled(3)
 def test_the_arrays_do_not_depend_on_workers(points: Any, heaviest: float) -> None:
     weights = weighted(len(points), heaviest)
     one = RegularTriangulation(points, weights, workers=1)
@@ -82,6 +83,7 @@ def rows(simplices: Any) -> list[list[int]]:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="RLIMIT_AS is kept on Linux alone")
 @pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.sampled(1)
 def test_refused_memory_is_an_error(dimension: int) -> None:
     code = f"""
         import resource

@@ -69,6 +69,7 @@ def with_a_hole(seed: int) -> Any:
 
 
 @pytest.mark.parametrize("seed", range(3))
+@pytest.mark.sampled(1)
 def test_tetrahedra_with_a_hole(seed: int) -> None:
     mesh = with_a_hole(seed)
     rng = np.random.default_rng(seed)

@@ -78,6 +78,7 @@ def sets(rng: np.random.Generator) -> dict[str, Floats]:
 
 @pytest.mark.parametrize("name", sorted(sets(np.random.default_rng(0))))
 @given(seed=st.integers(0, 2**32 - 1), scale=st.integers(-900, 900))
+@pytest.mark.sampled(3)
 def test_each_weight_has_its_digits(name: str, seed: int, scale: int) -> None:
     rng = np.random.default_rng(seed)
     points = np.ldexp(sets(rng)[name], scale)

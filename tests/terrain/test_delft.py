@@ -78,6 +78,7 @@ def test_a_profile_is_the_surface(tin):
     assert profile.distance[-1] == pytest.approx(np.hypot(100, 100))
 
 
+@pytest.mark.deep
 def test_a_pad_has_the_volume_of_its_parts(tin):
     center = np.array([(CROP[0] + CROP[2]) / 2, (CROP[1] + CROP[3]) / 2])
     pad = center + np.array([(-12, -8), (10, -11), (13, 9), (-9, 12)])

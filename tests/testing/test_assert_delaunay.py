@@ -120,6 +120,7 @@ def test_every_doubled_triangle_is_caught(points: np.ndarray, triangles: np.ndar
             assert_delaunay(points, np.vstack((triangles, triangles[t, [1, 2, 0]])))
 
 
+@pytest.mark.deep("mixed exponents")
 def test_every_broken_neighbor_is_caught(points: np.ndarray, triangles: np.ndarray) -> None:
     right = neighbors_of(triangles)
     for t in range(len(triangles)):
@@ -132,6 +133,7 @@ def test_every_broken_neighbor_is_caught(points: np.ndarray, triangles: np.ndarr
         assert_delaunay(points, triangles, neighbors=right[:, [1, 2, 0]])
 
 
+@pytest.mark.deep("mixed exponents")
 def test_every_omitted_point_is_caught(points: np.ndarray) -> None:
     _, first = np.unique(points, axis=0, return_index=True)
     for row in np.sort(first).tolist():

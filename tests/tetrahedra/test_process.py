@@ -38,6 +38,7 @@ def run(code: str) -> str:
 @pytest.mark.skipif(os.name != "posix", reason="signals and limits of POSIX")
 @pytest.mark.parametrize("boundary", ["faces", "surface"])
 @pytest.mark.parametrize("stage", ["check", "recover", "select"])
+@pytest.mark.sampled(2)
 def test_a_signal_ends_each_stage(stage: str, boundary: str) -> None:
     out = run(
         f"""

@@ -195,6 +195,7 @@ def test_order_and_scale_do_not_matter(name: str) -> None:
     st.lists(st.tuples(st.integers(1, 40), st.integers(-9, 9)), min_size=2, max_size=12),
     st.booleans(),
 )
+@pytest.mark.deep
 def test_random_fans(steps: list[tuple[int, int]], slanted: bool) -> None:
     """A function above a line, fanned from a place that sees it: far below."""
     x = np.cumsum([0] + [step for step, _ in steps]).tolist()

@@ -50,6 +50,7 @@ def test_crossing_faces_are_refused_with_all_pairs(path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "fewer"), [("anchor", 22), ("pipe", 17), ("rotor_small", 2), ("joint", 4)]
 )
+@pytest.mark.deep
 def test_plane_parts_that_are_cut_again_need_fewer_points(name: str, fewer: int) -> None:
     mesh = delone.tetrahedralize(FOLDER / f"{name}.off", boundary="surface")
     assert mesh.validate()
