@@ -34,9 +34,7 @@ def borders():
 
 @pytest.fixture(scope="module")
 def tin(ground, borders):
-    return TIN.from_points(
-        ground, breaklines=borders, crs="EPSG:28992", duplicates="mean", crossing="mean"
-    )
+    return TIN.from_points(ground, breaklines=borders, crs="EPSG:28992", duplicates="mean")
 
 
 def test_two_points_of_the_survey_contradict_each_other(ground):

@@ -27,6 +27,7 @@ from delone.cli.surfaces import (
     Retriangulate,
     SoftBreaklines,
     SurfaceOptions,
+    Tolerance,
     figures_of,
     print_figures,
     surface,
@@ -96,6 +97,7 @@ def dem(
     max_edge: MaxEdge = None,
     duplicates: Duplicates = "raise",
     crossing: Crossing = "raise",
+    tolerance: Tolerance = 0.0,
     columns: Columns = None,
     classes: Classes = None,
     layer: Layer = None,
@@ -164,7 +166,7 @@ def _refuse_for_tiles(given: dict[str, Any], what: str) -> None:
     names = ("bounds", "breaklines", "soft_breaklines", "boundary", "max_edge", "columns")
     set_ = [name for name in (*names, "classes", "layer", "workers") if given[name] is not None]
     set_ += [name for name in ("duplicates", "crossing") if given[name] != "raise"]
-    set_ += [name for name in ("retriangulate", "easting_first") if given[name]]
+    set_ += [name for name in ("tolerance", "retriangulate", "easting_first") if given[name]]
     if set_:
         options = ", ".join(f"--{name.replace('_', '-')}" for name in set_)
         raise Failure(f"{options}: for files of points, not for folders of tiles", Exit.USAGE)

@@ -40,6 +40,7 @@ __all__ = [
     "SoftBreaklines",
     "SurfaceOptions",
     "Survey",
+    "Tolerance",
     "figures_of",
     "print_figures",
     "surface",
@@ -73,7 +74,10 @@ Crossing = Annotated[
     str,
     typer.Option(help="Height where lines of different heights meet: raise, min, max, mean."),
 ]
-
+Tolerance = Annotated[
+    float,
+    typer.Option(help="Largest difference of heights at one place that are equal."),
+]
 Retriangulate = Annotated[
     bool,
     typer.Option(
@@ -100,6 +104,7 @@ class SurfaceOptions:
     max_edge: float | None
     duplicates: str
     crossing: str
+    tolerance: float
     crs: str | None
     planar: bool
     workers: int | None
@@ -140,7 +145,8 @@ def surface(
         raise Failure(f"{source}: no column has heights: name it with --columns x,y,z", Exit.USAGE)
     survey = referenced(survey, options.crs, planar=options.planar, quiet=options.quiet)
     say(f"triangulating {len(survey.points):,} points")
-    lined |= {name: getattr(options, name) for name in ("duplicates", "crossing", "workers")}
+    policies = ("duplicates", "crossing", "tolerance", "workers")
+    lined |= {name: getattr(options, name) for name in policies}
     with watch.stage("triangulate"), noting(quiet=options.quiet):
         if isinstance(survey, PointSet):
             return TIN.from_points(survey, planar=True, **lined)

@@ -19,7 +19,14 @@ from delone.georeference import (
     same_crs,
     warn_of_degrees,
 )
-from delone.terrain.heights import POLICIES, Claims, claims_of_lines, resolved
+from delone.terrain.heights import (
+    POLICIES,
+    Claims,
+    claims_of_lines,
+    claims_of_points,
+    on_ground,
+    resolved,
+)
 from delone.terrain.lines import lines_of, rings_of
 from delone.terrain.profiles import profile
 from delone.units import (
@@ -77,7 +84,8 @@ class Built(NamedTuple):
 class Lines(NamedTuple):
     """All lines: their points, segments between them, and the kind of each segment."""
 
-    points: Floats  # (p, 3), heights NaN where there are none
+    points: Floats  # (p, 3)
+    draped: Bools  # (p,), whether the height is that of the ground
     segments: Indices  # (s, 2), rows of `points`
     kinds: NDArray[np.int8]
     rings: dict[int, list[Floats]]
@@ -93,6 +101,7 @@ def build(
     max_edge: float | None,
     duplicates: str,
     crossing: str,
+    tolerance: float,
     crs: Any,
     units: Any,
     planar: bool,
@@ -105,6 +114,7 @@ def build(
     """
     as_choice(duplicates, POLICIES, name="duplicates")
     as_choice(crossing, POLICIES, name="crossing")
+    allowed = as_tolerance(tolerance)
     points = _points_of(xyz)
     system = system_of(crs, xyz, breaklines, soft_breaklines, boundary, holes)
     heights_in = settled_units(units, system, None, str(system))
@@ -128,14 +138,8 @@ def build(
         workers=workers,
         planar=True,
     )
-    z = np.concatenate((points[:, 2], lines.points[:, 2]))
-    of_points = Claims(mesh.duplicate_of[: len(points)].astype(np.int64), points[:, 2])
-    heights = resolved(
-        mesh.points,
-        of_points,
-        claims_of_lines(mesh, z, len(points)),
-        duplicates=duplicates,
-        crossing=crossing,
+    heights = _heights(
+        mesh, points, lines, duplicates=duplicates, crossing=crossing, tolerance=allowed
     )
     kept = _within(mesh, lines)
     soft = is_soft(mesh, lines)
@@ -145,6 +149,31 @@ def build(
             raise InputError(f"max_edge must be above 0, got {max_edge!r}")
         kept = peeled(mesh.points, mesh.simplices, mesh.neighbors, kept, mesh.constrained, limit)
     return compact(mesh, heights, kept, soft, system, heights_in)
+
+
+def as_tolerance(given: Any) -> float:
+    """Return the largest difference of heights that are equal."""
+    found = as_number(given, name="tolerance")
+    if not 0 <= found < np.inf:
+        raise InputError(f"tolerance must be a difference of heights from 0 on, got {given!r:.60}")
+    return found
+
+
+def _heights(mesh: ConstrainedDelaunay, points: Floats, lines: Lines, **policies: Any) -> Floats:
+    """Return the height of each row of a triangulation of points and lines."""
+    count = len(points)
+    z = np.concatenate((points[:, 2], lines.points[:, 2]))
+    own = claims_of_points(mesh.duplicate_of[count : len(z)], lines.points[:, 2])
+    between, row = claims_of_lines(mesh, z)
+    # A segment between two points on the ground has no height of its own.
+    without: Bools = np.all(lines.draped[lines.segments[row]], axis=1)
+    found = resolved(
+        mesh.points,
+        claims_of_points(mesh.duplicate_of[:count], points[:, 2]),
+        Claims.joined([own.among(~lines.draped), between.among(~without)]),
+        **policies,
+    )
+    return on_ground(found, Claims.joined([own.among(lines.draped), between.among(without)]))
 
 
 def _points_of(xyz: Any) -> Floats:
@@ -205,14 +234,16 @@ def _gathered(
 ) -> Lines:
     """Gather the lines of each kind, and put those without heights onto the points."""
     parts: list[Floats] = [np.empty((0, 3))]
+    draped: list[Bools] = [np.empty(0, dtype=bool)]
     segments: list[NDArray[np.int64]] = [np.empty((0, 2), dtype=np.int64)]
     kinds: list[NDArray[np.int8]] = [np.empty(0, dtype=np.int8)]
     count = 0
     ground: Surface | None = None
     for kind, lines in enumerate(given):
         for line in lines:
+            without = np.isnan(line[:, 2])
             found = [line]
-            if np.isnan(line[:, 2]).any():
+            if without.any():
                 ground = ground or surface_of(points)
                 found = _on_ground(line, ground, outside=kind >= _BOUNDARY)
             for part in found:
@@ -220,9 +251,11 @@ def _gathered(
                 segments.append(np.column_stack((first, first + 1)))
                 kinds.append(np.full(len(first), kind, dtype=np.int8))
                 parts.append(part)
+                draped.append(np.ones(len(part), dtype=bool) if without.all() else without)
                 count += len(part)
     return Lines(
         np.concatenate(parts),
+        np.concatenate(draped),
         np.concatenate(segments).astype(np.int32),
         np.concatenate(kinds),
         {_BOUNDARY: given[_BOUNDARY], _HOLE: given[_HOLE]},
@@ -232,23 +265,30 @@ def _gathered(
 def _on_ground(line: Floats, ground: Surface, *, outside: bool) -> list[Floats]:
     """Return a line with heights: its parts on the surface of the points, if it has none itself.
 
-    Unless parts `outside` of that surface may be left out, they are an error.
+    Parts `outside` of that surface may be left out of lines without any height; otherwise they are
+    an error.
     """
     places, without = np.ascontiguousarray(line[:, :2]), np.isnan(line[:, 2])
-    z = np.where(without, ground.heights(places), line[:, 2])
-    if not without.all() and not np.isnan(z).any():
+    if not without.all():
+        z = np.where(without, ground.heights(places), line[:, 2])
+        if np.isnan(z).any():
+            raise _off_ground(*places[np.isnan(z)][0].tolist())
         return [np.column_stack((places, z))]
     found = profile(ground, places)
     off = np.isnan(found.z)
-    if not outside and (off.any() or np.isnan(z).any()):
-        x, y = places[np.isnan(z)][0] if np.isnan(z).any() else found.points[off][0]
-        raise InputError(
-            f"a line without heights is outside of the points at ({x:.10g}, {y:.10g}): give it "
-            "heights there"
-        )
+    outer = np.isnan(ground.heights(places))
+    if not outside and (off.any() or outer.any()):
+        raise _off_ground(*(places[outer][0] if outer.any() else found.points[off][0]).tolist())
     table = np.column_stack((found.points, found.z))
     parts = [part[~np.isnan(part[:, 2])] for part in np.split(table, np.flatnonzero(off))]
     return [part for part in parts if len(part) > 1]
+
+
+def _off_ground(x: float, y: float) -> InputError:
+    return InputError(
+        f"a line without heights is outside of the points at ({x:.10g}, {y:.10g}): give it heights "
+        "there"
+    )
 
 
 def _refuse_crossing_rings(lines: Lines) -> None:

@@ -18,7 +18,7 @@ from delone.georeference import warn_of_degrees
 from delone.plane import topology
 from delone.predicates import orient2d
 from delone.terrain import building
-from delone.terrain.heights import POLICIES, Claims, resolved
+from delone.terrain.heights import POLICIES, claims_of_points, resolved
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -70,13 +70,13 @@ def build_faces(surface: SurfaceFile, options: dict[str, Any]) -> building.Built
     points = surface.points[rows]
     faces = _upward(points[:, :2], corners.reshape(-1, 3), surface.source)
     mesh, lines = _with_edges(surface, points[:, :2], faces, options.get("workers"))
-    none = Claims(np.empty(0, dtype=np.int64), np.empty(0))
     z = resolved(
         mesh.points,
-        Claims(mesh.duplicate_of.astype(np.int64), points[:, 2]),
-        none,
+        claims_of_points(mesh.duplicate_of, points[:, 2]),
+        claims_of_points(np.empty(0, dtype=np.int32), np.empty(0)),
         duplicates=duplicates,
         crossing="raise",
+        tolerance=building.as_tolerance(options.get("tolerance", 0.0)),
     )
     kept = _among(mesh.simplices, faces)
     return building.compact(mesh, z, kept, building.is_soft(mesh, lines), system, units)
@@ -124,7 +124,11 @@ def _with_edges(
         if bad.any():
             raise _overlap(points[faces[bad][:, 0]], surface.source)
     return mesh, building.Lines(
-        np.empty((0, 3)), wanted.astype(np.int32), kinds.astype(np.int8), {}
+        np.empty((0, 3)),
+        np.empty(0, dtype=bool),
+        wanted.astype(np.int32),
+        kinds.astype(np.int8),
+        {},
     )
 
 

@@ -3,6 +3,10 @@
 Each vertex has *claims*: the heights of the points there, and those of the lines that pass through
 it. Claims that differ are resolved by the policies of the caller, or raise an error that has their
 coordinates.
+
+A claim of a line between its own points is known up to a bound: the slope of the line times the
+rounding of the coordinates. Claims differ if the intervals that these bounds give have no height in
+common. Lines without heights claim none: they take what else is there, or the ground.
 """
 
 from __future__ import annotations
@@ -19,16 +23,19 @@ if TYPE_CHECKING:
 
     from delone.constrained.delaunay import ConstrainedDelaunay
 
+    Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
     Rows = NDArray[np.int64]
 
-__all__ = ["POLICIES", "Claims", "claims_of_lines", "resolved"]
+__all__ = ["POLICIES", "Claims", "claims_of_lines", "claims_of_points", "on_ground", "resolved"]
 
 POLICIES = ("raise", "min", "max", "mean")
-_REDUCE = {"min": np.minimum, "max": np.maximum}
-# Heights on a line are rounded: differences up to this share of the largest height are none.
-_ROUNDING = 1e-12
+# Both ends of a line, the vertex on it and its share of the line are rounded once each.
+_ROUNDINGS = 4
+_EPS = float(np.finfo(np.float64).eps)
 _SHOWN = 5
+# Digits of heights in messages: the first of these that shows a difference.
+_DIGITS = (6, 9, 12, 17)
 
 
 class Claims(NamedTuple):
@@ -36,36 +43,54 @@ class Claims(NamedTuple):
 
     vertex: Rows
     z: Floats
+    bound: Floats  # how far rounding may have moved each height
+
+    @classmethod
+    def joined(cls, parts: list[Claims]) -> Claims:
+        """Put several together."""
+        return cls(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+
+    def among(self, rows: Bools) -> Claims:
+        """Return some of the claims."""
+        return Claims(self.vertex[rows], self.z[rows], self.bound[rows])
 
 
-def claims_of_lines(mesh: ConstrainedDelaunay, z: Floats, npoints: int) -> Claims:
-    """Return the claims of the lines: of their own points, and where they pass through vertices.
+def claims_of_points(vertex: NDArray[np.int32], z: Floats) -> Claims:
+    """Return the claims of points, whose heights are exact."""
+    return Claims(vertex.astype(np.int64), z, np.zeros(len(z)))
 
-    The points of lines are those from row `npoints` on; `z` has the height of each row.
+
+def claims_of_lines(mesh: ConstrainedDelaunay, z: Floats) -> tuple[Claims, Rows]:
+    """Return the claims of lines where they cross or pass through vertices, and their segments.
+
+    `z` has the height of each row of points.
     """
-    own = np.arange(npoints, len(z))
-    vertex, height = [mesh.duplicate_of[own].astype(np.int64)], [z[own]]
     crossings, through = mesh.report.crossings, mesh.report.through
-    for row, place in (
-        (crossings[:, 0], crossings[:, 2]),
-        (crossings[:, 1], crossings[:, 2]),
-        (through[:, 0], through[:, 1]),
-    ):
-        vertex.append(place.astype(np.int64))
-        height.append(_along(mesh, z, row, place))
-    return Claims(np.concatenate(vertex), np.concatenate(height))
+    row = np.concatenate((crossings[:, 0], crossings[:, 1], through[:, 0]))
+    vertex = np.concatenate((crossings[:, 2], crossings[:, 2], through[:, 1]))
+    return _along(mesh, z, row, vertex), row.astype(np.int64)
 
 
 def _along(
     mesh: ConstrainedDelaunay, z: Floats, row: NDArray[np.int32], vertex: NDArray[np.int32]
-) -> Floats:
-    """The heights of segments at vertices on them."""
+) -> Claims:
+    """The claims of segments at vertices on them."""
     a, b = mesh.input_segments[row].T
+    # From the smaller end on: the direction of a segment changes nothing.
+    (ax, ay), (bx, by) = mesh.points[a].T, mesh.points[b].T
+    turned = (ax > bx) | ((ax == bx) & (ay > by))
+    a, b = np.where(turned, b, a), np.where(turned, a, b)
     part = mesh.points[vertex] - mesh.points[a]
     whole = mesh.points[b] - mesh.points[a]
-    share = np.clip(np.hypot(*part.T) / np.hypot(*whole.T), 0, 1)
-    found: Floats = z[a] + share * (z[b] - z[a])
-    return found
+    length = np.hypot(*whole.T)
+    rise = z[b] - z[a]
+    found = z[a] + np.clip(np.hypot(*part.T) / length, 0, 1) * rise
+    # A vertex is beside its segment where the segment is bent.
+    beside = np.abs(whole[:, 0] * part[:, 1] - whole[:, 1] * part[:, 0]) / length
+    largest = np.abs(mesh.points[np.column_stack((a, b, vertex))]).max(axis=(1, 2), initial=0.0)
+    moved = beside + _ROUNDINGS * np.spacing(largest)
+    bound = np.abs(rise) / length * moved + _ROUNDINGS * _EPS * (np.abs(z[a]) + np.abs(z[b]))
+    return Claims(vertex.astype(np.int64), found, bound)
 
 
 def resolved(
@@ -75,59 +100,82 @@ def resolved(
     *,
     duplicates: str,
     crossing: str,
+    tolerance: float = 0.0,
 ) -> Floats:
     """Return one height for each row of `points`: NaN where nothing is claimed."""
-    count = len(points)
-    scale = max(np.abs(each.z).max(initial=0.0) for each in (of_points, of_lines))
-    slack = float(_ROUNDING * scale)
-    first = _reduced(points, of_points, duplicates, 0.0, "points", "duplicates")
-    second = _reduced(points, of_lines, crossing, slack, "lines", "crossing")
-    if not len(of_lines.z):
-        return first
-    claims = [
-        Claims(np.flatnonzero(~np.isnan(each)), each[~np.isnan(each)]) for each in (second, first)
-    ]
-    both = Claims(*(np.concatenate(columns) for columns in zip(*claims, strict=True)))
-    found = _reduced(points, both, duplicates, slack, "a line and a point", "duplicates")
-    assert len(found) == count
+    first = _reduced(points, of_points, duplicates, tolerance, "points", "duplicates")
+    second = _reduced(points, of_lines, crossing, tolerance, "lines", "crossing")
+    both = Claims.joined([second, first])
+    last = _reduced(points, both, duplicates, tolerance, "a line and a point", "duplicates")
+    found = np.full(len(points), np.nan)
+    found[last.vertex] = last.z
+    return found
+
+
+def on_ground(z: Floats, claims: Claims) -> Floats:
+    """Return heights with those of the ground where there are none: of several the lowest.
+
+    They are heights of one surface and differ by rounding only.
+    """
+    missing = claims.among(np.isnan(z[claims.vertex]))
+    found = z.copy()
+    found[missing.vertex] = np.inf
+    np.minimum.at(found, missing.vertex, missing.z)
     return found
 
 
 def _reduced(  # noqa: PLR0917
-    points: Floats, claims: Claims, policy: str, slack: float, what: str, option: str
-) -> Floats:
-    """Reduce the claims at each vertex to one; the first one if they are equal."""
-    found = np.full(len(points), np.nan)
-    vertex, z = claims
-    found[vertex[::-1]] = z[::-1]
-    low, high = found.copy(), found.copy()
-    np.minimum.at(low, vertex, z)
-    np.maximum.at(high, vertex, z)
-    different = np.flatnonzero(high - low > slack)
+    points: Floats, claims: Claims, policy: str, tolerance: float, what: str, option: str
+) -> Claims:
+    """Reduce the claims at each vertex to one: the most accurate one if they agree."""
+    order = np.lexsort((claims.z, claims.bound, claims.vertex))
+    vertex, first = np.unique(claims.vertex[order], return_index=True)
+    z, bound = claims.z[order][first], claims.bound[order][first]
+    if len(vertex) == len(order):
+        return Claims(vertex, z, bound)
+    at = np.searchsorted(vertex, claims.vertex)
+    low, high = np.full(len(z), np.inf), np.full(len(z), -np.inf)
+    least, most = high.copy(), low.copy()
+    np.minimum.at(low, at, claims.z)
+    np.maximum.at(high, at, claims.z)
+    # Intervals have a height in common if the greatest lower end is not above the least upper end.
+    np.maximum.at(least, at, claims.z - claims.bound)
+    np.minimum.at(most, at, claims.z + claims.bound)
+    with np.errstate(over="ignore"):
+        different = np.flatnonzero(least - most > tolerance)
     if not len(different):
-        return found
+        return Claims(vertex, z, bound)
     if policy == "raise":
-        raise _conflict(points, different, low, high, what, option)
+        rows = vertex[different]
+        raise _conflict(points[rows], rows, low[different], high[different], what, option)
     if policy == "mean":
-        total, number = np.zeros(len(points)), np.zeros(len(points))
-        np.add.at(total, vertex, z)
-        np.add.at(number, vertex, 1)
-        found[different] = total[different] / number[different]
+        total, number = np.bincount(at, claims.z), np.bincount(at)
+        z[different] = total[different] / number[different]
     else:
-        found[different] = (low if policy == "min" else high)[different]
-    return found
+        z[different] = (low if policy == "min" else high)[different]
+    return Claims(vertex, z, bound)
 
 
 def _conflict(  # noqa: PLR0917
-    points: Floats, rows: Rows, low: Floats, high: Floats, what: str, option: str
+    places: Floats, rows: Rows, low: Floats, high: Floats, what: str, option: str
 ) -> ConflictingValuesError:
     shown = ", ".join(
-        f"({x:.10g}, {y:.10g}): {low[row]:.6g} to {high[row]:.6g}"
-        for row, (x, y) in zip(rows[:_SHOWN].tolist(), points[rows[:_SHOWN]], strict=True)
+        f"({x:.10g}, {y:.10g}): {_range(*span)}"
+        for (x, y), *span in zip(places[:_SHOWN], low.tolist(), high.tolist(), strict=False)
     )
     more = ", ..." if len(rows) > _SHOWN else ""
     return ConflictingValuesError(
         f"{what} have different heights at {counted(len(rows), 'place')}: {shown}{more}. Correct "
-        f'them, or choose {option}="min", "max" or "mean"',
+        f'them, choose {option}="min", "max" or "mean", or give tolerance, the largest difference '
+        "of heights that are equal",
         rows=np.column_stack((rows, rows)),
     )
+
+
+def _range(low: float, high: float) -> str:
+    """Two heights, with the digits that show that they differ."""
+    for digits in _DIGITS:
+        first, second = f"{low:.{digits}g}", f"{high:.{digits}g}"
+        if first != second:
+            break
+    return f"{first} to {second}"

@@ -20,7 +20,7 @@ __all__ = ["line_of", "lines_of", "rings_of"]
 
 
 def lines_of(given: Any, *, name: str) -> list[Floats]:
-    """Return lines as arrays (k, 3); heights are NaN where there are none.
+    """Return lines as arrays (k, 3); heights are NaN where there are none, also in the input.
 
     Taken are geometries of shapely, tables of them, a `GeometrySet`, arrays (k, 2) or (k, 3), and
     sequences of these. Polygons become their rings, closed.
@@ -89,14 +89,15 @@ def _of_array(array: NDArray[Any], name: str) -> Floats:
     if array.ndim != 2 or array.shape[1] not in (2, 3):
         raise ShapeError(f"{name}: a line must have shape (k, 2) or (k, 3), got {array.shape}")
     points = as_points(array, name=name)
-    require_finite(points, name=name)
-    return _with_heights(points)
-
-
-def _with_heights(points: Floats) -> Floats:
     found = np.full((len(points), 3), np.nan)
     found[:, : points.shape[1]] = points
-    return found
+    return _checked(found, name)
+
+
+def _checked(points: Floats, name: str) -> Floats:
+    """Refuse points that are not finite; a height that is NaN is none."""
+    require_finite(np.where(np.isnan(points) & (np.arange(3) == 2), 0.0, points), name=name)
+    return points
 
 
 def _of_geometry(geometry: Any, name: str) -> Iterator[Floats]:
@@ -112,6 +113,4 @@ def _of_geometry(geometry: Any, name: str) -> Iterator[Floats]:
         return
     lines = [geometry.exterior, *geometry.interiors] if kind == "Polygon" else [geometry]
     for line in lines:
-        points = shapely.get_coordinates(line, include_z=True)
-        require_finite(points[:, :2], name=name)
-        yield points
+        yield _checked(shapely.get_coordinates(line, include_z=True), name)

@@ -296,7 +296,7 @@ def _complete(mesh: ConstrainedDelaunay, z: Floats) -> Floats:
     found = np.full(mesh.npoints, np.nan)
     found[: len(z)] = z
     if len(z) < mesh.npoints:
-        claims = claims_of_lines(mesh, z, len(z))
+        claims, _ = claims_of_lines(mesh, z)
         new = claims.vertex >= len(z)
         number = np.bincount(claims.vertex[new], minlength=mesh.npoints)
         total = np.bincount(claims.vertex[new], claims.z[new], minlength=mesh.npoints)

@@ -112,6 +112,7 @@ class TIN(Surveyed, Earthworks):
         max_edge: float | None = None,
         duplicates: str = "raise",
         crossing: str = "raise",
+        tolerance: float = 0.0,
         crs: Any = None,
         units: str | None = None,
         planar: bool = False,
@@ -128,8 +129,8 @@ class TIN(Surveyed, Earthworks):
             Lines that edges follow, such as the edges of roads, dikes and water: geometries of
             shapely, tables of them, a `delone.io.GeometrySet`, or arrays of shape (k, 2) or (k, 3).
             Lines without heights follow the surface of the points; single points of a line without
-            one are on it. Both kinds are edges; smoothing does not cut corners of contours at hard
-            ones.
+            one (NaN) are on it. Both kinds are edges; smoothing does not cut corners of contours at
+            hard ones.
         boundary, holes : optional
             Rings or polygons: the surface ends at the boundary, and does not cover holes. Where
             they leave the points, the surface ends there.
@@ -140,7 +141,13 @@ class TIN(Surveyed, Earthworks):
             The height of points with the same x and y and different heights, or of such a point and
             a line.
         crossing : {"raise", "min", "max", "mean"}, optional
-            The height where lines with different heights cross or touch.
+            The height where lines with different heights cross or touch. Lines without heights have
+            those of what they meet.
+        tolerance : float, optional
+            Heights at one place that differ by at most this are equal, in units of height; by
+            default only those that differ by no more than rounding can: the slope of a line times
+            the rounding of its coordinates. Of equal heights the most accurate one remains, of
+            several such the lowest.
         crs : optional
             Coordinate reference system, as ``"EPSG:28992"``, an EPSG code or a pyproj.CRS; by
             default that of the data.
@@ -193,12 +200,13 @@ class TIN(Surveyed, Earthworks):
             max_edge=max_edge,
             duplicates=duplicates,
             crossing=crossing,
+            tolerance=tolerance,
             crs=crs,
             units=units,
             planar=planar,
             workers=workers,
             surface_of=lambda points: cls.from_points(
-                points, duplicates=duplicates, planar=True, workers=workers
+                points, duplicates=duplicates, tolerance=tolerance, planar=True, workers=workers
             ),
         )
         return cls._built(made, workers)
