@@ -19,12 +19,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone._core import ConstrainedTriangulation
+    from delone.constrained.segmented import Segmented
 
     Bools = NDArray[np.bool_]
     Indices = NDArray[np.int32]
     Rows = NDArray[np.int64]
 
-__all__ = ["closed_rings", "first_polygon"]
+__all__ = ["closed_rings", "first_polygon", "inside"]
 
 
 def closed_rings(ends: Indices, geometries: Indices, rings: Bools) -> Bools:
@@ -74,6 +75,22 @@ def first_polygon(
                 queue.append(there)
     first = [min(inside[c], default=-1) for c in range(count)]
     return np.array(first, dtype=np.int32)
+
+
+def inside(mesh: Segmented, polygons: Indices) -> Bools:
+    """Return which triangles of the hull are inside of some polygon.
+
+    `polygons` has the polygon of each row of segments, -1 for rows that are sides of none. The
+    sides of each polygon must be closed rings; even-odd rule.
+    """
+    sides = polygons >= 0
+    if not sides.any():
+        return np.zeros(len(mesh._made.simplices), dtype=bool)
+    component = mesh._component()
+    found: Bools = (
+        first_polygon(mesh._made, mesh.npoints, polygons, component, sides)[component] >= 0
+    )
+    return found
 
 
 def _polygons_of_subsegments(

@@ -145,7 +145,7 @@ class Draft:
         kind = self._kind
         if kind == "Boundary":
             given = (around.get("bndType") or "outer").strip().casefold()
-            kind = "Hole" if given in _HOLES else "Boundary"
+            kind = "Hole" if given in _HOLES else "Island" if given == "island" else "Boundary"
         elif kind == "Breakline" and (around.get("desc") or "").strip() == "soft":
             kind = "Contour"
         elif kind == "Contour" and around.get("elev") is not None:
@@ -186,6 +186,7 @@ class Draft:
             soft_breaklines=tuple(self._lines.get("Contour", ())),
             boundary=tuple(self._lines.get("Boundary", ())),
             holes=tuple(self._lines.get("Hole", ())),
+            islands=tuple(self._lines.get("Island", ())),
             units=head.units,
             lengths=head.lengths,
             crs=head.crs,

@@ -427,7 +427,8 @@ def read_surface(
     Notes
     -----
     Invisible faces (``i="1"``) are left out, and the neighbors of faces are ignored. Boundaries of
-    the types void, hole, hide and inner are holes; all others are boundaries. Contours are soft
+    the types void, hole, hide and inner are holes, island is an island in a hole; all others are
+    boundaries. Contours are soft
     breaklines. Of DXF, 3DFACE, POINT, LINE, LWPOLYLINE and POLYLINE of the model space are read;
     blocks are not.
 

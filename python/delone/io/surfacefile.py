@@ -36,8 +36,8 @@ class SurfaceFile:
         The visible faces as rows of `points`; empty if the file has none.
     breaklines, soft_breaklines : tuple of ndarray of float64, shape (k, 3), optional
         The lines that edges follow; heights are NaN where the file has none.
-    boundary, holes : tuple of ndarray of float64, shape (k, 3), optional
-        The rings where the surface ends.
+    boundary, holes, islands : tuple of ndarray of float64, shape (k, 3), optional
+        The rings where the surface ends; islands are parts of it in holes.
     units : str, optional
         The unit of heights, as ``"m"``, ``"ft"`` or ``"us-ft"``; None if the file has none.
     lengths : str, optional
@@ -60,6 +60,7 @@ class SurfaceFile:
     soft_breaklines: tuple[Floats, ...] = ()
     boundary: tuple[Floats, ...] = ()
     holes: tuple[Floats, ...] = ()
+    islands: tuple[Floats, ...] = ()
     units: str | None = None
     lengths: str | None = None
     crs: str | None = None
@@ -106,7 +107,7 @@ class SurfaceFile:
         return PointSet(points=x_y, z=z, crs=self.crs, source=self.source)
 
     def as_geometries(self) -> GeometrySet:
-        """Return breaklines as lines, boundary and holes as polygons (extra ``geo``).
+        """Return breaklines as lines, rings as polygons (extra ``geo``).
 
         Returns
         -------
@@ -126,7 +127,7 @@ class SurfaceFile:
         """
         shapely = require("shapely", extra="geo", what="geometries")
         lines = [*self.breaklines, *self.soft_breaklines]
-        rings = [*self.boundary, *self.holes]
+        rings = [*self.boundary, *self.holes, *self.islands]
         if not lines and not rings:
             raise FileFormatError(f"{self.source} contains no lines")
         found = [shapely.linestrings(_known(line)) for line in lines]

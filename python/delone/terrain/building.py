@@ -9,8 +9,7 @@ import numpy as np
 
 from delone._arrays import as_choice, as_number, as_points, require_finite
 from delone.constrained.delaunay import ConstrainedDelaunay
-from delone.counting import counted
-from delone.errors import CrossingSegmentsError, InputError, ShapeError
+from delone.errors import InputError, ShapeError
 from delone.georeference import (
     as_known_crs,
     caller_level,
@@ -19,6 +18,8 @@ from delone.georeference import (
     same_crs,
     warn_of_degrees,
 )
+from delone.terrain.extent import Part, refuse_crossing_rings, within, without_outer
+from delone.terrain.gathering import SOFT, Lines, gathered
 from delone.terrain.heights import (
     POLICIES,
     Claims,
@@ -27,8 +28,7 @@ from delone.terrain.heights import (
     on_ground,
     resolved,
 )
-from delone.terrain.lines import lines_of, rings_of
-from delone.terrain.profiles import profile
+from delone.terrain.lines import Ring, lines_of, rings_of
 from delone.units import (
     UnitsWarning,
     as_units,
@@ -50,10 +50,7 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int32]
 
 __all__ = [
-    "HARD",
-    "SOFT",
     "Built",
-    "Lines",
     "build",
     "compact",
     "degrees_of",
@@ -62,9 +59,6 @@ __all__ = [
     "settled_units",
     "system_of",
 ]
-
-# The kinds of lines.
-HARD, SOFT, _BOUNDARY, _HOLE = range(4)
 
 
 class Built(NamedTuple):
@@ -81,16 +75,6 @@ class Built(NamedTuple):
     units: str | None
 
 
-class Lines(NamedTuple):
-    """All lines: their points, segments between them, and the kind of each segment."""
-
-    points: Floats  # (p, 3)
-    draped: Bools  # (p,), whether the height is that of the ground
-    segments: Indices  # (s, 2), rows of `points`
-    kinds: NDArray[np.int8]
-    rings: dict[int, list[Floats]]
-
-
 def build(
     xyz: Any,
     *,
@@ -98,6 +82,7 @@ def build(
     soft_breaklines: Any,
     boundary: Any,
     holes: Any,
+    islands: Any,
     max_edge: float | None,
     duplicates: str,
     crossing: str,
@@ -116,20 +101,19 @@ def build(
     as_choice(crossing, POLICIES, name="crossing")
     allowed = as_tolerance(tolerance)
     points = _points_of(xyz)
-    system = system_of(crs, xyz, breaklines, soft_breaklines, boundary, holes)
+    system = system_of(crs, xyz, breaklines, soft_breaklines, boundary, holes, islands)
     heights_in = settled_units(units, system, None, str(system))
     warn_of_degrees(xyz, points[:, :2], planar=planar, by=degrees_of(system))
-    lines = _gathered(
-        [
-            lines_of(breaklines, name="breaklines"),
-            lines_of(soft_breaklines, name="soft_breaklines"),
-            rings_of(boundary, name="boundary"),
-            rings_of(holes, name="holes"),
-        ],
-        points,
-        surface_of,
-    )
-    _refuse_crossing_rings(lines)
+    rings = [
+        rings_of(each, name=name)
+        for name, each in (("boundary", boundary), ("holes", holes), ("islands", islands))
+    ]
+    refuse_crossing_rings("boundary and holes", *rings)
+    given = [
+        [Ring(line) for line in lines_of(each, name=name)]
+        for name, each in (("breaklines", breaklines), ("soft_breaklines", soft_breaklines))
+    ]
+    lines = gathered([*given, *rings], points, surface_of)
     rows = np.concatenate((points[:, :2], lines.points[:, :2]))
     mesh = ConstrainedDelaunay(
         rows,
@@ -141,8 +125,8 @@ def build(
     heights = _heights(
         mesh, points, lines, duplicates=duplicates, crossing=crossing, tolerance=allowed
     )
-    kept = _within(mesh, lines)
-    soft = is_soft(mesh, lines)
+    part = Part(mesh, heights, within(mesh, lines), is_soft(mesh, lines))
+    mesh, heights, kept, soft = without_outer(part, lines)
     if max_edge is not None:
         limit = as_number(max_edge, name="max_edge")
         if not limit > 0:
@@ -173,7 +157,8 @@ def _heights(mesh: ConstrainedDelaunay, points: Floats, lines: Lines, **policies
         Claims.joined([own.among(~lines.draped), between.among(~without)]),
         **policies,
     )
-    return on_ground(found, Claims.joined([own.among(lines.draped), between.among(without)]))
+    ground = Claims.joined([own.among(lines.draped), between.among(without)])
+    return on_ground(found, ground.among(~np.isnan(ground.z)))
 
 
 def _points_of(xyz: Any) -> Floats:
@@ -227,120 +212,6 @@ def settled_units(given: Any, system: str | None, lengths: str | None, by: str) 
         )
     warn_of_units(lengths or horizontal, units, by=by)
     return units
-
-
-def _gathered(
-    given: list[list[Floats]], points: Floats, surface_of: Callable[[Floats], Surface]
-) -> Lines:
-    """Gather the lines of each kind, and put those without heights onto the points."""
-    parts: list[Floats] = [np.empty((0, 3))]
-    draped: list[Bools] = [np.empty(0, dtype=bool)]
-    segments: list[NDArray[np.int64]] = [np.empty((0, 2), dtype=np.int64)]
-    kinds: list[NDArray[np.int8]] = [np.empty(0, dtype=np.int8)]
-    count = 0
-    ground: Surface | None = None
-    for kind, lines in enumerate(given):
-        for line in lines:
-            without = np.isnan(line[:, 2])
-            found = [line]
-            if without.any():
-                ground = ground or surface_of(points)
-                found = _on_ground(line, ground, outside=kind >= _BOUNDARY)
-            for part in found:
-                first = count + np.arange(len(part) - 1)
-                segments.append(np.column_stack((first, first + 1)))
-                kinds.append(np.full(len(first), kind, dtype=np.int8))
-                parts.append(part)
-                draped.append(np.ones(len(part), dtype=bool) if without.all() else without)
-                count += len(part)
-    return Lines(
-        np.concatenate(parts),
-        np.concatenate(draped),
-        np.concatenate(segments).astype(np.int32),
-        np.concatenate(kinds),
-        {_BOUNDARY: given[_BOUNDARY], _HOLE: given[_HOLE]},
-    )
-
-
-def _on_ground(line: Floats, ground: Surface, *, outside: bool) -> list[Floats]:
-    """Return a line with heights: its parts on the surface of the points, if it has none itself.
-
-    Parts `outside` of that surface may be left out of lines without any height; otherwise they are
-    an error.
-    """
-    places, without = np.ascontiguousarray(line[:, :2]), np.isnan(line[:, 2])
-    if not without.all():
-        z = np.where(without, ground.heights(places), line[:, 2])
-        if np.isnan(z).any():
-            raise _off_ground(*places[np.isnan(z)][0].tolist())
-        return [np.column_stack((places, z))]
-    found = profile(ground, places)
-    off = np.isnan(found.z)
-    outer = np.isnan(ground.heights(places))
-    if not outside and (off.any() or outer.any()):
-        raise _off_ground(*(places[outer][0] if outer.any() else found.points[off][0]).tolist())
-    table = np.column_stack((found.points, found.z))
-    parts = [part[~np.isnan(part[:, 2])] for part in np.split(table, np.flatnonzero(off))]
-    return [part for part in parts if len(part) > 1]
-
-
-def _off_ground(x: float, y: float) -> InputError:
-    return InputError(
-        f"a line without heights is outside of the points at ({x:.10g}, {y:.10g}): give it heights "
-        "there"
-    )
-
-
-def _refuse_crossing_rings(lines: Lines) -> None:
-    """Refuse a boundary or hole that crosses itself or another one."""
-    rings = [ring[:, :2] for kind in (_BOUNDARY, _HOLE) for ring in lines.rings[kind]]
-    if not rings:
-        return
-    ends = np.cumsum([len(ring) for ring in rings]) - 1
-    row = np.delete(np.arange(ends[-1] + 1), ends)
-    try:
-        ConstrainedDelaunay(np.concatenate(rings), np.column_stack((row, row + 1)), planar=True)
-    except CrossingSegmentsError as error:
-        x, y = error.points[0]
-        raise CrossingSegmentsError(
-            f"boundary and holes cross at {counted(len(error.points), 'place')}, first ({x:.10g}, "
-            f"{y:.10g})",
-            pairs=error.pairs,
-            points=error.points,
-        ) from error
-
-
-def _within(mesh: ConstrainedDelaunay, lines: Lines) -> Bools:
-    """Which triangles are inside of the boundary and outside of the holes."""
-    if not (lines.rings[_BOUNDARY] or lines.rings[_HOLE]):
-        return np.ones(mesh.nsimplex, dtype=bool)
-    # Rings are segments: a region between segments is inside or outside as a whole, and its largest
-    # triangle decides.
-    largest = np.lexsort((mesh.areas, mesh.region))
-    last = np.flatnonzero(np.diff(mesh.region[largest], append=-1))
-    centers = mesh.points[mesh.simplices[largest[last]]].mean(axis=1)
-    inside = np.ones(len(centers), dtype=bool)
-    if lines.rings[_BOUNDARY]:
-        inside = _odd(centers, lines.rings[_BOUNDARY])
-    for hole in lines.rings[_HOLE]:
-        inside &= ~_odd(centers, [hole])
-    number = np.zeros(int(mesh.region.max()) + 1, dtype=bool)
-    number[mesh.region[largest[last]]] = inside
-    found: Bools = number[mesh.region]
-    return found
-
-
-def _odd(centers: Floats, rings: list[Floats]) -> Bools:
-    """Which points are inside of an odd number of rings."""
-    odd = np.zeros(len(centers), dtype=bool)
-    for ring in rings:
-        a, b = ring[:-1, :2], ring[1:, :2]
-        for i, (x, y) in enumerate(centers):
-            crosses = (a[:, 1] > y) != (b[:, 1] > y)
-            p, q = a[crosses], b[crosses]
-            at = p[:, 0] + (y - p[:, 1]) / (q[:, 1] - p[:, 1]) * (q[:, 0] - p[:, 0])
-            odd[i] ^= bool(np.count_nonzero(at > x) % 2)
-    return odd
 
 
 def is_soft(mesh: ConstrainedDelaunay, lines: Lines) -> Bools:

@@ -30,7 +30,8 @@ class Earthworks(HullTiling):
         Parameters
         ----------
         polygon : array_like, shape (k, 2), list of rings, or polygons of shapely
-            Where the plane is: inside of an odd number of rings. Heights of it are not used.
+            Where the plane is. Each polygon has its own holes, and several are a union; of arrays,
+            inside is what an odd number of rings contain. Heights of it are not used.
         z : float or triple of float
             The height, or a plane (a, b, c) of the heights c + a x + b y.
 
@@ -45,7 +46,7 @@ class Earthworks(HullTiling):
         OutsideError
             The polygon leaves the surface; ``error.place`` has a point of it.
         CrossingSegmentsError
-            Edges of the polygon cross.
+            Rings of one polygon cross.
         NonFiniteError, InputError, DegenerateInputError
             A coordinate or height is NaN, infinite or beyond 1e100, or the polygon has no area.
         BudgetExceededError, MemoryError
@@ -90,7 +91,7 @@ class Earthworks(HullTiling):
         Parameters
         ----------
         polygon : array_like, shape (k, 2), list of rings, or polygons of shapely
-            The pad: inside of an odd number of rings. Heights of it are not used.
+            The pad, as for `flatten`. Heights of it are not used.
         z : float or triple of float
             The height of the pad, or its plane (a, b, c) of the heights c + a x + b y.
         slope : float, optional
@@ -116,7 +117,7 @@ class Earthworks(HullTiling):
             The pad leaves the surface, or a side slope reaches the end of the surface without
             meeting the ground; ``error.place`` has a point where it does.
         CrossingSegmentsError
-            Edges of the polygon cross.
+            Rings of one polygon cross.
         NonFiniteError, InputError, DegenerateInputError
             A coordinate or height is NaN, infinite or beyond 1e100, the polygon has no area, a
             slope is missing or not from 1e-6 to 1e6, or the pad itself is as steep.

@@ -18,7 +18,9 @@ from delone.georeference import warn_of_degrees
 from delone.plane import topology
 from delone.predicates import orient2d
 from delone.terrain import building
+from delone.terrain.gathering import HARD, SOFT, Lines
 from delone.terrain.heights import POLICIES, claims_of_points, resolved
+from delone.terrain.lines import Ring
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -34,15 +36,17 @@ if TYPE_CHECKING:
 
 __all__ = ["build_faces", "with_lines"]
 
-_LINES = ("breaklines", "soft_breaklines", "boundary", "holes")
+_LINES = ("breaklines", "soft_breaklines")
+_RINGS = ("boundary", "holes", "islands")
 _AFRESH = "faces=False (--retriangulate) triangulates its points and lines afresh"
 
 
 def with_lines(surface: SurfaceFile, options: dict[str, Any]) -> dict[str, Any]:
     """Return options of `TIN.from_points` with the lines of a file beside those given."""
     merged = dict(options)
-    for name in _LINES:
-        own = [line[:, : 2 if np.isnan(line[:, 2]).all() else 3] for line in getattr(surface, name)]
+    for name in (*_LINES, *_RINGS):
+        # Each ring of a file is a polygon: several are a union.
+        own = [Ring(line.copy()) for line in getattr(surface, name)]
         given = options.get(name)
         if own:
             merged[name] = own if given is None else [*own, given]
@@ -51,7 +55,7 @@ def with_lines(surface: SurfaceFile, options: dict[str, Any]) -> dict[str, Any]:
 
 def build_faces(surface: SurfaceFile, options: dict[str, Any]) -> building.Built:
     """Return the surface of the faces of a file; edges on its breaklines are breaklines."""
-    for name in (*_LINES, "max_edge"):
+    for name in (*_LINES, *_RINGS, "max_edge"):
         if options.get(name) is not None:
             raise InputError(f"{surface.source} has faces, so {name} changes nothing: {_AFRESH}")
     duplicates = options.get("duplicates", "raise")
@@ -101,14 +105,14 @@ def _upward(points: Floats, faces: Rows, source: str) -> Rows:
 
 def _with_edges(
     surface: SurfaceFile, points: Floats, faces: Rows, workers: int | None
-) -> tuple[ConstrainedDelaunay, building.Lines]:
+) -> tuple[ConstrainedDelaunay, Lines]:
     """Triangulate with the edges on breaklines, and with those that are missing otherwise."""
     sides = np.unique(np.sort(faces[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1), axis=0)
     keys = _keys(sides, len(points))
     hard, soft = (
         _on_lines(given, points, keys) for given in (surface.breaklines, surface.soft_breaklines)
     )
-    kinds = np.concatenate((np.full(len(hard), building.HARD), np.full(len(soft), building.SOFT)))
+    kinds = np.concatenate((np.full(len(hard), HARD), np.full(len(soft), SOFT)))
     wanted = np.concatenate((hard, soft))
     for extent in ("missing", "missing", "all"):
         mesh = _triangulated(points, wanted, surface.source, workers)
@@ -117,18 +121,18 @@ def _with_edges(
         known = _keys(mesh.simplices[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), len(points))
         more = sides[~np.isin(keys, known)] if extent == "missing" else sides
         wanted = np.concatenate((wanted, more))
-        kinds = np.concatenate((kinds, np.full(len(more), building.SOFT)))
+        kinds = np.concatenate((kinds, np.full(len(more), SOFT)))
     else:
         mesh = _triangulated(points, wanted, surface.source, workers)
         bad = ~_among(faces, mesh.simplices)
         if bad.any():
             raise _overlap(points[faces[bad][:, 0]], surface.source)
-    return mesh, building.Lines(
+    return mesh, Lines(
         np.empty((0, 3)),
         np.empty(0, dtype=bool),
         wanted.astype(np.int32),
         kinds.astype(np.int8),
-        {},
+        np.full(len(kinds), -1, dtype=np.int32),
     )
 
 

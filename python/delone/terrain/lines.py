@@ -1,13 +1,21 @@
-"""Lines and rings with heights, as arrays: breaklines, boundaries, profiles."""
+"""Lines and rings with heights, as arrays: breaklines, boundaries, profiles.
+
+Rings have one meaning everywhere: each polygon has its own holes, and several polygons are a union.
+Rings that belong to no polygon (arrays and closed lines) are together one polygon, whose inside is
+what an odd number of them contain.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from itertools import count
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from delone._arrays import as_plain_array, as_points, require_finite
+from delone.constrained.geodata import is_shapely
 from delone.errors import InputError, ShapeError
+from delone.extras import require
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -16,7 +24,17 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["line_of", "lines_of", "rings_of"]
+__all__ = ["Ring", "line_of", "lines_of", "rings_of"]
+
+# The polygon of rings that belong to none.
+_LOOSE = 0
+
+
+class Ring(NamedTuple):
+    """A line or ring, and its polygon."""
+
+    points: Floats  # (k, 3), heights NaN where there are none
+    polygon: int | None = None  # None for a polygon of its own
 
 
 def lines_of(given: Any, *, name: str) -> list[Floats]:
@@ -25,17 +43,19 @@ def lines_of(given: Any, *, name: str) -> list[Floats]:
     Taken are geometries of shapely, tables of them, a `GeometrySet`, arrays (k, 2) or (k, 3), and
     sequences of these. Polygons become their rings, closed.
     """
-    return [line for line in _each(given, name) if len(line)]
+    return [line.points for line in _each(given, name, count(1)) if len(line.points)]
 
 
-def rings_of(given: Any, *, name: str) -> list[Floats]:
+def rings_of(given: Any, *, name: str) -> list[Ring]:
     """Return closed rings: arrays that do not repeat their first point at the end are closed."""
     rings = []
-    for ring in lines_of(given, name=name):
+    for ring, polygon in _each(given, name, count(1)):
+        if not len(ring):
+            continue
         closed = ring if (ring[0, :2] == ring[-1, :2]).all() else np.vstack((ring, ring[:1]))
         if len(closed) < 4:
             raise InputError(f"{name}: a ring needs at least three points, got {len(closed) - 1}")
-        rings.append(closed)
+        rings.append(Ring(closed, polygon))
     return rings
 
 
@@ -47,26 +67,25 @@ def line_of(given: Any, *, name: str) -> Floats:
     return np.ascontiguousarray(lines[0][:, :2])
 
 
-def _each(given: Any, name: str) -> Iterator[Floats]:
+def _each(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
+    """Yield lines with the polygons that they belong to; `number` numbers these."""
     if given is None:
         return
-    if hasattr(given, "geom_type"):
-        yield from _of_geometry(given, name)
+    if isinstance(given, Ring):
+        yield given._replace(polygon=next(number))
+    elif is_shapely(given):
+        yield from _of_geometry(given, name, number)
     elif hasattr(given, "geometries") and hasattr(given, "heights"):  # a GeometrySet
-        for row, geometry in enumerate(given.geometries):
-            for line in _each(geometry, name):
-                if given.heights is not None:
-                    line[:, 2] = given.heights[row]
-                yield line
+        yield from _of_set(given, name, number)
     elif hasattr(given, "geometry") and hasattr(given.geometry, "values"):
-        yield from _each(list(given.geometry.values), name)
-    elif isinstance(given, np.ndarray) and given.dtype != object:
-        yield _of_array(given, name)
+        yield from _each(list(given.geometry.values), name, number)
+    elif isinstance(given, dict) or hasattr(given, "__geo_interface__"):
+        yield from _of_mapping(given, name, number)
     elif _is_line(given):
-        yield _of_array(as_plain_array(given, name), name)
+        yield Ring(_of_array(as_plain_array(given, name), name), _LOOSE)
     elif hasattr(given, "__iter__") and not isinstance(given, str | bytes):
         for item in given:
-            yield from _each(item, name)
+            yield from _each(item, name, number)
     else:
         raise InputError(
             f"{name}: {given!r:.60} is not a line: give geometries of shapely, or arrays of shape "
@@ -74,9 +93,32 @@ def _each(given: Any, name: str) -> Iterator[Floats]:
         )
 
 
+def _of_set(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
+    """Yield the lines of a GeometrySet; heights in a column are those of whole lines."""
+    for row, geometry in enumerate(given.geometries):
+        for line in _each(geometry, name, number):
+            if given.heights is not None:
+                line.points[:, 2] = given.heights[row]
+            yield line
+
+
+def _of_mapping(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
+    """Yield the lines of GeoJSON, and of objects with an interface of that form."""
+    mapping = given if isinstance(given, dict) else given.__geo_interface__
+    if mapping.get("type") == "FeatureCollection":
+        yield from _each(mapping["features"], name, number)
+    elif mapping.get("type") == "Feature":
+        yield from _each(mapping["geometry"], name, number)
+    else:
+        shape = require("shapely.geometry", extra="geo", what="GeoJSON").shape
+        yield from _of_geometry(shape(mapping), name, number)
+
+
 def _is_line(given: Any) -> bool:
-    """Whether a sequence is one line: its items are points."""
-    if not isinstance(given, list | tuple) or not given or hasattr(given[0], "geom_type"):
+    """Whether an array or a sequence is one line: its items are points."""
+    if isinstance(given, np.ndarray):
+        return bool(given.dtype != object)
+    if not isinstance(given, list | tuple) or not given or is_shapely(given[0]):
         return False
     try:
         first = np.asarray(given[0], dtype=np.float64)
@@ -100,7 +142,7 @@ def _checked(points: Floats, name: str) -> Floats:
     return points
 
 
-def _of_geometry(geometry: Any, name: str) -> Iterator[Floats]:
+def _of_geometry(geometry: Any, name: str, number: count[int]) -> Iterator[Ring]:
     """Yield the lines and rings of a geometry of shapely."""
     import shapely
 
@@ -109,8 +151,11 @@ def _of_geometry(geometry: Any, name: str) -> Iterator[Floats]:
         raise InputError(f"{name}: a {kind} is not a line")
     if hasattr(geometry, "geoms"):
         for part in geometry.geoms:
-            yield from _of_geometry(part, name)
+            yield from _of_geometry(part, name, number)
         return
-    lines = [geometry.exterior, *geometry.interiors] if kind == "Polygon" else [geometry]
+    if kind == "Polygon":
+        polygon, lines = next(number), [geometry.exterior, *geometry.interiors]
+    else:
+        polygon, lines = _LOOSE, [geometry]
     for line in lines:
-        yield _checked(shapely.get_coordinates(line, include_z=True), name)
+        yield Ring(_checked(shapely.get_coordinates(line, include_z=True), name), polygon)

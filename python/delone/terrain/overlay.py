@@ -137,7 +137,7 @@ def _distances(points: Floats, pad: Pad) -> Floats:
         along = b - a
         share = np.clip((points - a) @ along / (along @ along), 0, 1)
         np.minimum(found, np.hypot(*(points - a - share[:, None] * along).T), out=found)
-    found[inside(points, pad.rings)] = 0.0
+    found[inside(points, pad)] = 0.0
     return found
 
 
@@ -171,7 +171,7 @@ def _cells(tin: Surface, pad: Pad, near: Bools, mesh: ConstrainedDelaunay) -> _C
     simplex = tin.find_simplex(center).astype(np.int64)
     outside = simplex < 0
     simplex = np.where(outside | ~near[simplex], -1, simplex)
-    within = inside(center, pad.rings)
+    within = inside(center, pad)
     return _Cells(largest, center, simplex, outside, within & ~outside, within & outside)
 
 

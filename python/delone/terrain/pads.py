@@ -10,19 +10,19 @@ corners, the highest one counts in fill, and the lowest one in cut.
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from delone._arrays import as_number
-from delone.constrained.delaunay import ConstrainedDelaunay
-from delone.counting import counted
-from delone.errors import CrossingSegmentsError, InputError
+from delone.errors import InputError
+from delone.terrain.extent import inside_of_rings, refuse_crossing_rings
 from delone.terrain.lines import rings_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from delone.constrained.delaunay import ConstrainedDelaunay
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
@@ -41,7 +41,8 @@ class Pad(NamedTuple):
 
     points: Floats  # (p, 2)
     edges: Indices  # (e, 2), rows of `points`; the inside is to the left
-    rings: list[Floats]
+    mesh: ConstrainedDelaunay  # of the rings
+    within: Bools  # which of its triangles are inside
     plane: tuple[float, float, float]  # heights c + a x + b y
 
 
@@ -96,26 +97,13 @@ def plane_at(plane: tuple[float, float, float], points: Floats) -> Floats:
 
 
 def pad_of(polygon: Any, z: Any) -> Pad:
-    """Return the polygon, whose rings must not cross, and its plane."""
+    """Return the polygon, or the union of several whose own rings do not cross, and its plane."""
     plane = _plane(z)
-    rings = [np.ascontiguousarray(ring[:, :2]) for ring in rings_of(polygon, name="polygon")]
+    rings = rings_of(polygon, name="polygon")
     if not rings:
         raise InputError("polygon has no ring")
-    ends = np.cumsum([len(ring) for ring in rings]) - 1
-    row = np.delete(np.arange(ends[-1] + 1), ends)
-    try:
-        mesh = ConstrainedDelaunay(
-            np.concatenate(rings), np.column_stack((row, row + 1)), planar=True
-        )
-    except CrossingSegmentsError as error:
-        x, y = error.points[0]
-        raise CrossingSegmentsError(
-            f"polygon: edges cross at {counted(len(error.points), 'place')}, first ({x:.10g}, "
-            f"{y:.10g})",
-            pairs=error.pairs,
-            points=error.points,
-        ) from error
-    within = inside(mesh.points[mesh.simplices].mean(axis=1), rings)
+    refuse_crossing_rings("polygon: edges", rings)
+    mesh, within = inside_of_rings(rings)
     beside = np.append(within, False)[mesh.neighbors]
     triangle, side = np.nonzero(within[:, None] & ~beside & (mesh.constrained))
     edges = np.column_stack(
@@ -124,7 +112,7 @@ def pad_of(polygon: Any, z: Any) -> Pad:
     if not len(edges):
         raise InputError("polygon has no area: each point is inside of an even number of rings")
     used, rows = np.unique(edges, return_inverse=True)
-    return Pad(mesh.points[used], rows.reshape(-1, 2).astype(np.int32), rings, plane)
+    return Pad(mesh.points[used], rows.reshape(-1, 2).astype(np.int32), mesh, within, plane)
 
 
 def _plane(z: Any) -> tuple[float, float, float]:
@@ -137,22 +125,10 @@ def _plane(z: Any) -> tuple[float, float, float]:
     return numbers[0], numbers[1], numbers[2]
 
 
-def inside(points: Floats, rings: list[Floats]) -> Bools:
-    """Which points are inside of an odd number of rings; none may be on a ring."""
-    found = np.zeros(len(points), dtype=bool)
-    x, y = points.T
-    for ring in rings:
-        low, high = ring.min(axis=0), ring.max(axis=0)
-        near = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
-        at_x, at_y = x[near], y[near]
-        for (ax, ay), (bx, by) in pairwise(ring.tolist()):
-            if ay == by:
-                continue
-            hit = (ay > at_y) != (by > at_y)
-            # Beyond the range, which the caller refuses, this is nonsense.
-            with np.errstate(over="ignore", invalid="ignore"):
-                side = (bx - ax) * (at_y - ay) - (by - ay) * (at_x - ax)
-            found[near[hit & ((side > 0) == (by > ay))]] ^= True
+def inside(points: Floats, pad: Pad) -> Bools:
+    """Which points are inside of a pad, or on its edge."""
+    simplex = pad.mesh.find_simplex(points)
+    found: Bools = (simplex >= 0) & pad.within[simplex]
     return found
 
 

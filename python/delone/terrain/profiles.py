@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Profile", "Sight", "drape", "profile", "sight"]
+__all__ = ["Profile", "Sight", "drape", "parts_of", "profile", "sight"]
 
 # Heights of a surface are rounded: by this share of the largest height they may exceed a line of
 # sight that they touch.
@@ -135,7 +135,7 @@ def profile(tin: Surface, line: Any) -> Profile:
     start = 0.0
     rows: list[Floats] = []
     for a, b, length in zip(points[:-1], points[1:], lengths.tolist(), strict=True):
-        for part in _parts(tin, a, b):
+        for part in parts_of(tin, a, b):
             places = a + part.share[:, None] * (b - a)
             places[part.share == 1] = b
             table = np.column_stack((start + part.share * length, part.z, places))
@@ -153,7 +153,7 @@ def profile(tin: Surface, line: Any) -> Profile:
     return Profile(distance=table[:, 0].copy(), z=table[:, 1].copy(), points=table[:, 2:].copy())
 
 
-def _parts(tin: Surface, a: Floats, b: Floats) -> list[_Part]:
+def parts_of(tin: Surface, a: Floats, b: Floats) -> list[_Part]:
     """Return the parts of a segment that are on the surface."""
     if (a == b).all():
         z = tin.heights(a[None])

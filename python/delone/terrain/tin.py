@@ -109,6 +109,7 @@ class TIN(Surveyed, Earthworks):
         soft_breaklines: Any = None,
         boundary: Any = None,
         holes: Any = None,
+        islands: Any = None,
         max_edge: float | None = None,
         duplicates: str = "raise",
         crossing: str = "raise",
@@ -132,8 +133,12 @@ class TIN(Surveyed, Earthworks):
             one (NaN) are on it. Both kinds are edges; smoothing does not cut corners of contours at
             hard ones.
         boundary, holes : optional
-            Rings or polygons: the surface ends at the boundary, and does not cover holes. Where
-            they leave the points, the surface ends there.
+            Polygons or rings: the surface ends at the boundary, and does not cover holes. Where
+            they leave the points, the surface ends there. Each polygon has its own holes, and
+            several are a union. Rings given as arrays or closed lines are together one polygon:
+            inside is what an odd number of them contain.
+        islands : optional
+            Polygons or rings in holes or outside of the boundary that belong to the surface.
         max_edge : float, optional
             Triangles are removed from outside as long as their outer edge is longer than this, up
             to lines; by default the surface covers the convex hull or the boundary.
@@ -172,7 +177,7 @@ class TIN(Surveyed, Earthworks):
         NonFiniteError
             A coordinate or height is NaN or infinite.
         CrossingSegmentsError
-            The boundary or a hole crosses itself or another one.
+            The rings of a polygon cross themselves or each other.
         InputError
             A line without heights leaves the points, data are in different reference systems, no
             triangle is left, or an option is not one of its choices.
@@ -197,6 +202,7 @@ class TIN(Surveyed, Earthworks):
             soft_breaklines=soft_breaklines,
             boundary=boundary,
             holes=holes,
+            islands=islands,
             max_edge=max_edge,
             duplicates=duplicates,
             crossing=crossing,
@@ -703,7 +709,8 @@ class TIN(Surveyed, Earthworks):
             A height; a plane (a, b, c) of the heights c + a x + b y; or the surface that is to be
             reached.
         region : optional
-            Polygons or rings to which the volume is limited.
+            Polygons or rings to which the volume is limited; several polygons are a union, of
+            arrays inside is what an odd number of rings contain.
 
         Returns
         -------

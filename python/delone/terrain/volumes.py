@@ -10,10 +10,10 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_number, as_workers
-from delone.constrained.polygons import from_geometry
 from delone.errors import InputError
 from delone.georeference import same_crs
 from delone.immutable import ReadOnly, sealed
+from delone.terrain.extent import inside_of_rings
 from delone.terrain.lines import rings_of
 from delone.units import require_same_units
 
@@ -138,20 +138,14 @@ def _region(region: Any) -> _Region | None:
     """Return the triangles inside of polygons."""
     if region is None:
         return None
-    polygons = region
-    if not (hasattr(region, "geom_type") or hasattr(region, "geometry")):
-        if hasattr(region, "geometries"):
-            polygons = region.geometries
-        elif not all(hasattr(each, "geom_type") for each in np.atleast_1d(_objects(region))):
-            polygons = [
-                {"type": "Polygon", "coordinates": [ring[:, :2].tolist()]}
-                for ring in rings_of(region, name="region")
-            ]
-    mesh = from_geometry(polygons, boundary="polygons", crossing="split", planar=True)
-    return _Region(mesh.points, mesh.simplices, mesh.neighbors, np.zeros(mesh.npoints))
-
-
-def _objects(region: Any) -> NDArray[Any]:
-    found = np.empty(len(region), dtype=object)
-    found[:] = list(region)
-    return found
+    rings = rings_of(region, name="region")
+    if not rings:
+        raise InputError("region has no polygon or ring")
+    mesh, within = inside_of_rings(rings)
+    number = np.append(np.where(within, np.cumsum(within) - 1, -1), -1).astype(np.int32)
+    return _Region(
+        mesh.points,
+        mesh.simplices[within],
+        number[mesh.neighbors[within]],
+        np.zeros(mesh.npoints),
+    )
