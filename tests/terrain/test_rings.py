@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from delone import CrossingSegmentsError, InputError
-from delone.io import read_surface
-from delone.terrain import TIN
+from delone.io import GeometrySet, read_surface
+from delone.terrain import TIN, snapping
 
 BOX = [(-1, -1, 1), (11, -1, 1), (11, 11, 1), (-1, 11, 1)]
 
@@ -155,16 +155,13 @@ def test_holes_take_one_pass():
 
 
 @pytest.mark.parametrize("kind", ["frame", "series", "array", "set", "mapping"])
-def test_tables_of_geometries(kind, tmp_path):
+def test_tables_of_geometries(kind):
     geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
 
     def table(geometry):
         frame = geopandas.GeoDataFrame({"name": [1]}, geometry=[geometry])
         if kind == "set":
-            from delone.io import read_geometries
-
-            frame.to_file(tmp_path / "lines.geojson")
-            return read_geometries(tmp_path / "lines.geojson")
+            return GeometrySet(geometries=frame.geometry.to_numpy())
         found = {"frame": frame, "series": frame.geometry, "array": frame.geometry.values}
         return found.get(kind, frame.__geo_interface__)
 
@@ -177,3 +174,39 @@ def test_tables_of_geometries(kind, tmp_path):
     assert tin.embank(area_, 2, slope=1).heights((3, 3)) == 2
     assert tin.volume(0.0, region=area_).area == 4
     assert tin.profile(line).distance[-1] == 7
+
+
+@pytest.mark.parametrize("degrees", [10, 37, 72])
+def test_pads_along_the_rows_of_a_turned_grid(degrees):
+    n = 13
+    points = turned(n, degrees)
+    points[:, 2] = 0
+    inner = (np.add.outer(np.arange(5) * n, np.arange(5)) + 4 * n + 4).ravel()
+    pad = points[inner[border(5)], :2]
+    ground = TIN.from_points(points)
+    flat = ground.flatten(pad, 1.0)
+    assert flat.validate()
+    assert ground.volume(flat, region=[pad]).fill == pytest.approx(16, rel=1e-6)
+    # One row of cells around the pad is inclined.
+    assert ground.volume(flat).fill == pytest.approx(16 + 16 / 2 + 4 / 3, rel=0.1)
+    hill = ground.embank(pad, 1.0, slope=1, corners="miter")
+    assert hill.validate()
+    assert ground.volume(hill).fill == pytest.approx(16 + 8 + 4 / 3, rel=1e-6)
+
+
+def test_a_pad_of_many_edges_is_compared_with_what_is_near(monkeypatch):
+    compared = []
+    close = snapping._close
+    monkeypatch.setattr(
+        snapping, "_close", lambda *given: (compared.append(len(given[2])), close(*given))[1]
+    )
+    xy = np.random.default_rng(3).random((3000, 2)) * 1000
+    ground = TIN.from_points(np.column_stack((xy, np.zeros(len(xy)))))
+    angle = np.linspace(0, 2 * np.pi, 400, endpoint=False)
+    pad = 500 + 50 * np.column_stack((np.cos(angle), np.sin(angle)))
+    flat = ground.flatten(pad, 2.0)
+    assert ground.volume(flat, region=[pad]).fill == pytest.approx(
+        200 * 1250 * np.sin(angle[1]) * 4
+    )
+    # Each with each would be 400 edges with all vertices, and all edges with 400 corners.
+    assert sum(compared) < 400 * 3000 / 20

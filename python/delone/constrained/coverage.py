@@ -19,13 +19,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone._core import ConstrainedTriangulation
-    from delone.constrained.segmented import Segmented
 
     Bools = NDArray[np.bool_]
     Indices = NDArray[np.int32]
     Rows = NDArray[np.int64]
 
-__all__ = ["closed_rings", "first_polygon", "inside"]
+__all__ = ["closed_rings", "containing", "first_polygon", "odd_pairs"]
 
 
 def closed_rings(ends: Indices, geometries: Indices, rings: Bools) -> Bools:
@@ -57,54 +56,55 @@ def first_polygon(
     `geometries` has the geometry of each row of segments, `sides` those of closed rings. Takes O(m
     log m), plus for each component time in proportion to the polygons that overlap in it.
     """
+    polygons = np.where(sides, geometries, -1)
+    found = containing(made, npoints, polygons, component)
+    return np.array([min(each, default=-1) for each in found], dtype=np.int32)
+
+
+def containing(
+    made: ConstrainedTriangulation, npoints: int, polygons: Indices, component: Indices
+) -> list[frozenset[int]]:
+    """Return the polygons that contain each component."""
     count = int(component.max(initial=-1)) + 1
     walls = _walls(made, npoints, component, count)
-    crossed = _polygons_of_subsegments(made, geometries, sides, walls[:, 2])
+    crossed = _polygons_of_subsegments(made, polygons)
     beyond: dict[int, list[tuple[int, int]]] = defaultdict(list)
     for one, other, subsegment in walls.tolist():
         beyond[one].append((other, subsegment))
         beyond[other].append((one, subsegment))
     nothing: frozenset[int] = frozenset()
-    inside = {count: nothing}
-    queue = deque(inside)
+    found = {count: nothing}
+    queue = deque(found)
+    # Each component enters the queue once.
     while queue:
         here = queue.popleft()
         for there, subsegment in beyond[here]:
-            if there not in inside:
-                inside[there] = inside[here] ^ crossed.get(subsegment, nothing)
+            if there not in found:
+                found[there] = found[here] ^ crossed.get(subsegment, nothing)
                 queue.append(there)
-    first = [min(inside[c], default=-1) for c in range(count)]
-    return np.array(first, dtype=np.int32)
+    return [found[c] for c in range(count)]
 
 
-def inside(mesh: Segmented, polygons: Indices) -> Bools:
-    """Return which triangles of the hull are inside of some polygon.
+def odd_pairs(start: Rows, source: Indices, polygons: Indices) -> Rows:
+    """Return pairs of a subsegment and a polygon of which an odd number of sides cover it, (k, 2).
 
-    `polygons` has the polygon of each row of segments, -1 for rows that are sides of none. The
-    sides of each polygon must be closed rings; even-odd rule.
+    The sources are compressed rows, as `segment_source` has them.
     """
-    sides = polygons >= 0
-    if not sides.any():
-        return np.zeros(len(mesh._made.simplices), dtype=bool)
-    component = mesh._component()
-    found: Bools = (
-        first_polygon(mesh._made, mesh.npoints, polygons, component, sides)[component] >= 0
-    )
+    of = polygons[source].astype(np.int64)
+    subsegment = np.repeat(np.arange(len(start) - 1), np.diff(start))
+    pairs = np.column_stack((subsegment, of))[of >= 0]
+    distinct, number = np.unique(pairs, axis=0, return_counts=True)
+    found: Rows = distinct[number % 2 == 1]
     return found
 
 
 def _polygons_of_subsegments(
-    made: ConstrainedTriangulation, geometries: Indices, sides: Bools, wanted: Rows
+    made: ConstrainedTriangulation, polygons: Indices
 ) -> dict[int, frozenset[int]]:
-    """Return the polygons that cover each given subsegment with an odd number of sides."""
-    source, start = made.source, made.source_start
-    crossed = {}
-    for at in wanted[wanted >= 0].tolist():
-        rows = source[start[at] : start[at + 1]]
-        odd: set[int] = set()
-        for geometry in geometries[rows[sides[rows]]].tolist():
-            odd ^= {geometry}
-        crossed[at] = frozenset(odd)
+    """Return the polygons that cover subsegments with an odd number of sides."""
+    crossed: dict[int, frozenset[int]] = {}
+    for subsegment, polygon in odd_pairs(made.source_start, made.source, polygons).tolist():
+        crossed[subsegment] = crossed.get(subsegment, frozenset()) | {polygon}
     return crossed
 
 

@@ -30,6 +30,7 @@ __all__ = [
     "half_edges",
     "neighbors",
     "rows_among",
+    "triangles_among",
     "unjoined",
     "vertex_neighbor_vertices",
     "vertex_to_simplex",
@@ -99,6 +100,15 @@ def rows_among(triangles: Indices, some: Indices) -> Indices:
     found = np.full(len(triangles) + 1, -1, dtype=np.int32)
     found[order[:-1][same]] = order[1:][same] - len(triangles)
     return found
+
+
+def triangles_among(triangles: Indices, others: Indices) -> NDArray[np.bool_]:
+    """Return which triangles have the same corners as one of the others."""
+    corners = np.sort(np.concatenate((triangles, others)), axis=1).astype(np.int64)
+    count = int(corners.max(initial=0)) + 1
+    _, pair = np.unique(corners[:, 0] * count + corners[:, 1], return_inverse=True)
+    key = pair.reshape(-1) * count + corners[:, 2]
+    return among(key[: len(triangles)], key[len(triangles) :])
 
 
 def vertex_neighbor_vertices(edges: Indices, npoints: int) -> tuple[Indices, Indices]:

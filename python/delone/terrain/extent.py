@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from delone.constrained.coverage import inside
 from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.constrained.membership import inside
 from delone.counting import counted
 from delone.errors import CrossingSegmentsError
-from delone.plane.topology import rows_among
+from delone.plane.topology import triangles_among
 from delone.terrain.gathering import BOUNDARY, HOLE, HULL, ISLAND, off_ground
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ def without_outer(part: Part, lines: Lines) -> Part:
         made = ConstrainedDelaunay(
             mesh.points[rows], number[mesh.segments[some]], workers=mesh.workers, planar=True
         )
-        found = rows_among(made.simplices, wanted)[:-1] >= 0
+        found = triangles_among(made.simplices, wanted)
         if np.count_nonzero(found) == len(wanted):
             break
     return Part(made, z[rows], found, soft[some])

@@ -82,7 +82,7 @@ def build_faces(surface: SurfaceFile, options: dict[str, Any]) -> building.Built
         crossing="raise",
         tolerance=building.as_tolerance(options.get("tolerance", 0.0)),
     )
-    kept = _among(mesh.simplices, faces)
+    kept = topology.triangles_among(mesh.simplices, faces)
     return building.compact(mesh, z, kept, building.is_soft(mesh, lines), system, units)
 
 
@@ -116,7 +116,7 @@ def _with_edges(
     wanted = np.concatenate((hard, soft))
     for extent in ("missing", "missing", "all"):
         mesh = _triangulated(points, wanted, surface.source, workers)
-        if np.count_nonzero(_among(mesh.simplices, faces)) == len(faces):
+        if np.count_nonzero(topology.triangles_among(mesh.simplices, faces)) == len(faces):
             break
         known = _keys(mesh.simplices[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), len(points))
         more = sides[~np.isin(keys, known)] if extent == "missing" else sides
@@ -124,7 +124,7 @@ def _with_edges(
         kinds = np.concatenate((kinds, np.full(len(more), SOFT)))
     else:
         mesh = _triangulated(points, wanted, surface.source, workers)
-        bad = ~_among(faces, mesh.simplices)
+        bad = ~topology.triangles_among(faces, mesh.simplices)
         if bad.any():
             raise _overlap(points[faces[bad][:, 0]], surface.source)
     return mesh, Lines(
@@ -169,12 +169,3 @@ def _keys(pairs: NDArray[Any], npoints: int) -> Rows:
     a, b = pairs.T
     found: Rows = topology.edge_keys(a, b, npoints)
     return found
-
-
-def _among(triangles: NDArray[Any], others: NDArray[Any]) -> Bools:
-    """Which triangles have the same corners as one of the others."""
-    corners = np.sort(np.concatenate((triangles, others)), axis=1).astype(np.int64)
-    count = int(corners.max(initial=0)) + 1
-    _, pair = np.unique(corners[:, 0] * count + corners[:, 1], return_inverse=True)
-    key = pair.reshape(-1) * count + corners[:, 2]
-    return np.isin(key[: len(triangles)], key[len(triangles) :])

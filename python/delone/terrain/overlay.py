@@ -1,7 +1,8 @@
 """The overlay of a surface with a pad and its side slopes: one plane counts in each piece.
 
 The edges of the surface near the pad, the edges of the pad and the rims of the facets are segments
-of a first triangulation. In a region between them the surface is one plane, and so is each facet;
+of a first triangulation. In a region between them the surface is one plane, and so is each facet:
+which triangle, pad and facets contain a region follows from the segments around it (`coverage`);
 where two of these planes cross in a triangle, the crossing is a segment of a second triangulation.
 In each of its regions one plane counts: that of the highest facet above the ground, or of the
 lowest facet below it. Regions that are not connected to the pad remain ground.
@@ -13,7 +14,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from delone.constrained.coverage import odd_pairs
 from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.constrained.membership import containing
+from delone.delaunay import Delaunay
 from delone.errors import OutsideError
 from delone.terrain.pads import inside, plane_at
 from delone.terrain.snapping import closeness, threaded
@@ -37,7 +41,12 @@ PAD, GROUND = -1, -2
 _ROUNDINGS, _STEEPEST = 64, 16.0
 # A slope whose direction differs from the outline by less runs along it.
 _ALONG = 1e-6
+# Points on the edges of a pad, for each edge, to which distances are measured.
+_SPREAD = 4
 _EPS = float(np.finfo(np.float64).eps)
+# The polygons of segments: the pad, the whole surface, facets by their numbers from `_FACETS` on,
+# then the triangles of the surface that are near.
+_PAD, _SURFACE, _FACETS = 0, 1, 2
 
 
 class Overlay(NamedTuple):
@@ -53,6 +62,20 @@ class Overlay(NamedTuple):
     near: Bools  # of each triangle of the surface: whether it is part of the overlay
 
 
+class _Sides(NamedTuple):
+    """Segments to triangulate, and the polygon of each, -1 for none; each side of each polygon."""
+
+    points: Floats
+    segments: Indices
+    polygons: Indices
+
+    def mesh(self, workers: int | None) -> ConstrainedDelaunay:
+        """Triangulate them."""
+        return ConstrainedDelaunay(
+            self.points, self.segments, crossing="split", workers=workers, planar=True
+        )
+
+
 class _Cells(NamedTuple):
     """The regions between segments of a triangulation."""
 
@@ -62,6 +85,7 @@ class _Cells(NamedTuple):
     outside: Bools
     pad: Bools
     beyond: Bools  # inside of the polygon, but not on the surface
+    facets: Rows  # (k, 2), regions and facets that contain them
 
 
 class _Pairs(NamedTuple):
@@ -86,18 +110,19 @@ def overlaid(tin: Surface, pad: Pad, facets: Facets) -> Overlay:
     near, reach = _near(tin, pad, facets)
     if not near.any():
         raise _leaves(*pad.points[0].tolist())
-    points, segments, used = _first(tin, pad, facets, near, reach)
-    mesh = ConstrainedDelaunay(points, segments, crossing="split", workers=tin.workers, planar=True)
-    cells = _cells(tin, pad, near, mesh)
+    first, used = _first(tin, pad, facets, near, reach)
+    mesh = first.mesh(tin.workers)
+    cells = _cells(mesh, first.polygons, near, len(reach))
     _refuse_outside(tin, pad, mesh, cells)
     ground = _ground(tin, mesh, cells, used)
     if len(facets.height):
         slack = _slack(tin, pad, facets, near)
-        pairs = _raised(mesh, cells, facets, reach, ground, slack)
-        mesh = _split(mesh, pairs, facets, slack, tin.workers)
-        cells = _cells(tin, pad, near, mesh)
+        pairs = _raised(mesh, cells, facets, ground, slack)
+        second = _split(mesh, first.polygons, pairs, facets, slack)
+        mesh = second.mesh(tin.workers)
+        cells = _cells(mesh, second.polygons, near, len(reach))
         ground = _ground(tin, mesh, cells, used)
-        pairs = _raised(mesh, cells, facets, reach, ground, slack)
+        pairs = _raised(mesh, cells, facets, ground, slack)
         label = _connected(mesh, _labels(mesh, cells, pairs, facets))
         _refuse_leaving(mesh, cells, facets, label)
     else:
@@ -112,10 +137,10 @@ def overlaid(tin: Surface, pad: Pad, facets: Facets) -> Overlay:
 
 def _near(tin: Surface, pad: Pad, facets: Facets) -> tuple[Bools, Floats]:
     """Return which triangles the pad and its slopes can meet, and how far each facet can reach."""
-    away = _distances(tin.points, pad)
+    away, excess = _distances(tin.points, pad)
     corners = tin.points[tin.simplices]
     size = np.hypot(*np.moveaxis(corners - corners[:, [1, 2, 0]], -1, 0)).max(axis=1)
-    closest = np.maximum(away[tin.simplices].min(axis=1) - size, 0)
+    closest = np.maximum(away[tin.simplices].min(axis=1) - size - excess, 0)
     near = closest == 0
     z, ends = tin.z[tin.simplices], plane_at(pad.plane, pad.points)
     reach = np.zeros(len(facets.height))
@@ -130,23 +155,30 @@ def _near(tin: Surface, pad: Pad, facets: Facets) -> tuple[Bools, Floats]:
     return near, reach
 
 
-def _distances(points: Floats, pad: Pad) -> Floats:
-    """Return the distances of points to a pad, 0 inside."""
-    found = np.full(len(points), np.inf)
-    for a, b in pad.points[pad.edges]:
-        along = b - a
-        share = np.clip((points - a) @ along / (along @ along), 0, 1)
-        np.minimum(found, np.hypot(*(points - a - share[:, None] * along).T), out=found)
+def _distances(points: Floats, pad: Pad) -> tuple[Floats, float]:
+    """Return distances of points to a pad, 0 inside, and by how much they may be too large.
+
+    They are those to the nearest of points that are spread over the edges of the pad.
+    """
+    ends = pad.points[pad.edges]
+    lengths = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
+    step = float(lengths.sum()) / (_SPREAD * len(lengths))
+    parts = np.ceil(lengths / step).astype(np.int64)
+    edge = np.repeat(np.arange(len(parts)), parts)
+    share = (np.arange(len(edge)) - (np.cumsum(parts) - parts)[edge]) / parts[edge]
+    spread = ends[edge, 0] + share[:, None] * (ends[edge, 1] - ends[edge, 0])
+    mesh = Delaunay(spread, planar=True)
+    found = np.hypot(*(points - spread[mesh.nearest(points)]).T)
     found[inside(points, pad)] = 0.0
-    return found
+    return found, step
 
 
 def _first(
     tin: Surface, pad: Pad, facets: Facets, near: Bools, reach: Floats
-) -> tuple[Floats, Indices, Rows]:
-    """Return points and segments of the first triangulation, and the vertices it starts with."""
-    used, rows = np.unique(tin.simplices[near], return_inverse=True)
-    ends = rows.reshape(-1, 3)[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2)
+) -> tuple[_Sides, Rows]:
+    """Return what is triangulated first, and the vertices of the surface it starts with."""
+    sides, of_triangle = _sides_of_surface(tin, near, _FACETS + len(reach))
+    used, rows = np.unique(sides, return_inverse=True)
     far = reach[:, None]
     rims: tuple[Floats, ...] = (
         facets.start,
@@ -157,22 +189,69 @@ def _first(
     rim = np.arange(4 * len(far)).reshape(4, -1).T + len(used) + len(pad.points)
     points = np.concatenate((tin.points[used], pad.points, *rims))
     ours, corners = np.arange(len(used)), len(used) + np.arange(len(pad.points))
-    edges = np.unique(np.sort(ends, axis=1), axis=0)
-    others = np.concatenate([pad.edges + len(used), *(rim[:, [k, k + 1]] for k in range(3))])
-    segments = (threaded(points, edges, corners), threaded(points, others, ours))
-    return points, np.concatenate(segments).astype(np.int32), used.astype(np.int64)
+    edges, edge = np.unique(np.sort(rows.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
+    pieces, whole = threaded(points, edges, corners)
+    # Each piece of an edge is a side of the triangles on both sides of the edge.
+    order = np.argsort(whole, kind="stable")
+    begin = np.searchsorted(whole[order], np.arange(len(edges) + 1))
+    side, piece = _expanded(begin, edge.reshape(-1))
+    # Of a facet also the edge of the pad, which closes its rims.
+    around = [rim[:, [k, k + 1]] for k in range(3)] + [rim[:, [0, 3]]]
+    others, row = threaded(points, np.concatenate([pad.edges + len(used), *around]), ours)
+    number = np.concatenate(
+        (np.full(len(pad.edges), _PAD), np.tile(_FACETS + np.arange(len(far)), 4))
+    )
+    return _Sides(
+        points,
+        np.concatenate((pieces[order[piece]], others)).astype(np.int32),
+        np.concatenate((of_triangle[side], number[row])).astype(np.int32),
+    ), used.astype(np.int64)
 
 
-def _cells(tin: Surface, pad: Pad, near: Bools, mesh: ConstrainedDelaunay) -> _Cells:
-    """Locate the regions: the largest triangle of each decides."""
+def _sides_of_surface(tin: Surface, near: Bools, first: int) -> tuple[Indices, Rows]:
+    """Return the sides of near triangles and of the whole surface, and the polygon of each."""
+    around = tin.simplices[:, [[1, 2], [2, 0], [0, 1]]]
+    triangles = np.flatnonzero(near)
+    outline = around[tin.neighbors < 0]
+    return np.concatenate((around[triangles].reshape(-1, 2), outline)), np.concatenate(
+        (
+            np.repeat(first + np.arange(len(triangles)), 3),
+            np.full(len(outline), _SURFACE),
+        )
+    )
+
+
+def _expanded(begin: Rows, rows: Rows) -> tuple[Rows, Rows]:
+    """Return the places in `rows`, and the items from `begin[row]` to `begin[row + 1]` of each."""
+    count = begin[rows + 1] - begin[rows]
+    place = np.repeat(np.arange(len(rows)), count)
+    first = np.repeat(begin[rows] - np.cumsum(count) + count, count)
+    return place, first + np.arange(len(place))
+
+
+def _cells(mesh: ConstrainedDelaunay, polygons: Indices, near: Bools, nfacets: int) -> _Cells:
+    """Find what contains each region: the segments around it decide."""
     order = np.lexsort((mesh.areas, mesh.region))
     largest = order[np.flatnonzero(np.diff(mesh.region[order], append=-1))]
-    center = mesh.points[mesh.simplices[largest]].mean(axis=1)
-    simplex = tin.find_simplex(center).astype(np.int64)
-    outside = simplex < 0
-    simplex = np.where(outside | ~near[simplex], -1, simplex)
-    within = inside(center, pad)
-    return _Cells(largest, center, simplex, outside, within & ~outside, within & outside)
+    region, polygon = containing(mesh, polygons).T
+    pad, surface = np.zeros(len(largest), dtype=bool), np.zeros(len(largest), dtype=bool)
+    pad[region[polygon == _PAD]] = True
+    surface[region[polygon == _SURFACE]] = True
+    simplex = np.full(len(largest), -1)
+    of_triangle = polygon >= _FACETS + nfacets
+    simplex[region[of_triangle]] = np.flatnonzero(near)[polygon[of_triangle] - _FACETS - nfacets]
+    # Regions as narrow as a rounding may be behind an edge of their triangle and of the surface.
+    simplex[~surface] = -1
+    of_facet = (polygon >= _FACETS) & ~of_triangle
+    return _Cells(
+        largest,
+        mesh.points[mesh.simplices[largest]].mean(axis=1),
+        simplex,
+        ~surface,
+        pad & surface,
+        pad & ~surface,
+        np.column_stack((region, polygon - _FACETS))[of_facet],
+    )
 
 
 def _ground(tin: Surface, mesh: ConstrainedDelaunay, cells: _Cells, used: Rows) -> Floats:
@@ -205,41 +284,32 @@ def _slack(tin: Surface, pad: Pad, facets: Facets, near: Bools) -> float:
     return _ROUNDINGS * _EPS * (span * steepness + rise)
 
 
-def _raised(  # noqa: PLR0917
+def _raised(
     mesh: ConstrainedDelaunay,
     cells: _Cells,
     facets: Facets,
-    reach: Floats,
     ground: Floats,
     slack: float,
 ) -> _Pairs:
     """Return the facets on each triangle that are above its ground (fill) or below it (cut)."""
-    open_ = np.flatnonzero((cells.simplex >= 0) & ~cells.pad)
     order = np.argsort(mesh.region, kind="stable")
     begin = np.searchsorted(mesh.region[order], np.arange(len(cells.center) + 1))
-    triangles, numbers, values = [], [], []
-    for k in range(len(reach)):
-        on = open_[facets.covers(k, cells.center[open_], float(reach[k]))]
-        count = begin[on + 1] - begin[on]
-        start = np.repeat(begin[on] - np.cumsum(count) + count, count)
-        triangle = order[start + np.arange(len(start))]
-        corners = mesh.simplices[triangle]
-        apart = facets.at(k, mesh.points[corners.ravel()]).reshape(-1, 3) - ground[corners]
-        excess = -facets.rise[k] * apart
-        excess[np.abs(excess) <= slack] = 0.0
-        some = (excess > 0).any(axis=1)
-        triangles.append(triangle[some])
-        values.append(excess[some])
-        numbers.append(np.full(np.count_nonzero(some), k))
-    triangle, facet = np.concatenate(triangles), np.concatenate(numbers)
-    order = np.lexsort((facet, triangle))
-    return _Pairs(triangle[order], facet[order], np.concatenate(values)[order])
+    region, facet = cells.facets[((cells.simplex >= 0) & ~cells.pad)[cells.facets[:, 0]]].T
+    place, at = _expanded(begin, region)
+    triangle, facet = order[at], facet[place]
+    corners = mesh.simplices[triangle]
+    heights = facets.at(np.repeat(facet, 3), mesh.points[corners.ravel()]).reshape(-1, 3)
+    excess = -facets.rise[facet, None] * (heights - ground[corners])
+    excess[np.abs(excess) <= slack] = 0.0
+    some = np.flatnonzero((excess > 0).any(axis=1))
+    some = some[np.lexsort((facet[some], triangle[some]))]
+    return _Pairs(triangle[some], facet[some], excess[some])
 
 
 def _split(
-    mesh: ConstrainedDelaunay, pairs: _Pairs, facets: Facets, slack: float, workers: int | None
-) -> ConstrainedDelaunay:
-    """Triangulate again with the lines where planes cross as segments."""
+    mesh: ConstrainedDelaunay, polygons: Indices, pairs: _Pairs, facets: Facets, slack: float
+) -> _Sides:
+    """Return the segments again, with the lines where planes cross."""
     triangles, values = [pairs.triangle], [pairs.excess]
     for first, second in _couples(pairs, facets):
         # Not of the excesses, which are rounded to zero.
@@ -251,12 +321,17 @@ def _split(
         triangles.append(pairs.triangle[first])
         values.append(difference)
     found = _zero_lines(mesh, np.concatenate(triangles), np.concatenate(values))
-    return ConstrainedDelaunay(
+    pieces, whole = _through(mesh, found)
+    # Each piece is a side of the polygons of its subsegment.
+    subsegment, polygon = odd_pairs(*mesh.segment_source, polygons).T
+    begin = np.searchsorted(subsegment, np.arange(len(mesh.segments) + 1))
+    piece, at = _expanded(begin, whole)
+    bare = np.flatnonzero(begin[whole + 1] == begin[whole])
+    lines = np.concatenate((pieces[bare], found.segments))
+    return _Sides(
         np.concatenate((mesh.points, found.points)),
-        np.concatenate((_through(mesh, found), found.segments)).astype(np.int32),
-        crossing="split",
-        workers=workers,
-        planar=True,
+        np.concatenate((pieces[piece], lines)).astype(np.int32),
+        np.concatenate((polygon[at], np.full(len(lines), -1))).astype(np.int32),
     )
 
 
@@ -301,8 +376,8 @@ def _zero_lines(mesh: ConstrainedDelaunay, triangle: Rows, values: Floats) -> _L
     return _Lines(p + share[:, None] * (q - p), segments, ends, share)
 
 
-def _through(mesh: ConstrainedDelaunay, lines: _Lines) -> NDArray[np.int64]:
-    """Return the segments of a mesh, through the new points that are on them.
+def _through(mesh: ConstrainedDelaunay, lines: _Lines) -> tuple[Rows, Rows]:
+    """Return the segments of a mesh, through the new points that are on them, and their rows.
 
     Points are rounded: without that, regions on both sides of a segment would be connected beside
     its new points.
@@ -312,17 +387,19 @@ def _through(mesh: ConstrainedDelaunay, lines: _Lines) -> NDArray[np.int64]:
     edge = lines.ends.astype(np.int64) @ scale
     on = np.flatnonzero(np.isin(edge, keys))
     on = on[np.lexsort((lines.share[on], edge[on]))]
-    edge, row = edge[on], mesh.npoints + on
+    edge, point = edge[on], mesh.npoints + on
     last = np.diff(edge, append=-1) != 0
     first = np.roll(last, 1)
+    by_key = np.argsort(keys)
+    whole, row = np.flatnonzero(~np.isin(keys, edge)), by_key[np.searchsorted(keys[by_key], edge)]
     return np.concatenate(
         (
-            mesh.segments[~np.isin(keys, edge)],
-            np.column_stack((lines.ends[on[first], 0], row[first])),
-            np.column_stack((row[:-1], row[1:]))[~last[:-1]],
-            np.column_stack((row[last], lines.ends[on[last], 1])),
+            mesh.segments[whole],
+            np.column_stack((lines.ends[on[first], 0], point[first])),
+            np.column_stack((point[:-1], point[1:]))[~last[:-1]],
+            np.column_stack((point[last], lines.ends[on[last], 1])),
         )
-    )
+    ), np.concatenate((whole, row[first], row[:-1][~last[:-1]], row[last]))
 
 
 def _labels(mesh: ConstrainedDelaunay, cells: _Cells, pairs: _Pairs, facets: Facets) -> Rows:

@@ -76,18 +76,6 @@ class Facets(NamedTuple):
         found: Floats = self.height[k] + (self.gradient[k] * apart).sum(axis=-1)
         return found
 
-    def covers(self, k: int, points: Floats, reach: float) -> Bools:
-        """Which points are on a facet, up to a distance."""
-        a, b = points - self.start[k], points - self.end[k]
-        edge = self.end[k] - self.start[k]
-        found: Bools = (
-            (_cross(self.first[k], a) >= 0)
-            & (_cross(self.last[k], b) <= 0)
-            & (_cross(edge, a) <= 0)
-            & (a @ self.outward[k] <= reach)
-        )
-        return found
-
 
 def plane_at(plane: tuple[float, float, float], points: Floats) -> Floats:
     """Heights of a plane."""

@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from delone import _core
 from delone._arrays import as_choice, as_number
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import InputError
+from delone.plane.topology import among, edge_keys, triangles_among
 from delone.terrain.building import Built
 from delone.terrain.heights import claims_of_lines
 from delone.terrain.overlay import GROUND, PAD, Overlay, overlaid
@@ -106,7 +108,7 @@ def _pad(tin: Surface, polygon: Any, z: Any) -> Pad:
             f"designs need coordinates and heights up to {_LARGEST:g} and extents of at least "
             f"{1 / _LARGEST:g}: change their unit"
         )
-    return settled(pad, tin.points)
+    return settled(pad, tin)
 
 
 def _incident(overlay: Overlay, triangles: Bools) -> Bools:
@@ -264,7 +266,9 @@ def _rebuilt(
     )
     z = np.concatenate((tin.z[remains], _heights(overlay, change, pad, facets)[own]))
     hard = np.concatenate((~soft, edges.hard))
-    return _built(tin, mesh, _complete(mesh, z), hard, row)
+    ends = np.concatenate((np.zeros(len(old), dtype=bool), (edges.beside == _OUTSIDE).any(axis=1)))
+    kept = _kept(tin, mesh, row, ends)
+    return _built(tin, mesh, _complete(mesh, z), hard, kept)
 
 
 def _lines_left(tin: Surface, change: _Change) -> tuple[Indices, Bools]:
@@ -305,26 +309,49 @@ def _complete(mesh: ConstrainedDelaunay, z: Floats) -> Floats:
     return found
 
 
-def _kept(tin: Surface, mesh: ConstrainedDelaunay, row: Rows) -> Bools:
-    """Which triangles are part of the surface: those that were left out are so again."""
+def _kept(tin: Surface, mesh: ConstrainedDelaunay, row: Rows, ends: Bools) -> Bools:
+    """Which triangles are part of the surface: those that were left out are so again.
+
+    `ends` says which segments are where the surface ends. Between these and the old outline
+    triangles are all inside or all outside, and some of them are old.
+    """
     gone = row[tin._left_out()]
-    kept = np.ones(mesh.nsimplex, dtype=bool)
     if not len(gone):
-        return kept
-    corners = np.concatenate((mesh.simplices.astype(np.int64), row[tin.simplices], gone))
-    corners.sort(axis=1)
-    scale = mesh.npoints
-    _, edge = np.unique(corners[:, 0] * scale + corners[:, 1], return_inverse=True)
-    key = edge * scale + corners[:, 2]
-    ours, theirs = key[: mesh.nsimplex], key[mesh.nsimplex :]
-    kept = np.isin(ours, theirs[: -len(gone)])
-    # Others are new: inside of the surface, or because of a new point on its outline.
-    new = np.flatnonzero(~np.isin(ours, theirs))
-    kept[new] = tin.find_simplex(mesh.points[mesh.simplices[new]].mean(axis=1)) >= 0
+        return np.ones(mesh.nsimplex, dtype=bool)
+    outline = _outline(tin, mesh, row, ends)
+    component = _core.components2(mesh.neighbors, outline)
+    state = np.full(int(component.max()) + 1, -1)
+    # A triangle of the hull is outside if it ends there without being on the outline.
+    state[component[((mesh.neighbors < 0) & ~outline).any(axis=1)]] = 0
+    state[component[triangles_among(mesh.simplices, gone)]] = 0
+    state[component[triangles_among(mesh.simplices, row[tin.simplices])]] = 1
+    triangle, side = np.nonzero(outline)
+    here, there = component[triangle], component[mesh.neighbors[triangle, side]]
+    here, there = (each[mesh.neighbors[triangle, side] >= 0] for each in (here, there))
+    # What has no old triangle is on the other side of its neighbors. Each round finds some state.
+    while True:
+        found = (state[there] < 0) & (state[here] >= 0)
+        if not found.any():
+            break
+        state[there[found]] = 1 - state[here[found]]
+    kept: Bools = state[component] == 1
     return kept
 
 
-def _built(tin: Surface, mesh: ConstrainedDelaunay, z: Floats, hard: Bools, row: Rows) -> Built:
+def _outline(tin: Surface, mesh: ConstrainedDelaunay, row: Rows, ends: Bools) -> Bools:
+    """Which sides of triangles are on the outline of the surface, old or new."""
+    start, source = mesh.segment_source
+    new = np.add.reduceat(ends[source].astype(np.int64), start[:-1]) > 0
+    old = row[tin.simplices[:, [[1, 2], [2, 0], [0, 1]]][tin.neighbors < 0]]
+    known = np.concatenate((mesh.segments[new], old[(old >= 0).all(axis=1)]))
+    sides = mesh.simplices[:, [[1, 2], [2, 0], [0, 1]]]
+    return among(
+        edge_keys(sides[..., 0], sides[..., 1], mesh.npoints),
+        edge_keys(known[:, 0], known[:, 1], mesh.npoints),
+    )
+
+
+def _built(tin: Surface, mesh: ConstrainedDelaunay, z: Floats, hard: Bools, kept: Bools) -> Built:
     """Return the arrays of the new surface."""
     start, source = mesh.segment_source
     some = np.append(hard[source], False)
@@ -334,7 +361,7 @@ def _built(tin: Surface, mesh: ConstrainedDelaunay, z: Floats, hard: Bools, row:
         z,
         mesh.simplices.copy(),
         mesh.neighbors.copy(),
-        _kept(tin, mesh, row),
+        kept,
         mesh.segments.copy(),
         soft,
         tin.crs,

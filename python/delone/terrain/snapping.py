@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone.terrain.pads import Pad
+    from delone.terrain.surface import Surface
 
     Floats = NDArray[np.float64]
     Rows = NDArray[np.int64]
@@ -23,6 +24,8 @@ __all__ = ["closeness", "settled", "threaded"]
 
 # Distances of so many roundings are none.
 _ROUNDINGS = 64
+# Pairs that are compared at once.
+_PAIRS = 1 << 20
 _EPS = float(np.finfo(np.float64).eps)
 
 
@@ -31,53 +34,71 @@ def closeness(*points: Floats) -> float:
     return _ROUNDINGS * _EPS * max(float(np.abs(each).max()) for each in points)
 
 
-def settled(pad: Pad, points: Floats) -> Pad:
+def settled(pad: Pad, tin: Surface) -> Pad:
     """Return a pad whose points are those of a surface where they are as close as that."""
-    limit = closeness(points, pad.points)
-    moved = pad.points.copy()
-    for row, place in enumerate(pad.points):
-        away = np.abs(points - place).max(axis=1)
-        nearest = int(away.argmin())
-        if away[nearest] <= limit:
-            moved[row] = points[nearest]
-    return pad._replace(points=moved)
+    limit = closeness(tin.points, pad.points)
+    nearest = tin.points[tin.nearest(pad.points)]
+    close = np.abs(nearest - pad.points).max(axis=1) <= limit
+    return pad._replace(points=np.where(close[:, None], nearest, pad.points))
 
 
-def threaded(points: Floats, segments: Rows, vertices: Rows) -> Rows:
-    """Return segments that pass through those vertices that are close to them."""
+def threaded(points: Floats, segments: Rows, vertices: Rows) -> tuple[Rows, Rows]:
+    """Return segments through those vertices that are close to them, and the row of each."""
+    row, share, vertex = _beside(points, segments, vertices)
+    order = np.lexsort((vertex, share, row))
+    row, vertex = row[order], vertex[order]
+    passed = np.unique(row)
+    whole = np.setdiff1d(np.arange(len(segments)), passed)
+    # Chains: the start of each segment, its vertices, its end.
+    owner = np.concatenate((passed, row, passed))
+    kind = np.repeat((0, 1, 2), (len(passed), len(row), len(passed)))
+    chain = np.concatenate((segments[passed, 0], vertex, segments[passed, 1]))
+    order = np.lexsort((np.arange(len(owner)), kind, owner))
+    owner, chain = owner[order], chain[order]
+    same = owner[1:] == owner[:-1]
+    pieces = np.column_stack((chain[:-1], chain[1:]))[same]
+    return np.concatenate((segments[whole], pieces)), np.concatenate((whole, owner[:-1][same]))
+
+
+def _beside(points: Floats, segments: Rows, vertices: Rows) -> tuple[Rows, Floats, Rows]:
+    """Return segments, shares of them and vertices that are close to them there.
+
+    Vertices are compared with those segments only that have their x.
+    """
     limit = closeness(points)
-    starts, stops = (points[segments[:, k]] for k in range(2))
-    found: list[tuple[int, float, int]] = []
-    if len(segments) <= len(vertices):
-        places = points[vertices]
-        for row, (a, b) in enumerate(zip(starts, stops, strict=True)):
-            beside = _between(a[None], b[None], places, limit)
-            found += [(row, share, int(vertices[at])) for at, share in beside]
-    else:
-        for vertex in vertices.tolist():
-            beside = _between(starts, stops, points[vertex][None], limit)
-            found += [(row, share, vertex) for row, share in beside]
-    if not found:
-        return segments
-    found.sort()
-    parts = {row: [int(segments[row, 0])] for row, _, _ in found}
-    for row, _, vertex in found:
-        parts[row].append(vertex)
-    chains = [segments[np.setdiff1d(np.arange(len(segments)), list(parts))]]
-    for row, chain in parts.items():
-        chain.append(int(segments[row, 1]))
-        chains.append(np.column_stack((chain[:-1], chain[1:])))
-    return np.concatenate(chains)
+    order = vertices[np.argsort(points[vertices, 0], kind="stable")]
+    x = points[order, 0]
+    ends = points[segments]
+    low = np.searchsorted(x, ends[:, :, 0].min(axis=1) - limit, side="left")
+    high = np.searchsorted(x, ends[:, :, 0].max(axis=1) + limit, side="right")
+    total = np.cumsum(high - low)
+    found = [(np.empty(0, dtype=np.int64), np.empty(0), np.empty(0, dtype=np.int64))]
+    start = 0
+    # Each block has at least one segment, so this ends.
+    while start < len(segments):
+        before = total[start - 1] if start else 0
+        stop = max(start + 1, int(np.searchsorted(total, before + _PAIRS, side="right")))
+        count = (high - low)[start:stop]
+        row = start + np.repeat(np.arange(len(count)), count)
+        place = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count) + low[row]
+        found.append(_close(points, ends, row, order[place], limit))
+        start = stop
+    row, share, vertex = (np.concatenate(column) for column in zip(*found, strict=True))
+    return row, share, vertex
 
 
-def _between(a: Floats, b: Floats, places: Floats, limit: float) -> list[tuple[int, float]]:
-    """Return which places are beside which segments: one of them, or one of the others."""
+def _close(
+    points: Floats, ends: Floats, row: Rows, vertex: Rows, limit: float
+) -> tuple[Rows, Floats, Rows]:
+    """Return those pairs of segments and vertices that are close, with the share of the segment."""
+    a, b = ends[row, 0], ends[row, 1]
     along = b - a
     length = np.hypot(*along.T)
     with np.errstate(divide="ignore", invalid="ignore"):
         unit = along / length[:, None]
-        from_a = places - a
+        from_a = points[vertex] - a
         way = (from_a * unit).sum(axis=1)
         across = np.abs(unit[:, 0] * from_a[:, 1] - unit[:, 1] * from_a[:, 0])
-    rows = np.flatnonzero((across <= limit) & (way > limit) & (way < length - limit))
-    return [(int(row), float((way / length)[row])) for row in rows]
+        share = way / length
+    near = np.flatnonzero((across <= limit) & (way > limit) & (way < length - limit))
+    return row[near], share[near], vertex[near]

@@ -129,6 +129,9 @@ class Surface(Protocol):
     def find_simplex(self, xi: ArrayLike) -> Indices:
         """The triangles at positions."""
 
+    def nearest(self, xi: ArrayLike) -> Indices:
+        """The vertices that are nearest to positions."""
+
     def locate(self, xi: ArrayLike) -> Located:
         """Triangles and weights at positions."""
 
