@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import xarray
 
-import delone.interpolate.accessor
+import delone.xarray
 from delone.datasets import uniform
 from delone.interpolate import grid
 

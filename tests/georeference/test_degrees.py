@@ -169,7 +169,7 @@ def test_geometries() -> None:
 
 def test_xarray() -> None:
     xarray = pytest.importorskip("xarray")
-    import delone.interpolate.accessor  # noqa: F401
+    import delone.xarray  # noqa: F401
 
     def stations(names: tuple[str, str], **attrs: Any) -> Any:
         x, y = names

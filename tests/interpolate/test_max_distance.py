@@ -98,7 +98,7 @@ def test_what_is_no_distance_is_refused(bad: float) -> None:
 
 def test_arrays_of_xarray() -> None:
     xarray = pytest.importorskip("xarray")
-    import delone.interpolate.accessor  # noqa: F401 (it registers the accessors)
+    import delone.xarray  # noqa: F401 (it registers the accessors)
 
     x, y = SITES.T
     data = xarray.Dataset(

@@ -12,7 +12,7 @@ from delone.errors import InputError
 from delone.interpolate import interpolator, raster
 
 xarray = pytest.importorskip("xarray")
-import delone.interpolate.accessor  # noqa: E402, F401  (it registers the accessors)
+import delone.xarray  # noqa: E402, F401  (it registers the accessors)
 
 # Coordinates are called as they are in files; what is said of degrees is tested elsewhere.
 pytestmark = pytest.mark.filterwarnings("ignore::delone.GeographicWarning")

@@ -13,7 +13,7 @@ from delone.errors import InputError
 from delone.sphere import LongitudeWarning
 
 xarray = pytest.importorskip("xarray")
-import delone.interpolate.accessor  # noqa: E402, F401  (it registers the accessors)
+import delone.xarray  # noqa: E402, F401  (it registers the accessors)
 
 CLASSES: dict[str, tuple[Any, dict[str, Any]]] = {
     "linear": (sphere.Linear, {}),
@@ -96,21 +96,29 @@ def test_targets_may_be_dask_arrays() -> None:
 
 def test_conventions_of_longitudes() -> None:
     east, plain = stations(east=True), stations()
-    with pytest.warns(LongitudeWarning, match="modulo 360") as caught:
-        found = east.delone.interp(LON, LAT)
-    assert [each.filename for each in caught] == [__file__]
-    np.testing.assert_allclose(found.values, plain.delone.interp(LON, LAT).values, atol=1e-9)
-    assert found.lon.values.tolist() == LON.tolist()
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        east.delone.interp(np.arange(0.0, 360, 30), LAT)
+        found = east.delone.interp(LON, LAT)
+    np.testing.assert_allclose(found.values, plain.delone.interp(LON, LAT).values, atol=1e-9)
+    assert found.lon.values.tolist() == LON.tolist()
+    # Only longitudes of one set that span more than a turn are mixed.
+    mixed = xarray.concat([east, plain], "station")
+    with pytest.warns(LongitudeWarning, match="modulo 360") as caught:
+        mixed.delone.interp(LON, LAT, duplicates="first", method="nearest")
+    assert [each.filename for each in caught] == [__file__]
 
 
 def test_what_names_angles_and_their_unit() -> None:
     want = stations().delone.interp(LON, LAT).values
     radians = stations(radians=True)
-    found = radians.delone.interp(np.radians(LON), np.radians(LAT))
+    found = radians.delone.interp(np.radians(LON), np.radians(LAT), degrees=False)
     np.testing.assert_allclose(found.values, want, atol=1e-9)
+    assert found.lat.attrs == {"units": "radians"}
+    found = radians.delone.interp(LON, LAT, degrees=True)
+    np.testing.assert_allclose(found.values, want, atol=1e-9)
+    assert found.lat.attrs == {"units": "degrees_north"}
+    with pytest.raises(InputError, match="are in radians: give degrees=True or degrees=False"):
+        radians.delone.interp(LON, LAT)
     named = stations(("a", "b"))
     for name, standard in (("a", "longitude"), ("b", "latitude")):
         named[name].attrs["standard_name"] = standard

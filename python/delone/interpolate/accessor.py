@@ -1,9 +1,10 @@
-"""Interpolation of xarray objects (extra ``xarray``): ``import delone.interpolate.accessor``.
+"""Interpolation of xarray objects (extra ``xarray``): ``import delone.xarray``.
 
 The import registers ``.delone`` on DataArray and Dataset. Scattered points are one dimension with
 two coordinates (``x(station)``, ``y(station)``), or several (curvilinear ``lon(j, i)``,
 ``lat(j, i)``). The weights of the target points are computed once and applied to each field along
-every other dimension (time, level), chunk by chunk if the data are Dask arrays.
+every other dimension (time, level), chunk by chunk if the data are Dask arrays. The module `places`
+has what coordinates mean.
 
 Longitudes and latitudes, known by their units, standard names or names, are interpolated on the
 sphere by the methods that `delone.sphere` has; ``planar=True`` takes them as planar coordinates.
@@ -12,45 +13,54 @@ sphere by the methods that `delone.sphere` has; ``planar=True`` takes them as pl
 from __future__ import annotations
 
 import importlib
+import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from delone._arrays import as_flag
 from delone.errors import DtypeError, InputError, MissingExtraError
-from delone.georeference import may_be_degrees, names_degrees, warn_of_degrees
+from delone.georeference import caller_level, warn_of_degrees
 from delone.interpolate.base import as_max_distance
 from delone.interpolate.methods import interpolator
+from delone.interpolate.places import (
+    angles_unit,
+    bounds_of,
+    places_of,
+    source_rows,
+    target_points,
+    unit_of,
+)
 from delone.interpolate.raster import raster_nodes, require_memory
 
 try:
     import xarray
 except ImportError as error:
     raise MissingExtraError(
-        "delone.interpolate.accessor needs xarray, which is not installed: "
-        'pip install "delone[xarray]"',
+        'delone.xarray needs xarray, which is not installed: pip install "delone[xarray]"',
         extra="xarray",
     ) from error
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
+    from delone.interpolate.places import Places
     from delone.interpolate.weights import Weights
 
-__all__ = ["ArrayInterpolation", "DatasetInterpolation"]
+__all__ = ["ArrayInterpolation", "DatasetInterpolation", "VariableWarning"]
 
-# Units of longitudes and latitudes, of the CF conventions and of models.
-_DEGREES = tuple(
-    {
-        word + letter
-        for word in ("degrees_", "degree_", "degrees", "degree")
-        for letter in (*letters, *(name.casefold() for name in names))
-    }
-    for letters, names in (("e", ("east",)), ("n", ("north",)))
-)
-_RADIANS = {"rad", "radian", "radians"}
-_NAMES = (("x", "y"), ("lon", "lat"), ("longitude", "latitude"), ("easting", "northing"))
+
+class VariableWarning(UserWarning):
+    """Variables of a dataset are not in the result: they have only some dimensions of the points.
+
+    Examples
+    --------
+    >>> from delone.xarray import VariableWarning
+    >>> issubclass(VariableWarning, UserWarning)
+    True
+    """
 
 
 @xarray.register_dataarray_accessor("delone")
@@ -65,7 +75,7 @@ class ArrayInterpolation:
     Examples
     --------
     >>> import numpy as np, xarray
-    >>> import delone.interpolate.accessor
+    >>> import delone.xarray
     >>> stations = xarray.DataArray(
     ...     [1.0, 5.0, 9.0],
     ...     dims="station",
@@ -87,6 +97,8 @@ class ArrayInterpolation:
         *,
         coords: Sequence[str] | None = None,
         method: str = "linear",
+        degrees: bool | None = None,
+        missing: str = "raise",
         **options: Any,
     ) -> Any:
         """Interpolate to other points.
@@ -95,37 +107,49 @@ class ArrayInterpolation:
         ----------
         x, y : array_like or xarray.DataArray
             One-dimensional arrays are the nodes of a grid. DataArrays are points: they are
-            broadcast against each other, and each entry is a point.
+            broadcast against each other, and each entry is a point. Their attributes ``units`` are
+            converted to those of the points.
         coords : pair of str, optional
             Names of the coordinates of the array; by default x and y, lon and lat, longitude and
             latitude, or easting and northing; or those whose standard names or units are those of
-            longitude and latitude.
+            longitude and latitude. If there are planar and geographic ones, names and units of
+            DataArrays given as `x` and `y` decide.
         method : str, optional
             As in `interpolator`. On the sphere ``"linear"``, ``"nearest"``, ``"sibson"`` and
             ``"laplace"``; others are planar, with a warning.
+        degrees : bool, optional
+            Whether angles without units are degrees, those of targets and of ``max_distance``. By
+            default they are degrees beside points in degrees, and asked for beside radians.
+        missing : {"raise", "drop"}, optional
+            Whether places whose coordinates are NaN, as in masked grids, raise an error or are left
+            out with their values.
         **options
             Options of the interpolator: ``extrapolate``, ``respect_constraints``, ``workers``,
             ``planar`` and so on. NaN among the values propagates unless ``nan="raise"`` is given.
             With ``max_distance``, targets farther than this from the nearest point get NaN; on the
-            sphere it is an angle in the unit of the coordinates.
+            sphere it is an angle.
 
         Returns
         -------
         xarray.DataArray
-            The dimensions of the points are replaced by those of the targets; the name, the
-            attributes and the other dimensions are unchanged.
+            The dimensions of the points are replaced by those of the targets, y before x; the name,
+            the attributes, the floating-point type and the other dimensions are unchanged. The
+            coordinates of targets have the attributes of those of the points.
 
         Raises
         ------
         InputError
-            The coordinates are not found; or ``nan="drop"`` is given, which would need a separate
+            The coordinates are not found, or there are several; units of the targets are needed, or
+            do not fit those of the points; ``nan="drop"`` is given, which would need a separate
             triangulation for each field; or `max_distance` is negative or NaN.
+        NonFiniteError
+            A coordinate of the points is NaN, and `missing` is "raise".
 
         Warns
         -----
         delone.sphere.LongitudeWarning
-            Longitudes of the points are from 0 to 360 and those of the targets from -180 to 180, or
-            the reverse. Both mean the same directions.
+            Longitudes of the points span more than one turn. Points from 0 to 360 and targets from
+            -180 to 180 cause no warning: they mean the same directions.
         delone.GeographicWarning
             The coordinates are longitudes and latitudes, and the method is planar.
 
@@ -134,7 +158,7 @@ class ArrayInterpolation:
         Stations on both sides of the date line are on the sphere:
 
         >>> import xarray
-        >>> import delone.interpolate.accessor
+        >>> import delone.xarray
         >>> stations = xarray.DataArray(
         ...     [1.0, 3.0, 2.0],
         ...     dims="station",
@@ -147,9 +171,7 @@ class ArrayInterpolation:
         array([[2.],
                [2.]])
         """
-        return _interpolated(
-            self._array, _target(x, y, coords, self._array), coords, method, options
-        )
+        return _interp(self._array, x, y, _Choices(coords, method, degrees, missing, options))
 
     def grid(
         self,
@@ -159,6 +181,8 @@ class ArrayInterpolation:
         bounds: Sequence[float] | None = None,
         coords: Sequence[str] | None = None,
         method: str = "linear",
+        degrees: bool | None = None,
+        missing: str = "raise",
         **options: Any,
     ) -> Any:
         """Interpolate to a raster.
@@ -166,8 +190,11 @@ class ArrayInterpolation:
         Parameters
         ----------
         resolution, shape, bounds
-            As in `delone.interpolate.grid`.
-        coords, method, **options
+            As in `delone.interpolate.grid`. On the sphere, cells end at multiples of the
+            resolution, and the raster is the whole globe if the triangles cover it, all longitudes
+            if they contain a pole, and else the least box, which may cross the date line. So may
+            `bounds`: then the left one exceeds the right one.
+        coords, method, degrees, missing, **options
             As in `interp`.
 
         Returns
@@ -184,7 +211,7 @@ class ArrayInterpolation:
         Examples
         --------
         >>> import xarray
-        >>> import delone.interpolate.accessor
+        >>> import delone.xarray
         >>> stations = xarray.DataArray(
         ...     [1.0, 5.0, 9.0],
         ...     dims="station",
@@ -194,8 +221,9 @@ class ArrayInterpolation:
         array([[ 4.,  6.],
                [ 8., nan]])
         """
-        nodes = _raster(self._array, coords, resolution, shape, bounds)
-        return self.interp(*nodes, coords=coords, method=method, **options)
+        raster = {"resolution": resolution, "shape": shape, "bounds": bounds}
+        choices = _Choices(coords, method, degrees, missing, options)
+        return _grid(self._array, raster, choices)
 
 
 @xarray.register_dataset_accessor("delone")
@@ -205,12 +233,14 @@ class DatasetInterpolation:
     Parameters
     ----------
     dataset : xarray.Dataset
-        Values at scattered points. Variables without these dimensions stay as they are.
+        Values at scattered points. Variables without these dimensions stay as they are. Bounds of
+        cells of the coordinates are not in the result, like the coordinates; nor is what has only
+        some of the dimensions, with a `VariableWarning`.
 
     Examples
     --------
     >>> import xarray
-    >>> import delone.interpolate.accessor
+    >>> import delone.xarray
     >>> stations = xarray.Dataset(
     ...     {"height": ("station", [1.0, 5.0, 9.0])},
     ...     coords={"x": ("station", [0.0, 4.0, 0.0]), "y": ("station", [0.0, 0.0, 4.0])},
@@ -229,11 +259,13 @@ class DatasetInterpolation:
         *,
         coords: Sequence[str] | None = None,
         method: str = "linear",
+        degrees: bool | None = None,
+        missing: str = "raise",
         **options: Any,
     ) -> Any:
         """Interpolate to other points; see `ArrayInterpolation.interp`."""
-        target = _target(x, y, coords, self._dataset)
-        return _interpolated(self._dataset, target, coords, method, options)
+        choices = _Choices(coords, method, degrees, missing, options)
+        return _interp(self._dataset, x, y, choices)
 
     def grid(
         self,
@@ -243,99 +275,214 @@ class DatasetInterpolation:
         bounds: Sequence[float] | None = None,
         coords: Sequence[str] | None = None,
         method: str = "linear",
+        degrees: bool | None = None,
+        missing: str = "raise",
         **options: Any,
     ) -> Any:
         """Interpolate to a raster; see `ArrayInterpolation.grid`."""
-        nodes = _raster(self._dataset, coords, resolution, shape, bounds)
-        return self.interp(*nodes, coords=coords, method=method, **options)
+        raster = {"resolution": resolution, "shape": shape, "bounds": bounds}
+        choices = _Choices(coords, method, degrees, missing, options)
+        return _grid(self._dataset, raster, choices)
 
 
-def _coordinates(data: Any, coords: Sequence[str] | None) -> tuple[Any, Any]:
-    """The two coordinates, broadcast against each other."""
-    pairs = _NAMES if coords is None else (tuple(coords),)
-    for pair in pairs:
-        if len(pair) == 2 and all(name in data.coords for name in pair):
-            return tuple(xarray.broadcast(*(data.coords[name] for name in pair)))
-    if coords is None:
-        found = [[part for part in data.coords.values() if _is_angle(part, k)] for k in (0, 1)]
-        if all(len(parts) == 1 for parts in found):
-            return tuple(xarray.broadcast(*(parts[0] for parts in found)))
-    wanted = ", or ".join(" and ".join(map(str, pair)) for pair in pairs)
-    raise InputError(f"found no coordinates {wanted}; name two with coords=")
+class _Choices(NamedTuple):
+    """What the caller has chosen, but for the targets."""
+
+    coords: Sequence[str] | None
+    method: str
+    degrees: bool | None
+    missing: str
+    options: dict[str, Any]
 
 
-def _target(x: Any, y: Any, coords: Sequence[str] | None, data: Any) -> tuple[Any, Any]:
+class _Sites(NamedTuple):
+    """Places, and the interpolator of those that have coordinates."""
+
+    places: Places
+    # The places that are used; None for all.
+    rows: NDArray[np.int64] | None
+    points: NDArray[np.float64]
+    made: Any
+    # `delone.sphere.methods`; None in the plane.
+    globe: Any
+    limit: float | None
+    degrees: bool | None
+
+    @property
+    def planar(self) -> bool:
+        """Whether angles, if they are any, are planar coordinates."""
+        return self.globe is None
+
+
+def _sites(data: Any, targets: Sequence[Any], choices: _Choices) -> _Sites:
+    """Find the coordinates and triangulate them."""
+    options = dict(choices.options)
+    limit = as_max_distance(options.pop("max_distance", None))
+    planar = options.pop("planar", False)
+    if options.get("nan") == "drop":
+        raise InputError("nan='drop' needs a triangulation per field; fill or drop NaN first")
+    options = {"nan": "propagate"} | options
+    places = places_of(data, choices.coords, targets)
+    if choices.degrees is not None:
+        as_flag(choices.degrees, name="degrees")
+    if choices.degrees is not None and places.by is None:
+        raise InputError(
+            f"degrees is for longitudes and latitudes, and {' and '.join(map(str, places.names))} "
+            "are not known to be: name others with coords=, or set their attributes units"
+        )
+    points = places.points
+    rows = source_rows(points, choices.missing)
+    points = points if rows is None else points[rows]
+    # By its name: that package builds on this one.
+    globe = importlib.import_module("delone.sphere.methods")
+    method = choices.method
+    if planar is False and places.by and method in globe.METHODS and places.may_be_angles(points):
+        in_degrees = not places.in_radians
+        made = globe.interpolator(method, points, degrees=in_degrees, **options)
+        if limit is not None:
+            unit = angles_unit(places, choices.degrees, "the numbers of max_distance")
+            limit *= _turns(unit == "degrees", in_degrees)
+        return _Sites(places, rows, points, made, globe, limit, choices.degrees)
+    warn_of_degrees(None, points, planar=planar, name="coordinates", by=places.by)
+    made = interpolator(method, points, **options)
+    return _Sites(places, rows, points, made, None, limit, choices.degrees)
+
+
+def _turns(degrees: bool, wanted: bool) -> float:
+    """By what to multiply an angle in one unit, degrees or radians, to have it in the other."""
+    if degrees == wanted:
+        return 1.0
+    return float(np.degrees(1.0) if wanted else np.radians(1.0))
+
+
+def _interp(data: Any, x: Any, y: Any, choices: _Choices) -> Any:
+    targets = [part for part in (x, y) if isinstance(part, xarray.DataArray)]
+    sites = _sites(data, targets if len(targets) == 2 else (), choices)
+    return _interpolated(data, sites, _target(x, y, sites))
+
+
+def _grid(data: Any, raster: dict[str, Any], choices: _Choices) -> Any:
+    sites = _sites(data, (), choices)
+    points, unit = sites.points, None
+    if sites.globe is not None:
+        unit = "radians" if sites.degrees is False else "degrees"
+        if raster["shape"] is None or raster["bounds"] is not None:
+            unit = angles_unit(sites.places, sites.degrees, "the numbers of the raster")
+        points = points * _turns(not sites.places.in_radians, unit == "degrees")
+    if unit == "degrees":
+        mesh = sites.made.triangulation
+        nodes = sites.globe.globe_nodes(mesh, points, **raster)
+    else:
+        nodes = raster_nodes((points.min(axis=0), points.max(axis=0)), **raster)
+    return _interpolated(data, sites, _nodes(nodes, sites, unit))
+
+
+def _target(x: Any, y: Any, sites: _Sites) -> tuple[Any, Any]:
     """Targets as two arrays of the same dimensions, with their coordinates attached."""
     if isinstance(x, xarray.DataArray) and isinstance(y, xarray.DataArray):
-        return tuple(xarray.broadcast(x, y))
-    nodes = [np.asarray(axis, dtype=np.float64) for axis in (x, y)]
-    if any(axis.ndim != 1 for axis in nodes):
+        # Rows before columns, as for nodes.
+        up, across = xarray.broadcast(y, x)
+        for axis, (name, given) in enumerate(zip(sites.places.names, (x, y), strict=True)):
+            if name in across.coords or (name in across.dims and given.dims != (name,)):
+                continue
+            attrs = given.attrs or _described(sites, axis, None)
+            across = across.assign_coords({name: (given.dims, given.data, attrs)})
+        return across, up
+    if any(np.ndim(axis) != 1 for axis in (x, y)):
         raise InputError(
             "x and y must both be DataArrays, or both one-dimensional arrays: nodes of a grid"
         )
-    names = [coordinate.name for coordinate in _coordinates(data, coords)]
-    across, up = (
-        xarray.DataArray(axis, dims=name, coords={name: axis})
-        for axis, name in zip(nodes, names, strict=True)
-    )
-    up, across = xarray.broadcast(up, across)
+    return _nodes((x, y), sites, None)
+
+
+def _nodes(nodes: Sequence[Any], sites: _Sites, unit: str | None) -> tuple[Any, Any]:
+    """Nodes of a grid as two arrays; in a unit, or in the one that they say."""
+    parts = []
+    for axis, (name, node) in enumerate(zip(sites.places.names, nodes, strict=True)):
+        said = unit or unit_of(node, axis)
+        attrs = getattr(node, "attrs", None) or _described(sites, axis, said)
+        values = np.asarray(node, dtype=np.float64)
+        part = xarray.DataArray(values, dims=name, coords={name: (name, values, attrs)})
+        part.attrs = dict(attrs)
+        parts.append(part)
+    up, across = xarray.broadcast(parts[1], parts[0])
     return across, up
 
 
-def _raster(
-    data: Any,
-    coords: Sequence[str] | None,
-    resolution: Any,
-    shape: tuple[int, int] | None,
-    bounds: Sequence[float] | None,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    places = [np.asarray(part, dtype=np.float64) for part in _coordinates(data, coords)]
-    low, high = ([float(reduce(part)) for part in places] for reduce in (np.nanmin, np.nanmax))
-    return raster_nodes((low, high), resolution=resolution, shape=shape, bounds=bounds)
+def _described(sites: _Sites, axis: int, unit: str | None) -> dict[str, Any]:
+    """Attributes of a coordinate of the result: those of the points, with the unit of targets."""
+    part = sites.places.parts[axis]
+    attrs = {name: value for name, value in part.attrs.items() if name != "bounds"}
+    if sites.globe is not None:
+        in_radians = sites.places.in_radians
+        if unit is None:
+            unit = angles_unit(sites.places, sites.degrees, "the targets")
+        if unit != ("radians" if in_radians else "degrees"):
+            attrs["units"] = ("degrees_east", "degrees_north")[axis]
+            if unit == "radians":
+                attrs["units"] = "radian"
+    return attrs
 
 
-def _interpolated(
-    data: Any,
-    target: tuple[Any, Any],
-    coords: Sequence[str] | None,
-    method: str,
-    options: dict[str, Any],
-) -> Any:
+def _interpolated(data: Any, sites: _Sites, target: tuple[Any, Any]) -> Any:
     """Interpolate the variables that have the points, and mask targets too far from them."""
-    limit = as_max_distance(options.pop("max_distance", None))
-    if options.get("nan") == "drop":
-        raise InputError("nan='drop' needs a triangulation per field; fill or drop NaN first")
-    places = _coordinates(data, coords)
-    _require_memory(data, places[0].dims, target)
-    points = np.column_stack([np.ravel(part) for part in places]).astype(np.float64)
-    planar = options.pop("planar", False)
-    queries = np.stack([np.asarray(part, dtype=np.float64) for part in target], axis=-1)
-    options = {"nan": "propagate"} | options
-    by = _degrees(places)
-    # By its name: that package builds on this one.
-    sphere = importlib.import_module("delone.sphere.methods")
-    if planar is False and by and method in sphere.METHODS and _may_be_angles(places, points):
-        degrees = not _in_radians(places)
-        sphere.warn_of_conventions(points[:, 0], queries[..., 0], degrees=degrees)
-        made = sphere.interpolator(method, points, degrees=degrees, **options)
-    else:
-        warn_of_degrees(None, points, planar=planar, name="coordinates", by=by)
-        made = interpolator(method, points, **options)
-    near = None if limit is None else made.distance(queries) <= limit
-    geometry = _Geometry(made.weights(queries), places[0].dims, target, near)
+    dims = sites.places.dims
+    _require_memory(data, dims, target)
+    queries, degrees = target_points(sites.places, target, sites.degrees, planar=sites.planar)
+    if sites.globe is not None:
+        queries = sites.globe.directions(queries, degrees=degrees)
+    near = None if sites.limit is None else sites.made.distance(queries) <= sites.limit
+    geometry = _Geometry(sites.made.weights(queries), dims, target, near, sites.rows)
     # Coordinates of the points are not coordinates of the result.
-    dims = geometry.dims
     gone = [name for name, part in data.coords.items() if set(part.dims) & set(dims)]
     plain = data.drop_vars(gone)
-    if isinstance(plain, xarray.Dataset):
-        names = [name for name, part in plain.data_vars.items() if set(dims) <= set(part.dims)]
-        for name in names:
-            if plain[name].dtype.kind not in "iufc":
-                kind = plain[name].dtype
-                raise DtypeError(f"variable {name!r} is not numeric (dtype {kind}); drop it")
-        found = {name: _applied(plain[name], geometry) for name in names}
-        return plain.drop_vars(names).assign(found)
-    return _applied(plain, geometry)
+    if not isinstance(plain, xarray.Dataset):
+        _require_free([(plain.name or "array", plain)], geometry)
+        return _applied(plain, geometry)
+    names, others = _variables(data, plain, sites)
+    plain = plain.drop_vars(others)
+    _require_free(plain.variables.items(), geometry)
+    found = {name: _applied(plain[name], geometry) for name in names}
+    return plain.drop_vars(names).assign(found)
+
+
+def _require_free(parts: Iterable[tuple[Any, Any]], geometry: _Geometry) -> None:
+    """Refuse what keeps a dimension that the targets have, too."""
+    targets = set(geometry.target[0].dims)
+    for name, part in parts:
+        both = targets & set(part.dims) - set(geometry.dims)
+        if both:
+            raise InputError(
+                f"{name!r} and the targets have the dimension {min(map(str, both))!r}: drop or "
+                "rename one of them"
+            )
+
+
+def _variables(data: Any, plain: Any, sites: _Sites) -> tuple[list[Any], list[Any]]:
+    """The variables that are interpolated, and those that are not in the result.
+
+    The latter are the coordinates, the bounds of their cells, and what has only some dimensions.
+    """
+    dims = set(sites.places.dims)
+    along = [data[name] for name in dims if name in data.variables]
+    ours = bounds_of(data, [*sites.places.parts, *along]) | set(sites.places.names)
+    some = [name for name, part in plain.data_vars.items() if dims & set(part.dims)]
+    names = [name for name in some if name not in ours and dims <= set(plain[name].dims)]
+    for name in names:
+        kind = plain[name].dtype
+        if kind.kind not in "iufc":
+            raise DtypeError(f"variable {name!r} is not numeric (dtype {kind}); drop it")
+    others = [name for name in some if name not in names]
+    partial = [name for name in others if name not in ours]
+    if partial:
+        listed = ", ".join(f"{name} ({', '.join(map(str, plain[name].dims))})" for name in partial)
+        warnings.warn(
+            f"{listed:.160}: not in the result, because the points have the dimensions "
+            f"{', '.join(map(str, sites.places.dims))}; drop such variables, or expand them",
+            VariableWarning,
+            stacklevel=caller_level(),
+        )
+    return names, [name for name in {*others, *ours} if name in plain.variables]
 
 
 class _Geometry(NamedTuple):
@@ -347,31 +494,8 @@ class _Geometry(NamedTuple):
     target: tuple[Any, Any]
     # Whether each target is close enough to a site, in the shape of the targets; None if all are.
     near: NDArray[np.bool_] | None
-
-
-def _is_angle(part: Any, axis: int) -> bool:
-    """Whether the attributes of a coordinate say longitude (axis 0) or latitude (1)."""
-    name = str(part.attrs.get("standard_name", "")).casefold()
-    unit = str(part.attrs.get("units", "")).casefold()
-    return name == ("longitude", "latitude")[axis] or unit in _DEGREES[axis]
-
-
-def _degrees(places: tuple[Any, Any]) -> str | None:
-    """Return what shows that the coordinates are longitudes and latitudes, or None."""
-    if all(_is_angle(part, axis) for axis, part in enumerate(places)):
-        found = [part.attrs.get("units") or part.attrs["standard_name"] for part in places]
-        return f"units {', '.join(map(str, found))}"
-    names = [str(part.name) for part in places]
-    return f"coordinates {', '.join(names)}" if names_degrees(names) else None
-
-
-def _in_radians(places: tuple[Any, Any]) -> bool:
-    return all(str(part.attrs.get("units", "")).casefold() in _RADIANS for part in places)
-
-
-def _may_be_angles(places: tuple[Any, Any], points: NDArray[np.float64]) -> bool:
-    """Whether the values are in the range of angles, in the unit of the coordinates."""
-    return may_be_degrees(np.degrees(points) if _in_radians(places) else points)
+    # The points that have coordinates; None for all.
+    rows: NDArray[np.int64] | None
 
 
 def _require_memory(data: Any, dims: tuple[Any, ...], target: tuple[Any, Any]) -> None:
@@ -388,12 +512,18 @@ def _require_memory(data: Any, dims: tuple[Any, ...], target: tuple[Any, Any]) -
 
 
 def _applied(array: Any, geometry: _Geometry) -> Any:
-    table, dims, (across, _), near = geometry
-    kind = np.complex128 if np.issubdtype(array.dtype, np.complexfloating) else np.float64
+    dims, (across, _), near = geometry.dims, geometry.target, geometry.near
+    # Computed in doubles, and stored as the field is: integers become doubles.
+    kind = array.dtype if array.dtype.kind in "fc" else np.dtype(np.float64)
     found = xarray.apply_ufunc(
         _last_axes,
         array,
-        kwargs={"table": table, "count": len(dims)},
+        kwargs={
+            "table": geometry.table,
+            "count": len(dims),
+            "rows": geometry.rows,
+            "kind": kind,
+        },
         input_core_dims=[dims],
         output_core_dims=[across.dims],
         exclude_dims=set(dims),
@@ -410,11 +540,17 @@ def _applied(array: Any, geometry: _Geometry) -> Any:
     return found.assign_coords(across.coords)
 
 
-def _last_axes(values: NDArray[Any], table: Weights, count: int) -> NDArray[Any]:
+def _last_axes(
+    values: NDArray[Any],
+    table: Weights,
+    count: int,
+    rows: NDArray[np.int64] | None,
+    kind: np.dtype[Any],
+) -> NDArray[Any]:
     """Interpolate along the last axes, which are the points; the other axes are fields."""
     leading = values.shape[: values.ndim - count]
     fields = np.moveaxis(values.reshape(*leading, -1), -1, 0)
-    found = table.apply(fields)
+    found = table.apply(fields if rows is None else fields[rows])
     width = len(table.shape)
     order = (*range(width, found.ndim), *range(width))
-    return np.ascontiguousarray(found.transpose(order))
+    return np.ascontiguousarray(found.transpose(order), dtype=kind)

@@ -18,7 +18,6 @@ from delone import _core
 from delone.errors import InputError
 from delone.plane.topology import half_edges
 from delone.sphere.constrained import WINDINGS, ConstrainedDelaunay, Given, most_added
-from delone.sphere.coordinates import lonlat_of
 from delone.sphere.geometry import read
 from delone.sphere.land import Origin
 
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
+    Rows = NDArray[np.int64]
 
 __all__ = [
     "Clipped",
@@ -42,6 +42,7 @@ __all__ = [
     "loaded_region",
     "saved_region",
     "sums",
+    "whole_rings",
 ]
 
 # Ridges may be half a great circle long; pieces up to this length have one shorter arc.
@@ -181,16 +182,16 @@ class Clipped:
         return found
 
     def polygons(self, npoints: int) -> list[list[list[Floats]]]:
-        """Return for each row the parts of its cell, each as rings of longitudes and latitudes."""
+        """Return for each row the parts of its cell, each as rings of unit vectors."""
         parts: dict[tuple[int, int], list[list[int]]] = {}
         for cell, piece, ring in self.rings():
             parts.setdefault((cell, piece), []).append(ring)
         found: list[list[list[Floats]]] = [[] for _ in range(npoints)]
-        lonlat, points = lonlat_of(self.mesh.vectors), self.mesh.points
+        points = self.mesh.points
         for (cell, _), rings in sorted(parts.items()):
             if len(rings) > 1:
                 rings.sort(key=lambda ring: _area_left(points[ring]))
-            found[cell].append([lonlat[ring] for ring in rings])
+            found[cell].append([points[ring] for ring in rings])
         return found
 
 
@@ -254,18 +255,50 @@ def _without_slivers(mesh: ConstrainedDelaunay, component: Indices, cell: Indice
 def _pieces(cells: Cells, lengths: Floats, points: Floats) -> tuple[Floats, Indices]:
     """Return vectors, and pieces of ridges as pairs of their rows."""
     start, end = cells.ends.T
-    long = np.flatnonzero(lengths > _LONGEST)
-    left, right = (points[cells.sites[long, j]] for j in (0, 1))
-    ahead = np.cross(left - right, cells.vertices[start[long]])
-    ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
-    half = lengths[long, None] / 2
-    middle = np.cos(half) * cells.vertices[start[long]] + np.sin(half) * ahead
+    long, middle = _middles(cells, lengths, points)
     number = np.arange(len(long), dtype=np.int32) + len(cells.vertices)
     first = np.column_stack((start, end))
     first[long, 1] = number
     second = np.column_stack((number, end[long]))
     vectors = np.concatenate((cells.vertices, middle))
     return vectors, np.concatenate((first, second)).astype(np.int32)
+
+
+def _middles(cells: Cells, lengths: Floats, points: Floats) -> tuple[Rows, Floats]:
+    """Return the ridges that may be half a great circle long, and their middles."""
+    start = cells.ends[:, 0]
+    long = np.flatnonzero(lengths > _LONGEST)
+    left, right = (points[cells.sites[long, j]] for j in (0, 1))
+    ahead = np.cross(left - right, cells.vertices[start[long]])
+    ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
+    half = lengths[long, None] / 2
+    return long, np.cos(half) * cells.vertices[start[long]] + np.sin(half) * ahead
+
+
+def whole_rings(
+    cells: Cells, lengths: Floats, points: Floats, regions: list[list[int]]
+) -> list[list[list[Floats]]]:
+    """Return for each row the rings of its whole cell as unit vectors, with arcs below half a turn.
+
+    Long ridges have their middles as corners.
+    """
+    long, middles = _middles(cells, lengths, points)
+    # By the site to the left of a ridge and its first vertex.
+    between: dict[tuple[int, int], Floats] = {}
+    for ridge, middle in zip(long.tolist(), middles, strict=True):
+        for site, start in zip(
+            cells.sites[ridge].tolist(), cells.ends[ridge].tolist(), strict=True
+        ):
+            between[site, start] = middle
+    found: list[list[list[Floats]]] = [[] for _ in range(len(cells.cell))]
+    for row in np.flatnonzero(cells.cell >= 0).tolist():
+        ring = []
+        for vertex in regions[cells.cell[row]]:
+            ring.append(cells.vertices[vertex])
+            if (row, vertex) in between:
+                ring.append(between[row, vertex])
+        found[row] = [[np.array(ring)]]
+    return found
 
 
 def sums(rows: NDArray[np.integer], shares: Floats, count: int) -> Floats:

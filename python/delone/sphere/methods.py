@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import inspect
-import math
-import warnings
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from delone.errors import InputError
-from delone.georeference import caller_level
 from delone.interpolate.values import chosen
-from delone.sphere.coordinates import LongitudeWarning
+from delone.sphere.coordinates import queries_of
 from delone.sphere.interpolation import Linear, NaturalNeighbor, Nearest
+from delone.sphere.raster import globe_nodes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["METHODS", "interpolator", "warn_of_conventions"]
+__all__ = ["METHODS", "directions", "globe_nodes", "interpolator"]
 
 METHODS: Mapping[str, tuple[type[Linear | NaturalNeighbor | Nearest], dict[str, Any]]] = {
     "linear": (Linear, {}),
@@ -45,19 +42,6 @@ def interpolator(
     return kind(points, **fixed, **options)
 
 
-def warn_of_conventions(
-    sites: NDArray[np.float64], targets: NDArray[np.float64], *, degrees: bool
-) -> None:
-    """Warn if longitudes of sites are from 0 to 360 and those of targets from -180 to 180."""
-    if not (np.isfinite(sites).any() and np.isfinite(targets).any()):
-        return
-    half = 180.0 if degrees else math.pi
-    ranges = [(float(np.nanmin(part)), float(np.nanmax(part))) for part in (sites, targets)]
-    (west, east), (low, high) = ranges
-    if (east > half and low < 0) or (west < 0 and high > half):
-        message = (
-            f"longitudes of the points are from {west:g} to {east:g}, those of the targets from "
-            f"{low:g} to {high:g}: both are taken modulo {2 * half:g}, and the result has the "
-            "longitudes of the targets"
-        )
-        warnings.warn(message, LongitudeWarning, stacklevel=caller_level())
+def directions(lonlat: NDArray[np.float64], *, degrees: bool) -> NDArray[np.float64]:
+    """Return longitudes and latitudes, (..., 2), as vectors, (..., 3); NaN stays NaN."""
+    return queries_of(lonlat, degrees=degrees, workers=None)

@@ -6,13 +6,22 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._arrays import as_workers
+from delone._arrays import as_number, as_workers
 from delone.complex import Stored
 from delone.counting import counted
 from delone.errors import DegenerateInputError, DtypeError, InputError
+from delone.extras import require
 from delone.immutable import kept, sealed
 from delone.sphere.cells import Cells, around_circle, cells_of, lunes
-from delone.sphere.clipping import Whole, as_region, clipped, loaded_region, saved_region, sums
+from delone.sphere.clipping import (
+    Whole,
+    as_region,
+    clipped,
+    loaded_region,
+    saved_region,
+    sums,
+    whole_rings,
+)
 from delone.sphere.coordinates import directions_of, lonlat_of, units_of
 from delone.sphere.delaunay import Delaunay
 from delone.voronoi.results import Neighbors
@@ -476,13 +485,78 @@ class Voronoi(Stored):
         (0, 1, [[-9.0, -9.0], [-9.0, 9.0], [9.0, -9.0], [9.0, 9.0]])
         """
         if self._left is not None:
-            found = self._left.polygons(self.npoints)
+            found = [
+                [[lonlat_of(ring) for ring in rings] for rings in parts]
+                for parts in self._left.polygons(self.npoints)
+            ]
         else:
             corners = self.vertices_lonlat
             found = [[] for _ in range(self.npoints)]
             for row in np.flatnonzero(self._cells.cell >= 0).tolist():
                 found[row] = [[corners[self.regions[self._cells.cell[row]]]]]
         return [found[row] for row in self.duplicate_of.tolist()]
+
+    def to_geopandas(self, data: Any = None, *, crs: Any = "EPSG:4326", step: float = 1.0) -> Any:
+        """Convert the clipped cells to a table of geopandas (extra ``geo``).
+
+        Parameters
+        ----------
+        data : DataFrame or mapping, optional
+            Columns to include, with one row for each site. The cells replace the geometry of a
+            GeoDataFrame.
+        crs : any, optional
+            Coordinate reference system of longitudes and latitudes.
+        step : float, optional
+            Degrees between the corners that show arcs of great circles, at most.
+
+        Returns
+        -------
+        GeoDataFrame
+            One row for each site, with the index of `data`: polygons or multipolygons in degrees,
+            cut at 180 degrees and completed along the edge of the map if they contain a pole, as
+            RFC 7946 recommends. A cell of which nothing is left is an empty polygon; sites with the
+            same direction have the same cell.
+
+        Raises
+        ------
+        MissingExtraError
+            geopandas is not installed.
+        InputError
+            `data` does not have one row for each site, or `step` is not positive.
+
+        Notes
+        -----
+        Whether an arc goes east or west, and whether a cell contains a pole, is decided exactly.
+        Coordinates are rounded.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> sites = [(0, 90), (0, 0), (90, 0), (180, 0), (270, 0), (0, -90)]
+        >>> table = sphere.Voronoi(lonlat=sites).to_geopandas({"name": list("NabcdS")})
+        >>> table.geometry.bounds.round(1).iloc[3].tolist(), table.geom_type[3]
+        ([-180.0, -45.0, 180.0, 45.0], 'MultiPolygon')
+        """
+        from delone.exchange.geopandas import cells_to_geopandas, shapely_or_say
+        from delone.sphere.flat import flat_polygon
+
+        width = as_number(step, name="step")
+        if not 0 < width < np.inf:
+            raise InputError(f"step must be positive and finite, got {step!r:.60}")
+        shapely = shapely_or_say()
+        if self._left is not None:
+            cells = self._left.polygons(self.npoints)
+        else:
+            cells = whole_rings(self._cells, self._spans[0], self.points, self.regions)
+        shapes = np.full(self.npoints, shapely.Polygon(), dtype=object)
+        for row in np.flatnonzero(self.duplicate_of == np.arange(self.npoints)).tolist():
+            parts = [flat_polygon(rings, width) for rings in cells[row]]
+            if parts:
+                shapes[row] = parts[0] if len(parts) == 1 else shapely.union_all(parts)
+        if hasattr(data, "geometry") and hasattr(data, "crs"):
+            data = data.drop(columns=data.geometry.name)
+            data = require("pandas", extra="geo", what="a table of cells").DataFrame(data)
+        return cells_to_geopandas(shapes[self.duplicate_of], data, crs)
 
     def _nearest(self, places: Floats) -> Indices:
         """Return the sites nearest to vectors, also on one great circle."""
