@@ -56,12 +56,12 @@ print(f"true mean {truth:.1f} C, weighted {weighted:.1f} C, plain {values.mean()
 assert abs(weighted - truth) < 0.2 * abs(values.mean() - truth)
 
 # %%
-# A usual mistake is a polygon whose outer ring runs clockwise, as in shapefiles: its left side is all of the Earth but
-# the island. ``winding="cw"`` says so, and ``winding="smaller"`` takes the smaller side of each geometry.
+# On a sphere both sides of a ring are areas. By default a polygon is the smaller one, however its ring runs: clockwise in
+# shapefiles. ``winding="ccw"`` takes the left side, here all of the Earth but the island, with a warning.
 
 island = [(47, -25), (44, -16), (50, -16)]
 ring = {"type": "Polygon", "coordinates": [island]}
-for winding in ("ccw", "smaller"):
+for winding in ("smaller", "ccw"):
     found = sphere.Voronoi(lonlat=stations, clip=ring, winding=winding, radius=6371)
     print(f"winding={winding!r}: {found.cell_areas.sum() / 1e6:.1f} million square km")
 

@@ -15,7 +15,12 @@ __all__ = ["agreed", "counted", "gigabytes", "grouped", "listed"]
 # Larger numbers are shown in scientific notation.
 _HUGE = 10**15
 # Nouns that do not take an s.
-_MANY = {"tetrahedron": "tetrahedra", "vertex": "vertices", "pass": "passes"}
+_MANY = {
+    "tetrahedron": "tetrahedra",
+    "geometry": "geometries",
+    "vertex": "vertices",
+    "pass": "passes",
+}
 
 
 def counted(count: int, noun: str) -> str:

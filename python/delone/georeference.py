@@ -26,6 +26,7 @@ __all__ = [
     "CRSWarning",
     "GeographicWarning",
     "as_crs",
+    "as_degrees",
     "as_known_crs",
     "caller_level",
     "common_crs",
@@ -139,6 +140,34 @@ def same_crs(a: str, b: str) -> bool:
         return True
     first, second = parsed(a), parsed(b)
     return first is not None and second is not None and bool(first == second)
+
+
+def as_degrees(
+    coordinates: NDArray[np.float64], crs: str | None, *, name: str
+) -> NDArray[np.float64]:
+    """Return coordinates in a reference system, (n, 2), as longitudes and latitudes in degrees.
+
+    Without a system they are taken as such; a system with other coordinates is transformed with
+    pyproj, and refused without it.
+    """
+    if crs is None or is_geographic(crs):
+        return coordinates
+    if not _has_pyproj() or parsed(crs) is None:
+        raise InputError(
+            f"{name}: longitudes and latitudes are needed, and {_short(crs)} has others: transform "
+            'them, for example with geopandas to_crs("EPSG:4326"), or pip install "delone[geo]"'
+        )
+    pyproj = importlib.import_module("pyproj")
+    change = pyproj.Transformer.from_crs(crs, "OGC:CRS84", always_xy=True)
+    found = np.column_stack(change.transform(*coordinates.T))
+    lost = np.flatnonzero(~np.isfinite(found).all(axis=1) & np.isfinite(coordinates).all(axis=1))
+    if len(lost):
+        place = tuple(coordinates[lost[0]].tolist())
+        raise InputError(
+            f"{name}: {_short(crs)} has no longitude and latitude for {place}: is it the system of "
+            "these coordinates?"
+        )
+    return found
 
 
 def is_known(crs: str) -> bool:

@@ -118,7 +118,7 @@ def test_a_cut_from_the_coast_to_the_pole_separates_nothing():
 
 def test_rings_that_run_in_different_directions_are_refused():
     two = {"type": "MultiPolygon", "coordinates": [[box(0, 0, 9, 9)], [box(20, 0, 29, 9)[::-1]]]}
-    mesh = sphere.from_geometry([POINTS, two])
+    mesh = sphere.from_geometry([POINTS, two], winding="ccw")
     with pytest.raises(
         delone.InputError, match=r"outer rings of 1 geometry run in both .* first 1"
     ):

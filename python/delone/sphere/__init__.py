@@ -15,6 +15,7 @@ from delone.sphere.coordinates import LongitudeWarning
 from delone.sphere.delaunay import Delaunay
 from delone.sphere.geometry import from_geometry
 from delone.sphere.interpolation import Linear, NaturalNeighbor, Nearest
+from delone.sphere.sides import PolygonWarning
 from delone.sphere.voronoi import Voronoi
 
 __all__ = [
@@ -24,6 +25,7 @@ __all__ = [
     "LongitudeWarning",
     "NaturalNeighbor",
     "Nearest",
+    "PolygonWarning",
     "Voronoi",
     "from_geometry",
 ]

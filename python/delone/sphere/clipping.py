@@ -68,11 +68,17 @@ class Region(NamedTuple):
     given: Given
 
 
-def as_region(clip: Any, winding: str, *, degrees: bool, workers: int | None) -> Region | None:
-    """Return the region of the arguments of `Voronoi`; None without one."""
+def as_region(
+    clip: Any, winding: str, sides: str | None, *, degrees: bool, workers: int | None
+) -> Region | None:
+    """Return the region of the arguments of `Voronoi`; None without one, or if it is all."""
     if clip is None or isinstance(clip, Region):
         return clip
-    vectors, given = read(clip, winding, degrees=degrees, workers=workers, name="clip")
+    vectors, given, whole = read(
+        clip, winding, degrees=degrees, workers=workers, sides=sides, name="clip"
+    )
+    if whole is not None:
+        return None
     if not len(given.origin.rings) or not given.origin.rings.all():
         raise InputError("clip must be polygons, and nothing else")
     return Region(vectors, given)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,9 +10,12 @@ import numpy as np
 from delone._arrays import as_choice, as_flag
 from delone.constrained import geodata
 from delone.duplicates import first_rows
+from delone.errors import InputError
+from delone.georeference import as_degrees, common_crs
 from delone.sphere.constrained import WINDINGS, ConstrainedDelaunay, Given, most_added
 from delone.sphere.coordinates import directions_of
 from delone.sphere.land import Origin
+from delone.sphere.sides import SIDES, divided, whole_sphere
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,7 +28,8 @@ __all__ = ["from_geometry", "read"]
 def from_geometry(
     geometries: Any,
     *,
-    winding: str = "ccw",
+    winding: str = "smaller",
+    sides: str | None = None,
     crossing: str = "split",
     max_points: int | None = None,
     degrees: bool = True,
@@ -37,11 +42,17 @@ def from_geometry(
     geometries : geometry or iterable of geometries
         As for `delone.from_geometry`: geometries of shapely, tables of geopandas, mappings in the
         form of GeoJSON, or iterables of these. Each row of a table and each feature of a collection
-        is a geometry. Longitudes come first.
-    winding : {"ccw", "cw", "smaller"}, optional
-        Which side of its outer rings is inside a polygon: the left one, as outer rings in GeoJSON
-        (RFC 7946) run counter-clockwise; the right one, as in shapefiles; or whichever makes the
-        area of a geometry the smaller part of the sphere. Most sides of its outer rings decide.
+        is a geometry. Longitudes come first. Other reference systems than geographic ones are
+        transformed (extra ``geo``); without one, coordinates are taken as longitudes and latitudes.
+    winding : {"smaller", "ccw", "cw"}, optional
+        Which side of its outer rings is inside a polygon: whichever makes the area of a geometry
+        the smaller part of the sphere (the default), however rings run; the left one, as outer
+        rings in GeoJSON (RFC 7946) run counter-clockwise; or the right one, as in shapefiles. Most
+        sides of its outer rings decide, and those of a hemisphere by default as with "ccw".
+    sides : {"arc", "parallel"}, optional
+        What joins two places: the arc of a great circle (the default, with a warning where one is
+        longer than 30 degrees and no meridian), or a straight line of a map of longitudes and
+        latitudes, such as a parallel, in pieces of at most one degree.
     crossing : {"split", "raise"}, optional
         As for `ConstrainedDelaunay`, but by default crossings are split, because borders in real
         data do cross.
@@ -63,8 +74,9 @@ def from_geometry(
     Raises
     ------
     InputError
-        An item is not a geometry. Reading ``polygon`` raises it, too, if as many sides of
-        the outer rings of a geometry run in one direction as in the other.
+        An item is not a geometry, is the whole sphere, or has a side that is a whole turn along a
+        parallel, which has no arc. Reading ``polygon`` raises it, too, if as many sides of the
+        outer rings of a geometry run in one direction as in the other, and that decides.
     CrossingSegmentsError, BudgetExceededError, DirectionError, DegenerateInputError
         As for `ConstrainedDelaunay`.
     NonFiniteError
@@ -74,11 +86,14 @@ def from_geometry(
     -----
     LongitudeWarning
         Longitudes span more than one turn.
+    PolygonWarning
+        A side is longer than 30 degrees; or, when ``polygon`` is read, a geometry covers more than
+        half of the sphere.
 
     Notes
     -----
-    Sides of rings are arcs of great circles, not straight lines of a map: along a parallel, or
-    across many degrees, add points in between. A ring may surround a pole or cross the date line.
+    Sides of rings are arcs of great circles, not straight lines of a map, unless ``sides`` says so.
+    A ring may surround a pole or cross the date line.
     Sides that a geometry has twice separate nothing, such as the cut along the date line from a
     polygon's coast to the pole. By the even-odd rule a point is inside if rings of a geometry
     separate it from outside an odd number of times, so the direction of inner rings does not
@@ -97,7 +112,11 @@ def from_geometry(
     """
     as_flag(degrees, name="degrees")
     most = most_added(crossing, max_points)
-    vectors, given = read(geometries, winding, degrees=degrees, workers=workers)
+    vectors, given, whole = read(geometries, winding, degrees=degrees, workers=workers, sides=sides)
+    if whole is not None:
+        raise InputError(
+            f"geometry {whole} is the whole sphere, which has no sides to triangulate: leave it out"
+        )
     return ConstrainedDelaunay._of_geometries(vectors, given, most, degrees, workers)
 
 
@@ -107,12 +126,24 @@ def read(
     *,
     degrees: bool,
     workers: int | None,
+    sides: str | None = None,
     name: str = "geometries",
-) -> tuple[Floats, Given]:
-    """Return the vectors of the distinct coordinates of geometries, and their segments."""
+) -> tuple[Floats, Given, int | None]:
+    """Return the distinct coordinates of geometries as vectors, and their segments.
+
+    The third is the first geometry that is the whole sphere, as its sides cancel out; or None.
+    """
     as_choice(winding, WINDINGS, name="winding")
+    if sides is not None:
+        as_choice(sides, SIDES, name="sides")
+    crs = common_crs(geometries)
+    if crs is not None and not degrees:
+        raise InputError(f"{name} have a reference system, so they are in degrees: degrees=True")
     parts = geodata.parts_of(geometries, name=name)
     geodata.require_finite_parts(parts)
+    parts = parts._replace(coordinates=as_degrees(parts.coordinates, crs, name=name))
+    quarter = 90.0 if degrees else math.pi / 2
+    parts = divided(parts, sides, quarter, name=name)
     first = first_rows(parts.coordinates)
     distinct = first == np.arange(len(first))
     vertex = (np.cumsum(distinct) - 1)[first].astype(np.int32)
@@ -125,4 +156,5 @@ def read(
         kinds >= geodata.EXTERIOR,
         kinds == geodata.EXTERIOR,
     )
-    return vectors, Given(vertex[ends], origin, winding, len(vectors))
+    whole = whole_sphere(parts, vectors, vertex[ends], origin)
+    return vectors, Given(vertex[ends], origin, winding, len(vectors)), whole

@@ -8,6 +8,7 @@ direction of the outer rings tells, or the smaller area.
 from __future__ import annotations
 
 import math
+import warnings
 from collections import defaultdict, deque
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
@@ -15,9 +16,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from delone.constrained.coverage import closed_rings
-from delone.counting import agreed
+from delone.counting import agreed, counted
 from delone.errors import InputError
+from delone.georeference import caller_level
 from delone.plane.topology import edge_keys, half_edges
+from delone.sphere.sides import PolygonWarning
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,6 +34,10 @@ if TYPE_CHECKING:
     Walls = list[tuple[int, int, frozenset[int]]]
 
 __all__ = ["Origin", "Rings", "first_polygon"]
+
+
+# Areas within this of half the sphere, in steradians, are half: they are sums of rounded ones.
+_HALF = 1e-9
 
 
 class Origin(NamedTuple):
@@ -82,12 +89,17 @@ def first_polygon(
     rim = component[((made.neighbors < 0) & ~made.constrained).any(axis=1)]
     walls += [(c, count, frozenset()) for c in np.unique(rim).tolist()]
     inside = _toggled(walls, count + 1)
+    size: Floats = np.bincount(component, weights=areas, minlength=count + 1).astype(np.float64)
+    size[count] = max(4 * math.pi - float(areas.sum()), 0.0)
+    outer = _outer(made, origin, closed)
     if winding == "smaller":
-        size: Floats = np.bincount(component, weights=areas, minlength=count + 1).astype(np.float64)
-        size[count] = max(4 * math.pi - float(areas.sum()), 0.0)
-        turned = _large(inside, size)
+        area = _areas(inside, size)
+        half = {each for each, own in area.items() if abs(own - 2 * math.pi) < _HALF}
+        turned = frozenset(each for each, own in area.items() if own > 2 * math.pi) - half
+        turned |= _turned(inside, left, right, [each for each in outer if each[1] in half], "ccw")
     else:
-        turned = _turned(inside, left, right, _outer(made, origin, closed), winding)
+        turned = _turned(inside, left, right, outer, winding)
+        _warn_of_large([geometries ^ turned for geometries in inside], size)
     first = [min(inside[c] ^ turned, default=-1) for c in range(count)]
     return np.array(first, dtype=np.int32)
 
@@ -188,10 +200,26 @@ def _turned(
     return frozenset(geometry for geometry, count in votes.items() if count > 0)
 
 
-def _large(inside: list[frozenset[int]], size: Floats) -> frozenset[int]:
-    """Return the geometries that would contain more than half of the sphere."""
+def _areas(inside: list[frozenset[int]], size: Floats) -> dict[int, float]:
+    """Return the area of each geometry, rounded."""
     area: dict[int, float] = defaultdict(float)
     for geometries, own in zip(inside, size.tolist(), strict=True):
         for geometry in geometries:
             area[geometry] += own
-    return frozenset(geometry for geometry, own in area.items() if own > 2 * math.pi)
+    return area
+
+
+def _warn_of_large(inside: list[frozenset[int]], size: Floats) -> None:
+    """Warn of geometries that cover more than half of the sphere, because of their winding."""
+    area = _areas(inside, size)
+    large = sorted(each for each, own in area.items() if own > 2 * math.pi + _HALF)
+    if large:
+        share = area[large[0]] / (4 * math.pi)
+        warnings.warn(
+            f"{counted(len(large), 'geometry')} "
+            f"{agreed(len(large), 'covers', 'cover')} more than half of the sphere, first "
+            f"{large[0]} with {share:.1%}: do its outer rings run the other way? "
+            'winding="smaller" takes the smaller side',
+            PolygonWarning,
+            stacklevel=caller_level(),
+        )

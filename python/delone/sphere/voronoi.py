@@ -57,10 +57,16 @@ class Voronoi(Stored):
     clip : geometry or iterable of geometries, optional
         Where cells end: polygons in longitudes and latitudes, in the unit of `degrees`, with or
         without holes, as for `from_geometry`. Their sides are arcs of great circles; they may cross
-        the date line and surround a pole. The region is their union.
-    winding : {"ccw", "cw", "smaller"}, optional
-        Which side of its outer rings is inside a polygon of `clip`: the left one, as in GeoJSON
-        (RFC 7946), the right one, as in shapefiles, or whichever has the smaller area.
+        the date line and surround a pole. The region is their union. Other reference systems than
+        geographic ones are transformed (extra ``geo``).
+    winding : {"smaller", "ccw", "cw"}, optional
+        Which side of its outer rings is inside a polygon of `clip`: whichever makes a geometry the
+        smaller part of the sphere (the default), the left one, as in GeoJSON (RFC 7946), or the
+        right one, as in shapefiles. A hemisphere is by default to the left.
+    sides : {"arc", "parallel"}, optional
+        What joins two places of `clip`: arcs of great circles (the default, with a warning for long
+        ones), or straight lines of a map, such as parallels; see `from_geometry`. A rectangle of
+        all longitudes and latitudes is the whole sphere.
     degrees : bool, optional
         Whether `lonlat`, `clip`, and longitudes and latitudes of queries, are in degrees (the
         default) or in radians.
@@ -102,6 +108,8 @@ class Voronoi(Stored):
     -----
     LongitudeWarning
         Longitudes span more than one turn: two conventions seem to be mixed.
+    PolygonWarning
+        A side of `clip` is longer than 30 degrees, or a polygon covers more than half the sphere.
 
     Notes
     -----
@@ -184,18 +192,25 @@ class Voronoi(Stored):
         xyz: ArrayLike | None = None,
         radius: float = 1.0,
         clip: Any = None,
-        winding: str = "ccw",
+        winding: str = "smaller",
+        sides: str | None = None,
         degrees: bool = True,
         workers: int | None = None,
     ) -> None:
         length = _as_radius(radius)
-        region = as_region(clip, winding, degrees=degrees, workers=workers)
+        region = as_region(clip, winding, sides, degrees=degrees, workers=workers)
         vectors = directions_of(lonlat, xyz, degrees=degrees, workers=workers)
         self._fill(vectors, (length, region), degrees, workers)
 
     @classmethod
     def from_delaunay(
-        cls, mesh: Delaunay, *, radius: float = 1.0, clip: Any = None, winding: str = "ccw"
+        cls,
+        mesh: Delaunay,
+        *,
+        radius: float = 1.0,
+        clip: Any = None,
+        winding: str = "smaller",
+        sides: str | None = None,
     ) -> Self:
         """Return the diagram of the points of a triangulation.
 
@@ -205,7 +220,7 @@ class Voronoi(Stored):
             A triangulation of directions.
         radius : float, optional
             Radius of the sphere.
-        clip, winding : optional
+        clip, winding, sides : optional
             As for `Voronoi`, in the unit of angles of the triangulation.
 
         Returns
@@ -229,7 +244,7 @@ class Voronoi(Stored):
         """
         if not isinstance(mesh, Delaunay):
             raise DtypeError(f"mesh must be a sphere.Delaunay, got {type(mesh).__name__}")
-        region = as_region(clip, winding, degrees=mesh._degrees, workers=mesh.workers)
+        region = as_region(clip, winding, sides, degrees=mesh._degrees, workers=mesh.workers)
         made = cls.__new__(cls)
         made._hold_dual(mesh, (_as_radius(radius), region))
         return made
