@@ -48,6 +48,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Rows = NDArray[np.int64]
+    # A field, and interpolators of parts of its values.
+    Parts = tuple[Field, list[tuple[Rows, Any]]]
 
 __all__ = ["Interpolator", "as_max_distance", "shaped_derivatives"]
 
@@ -94,7 +96,9 @@ class Interpolator:
         self._workers = workers
         self._respect_constraints = as_flag(respect_constraints, name="respect_constraints")
         self._cache: dict[str, Any] = {}
-        self._other: Self | None = None
+        # Interpolators without other rows, by these rows; those of the last call.
+        self._others: dict[bytes, Self] = {}
+        self._parts: Parts | None = None
         as_workers(workers)
         given = points if isinstance(points, Triangulation) else None
         self._periodic = points if isinstance(points, PeriodicDelaunay) else None
@@ -109,11 +113,15 @@ class Interpolator:
         field = None if values is None else as_field(values, len(self._sites))
         # The points alone do not determine any other kind of triangulation.
         self._given = None if isinstance(given, Delaunay) else given
-        self._kept = self._kept_rows(field)
+        several = field is not None and self._nan == "drop" and len(field.patterns()) > 1
+        self._kept = None if several else self._kept_rows(field)
         self._mesh: Triangulation = (
             self._triangulated() if given is None or self._kept is not None else given
         )
-        self._field = None if field is None else (field, self.settled(field))
+        if field is not None and several:
+            self._field, self._parts = None, (field, self._narrowed(field))
+        else:
+            self._field = None if field is None else (field, self.settled(field))
 
     @property
     def _ndim(self) -> int:
@@ -125,7 +133,10 @@ class Interpolator:
         """The triangulation of the sites, without those that ``nan="drop"`` removed.
 
         For periodic sites, that of as many copies as are needed; the copies of a site are adjacent.
+        If it removed different sites from several fields, there is no such triangulation, and this
+        raises InputError.
         """
+        self._require_one()
         return self._mesh
 
     @property
@@ -189,6 +200,9 @@ class Interpolator:
         array([ 4., nan])
         """
         limit = as_max_distance(max_distance)
+        if several := self._several(values):
+            field, narrow = several
+            return field.joined([(k, part(xi, max_distance=limit)) for k, part in narrow])
         interpolator, field, columns = self._with(values)
         queries, shape = interpolator._queries(xi)
         found = interpolator._interpolated(queries, columns)
@@ -225,6 +239,7 @@ class Interpolator:
         >>> Linear([(0, 0), (4, 0), (0, 4)]).distance([(1, 0), (7, 4)])
         array([1., 5.])
         """
+        self._require_one()
         queries, shape = self._queries(xi)
         return self._distance(queries).reshape(shape)
 
@@ -266,6 +281,9 @@ class Interpolator:
         array([[ 1.,  2.],
                [nan, nan]])
         """
+        if several := self._several(values):
+            field, narrow = several
+            return field.joined([(k, part.gradient(xi)) for k, part in narrow], 1)
         interpolator, field, columns = self._with(values)
         queries, shape = interpolator._queries(xi)
         return shaped_derivatives(interpolator._sloped(queries, columns), field, shape)
@@ -297,6 +315,7 @@ class Interpolator:
         >>> table @ [1.0, 5.0, 9.0], table @ [0.0, 0.0, 8.0]
         (array([4., 7.]), array([2., 4.]))
         """
+        self._require_one()
         return self._table(*self._queries(xi))
 
     # Implemented by subclasses.
@@ -495,23 +514,90 @@ class Interpolator:
         index = mesh._locator
         return location.locate(mesh._dimension, index, mesh.points, queries, self._workers)
 
+    def field_of(self, values: ArrayLike | None) -> Field:
+        """Return the values as a field, by default those of the constructor.
+
+        Parameters
+        ----------
+        values : array_like or None
+            Values at the sites.
+
+        Returns
+        -------
+        Field
+            Before the policies.
+
+        Raises
+        ------
+        InputError
+            There are none.
+        """
+        if values is not None:
+            return as_field(values, len(self._sites))
+        if self._parts is not None:
+            return self._parts[0]
+        if self._field is None:
+            raise InputError("no values: pass them to the constructor or to the call")
+        return self._field[0]
+
     def _with(self, values: ArrayLike | None) -> tuple[Self, Field, Floats]:
         """The interpolator, the field, its settled columns; None: the constructor's values."""
-        if values is None:
-            if self._field is None:
-                raise InputError("no values: pass them to the constructor or to the call")
+        if values is None and self._field is not None:
             return self, *self._field
-        field = as_field(values, len(self._sites))
+        field = self.field_of(values)
         kept = self._kept_rows(field)
         if self._nan != "drop" or _same(kept, self._kept):
             return self, field, self.settled(field)
-        other = self._other
-        if other is None or not _same(kept, other._kept):
-            other = copy.copy(self)
-            other._kept, other._cache, other._other, other._field = kept, {}, None, None
-            other._mesh = other._triangulated()
-            self._other = other
+        other = self._without(kept)
+        self._others = {_key(kept): other}
         return other, field, other.settled(field)
+
+    def _several(self, values: ArrayLike | None) -> Parts | None:
+        """Parts of a field whose sites differ by ``nan="drop"``; None if all have the same."""
+        if values is None or self._nan != "drop":
+            return self._parts if values is None else None
+        field = self.field_of(values)
+        return (field, self._narrowed(field)) if len(field.patterns()) > 1 else None
+
+    def _narrowed(self, field: Field) -> list[tuple[Rows, Any]]:
+        """An interpolator for each pattern of missing values, with its part of the values."""
+        found, used = [], {}
+        for which in field.patterns():
+            part = field.only(which)
+            kept = self._kept_rows(part)
+            try:
+                owner = self._without(kept)
+                used[_key(kept)] = owner
+                narrow = copy.copy(owner)
+                # Gradients are those of a field.
+                narrow._cache = {k: v for k, v in owner._cache.items() if k != "gradients"}
+                narrow._field = part, narrow.settled(part)
+            except InputError as error:
+                error.add_note(f"of the fields among values, number {which[0]}")
+                raise
+            found.append((which, narrow))
+        self._others = used
+        return found
+
+    def _without(self, kept: Rows | None) -> Self:
+        """The interpolator of some rows, without values."""
+        other = self._others.get(_key(kept))
+        if other is None:
+            other = copy.copy(self)
+            other._kept, other._cache, other._others = kept, {}, {}
+            other._field, other._parts = None, None
+            if not _same(kept, self._kept):
+                other._mesh = other._triangulated()
+        return other
+
+    def _require_one(self, values: ArrayLike | None = None) -> None:
+        """Refuse what depends on the sites if fields have different ones."""
+        several = self._several(values)
+        if several is not None:
+            raise InputError(
+                f"nan='drop' removes different sites from {len(several[1])} groups of fields, "
+                "which have no sites or weights in common: give the fields of one group"
+            )
 
     def _kept_rows(self, field: Field | None) -> Rows | None:
         if self._nan != "drop" or field is None or not (dropped := field.not_finite).size:
@@ -532,10 +618,14 @@ class Interpolator:
 
     def __getstate__(self) -> dict[str, Any]:
         # Spatial indices are not pickled; they are rebuilt.
-        return self.__dict__ | {"_cache": {}, "_other": None}
+        return self.__dict__ | {"_cache": {}, "_others": {}}
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} on {self._mesh!r}>"
+
+
+def _key(kept: Rows | None) -> bytes:
+    return b"" if kept is None else kept.tobytes()
 
 
 def _own(points: Any) -> Floats:

@@ -182,7 +182,8 @@ def cross_validate(
     duplicates : str, optional
         As in `Linear`. Points that coincide are left out together.
     nan : {"raise", "drop"}, optional
-        Whether sites without a finite value raise an error or are removed first.
+        Whether sites without a finite value raise an error or are removed first, each field on its
+        own.
     progress : callable, optional
         Called from time to time with the fraction of the work that is done, from 0 to 1.
     workers : int, optional
@@ -234,21 +235,39 @@ def cross_validate(
     sites = as_points(points, ndim=2)
     warn_of_degrees(points, sites, planar=planar)
     field = as_field(values, len(sites))
-    kept = np.arange(len(sites))
+    groups = [np.arange(0)]
     if chosen("nan", nan, NAN[:2]) == "drop":
-        kept = np.delete(kept, field.not_finite)
+        groups = field.patterns()
     else:
         require_finite_values(field)
-    mesh = Delaunay(sites[kept], workers=workers)
-    merged = field.at(kept).merged(mesh.duplicate_of, chosen("duplicates", duplicates, DUPLICATES))
-    task = _Task(mesh, merged, interpolator, options, workers, tell, leave_one_out)
-    rng = _dealer(seed)
-    columns = task.left_one_out() if leave_one_out else task.folded(folds or 0, rng)
-    predicted = np.full_like(field.columns, np.nan)
-    predicted[kept] = columns[mesh.duplicate_of]
+    policy = chosen("duplicates", duplicates, DUPLICATES)
+    parts = []
+    # Fields that are missing at other sites are predicted from their own ones.
+    for k, which in enumerate(groups):
+        part = field if len(groups) == 1 else field.only(which)
+        kept = np.delete(np.arange(len(sites)), part.not_finite)
+        mesh = Delaunay(sites[kept], workers=workers)
+        merged = part.at(kept).merged(mesh.duplicate_of, policy)
+        share = _share(tell, k, len(groups))
+        task = _Task(mesh, merged, interpolator, options, workers, share, leave_one_out)
+        rng = _dealer(seed)
+        columns = task.left_one_out() if leave_one_out else task.folded(folds or 0, rng)
+        predicted = np.full_like(part.columns, np.nan)
+        predicted[kept] = columns[mesh.duplicate_of]
+        parts.append((which, part.shaped(predicted, (len(sites),))))
     name = interpolator if isinstance(interpolator, str) else getattr(interpolator, "__name__", "")
-    shaped = (field.shaped(part, (len(sites),)) for part in (field.columns, predicted))
-    return CrossValidation(name, *shaped)
+    every = field.joined(parts) if len(parts) > 1 else parts[0][1]
+    return CrossValidation(name, field.shaped(field.columns, (len(sites),)), every)
+
+
+def _share(
+    tell: Callable[[float], None] | None, k: int, count: int
+) -> Callable[[float], None] | None:
+    """Progress of part k of `count` parts."""
+    if tell is None or count == 1:
+        return tell
+    whole = tell
+    return lambda done: whole((k + done) / count)
 
 
 def _dealer(seed: int) -> np.random.Generator:

@@ -255,9 +255,9 @@ def grid(
         values = None
     if made._ndim == SPACE:
         refuse("a raster", "call the interpolator with the query points")
-    field, columns = made._with(values)[1:]
+    field = made.field_of(values)
     nodes_x, nodes_y = _nodes(made, resolution, shape, x, y, bounds)
-    require_memory(len(nodes_x), len(nodes_y), columns.shape[1])
+    require_memory(len(nodes_x), len(nodes_y), field.columns.shape[1])
     dtype = np.complex128 if field.is_complex else np.float64
     found = np.empty((len(nodes_y), len(nodes_x), *field.trailing), dtype)
     rows = max(1, _BLOCK // len(nodes_x))

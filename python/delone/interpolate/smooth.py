@@ -105,6 +105,9 @@ class Smooth(Interpolator):
         """
         if self._ndim == SPACE:
             refuse("hessian", "only values are available")
+        if several := self._several(values):
+            field, narrow = several
+            return field.joined([(k, part.hessian(xi)) for k, part in narrow], 2)
         interpolator, field, columns = self._with(values)
         queries, shape = interpolator._queries(xi)
         found = interpolator._derived(queries, columns, 2)
@@ -141,6 +144,7 @@ class Smooth(Interpolator):
         True
         """
         self._require_gradients()
+        self._require_one(values)
         interpolator, field, columns = self._with(values)
         found = interpolator.gradients(columns)
         return shaped_derivatives(found, field, found.shape[:1])

@@ -51,6 +51,46 @@ class Field:
                 return np.empty(0, dtype=np.int64)
         return np.flatnonzero(~np.isfinite(self.columns).all(axis=1))
 
+    def patterns(self) -> list[NDArray[np.int64]]:
+        """The values of a point, as groups that are missing at the same points, by first member.
+
+        Real and imaginary parts are one value.
+        """
+        if not self.not_finite.size:
+            return [np.arange(self._width)]
+        missing = ~np.isfinite(self.columns)
+        if self.is_complex:
+            missing = missing[:, 0::2] | missing[:, 1::2]
+        packed = np.packbits(missing, axis=0).T
+        groups: dict[bytes, list[int]] = {}
+        for k, pattern in enumerate(packed):
+            groups.setdefault(pattern.tobytes(), []).append(k)
+        return [np.array(group) for group in groups.values()]
+
+    @property
+    def _width(self) -> int:
+        """How many values a point has."""
+        return int(self.columns.shape[1]) // (2 if self.is_complex else 1)
+
+    def only(self, which: NDArray[np.int64]) -> Field:
+        """Some of the values of each point, (n, k)."""
+        columns = np.column_stack((2 * which, 2 * which + 1)).ravel() if self.is_complex else which
+        part = np.ascontiguousarray(self.columns[:, columns])
+        return replace(self, columns=part, trailing=(len(which),))
+
+    def joined(
+        self, parts: list[tuple[NDArray[np.int64], NDArray[Any]]], further: int = 0
+    ) -> NDArray[Any]:
+        """Join results for parts of the values; they are the last axes but `further` ones."""
+        first = parts[0][1]
+        axis = first.ndim - 1 - further
+        leading, last = first.shape[:axis], first.shape[axis + 1 :]
+        found = np.empty((*leading, self._width, *last), first.dtype)
+        every: tuple[Any, ...] = (slice(None),) * axis
+        for which, part in parts:
+            found[(*every, which)] = part
+        return found.reshape((*leading, *self.trailing, *last))
+
     def at(self, rows: NDArray[np.integer]) -> Field:
         """The values of some points."""
         return replace(self, columns=np.ascontiguousarray(self.columns[rows]))

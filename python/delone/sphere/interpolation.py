@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copy
 import math
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
     Rows = NDArray[np.int64]
+    # A field, and interpolators of parts of its values.
+    Parts = tuple[Field, list[tuple[Rows, Any]]]
 
 __all__ = ["Linear", "NaturalNeighbor", "Nearest"]
 
@@ -68,11 +70,15 @@ class _Interpolator:
         self._mesh = self._all
         self._kept: Rows | None = None
         self._field: tuple[Field, _Interpolator, Floats] | None = None
-        self._other: _Interpolator | None = None
+        # Interpolators without other rows, by these rows; those of the last call.
+        self._others: dict[bytes, Self] = {}
+        self._parts: Parts | None = None
         if values is not None:
             field = as_field(values, self.npoints)
-            owner = self._for(field)
-            self._field = (field, owner, owner.settled(field))
+            self._parts = self._narrowed(field) if self._differ(field) else None
+            if self._parts is None:
+                owner = self._for(field)
+                self._field = (field, owner, owner.settled(field))
 
     @property
     def npoints(self) -> int:
@@ -86,7 +92,12 @@ class _Interpolator:
 
     @property
     def triangulation(self) -> Delaunay:
-        """The triangulation of the sites, without those that ``nan="drop"`` removed."""
+        """The triangulation of the sites, without those that ``nan="drop"`` removed.
+
+        If it removed different sites from several fields, there is no such triangulation, and this
+        raises InputError.
+        """
+        self._require_one()
         return self._mesh if self._field is None else self._field[1]._mesh
 
     def __call__(
@@ -137,6 +148,9 @@ class _Interpolator:
         array([nan,  2.])
         """
         limit = as_max_distance(max_distance)
+        if several := self._several(values):
+            field, narrow = several
+            return field.joined([(k, part(xi, max_distance=limit)) for k, part in narrow])
         field, owner, columns = self._with(values)
         table = owner._table(xi)
         found = _core.combine2(
@@ -177,6 +191,7 @@ class _Interpolator:
         >>> sphere.Linear(sites).distance([(-172, 0), (180, 85)]).round(9)
         array([ 2., 75.])
         """
+        self._require_one()
         return (self if self._field is None else self._field[1])._distance(xi)
 
     def _distance(self, xi: ArrayLike) -> Floats:
@@ -218,6 +233,7 @@ class _Interpolator:
         >>> (table @ [1.0, 3.0, 9.0]).round(9), (table @ [0.0, 8.0, 9.0]).round(9)
         (array([2., 1.]), array([4., 0.]))
         """
+        self._require_one()
         return (self if self._field is None else self._field[1])._table(xi)
 
     def settled(self, field: Field) -> Floats:
@@ -276,15 +292,59 @@ class _Interpolator:
         dropped = field.not_finite
         if self._nan != "drop" or not dropped.size:
             return self
-        kept = np.delete(np.arange(self.npoints), dropped)
-        other = self._other
-        if other is None or other._kept is None or not np.array_equal(other._kept, kept):
+        owner = self._without(np.delete(np.arange(self.npoints), dropped))
+        assert owner._kept is not None
+        self._others = {owner._kept.tobytes(): owner}
+        return owner
+
+    def _without(self, kept: Rows) -> Self:
+        """The interpolator of some rows, without values."""
+        other = self._others.get(kept.tobytes())
+        if other is None:
             other = copy.copy(self)
-            other._kept, other._field, other._other = kept, None, None
+            other._kept, other._field, other._others, other._parts = kept, None, {}, None
             vectors = self._all.vectors[kept]
             other._mesh = Delaunay(xyz=vectors, degrees=self._degrees, workers=self._workers)
-            self._other = other
         return other
+
+    def _differ(self, field: Field) -> bool:
+        """Whether ``nan="drop"`` removes different sites from the values of a field."""
+        return self._nan == "drop" and len(field.patterns()) > 1
+
+    def _several(self, values: ArrayLike | None) -> Parts | None:
+        """Parts of a field whose sites differ by ``nan="drop"``; None if all have the same."""
+        if values is None or self._nan != "drop":
+            return self._parts if values is None else None
+        field = as_field(values, self.npoints)
+        return self._narrowed(field) if self._differ(field) else None
+
+    def _narrowed(self, field: Field) -> Parts:
+        """An interpolator for each pattern of missing values, with its part of the values."""
+        found, used = [], {}
+        for which in field.patterns():
+            part, narrow = field.only(which), copy.copy(self)
+            dropped = part.not_finite
+            owner: _Interpolator = self
+            try:
+                if dropped.size:
+                    kept = np.delete(np.arange(self.npoints), dropped)
+                    owner = used[kept.tobytes()] = self._without(kept)
+                narrow._field = part, owner, owner.settled(part)
+            except InputError as error:
+                error.add_note(f"of the fields among values, number {which[0]}")
+                raise
+            narrow._parts = None
+            found.append((which, narrow))
+        self._others = used
+        return field, found
+
+    def _require_one(self) -> None:
+        """Refuse what depends on the sites if fields have different ones."""
+        if self._parts is not None:
+            raise InputError(
+                f"nan='drop' removes different sites from {len(self._parts[1])} groups of fields, "
+                "which have no sites or weights in common: give the fields of one group"
+            )
 
     def _queries(self, xi: ArrayLike) -> tuple[Floats, Rows, tuple[int, ...]]:
         """Vectors of queries, (k, 3), which of them have a direction, and their leading axes."""
@@ -324,10 +384,11 @@ class _Interpolator:
         )
 
     def __getstate__(self) -> dict[str, Any]:
-        return self.__dict__ | {"_other": None}
+        return self.__dict__ | {"_others": {}}
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__} on {self.triangulation!r}>"
+        owner = self if self._field is None else self._field[1]
+        return f"<{type(self).__name__} on {owner._mesh!r}>"
 
 
 class _Continuous(_Interpolator):
@@ -381,6 +442,9 @@ class _Continuous(_Interpolator):
         radius = as_number(radius, name="radius")
         if not 0 < radius < math.inf:
             raise InputError(f"radius must be positive, got {radius!r}")
+        if several := self._several(values):
+            field, narrow = several
+            return field.joined([(k, part.gradient(xi, radius=radius)) for k, part in narrow], 1)
         field, owner, columns = self._with(values)
         assert isinstance(owner, _Continuous)
         flat, known, shape = self._queries(xi)
