@@ -26,14 +26,16 @@ __all__ = ["EXPANSION", "archived", "header", "largest", "pieces", "read_array",
 # Tables of numbers compress by a factor of 3 to 20, and constant grids by 100. The second limit is
 # what a file of a few bytes may contain in any case.
 EXPANSION, _ALWAYS = 200, 1 << 26
+# Text takes a hundred times longer to parse than to decompress: for it the second limit is lower.
+_ALWAYS_TEXT = 1 << 23
 # Those that NumPy writes. Python decompresses a piece of the others without a limit.
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _PIECE = 1 << 20
 
 
-def largest(size: int) -> int:
+def largest(size: int, *, text: bool = False) -> int:
     """Return the number of bytes to which a compressed file of a size may expand."""
-    return max(_ALWAYS, EXPANSION * size)
+    return max(_ALWAYS_TEXT if text else _ALWAYS, EXPANSION * size)
 
 
 @contextmanager

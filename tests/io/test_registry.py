@@ -69,7 +69,7 @@ def test_options_that_do_not_apply(tmp_path):
         (".gpkg", "pyogrio", "geo"),
         (".geojson", "geopandas", "geo"),
         (".parquet", "pyarrow", "geo"),
-        (".vtu", "meshio", "mesh"),
+        (".msh", "meshio", "mesh"),
     ],
 )
 def test_missing_library_to_read(tmp_path, monkeypatch, suffix, library, extra):

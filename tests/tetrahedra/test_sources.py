@@ -43,7 +43,12 @@ def test_files_with_polygons(suffix: str, tmp_path: Path) -> None:
     cells.append(("triangle", np.array([(0, 1, 3), (0, 3, 2)], dtype=np.int32)))
     meshio.Mesh(points, cells).write(tmp_path / f"box{suffix}")
     with pytest.raises(delone.FileFormatError, match="quad"):
-        delone.io.read_mesh(tmp_path / f"box{suffix}")
+        delone.io.read_mesh(tmp_path / f"box{suffix}", polygons="raise")
+    if suffix == ".vtu":
+        with pytest.raises(delone.FileFormatError, match='polygons="split" divides them'):
+            delone.io.read_mesh(tmp_path / f"box{suffix}")
+    else:
+        assert len(delone.io.read_mesh(tmp_path / f"box{suffix}").simplices) == 12
     mesh = delone.tetrahedralize(tmp_path / f"box{suffix}")
     assert len(mesh.input_faces) == 12
     assert solids.filled(mesh.points, mesh.simplices) == 6

@@ -18,10 +18,11 @@ from delone.io.registry import (
     read_surface,
     write_mesh,
 )
-from delone.io.surfacefile import SurfaceFile
+from delone.io.surfacefile import LeftOutWarning, SurfaceFile
 
 __all__ = [
     "GeometrySet",
+    "LeftOutWarning",
     "MeshFile",
     "PointSet",
     "SurfaceFile",

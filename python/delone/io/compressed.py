@@ -17,11 +17,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-__all__ = ["SUFFIXES", "Bounded", "corrupt_is_an_error", "opened"]
+__all__ = ["SUFFIXES", "Bounded", "corrupt_is_an_error", "opened", "require_expansion"]
 
 _OPENERS: dict[str, Any] = {".gz": gzip.open, ".xz": lzma.open, ".bz2": bz2.open}
 _TORN = (EOFError, gzip.BadGzipFile, lzma.LZMAError, zlib.error)
 SUFFIXES = tuple(_OPENERS)
+_PIECE = 1 << 20
 
 
 def opened(path: Path) -> IO[bytes]:
@@ -34,14 +35,14 @@ def opened(path: Path) -> IO[bytes]:
 class Bounded(io.RawIOBase):
     """A file, closed with this one, that raises if it contains far more than its size makes likely.
 
-    That is a line of more than `longest_line` bytes; or in a compressed file more than 64 MiB and
+    That is a line of more than `longest_line` bytes; or in a compressed file more than 8 MiB and
     200 times its size.
     """
 
     def __init__(self, file: IO[bytes], path: Path, *, longest_line: int | None = None) -> None:
         self._file, self._path, self._longest_line = file, path, longest_line
         packed = path.suffix.lower() in SUFFIXES
-        self._most = largest(path.stat().st_size) if packed else None
+        self._most = largest(path.stat().st_size, text=True) if packed else None
         self._read = self._line = 0
 
     def readable(self) -> bool:
@@ -74,6 +75,19 @@ class Bounded(io.RawIOBase):
         """Close the underlying file as well."""
         self._file.close()
         super().close()
+
+
+def require_expansion(path: Path) -> None:
+    """Refuse a compressed file that contains far more than its size makes likely.
+
+    All of it is decompressed and nothing is parsed, which takes a hundred times longer.
+    """
+    if path.suffix.lower() in SUFFIXES:
+        with Bounded(opened(path), path) as file:
+            buffer = bytearray(_PIECE)
+            # Ends with the file, or with an error at the limit.
+            while file.readinto(buffer):
+                pass
 
 
 @contextmanager

@@ -19,8 +19,10 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from delone.bounded import largest
 from delone.errors import FileFormatError
 from delone.extras import require
+from delone.io.companions import require_companions
 from delone.io.compressed import SUFFIXES, Bounded, corrupt_is_an_error, opened
 from delone.io.systems import check_system
 
@@ -53,6 +55,24 @@ _USUAL = re.compile(
     rb'\s*:\s*\{\s*"name"\s*:\s*"(?P<name>[^"\\]*)"\s*\}\s*\}))'
 )
 _KINDS = ("name", "epsg", "ogc")
+# Files beside a file, of the same name, that GDAL and SQLite read.
+_COMPANIONS = {
+    "GPKG": ("-wal", "-shm", "-journal"),
+    "ESRI Shapefile": (
+        *(".shx", ".dbf", ".prj", ".cpg", ".qix", ".sbn", ".sbx", ".idm", ".ind"),
+        *(".SHX", ".DBF", ".PRJ", ".CPG", ".QIX", ".SBN", ".SBX", ".IDM", ".IND"),
+    ),
+}
+# The action of SQLite's authorizer for a call of a function, which sqlite3 names from 3.12 on.
+_FUNCTION = 31
+_UNSTEADY = {
+    *("random", "randomblob", "changes", "total_changes", "last_insert_rowid", "sqlite_version"),
+    *("sqlite_source_id", "sqlite_compileoption_get", "sqlite_compileoption_used"),
+}
+# Steps of SQLite's machine between two looks at their number: some 10 microseconds.
+_STEPS = 1 << 10
+# LIKE takes time in proportion to the product of the lengths of pattern and text.
+_LONGEST_PATTERN = 1 << 10
 
 
 @contextmanager
@@ -78,6 +98,7 @@ def admitted(path: Path) -> Iterator[str]:
         yield _json_name(path, str(path))
         return
     _check_beginning(path)
+    require_companions(path, _COMPANIONS.get(driver, ()))
     if driver == "GPKG":
         _check_tables(path)
     notes = path.with_name(path.name + ".aux.xml")
@@ -146,24 +167,82 @@ def _check_beginning(path: Path) -> None:
 
 
 def _check_tables(path: Path) -> None:
-    """Reject a GeoPackage with tables or views that SQLite alone cannot read.
+    """Reject a GeoPackage with tables or views that SQLite alone cannot read, or cannot end.
 
     GDAL's functions and virtual tables open files; SQLite here has none, so it rejects their use.
     """
     name = ""
     try:
         with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)) as base:
-            query = "SELECT name, sql FROM sqlite_master WHERE type IN ('table', 'view')"
-            for name, sql in base.execute(query).fetchall():
+            query = "SELECT name, type, sql FROM sqlite_master WHERE type IN ('table', 'view')"
+            found = base.execute(query).fetchall()
+            for name, _, sql in found:
                 # The R-tree belongs to SQLite, but not every build of SQLite has it.
                 if not re.search(r"\bUSING\s+[\"']?rtree\b", str(sql), re.IGNORECASE):
-                    quoted = str(name).replace('"', '""')
-                    base.execute(f'EXPLAIN SELECT * FROM "{quoted}"').close()
-    except sqlite3.Error as error:
-        what = f"its table or view {name!r} is rejected" if name else "it cannot be read"
+                    base.execute(f"EXPLAIN SELECT * FROM {_quoted(name)}").close()
+            computed = [
+                name
+                for name, kind, sql in found
+                if kind == "view" or re.search(r"\bAS\s*\(", str(sql), re.IGNORECASE)
+            ]
+            _limit(base, path)
+            for name in computed:
+                _require_end(base, name, path)
+    except (sqlite3.Error, sqlite3.Warning) as error:
+        what = f"its table or view {name!r:.60} is rejected" if name else "it cannot be read"
         raise FileFormatError(
-            f"{path}: {what}: {error}. Tables and views that need more than plain SQLite are not "
-            "opened; copy the rows into a plain table"
+            f"{path}: {what}: {error!s:.100}. Tables and views that need more than plain SQLite "
+            "are not opened; copy the rows into a plain table"
+        ) from error
+
+
+def _quoted(name: Any) -> str:
+    quoted = str(name).replace('"', '""')
+    return f'"{quoted}"'
+
+
+def _limit(base: sqlite3.Connection, path: Path) -> None:
+    """Bound what reading tables and views costs by the size of the file.
+
+    SQLite stops after so many steps and at so long a value. Functions whose value is another one
+    in GDAL's SQLite, or at the next call, are rejected: what is tested is what GDAL will read.
+    """
+    most, calls = largest(path.stat().st_size, text=True), 0
+
+    def stop() -> int:
+        nonlocal calls
+        calls += 1
+        return int(calls * _STEPS > most)
+
+    def admit(action: int, _: str | None, name: str | None, *__: str | None) -> int:
+        denied = action == _FUNCTION and (name or "").casefold() in _UNSTEADY
+        return sqlite3.SQLITE_DENY if denied else sqlite3.SQLITE_OK
+
+    base.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, most)
+    base.setlimit(sqlite3.SQLITE_LIMIT_LIKE_PATTERN_LENGTH, _LONGEST_PATTERN)
+    base.set_progress_handler(stop, _STEPS)
+    base.set_authorizer(admit)
+
+
+def _require_end(base: sqlite3.Connection, name: str, path: Path) -> None:
+    """Read all rows of a table or view; a recursive one may have no last row."""
+    most, seen = largest(path.stat().st_size, text=True), 0
+    base.text_factory = bytes
+    try:
+        # Ends with the rows, or after the steps that the progress handler allows.
+        for row in base.execute(f"SELECT * FROM {_quoted(name)}"):
+            seen += sum(len(value) if isinstance(value, bytes) else 8 for value in row)
+            if seen > most:
+                raise FileFormatError(
+                    f"{path}: its table or view {name!r:.60} has more than {most:,} bytes, far "
+                    "more than the file; copy the rows into a plain table"
+                )
+    except sqlite3.OperationalError as error:
+        if str(error) != "interrupted":
+            raise
+        raise FileFormatError(
+            f"{path}: its table or view {name!r:.60} takes more than {most:,} steps of SQLite, far "
+            "more than the size of the file explains; copy the rows into a plain table"
         ) from error
 
 

@@ -12,7 +12,7 @@ from delone.errors import FileFormatError
 from delone.extras import require
 from delone.io.landxml_parts import ORDERS, Draft, Head
 from delone.io.landxml_writing import require_libraries, write_mesh
-from delone.io.markup import refuse_document_type
+from delone.io.markup import decoded, refuse_document_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -68,9 +68,10 @@ def read_surface(path: Path, *, name: str | None, order: str) -> SurfaceFile:
 
 def _drafts(etree: Any, path: Path, head: Head, wanted: str | None) -> Iterator[Draft]:
     """Yield the surfaces, in the order of the file; those of other names have no content."""
-    with path.open("rb") as file:
+    with decoded(path) as (file, encoding):
         events = etree.iterparse(
             file,
+            encoding=encoding,
             events=("start", "end"),
             resolve_entities=False,
             load_dtd=False,

@@ -1,22 +1,73 @@
-"""Safe XML: without a document type there are no entities, internal or external."""
+"""Safe XML in any usual encoding: without a document type there are no entities.
+
+The parsers read Unicode and encodings of single bytes. Others, which are usual in East Asia, are
+decoded here, so that every parser sees the same characters.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import codecs
+import re
+from contextlib import contextmanager
+from typing import IO, TYPE_CHECKING, Any
 from xml.parsers import expat
 
-from delone.errors import FileFormatError
+from delone.errors import DeloneError, FileFormatError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
-__all__ = ["refuse_document_type"]
+__all__ = ["decoded", "refuse_document_type"]
 
 _BLOCK = 1 << 16
+_DECLARED = re.compile(rb"<\?xml[^>]*?encoding\s*=\s*[\"']([A-Za-z0-9._:-]{1,40})[\"']")
+# Encodings of several bytes, by Python's names. Files that declare the first of a family contain
+# characters of the last one as well: programs of Windows write these.
+_SEVERAL_BYTES = {
+    **dict.fromkeys(("gb2312", "gbk", "gb18030"), "gb18030"),
+    **dict.fromkeys(("shift_jis", "cp932"), "cp932"),
+    **dict.fromkeys(("euc_kr", "cp949"), "cp949"),
+    **dict.fromkeys(("big5", "cp950"), "cp950"),
+    **{"big5hkscs": "big5hkscs", "euc_jp": "euc_jp", "iso2022_jp": "iso2022_jp"},
+}
 
 
 class _RootError(Exception):
     """The root element has begun; a document type could only precede it."""
+
+
+@contextmanager
+def decoded(path: Path) -> Iterator[tuple[IO[bytes], str | None]]:
+    """Open an XML file, and tell the encoding in which it is read if it is not the declared one."""
+    with path.open("rb") as file:
+        codec = _codec(file.read(1 << 8), path)
+        file.seek(0)
+        if codec is None:
+            yield file, None
+            return
+        try:
+            # Whatever it decodes is given out as UTF-8.
+            yield codecs.EncodedFile(file, "utf-8", codec), "utf-8"
+        except UnicodeDecodeError as error:
+            raise FileFormatError(
+                f"{path} is not in the encoding that it declares, {codec}: {error.reason} "
+                f"({error.object[error.start : error.end].hex()})"
+            ) from error
+
+
+def _codec(head: bytes, path: Path) -> str | None:
+    """Return the codec of an encoding that parsers do not read, None for all others."""
+    found = _DECLARED.match(head.lstrip())
+    if found is None:
+        return None
+    name = found[1].decode("ascii")
+    try:
+        return _SEVERAL_BYTES.get(codecs.lookup(name).name)
+    except LookupError as error:
+        raise FileFormatError(
+            f"{path} declares the encoding {name!r}, which is unknown: convert it to UTF-8"
+        ) from error
 
 
 def refuse_document_type(path: Path) -> None:
@@ -31,12 +82,19 @@ def refuse_document_type(path: Path) -> None:
     def root(*_: object) -> None:
         raise _RootError
 
-    parser = expat.ParserCreate()
-    parser.StartDoctypeDeclHandler = document_type
-    parser.StartElementHandler = root
-    try:
-        with path.open("rb") as file:
+    with decoded(path) as (file, encoding):
+        parser: Any = expat.ParserCreate(encoding)
+        parser.StartDoctypeDeclHandler = document_type
+        parser.StartElementHandler = root
+        try:
             while block := file.read(_BLOCK):
                 parser.Parse(block)
-    except (_RootError, expat.ExpatError):
-        pass
+        except (_RootError, expat.ExpatError):
+            pass
+        except (DeloneError, UnicodeDecodeError):
+            raise
+        except (LookupError, ValueError) as error:
+            # Of a declaration that a parser cannot follow.
+            raise FileFormatError(
+                f"{path} is in an encoding that is not read ({error}): convert it to UTF-8"
+            ) from error

@@ -6,6 +6,7 @@ it contains before memory is set aside for it.
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,16 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Lines", "Numbers", "as_markers", "as_rows", "first_number", "read_text", "table"]
+__all__ = [
+    "Lines",
+    "Numbers",
+    "as_markers",
+    "as_rows",
+    "first_number",
+    "parsed",
+    "read_text",
+    "table",
+]
 
 # Point numbers and markers have 32 bits.
 _LARGEST = 1 << 31
@@ -34,6 +44,20 @@ def read_text(path: Path) -> list[str]:
         raise FileFormatError(f"{path} contains something other than numbers: {error}") from error
     lines = (line.partition("#")[0].strip() for line in text.splitlines())
     return [line for line in lines if line]
+
+
+def parsed(body: bytes, path: Path) -> Floats:
+    """Return the numbers of a text, in order; anything else in it is an error."""
+    if not body.strip():
+        return np.empty(0)
+    try:
+        with warnings.catch_warnings():
+            # NumPy warns, and stops, at what is not a number.
+            warnings.simplefilter("error", DeprecationWarning)
+            found: Floats = np.fromstring(body, dtype=np.float64, sep=" ")
+    except (DeprecationWarning, ValueError) as error:
+        raise FileFormatError(f"{path} contains something other than numbers") from error
+    return found
 
 
 class Numbers:

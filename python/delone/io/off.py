@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone._arrays import as_simplices
+from delone._arrays import as_points, as_simplices
 from delone.errors import FileFormatError, InputError
 from delone.io.content import content
 from delone.io.facets import facet_triangles
-from delone.io.numbered import Lines
+from delone.io.numbered import Lines, as_rows
 from delone.io.pointset import PointSet
 from delone.io.registry import MeshFile
 
@@ -51,9 +51,7 @@ def read_mesh(path: Path) -> MeshFile:
     nothing = np.empty((0, 3))
     for _ in range(count):
         corners, _ = lines.polygon()
-        polygon = [int(row) for row in corners]
-        if polygon != corners or not all(0 <= row < len(points) for row in polygon):
-            raise FileFormatError(f"{path} refers to points that do not exist")
+        polygon = as_rows(np.array(corners), 0, path, len(points)).tolist()
         if len(polygon) < 3:
             raise FileFormatError(f"{path} has a face with {len(polygon)} corners")
         faces += facet_triangles(points, [polygon], nothing, str(path))
@@ -77,10 +75,13 @@ def _opened(path: Path) -> tuple[Floats, int, Lines]:
             f"{path} is not an OFF file of 3-D points: it starts with {word!r:.20}"
         )
     npoints, count, *_ = lines.counts(2)
-    points = lines.rows(npoints, 3)
+    rows = lines.rows(npoints, 3)
     if not npoints:
         raise FileFormatError(f"{path} contains no points")
-    return points, count, lines
+    try:
+        return as_points(rows, ndim=3), count, lines
+    except InputError as error:
+        raise FileFormatError(f"{path}: {error}") from error
 
 
 def require_libraries(suffix: str) -> None:

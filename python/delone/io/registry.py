@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_choice, as_count, as_flag, as_plain_array
+from delone._arrays import as_choice, as_count, as_flag, as_number, as_plain_array
 from delone.atomic import replacing
 from delone.counting import counted
 from delone.errors import DtypeError, FileFormatError, InputError
@@ -49,6 +49,8 @@ __all__ = [
 
 _JSON = (".geojson", ".json")
 _MESHES = (".vtu", ".ply", ".obj", ".stl", ".msh")
+# Those of surfaces, where polygons are facets.
+_FACETS = (".ply", ".obj")
 _TRIANGLE = (".node", ".ele", ".poly")
 _TETGEN = (".smesh", ".face")
 _LANDXML = (".xml", ".landxml")
@@ -235,9 +237,10 @@ def read_points(
     Integers beyond 2**53 and, in tables, decimals with more digits than a double can distinguish
     are rejected. No memory is allocated for what a header declares before the size of the file
     confirms it. Nothing that a file refers to is opened, except the parts of a Shapefile, the
-    journals of a GeoPackage, and the NODE file next to ELE and POLY. Compressed files that contain
-    more than 64 MiB and more than 200 times their size are rejected; decompress them first. Lines
-    of text longer than 16 MiB are rejected as well.
+    journals of a GeoPackage, and the NODE file next to ELE and POLY. Files beside a file that are
+    links to others are rejected. Compressed files that contain more than 64 MiB (text and JSON:
+    8 MiB) and more than 200 times their size are rejected; decompress them first. Lines of text
+    longer than 16 MiB are rejected as well.
 
     Examples
     --------
@@ -391,7 +394,11 @@ def holds_surface(path: str | os.PathLike[str]) -> bool:
 
 
 def read_surface(
-    path: str | os.PathLike[str], *, layer: str | None = None, order: str | None = None
+    path: str | os.PathLike[str],
+    *,
+    layer: str | None = None,
+    order: str | None = None,
+    chord: float | None = None,
 ) -> SurfaceFile:
     """Read the surface of a LandXML or DXF file: points, faces, lines and units.
 
@@ -405,11 +412,16 @@ def read_surface(
     order : {"nez", "enz"}, optional
         Whether a LandXML file has northings first, as the standard says and by default, or, against
         it, eastings.
+    chord : float, optional
+        Curves of a DXF file (arcs, circles, ellipses, splines, bulges of polylines) become chords
+        that are at most this far from the curve, in its units; by default a thousandth of the
+        radius of each arc, and of the extent of other curves.
 
     Returns
     -------
     SurfaceFile
-        What the file has. `delone.terrain.TIN.from_file` makes a surface of it.
+        What the file has, and in `left_out` the counts of what is not read.
+        `delone.terrain.TIN.from_file` makes a surface of it.
 
     Raises
     ------
@@ -428,9 +440,10 @@ def read_surface(
     -----
     Invisible faces (``i="1"``) are left out, and the neighbors of faces are ignored. Boundaries of
     the types void, hole, hide and inner are holes, island is an island in a hole; all others are
-    boundaries. Contours are soft
-    breaklines. Of DXF, 3DFACE, POINT, LINE, LWPOLYLINE and POLYLINE of the model space are read;
-    blocks are not.
+    boundaries. Contours are soft breaklines. Of DXF, the model space is read: 3DFACE, MESH, POINT,
+    LINE, LWPOLYLINE, POLYLINE (also polyface and polygon meshes) and curves, those in blocks as
+    well. Layers that are off or frozen are left out unless `layer` names them; so are texts,
+    hatches, solids and references to other drawings.
 
     Examples
     --------
@@ -457,10 +470,17 @@ def read_surface(
         raise InputError(f"order must be 'nez' or 'enz', got {order!r:.60}")
     plain = "nez" if modules[_suffix(file)] == "landxml" else "enz"
     read: Callable[..., SurfaceFile] = module.read_surface
-    return read(file, name=layer, order=order or plain)
+    if chord is None:
+        return read(file, name=layer, order=order or plain)
+    if plain == "nez":
+        raise InputError(f"{file}: chord is for DXF files; LandXML has no curves in surfaces")
+    distance = as_number(chord, name="chord")
+    if not distance > 0:
+        raise InputError(f"chord must be a distance above 0, got {distance:g}")
+    return read(file, name=layer, order=order or plain, chord=distance)
 
 
-def read_mesh(path: str | os.PathLike[str], *, polygons: str = "raise") -> MeshFile:
+def read_mesh(path: str | os.PathLike[str], *, polygons: str | None = None) -> MeshFile:
     """Read triangles or tetrahedra from a file, unchanged.
 
     Parameters
@@ -471,8 +491,9 @@ def read_mesh(path: str | os.PathLike[str], *, polygons: str = "raise") -> MeshF
         Tetrahedra are read from npz, VTU, MSH and TetGen's ELE; its FACE, SMESH and POLY have
         triangles in 3-D.
     polygons : {"raise", "split"}, optional
-        Whether faces with more than three corners in VTU, PLY, OBJ and MSH are an error or become
-        triangles. In OFF, SMESH and POLY they always become triangles.
+        Whether faces with more than three corners are an error or become triangles. By default an
+        error in VTU and MSH, whose polygons may be the cells of a mesh, and triangles in PLY and
+        OBJ. In OFF, SMESH and POLY they always become triangles.
 
     Returns
     -------
@@ -502,9 +523,12 @@ def read_mesh(path: str | os.PathLike[str], *, polygons: str = "raise") -> MeshF
     """
     file = _existing(path)
     module = _module(_MESH_READERS, _suffix(file), file, "read triangles from")
+    suffix = _suffix(file)
+    if polygons is None:
+        polygons = "split" if suffix in _FACETS else "raise"
     split = as_choice(polygons, ("raise", "split"), name="polygons") == "split"
     read: Callable[..., MeshFile] = module.read_mesh
-    return read(file, **({"split": True} if split and _suffix(file) in _MESHES else {}))
+    return read(file, **({"split": True} if split and suffix in _MESHES else {}))
 
 
 def write_mesh(

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import warnings
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,12 +18,20 @@ from delone.io.pointset import PointSet
 from delone.io.systems import check_system
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["SurfaceFile"]
+__all__ = ["LeftOutWarning", "SurfaceFile"]
+
+_SHOWN = 12
+
+
+class LeftOutWarning(UserWarning):
+    """A file contains something that has not been read; the message counts it by its kind."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -48,6 +58,10 @@ class SurfaceFile:
         The name of the surface.
     source : str, optional
         The file.
+    left_out : mapping of str to int, optional
+        What the file has and this object has not, by its kind: ``{"TEXT": 12, "hidden": 3}``.
+    curves : int, optional
+        How many curves have become chords.
 
     Examples
     --------
@@ -66,6 +80,8 @@ class SurfaceFile:
     crs: str | None = None
     name: str | None = None
     source: str = ""
+    left_out: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
+    curves: int = 0
 
     def __post_init__(self) -> None:
         check_system(self.crs, self.source)
@@ -75,8 +91,33 @@ class SurfaceFile:
         units = "unknown units" if self.units is None else f"heights in {self.units}"
         return (
             f"<SurfaceFile of {counted(len(self.points), 'point')}: "
-            f"{counted(len(self.faces), 'face')}, {counted(lines, 'breakline')}, {units}>"
+            f"{counted(len(self.faces), 'face')}, {counted(lines, 'breakline')}, {units}"
+            + (f", left out: {self._listed()}" if self.left_out else "")
+            + ">"
         )
+
+    def _listed(self) -> str:
+        shown = [f"{count} {kind}" for kind, count in list(self.left_out.items())[:_SHOWN]]
+        return ", ".join(shown) + (", ..." if len(self.left_out) > _SHOWN else "")
+
+    def warn_left_out(self) -> None:
+        """Warn of what the file has and this object has not.
+
+        Warns
+        -----
+        LeftOutWarning
+            Something is left out; the message counts it by its kind.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from delone.io import SurfaceFile
+        >>> SurfaceFile(points=np.zeros((1, 3)), faces=np.zeros((0, 3), int)).warn_left_out()
+        """
+        if self.left_out:
+            warnings.warn(
+                f"{self.source}: left out: {self._listed()}", LeftOutWarning, stacklevel=3
+            )
 
     def as_points(self) -> PointSet:
         """Return the points with their heights, and the vertices of lines that have some.

@@ -14,6 +14,7 @@ import numpy as np
 from delone._arrays import as_points
 from delone.errors import FileFormatError, InputError
 from delone.exchange.parts import boundary
+from delone.io.companions import require_companion
 from delone.io.content import content
 from delone.io.facets import facet_triangles
 from delone.io.numbered import Lines, Numbers, as_markers, as_rows, first_number, table
@@ -56,7 +57,9 @@ def _dimension(path: Path) -> int | None:
 
 
 def _node(path: Path) -> Path:
-    return path.with_suffix(".node")
+    node = path.with_suffix(".node")
+    require_companion(path, node)
+    return node
 
 
 def read_nodes(path: Path) -> Floats:

@@ -20,7 +20,7 @@ from typing import IO, TYPE_CHECKING
 import numpy as np
 
 from delone.errors import FileFormatError
-from delone.io.compressed import Bounded, corrupt_is_an_error, opened
+from delone.io.compressed import Bounded, corrupt_is_an_error, opened, require_expansion
 from delone.io.counts import announced
 from delone.io.pointset import PointSet, choose_columns, find_column
 
@@ -60,6 +60,7 @@ def read_points(
     """Read points from a text file; see `delone.io.read_points`."""
     source = str(path)
     with _no_text_is_an_error(source):
+        require_expansion(path)
         layout = _layout(path, source)
         chosen = choose_columns(layout.names, columns, source, named=layout.named)
         extra = [find_column(layout.names, name, source) for name in attributes]

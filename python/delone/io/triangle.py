@@ -17,6 +17,7 @@ from delone._arrays import as_points, as_simplices
 from delone.errors import FileFormatError, InputError
 from delone.exchange.parts import boundary
 from delone.io import tetgen
+from delone.io.companions import require_companion
 from delone.io.content import content
 from delone.io.numbered import Numbers, as_markers, as_rows, first_number, table
 from delone.io.pointset import PointSet
@@ -85,6 +86,7 @@ def read_triangle(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
 
 def _beside(file: Path) -> tuple[dict[str, NDArray[Any]], int]:
     node = file.with_suffix(".node")
+    require_companion(file, node)
     if not node.exists():
         raise FileNotFoundError(f"{node}: no such file; {file.name} needs it for its points")
     return _vertices(Numbers(node))

@@ -261,6 +261,7 @@ class TIN(Surveyed, Earthworks):
         columns: Sequence[str | int] | None = None,
         layer: str | None = None,
         order: str | None = None,
+        chord: float | None = None,
         **options: Any,
     ) -> Self:
         r"""Make a surface of a file: LandXML, DXF, or points in LAS, LAZ, CSV and others.
@@ -273,6 +274,8 @@ class TIN(Surveyed, Earthworks):
             The columns of x, y and z; by default by their names.
         layer, order : str, optional
             As for these functions: the name of a surface or layer, ``"enz"`` for eastings first.
+        chord : float, optional
+            For curves of DXF, as for `delone.io.read_surface`.
         **options
             Options of `from_surface` for LandXML and DXF, else of `from_points`.
 
@@ -303,7 +306,10 @@ class TIN(Surveyed, Earthworks):
         if holds_surface(path):
             if columns is not None:
                 raise InputError(f"{path}: surfaces have x, y and z, and no columns")
-            return cls.from_surface(io.read_surface(path, layer=layer, order=order), **options)
+            found = io.read_surface(path, layer=layer, order=order, chord=chord)
+            return cls.from_surface(found, **options)
+        if chord is not None:
+            raise InputError(f"{path}: chord is for DXF files, which have curves")
         if order is not None:
             raise InputError(f"{path}: order is for LandXML files; name the columns")
         survey = io.read_points(path, columns=columns, layer=layer)
@@ -344,6 +350,7 @@ class TIN(Surveyed, Earthworks):
         --------
         See `delone.io.read_surface`.
         """
+        surface.warn_left_out()
         if as_flag(faces, name="faces") and len(surface.faces):
             return cls._built(faces_.build_faces(surface, options), options.get("workers"))
         options = faces_.with_lines(surface, options)

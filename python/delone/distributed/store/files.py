@@ -70,8 +70,14 @@ class Store:
         self.root = Path(root)
 
     def path(self, name: str) -> Path:
-        """Return the path of a file."""
-        return self.root / name
+        """Return the path of a file; one that a link leads out of the folder is rejected."""
+        path = self.root / name
+        real, inside = os.path.realpath(path), os.path.realpath(self.root)
+        if os.path.commonpath((real, inside)) != inside:
+            raise FileFormatError(
+                f"{path} is a link to another folder, which is not followed: copy the files here"
+            )
+        return path
 
     def exists(self, name: str) -> bool:
         """Return whether a file exists."""
