@@ -10,7 +10,7 @@ import pytest
 
 import delone
 from delone import ConflictingValuesError, FileFormatError, InputError
-from delone.io import read_geometries, read_points, read_surface, write_mesh
+from delone.io import LeftOutWarning, read_geometries, read_points, read_surface, write_mesh
 from delone.terrain import TIN
 
 pytest.importorskip("lxml")
@@ -175,8 +175,8 @@ MISTAKES = {
     "no height": (POINTS.replace("0 4 2", "0 4"), "", "line 5: 3 numbers for each point"),
     "two points": (POINTS.replace("0 4 2", "0 4 2 0 4 2"), "", "line 5: point 'b' has 6 numbers"),
     "unknown": (POINTS, "<F>a b c</F>\n<F>a b x</F>\n", "line 11: a face refers to point 'x'"),
-    "corners": (POINTS, "<F>a b c d</F>\n", "line 10: a face has three different points"),
-    "repeated": (POINTS, "<F>a b a</F>\n", "line 10: a face has three different points"),
+    "corners": (POINTS, "<F>a b</F>\n", "line 10: a face has three points, or four"),
+    "repeated": (POINTS, "<F>a b a</F>\n", "line 2: all faces .* repeat a corner"),
     "invisible": (POINTS, '<F i="1">a b c</F>\n', "line 2: all faces .* are invisible"),
 }
 
@@ -249,7 +249,10 @@ def test_files_that_are_something_else(tmp_path):
         ("<LandXML/>", "contains no surface"),
         ("<LandXML><Surfaces>", "not valid XML"),
         ("PK\x03\x04", "not valid XML"),
-        (document(POINTS).replace("<Definition", '<Definition surfType="grid"'), "is a grid"),
+        (
+            document(POINTS).replace("<Definition", '<Definition surfType="grid"'),
+            "is a grid without faces",
+        ),
         ("<LandXML>" + "<a>" * 5000 + "</a>" * 5000 + "</LandXML>", "not valid XML"),
         (document(POINTS, before=METER.replace("meter", "furlong")), "linearUnit must be one of"),
         (document(POINTS, before='<CoordinateSystem epsgCode="x"/>'), "epsgCode 'X' is not"),
@@ -348,3 +351,69 @@ def test_the_lines_of_a_file_count_without_its_faces():
     assert afresh.areas.sum() == pytest.approx(64)
     ends = corners(afresh, afresh.breaklines[afresh.soft])
     assert frozenset({(1000000.0, 200002.0, 12.0), (1000002.0, 200002.0, 12.0)}) in ends
+
+
+CORNERS = (
+    '<Pnts><P id="1">0 0 1</P><P id="2">0 10 2</P><P id="3">10 10 3</P><P id="4">10 0 4</P></Pnts>'
+)
+
+
+def surface_of(tmp_path, faces, *, kind="TIN", source=""):
+    path = tmp_path / "faces.xml"
+    path.write_text(
+        '<LandXML xmlns="http://www.landxml.org/schema/LandXML-1.2"><Surfaces><Surface name="EG">'
+        f'{source}<Definition surfType="{kind}">{CORNERS}<Faces>{faces}</Faces></Definition>'
+        "</Surface></Surfaces></LandXML>"
+    )
+    return path
+
+
+@pytest.mark.parametrize(
+    ("kind", "faces", "left_out", "quads"),
+    [
+        ("TIN", "<F>1 2 3</F><F>1 3 4</F><F>3 1 2</F><F>3 2 1</F>", {"repeated face": 2}, 0),
+        ("TIN", "<F>1 2 3</F><F>1 3 3</F><F>1 3 4</F>", {"face that repeats a corner": 1}, 0),
+        ("TIN", "<F>1 2 3</F><F i='1'>1 3 3</F><F>1 3 4</F>", {}, 0),
+        ("TIN", "<F b='0'>1 2 3</F><F b='1'>1 3 4</F>", {"mark of breaklines (b) of a face": 1}, 0),
+        ("grid", "<F>1 2 3 4</F>", {}, 1),
+        ("GRID", "<F>1 2 3</F><F>1 3 4</F>", {}, 0),
+    ],
+)
+def test_faces_that_other_programs_read(tmp_path, kind, faces, left_out, quads):
+    path = surface_of(tmp_path, faces, kind=kind)
+    surface = read_surface(path)
+    assert surface.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
+    assert (surface.left_out, surface.quads) == (left_out, quads)
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        tin = TIN.from_file(path)
+    assert tin.areas.sum() == 100
+    assert [each.category for each in found] == [LeftOutWarning] * bool(left_out)
+
+
+def test_faces_of_other_numbers_of_points(tmp_path):
+    for faces in ("<F>1 2</F>", "<F>1 2 3 4 1</F>"):
+        with pytest.raises(FileFormatError, match="three points, or four in a grid"):
+            read_surface(surface_of(tmp_path, faces))
+    with pytest.raises(FileFormatError, match="a grid without faces"):
+        read_surface(surface_of(tmp_path, "", kind="grid"))
+
+
+def test_walls_and_what_is_no_surface_are_counted(tmp_path):
+    source = (
+        '<SourceData><PointFiles><PointFile fileName="a.txt"/></PointFiles><Breaklines>'
+        '<Breakline brkType="wall" brkWallHt="2"><PntList3D>1 5 5 9 5 6</PntList3D></Breakline>'
+        '<Breakline brkType="standard"><PntList3D>1 7 5 9 7 6</PntList3D></Breakline>'
+        "<RetWall/></Breaklines><DataPoints><PntList3D>4 8 9 5 8 9</PntList3D></DataPoints>"
+        "</SourceData>"
+    )
+    surface = read_surface(surface_of(tmp_path, "<F>1 2 3</F><F>1 3 4</F>", source=source))
+    assert surface.left_out == {
+        "PointFile": 1,
+        "upper line of a wall": 1,
+        "RetWall": 1,
+        "DataPoints beside faces": 2,
+    }
+    assert surface.breaklines[0].tolist() == [[5, 1, 5], [5, 9, 6]]
+    with pytest.warns(LeftOutWarning, match="1 upper line of a wall"):
+        TIN.from_surface(surface)

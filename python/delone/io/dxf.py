@@ -99,6 +99,7 @@ def read_surface(
         source=str(path),
         left_out=dict(+drawn.left_out),
         curves=drawn.curves,
+        quads=drawn.quads,
     )
 
 

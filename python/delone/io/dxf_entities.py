@@ -47,7 +47,7 @@ class Drawn:
         self.points: list[Floats] = []
         self.lines: list[Floats] = []
         self.left_out = Counter[str]()
-        self.curves = 0
+        self.curves = self.quads = 0
         self._drawing, self._source, self._chord = drawing, source, chord
         self._left, self._vertices = max(_ALWAYS, size // _BYTES), max(_VERTICES, size)
 
@@ -119,7 +119,7 @@ class Drawn:
         """Sort an entity by its type."""
         kind = entity.dxftype()
         if kind == "3DFACE":
-            self.faces += _triangles([tuple(each) for each in entity.wcs_vertices()])
+            self._take_face([tuple(each) for each in entity.wcs_vertices()])
         elif kind == "POINT":
             self.points.append(self._rows([entity.dxf.location], entity))
         elif kind == "LINE":
@@ -142,6 +142,11 @@ class Drawn:
         else:
             self.left_out[kind] += 1
 
+    def _take_face(self, corners: list[tuple[float, ...]]) -> None:
+        found = _triangles(corners)
+        self.quads += len(found) == 2
+        self.faces += found
+
     def _take_mesh(self, entity: Any) -> None:
         """Read the triangles of a MESH, a polyface or a polygon mesh."""
         builder = require("ezdxf.render", extra="dxf", what="reading DXF").MeshBuilder
@@ -157,7 +162,7 @@ class Drawn:
                 raise FileFormatError(f"{self._source}: {_named(entity)} has no such vertex")
             corners = list(dict.fromkeys(map(tuple, points[rows].tolist())))
             if len(corners) <= _FACE:
-                self.faces += _triangles(corners)
+                self._take_face(corners)
                 continue
             places = np.array(corners)
             polygon = [list(range(len(places)))]

@@ -12,7 +12,7 @@ import re
 import tempfile
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -260,7 +260,7 @@ class _Bytes:
         self._checked, self.size, self._at, self._body = checked, len(body), 0, body
         self._wide = f"<u{checked.size if checked.version != '4.0' else 8}"
 
-    def _take(self, count: int, kind: np.dtype[np.void] | str) -> NDArray[np.generic]:
+    def _take(self, count: int, kind: np.dtype[np.void] | str) -> NDArray[Any]:
         step = count * np.dtype(kind).itemsize
         if step > self.size - self._at:
             raise self._checked.short()

@@ -34,7 +34,9 @@ def read_points(
 ) -> PointSet:
     """Read the points of a surface; see `delone.io.read_points`."""
     _refuse_columns(path, columns, attributes)
-    return read_surface(path, name=layer, order="nez").as_points()
+    found = read_surface(path, name=layer, order="nez")
+    found.warn_left_out()
+    return found.as_points()
 
 
 def read_geometries(
@@ -42,7 +44,9 @@ def read_geometries(
 ) -> GeometrySet:
     """Read the lines of a surface; see `delone.io.read_geometries`."""
     _refuse_columns(path, columns, ())
-    return read_surface(path, name=layer, order="nez").as_geometries()
+    found = read_surface(path, name=layer, order="nez")
+    found.warn_left_out()
+    return found.as_geometries()
 
 
 def _refuse_columns(

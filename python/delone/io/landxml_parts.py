@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from array import array
+from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +26,8 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _EPSG = re.compile(r"\d{1,6}")
 # Lines by the element around them: breaklines, contours, boundaries, and points.
 _AROUND = ("Breakline", "Contour", "Boundary", "DataPoints", "Chain", "Watershed")
+# Elements of a surface that are counted, not read.
+_LEFT_OUT = ("RetWall", "PointFile")
 _HOLES = ("void", "hole", "hide", "inner")
 
 
@@ -91,11 +94,19 @@ class Draft:
         self._has_faces = self._is_grid = False
         self._around: Any = None
         self._kind = ""
+        self._left_out = Counter[str]()
+        self._quads = 0
 
     def begin(self, tag: str, element: Any) -> None:
         """Take note of an element that begins."""
         if tag in _AROUND:
             self._around, self._kind = element, tag
+            wall = (element.get("brkType") or "").strip().casefold() == "wall"
+            if tag == "Breakline" and (wall or element.get("brkWallHt") is not None):
+                # The lower line of a wall is read; a surface has one height at each place.
+                self._left_out["upper line of a wall"] += 1
+        elif tag in _LEFT_OUT:
+            self._left_out[tag] += 1
         elif tag == "Definition":
             self._is_grid = (element.get("surfType") or "TIN").casefold() == "grid"
 
@@ -125,22 +136,41 @@ class Draft:
 
     def _face(self, element: Any) -> None:
         names = (element.text or "").split()
-        if len(names) != 3 or len(set(names)) != 3:
+        if len(names) not in (3, 4):
             raise self.head.fault(
-                element, f"a face has three different points, got {(element.text or '')!r:.60}"
+                element,
+                f"a face has three points, or four in a grid, got {(element.text or '')!r:.60}",
             )
         self._has_faces = True
         if (element.get("i") or "0").strip() in ("1", "true"):
             return
-        for name in names:
+        if (element.get("b") or "0").strip().strip("0 "):
+            self._left_out["mark of breaklines (b) of a face"] += 1
+        self._quads += len(names) == 4
+        corners = names[:3] if len(names) == 3 else [names[k] for k in (0, 1, 2, 0, 2, 3)]
+        for name in corners:
             row = self._rows.get(name)
             if row is None:  # points may follow
                 self._pending.append((len(self._faces), [name], element.sourceline))
             self._faces.append(-1 if row is None else row)
 
+    def _triangles(self) -> NDArray[np.int64]:
+        """Return the faces, each once, without those that repeat a corner."""
+        faces = np.array(self._faces, dtype=np.int64).reshape(-1, 3)
+        ordered = np.sort(faces, axis=1)
+        flat = (ordered[:, 1:] == ordered[:, :-1]).any(axis=1)
+        _, first = np.unique(ordered, axis=0, return_index=True)
+        kept = np.zeros(len(faces), dtype=bool)
+        kept[first] = True
+        self._left_out["face that repeats a corner"] += int(flat.sum())
+        self._left_out["repeated face"] += int((~kept & ~flat).sum())
+        found: NDArray[np.int64] = faces[kept & ~flat]
+        return found
+
     def _line(self, element: Any, rows: Floats) -> None:
         around = self._around
         if around is None or self._kind in ("Chain", "Watershed"):
+            self._left_out[self._kind or "list of points"] += 1
             return
         kind = self._kind
         if kind == "Boundary":
@@ -160,9 +190,9 @@ class Draft:
     def finished(self) -> SurfaceFile:
         """Return the surface."""
         head = self.head
-        if self._is_grid:
+        if self._is_grid and not self._has_faces:
             raise FileFormatError(
-                f"{head.source}, line {self.line}: surface {self.name!r} is a grid, not a TIN"
+                f"{head.source}, line {self.line}: surface {self.name!r} is a grid without faces"
             )
         for place, (name,), line in self._pending:
             if name not in self._rows:
@@ -172,13 +202,17 @@ class Draft:
                 )
             self._faces[place] = self._rows[name]
         points = np.array(self._coordinates, dtype=np.float64).reshape(-1, 3)
-        faces = np.array(self._faces, dtype=np.int64).reshape(-1, 3)
+        faces = self._triangles()
         if self._has_faces and not len(faces):
             raise FileFormatError(
-                f"{head.source}, line {self.line}: all faces of surface {self.name!r} are invisible"
+                f"{head.source}, line {self.line}: all faces of surface {self.name!r} are "
+                "invisible, or repeat a corner"
             )
-        if not len(faces):
-            points = np.concatenate((points, *self._lines.get("DataPoints", ())))
+        measured = self._lines.get("DataPoints", ())
+        if len(faces):
+            self._left_out["DataPoints beside faces"] += sum(map(len, measured))
+        else:
+            points = np.concatenate((points, *measured))
         return SurfaceFile(
             points=points,
             faces=faces.astype(np.int32),
@@ -192,4 +226,6 @@ class Draft:
             crs=head.crs,
             name=self.name,
             source=head.source,
+            left_out=dict(+self._left_out),
+            quads=self._quads,
         )

@@ -268,17 +268,17 @@ class _Binary(_Rows):
             if length:
                 fields.append((f"n{k}", self._order + length))
             fields.append((f"p{k}", self._order + kind, *([(n,)] if length else [])))
-        kind = np.dtype(fields)
+        row = np.dtype(fields)
         lists = any(length for _, _, length in element.properties)
-        if element.count * kind.itemsize > len(self._content) - self._at:
+        if element.count * row.itemsize > len(self._content) - self._at:
             if lists:
                 return None
             raise self.short(element)
-        table = np.frombuffer(self._content, kind, element.count, self._at)
+        table = np.frombuffer(self._content, row, element.count, self._at)
         for k, ((_, _, length), n) in enumerate(zip(element.properties, lengths, strict=True)):
             if length and (table[f"n{k}"] != n).any():
                 return None
-        self._at += element.count * kind.itemsize
+        self._at += element.count * row.itemsize
         return table
 
     def _one(self, element: _Element, kind: str, length: str) -> Any:

@@ -438,12 +438,14 @@ def read_surface(
 
     Notes
     -----
-    Invisible faces (``i="1"``) are left out, and the neighbors of faces are ignored. Boundaries of
-    the types void, hole, hide and inner are holes, island is an island in a hole; all others are
-    boundaries. Contours are soft breaklines. Of DXF, the model space is read: 3DFACE, MESH, POINT,
-    LINE, LWPOLYLINE, POLYLINE (also polyface and polygon meshes) and curves, those in blocks as
-    well. Layers that are off or frozen are left out unless `layer` names them; so are texts,
-    hatches, solids and references to other drawings.
+    Invisible faces (``i="1"``) are left out, and the neighbors of faces are ignored. Faces that
+    repeat others or a corner are left out and counted; faces with four corners, as in grids, become
+    two triangles. Of walls, the lower line is read. Boundaries of the types void, hole, hide and
+    inner are holes, island is an island in a hole; all others are boundaries. Contours are soft
+    breaklines. Of DXF, the model space is read: 3DFACE, MESH, POINT, LINE, LWPOLYLINE, POLYLINE
+    (also polyface and polygon meshes) and curves, those in blocks as well. Layers that are off or
+    frozen are left out unless `layer` names them; so are texts, hatches, solids and references to
+    other drawings.
 
     Examples
     --------

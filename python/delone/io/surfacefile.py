@@ -62,6 +62,9 @@ class SurfaceFile:
         What the file has and this object has not, by its kind: ``{"TEXT": 12, "hidden": 3}``.
     curves : int, optional
         How many curves have become chords.
+    quads : int, optional
+        How many faces with four corners have become two triangles, on both sides of the diagonal
+        between the first and the third corner.
 
     Examples
     --------
@@ -82,6 +85,7 @@ class SurfaceFile:
     source: str = ""
     left_out: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
     curves: int = 0
+    quads: int = 0
 
     def __post_init__(self) -> None:
         check_system(self.crs, self.source)
