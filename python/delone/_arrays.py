@@ -60,7 +60,7 @@ def as_points(
     if _is_right(points, ndim):
         return points
     array = as_plain_array(points, name)
-    _refuse_geometries(array, name)
+    refuse_geometries(array, name)
     _refuse_kind(array, name)
     _refuse_shape(array, ndim, name)
     if array.dtype.kind in "iu":
@@ -266,8 +266,11 @@ def as_plain_array(points: Any, name: str) -> NDArray[Any]:
         raise ShapeError(f"{name} has rows of unequal length: {error}") from error
 
 
-def _refuse_geometries(array: NDArray[Any], name: str) -> None:
-    if array.dtype.kind == "O" and any(hasattr(each, "geom_type") for each in array.ravel()[:8]):
+def refuse_geometries(array: NDArray[Any], name: str) -> None:
+    """Reject geometries, also in one column of a table, and say how to get coordinates."""
+    # In a table the geometries are one column, behind any number of others.
+    first = array[:1] if array.ndim > 1 else np.atleast_1d(array)[:8]
+    if array.dtype.kind == "O" and any(hasattr(each, "geom_type") for each in first.ravel()):
         raise DtypeError(
             f"{name} contains geometries, not numbers: for points pass their coordinates, "
             f"shapely.get_coordinates({name}) or {name}.get_coordinates().to_numpy(); "

@@ -118,6 +118,19 @@ def test_points_are_checked(model: Any) -> None:
         model.fit(degrees)
 
 
+@pytest.mark.parametrize("columns", [0, 1, 9])
+@pytest.mark.parametrize("model", BOTH, ids=repr)
+def test_geometries_are_named(model: Any, columns: int) -> None:
+    geopandas = pytest.importorskip("geopandas")
+    table = {f"a{k}": np.arange(len(POINTS)) for k in range(columns)}
+    x, y = np.asarray(POINTS).T
+    frame = geopandas.GeoDataFrame(table, geometry=geopandas.points_from_xy(x, y))
+    for given in (frame, frame.geometry, frame.geometry.iloc[0]):
+        with pytest.raises(DtypeError, match=r"points\.get_coordinates\(\)\.to_numpy\(\)"):
+            model.fit(given)
+    assert len(model.fit(frame.get_coordinates()).labels_) == len(POINTS)
+
+
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("model", BOTH, ids=repr)
 def test_degrees_may_be_declared_planar(model: Any) -> None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from delone import sphere
+from delone import NonFiniteError, sphere
 from delone.compat import scipy as drop_in
 
 if TYPE_CHECKING:
@@ -135,3 +135,15 @@ def test_areas_of_generators_close_together(spread: float) -> None:
     areas = drop_in.SphericalVoronoi(points, threshold=1e-12).calculate_areas()
     expected = sphere.Voronoi(xyz=points).cell_areas
     assert np.allclose(areas, expected, rtol=1e-11, atol=0)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_points_that_are_not_finite_are_named(value):
+    points = np.random.default_rng(0).normal(size=(20, 3))
+    points /= np.linalg.norm(points, axis=1)[:, None]
+    points[3, 1] = value
+    with pytest.raises(NonFiniteError, match="first: 3") as caught:
+        drop_in.SphericalVoronoi(points)
+    assert caught.value.rows.tolist() == [3]
+    with pytest.raises(NonFiniteError, match="center"):
+        drop_in.SphericalVoronoi(np.eye(3), center=[0, value, 0])

@@ -132,3 +132,13 @@ def test_arguments_of_what_is_read_back(tmp_path: Path) -> None:
         with pytest.raises(InputError, match="xi"):
             tin.find_simplex(asked)  # type: ignore[arg-type]
     assert [p.name for p in tmp_path.iterdir()] == ["tin"]
+
+
+def test_an_output_that_is_a_link_to_nothing(tmp_path: Path) -> None:
+    link = tmp_path / "tin"
+    link.symlink_to(tmp_path / "gone", target_is_directory=True)
+    with pytest.raises(InputError, match="which does not exist: create that folder"):
+        distributed.triangulate(POINTS, link, tile_points=50)
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["tin"]
+    (tmp_path / "gone").mkdir()
+    assert distributed.triangulate(POINTS, link, tile_points=50).validate()

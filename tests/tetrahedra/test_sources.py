@@ -70,6 +70,17 @@ def test_pyvista() -> None:
     assert same(delone.tetrahedralize(pyvista.PolyData(POINTS, flat)))
     with pytest.raises(delone.InputError, match="triangulate"):
         delone.tetrahedralize(pyvista.Cube().clean())
+    grid = pyvista.PolyData(POINTS, flat).cast_to_unstructured_grid()
+    assert same(delone.tetrahedralize(grid))
+    assert same(
+        delone.tetrahedralize(pyvista.UnstructuredGrid(grid.cells, [5] * len(FACES), POINTS))
+    )
+    solid = delone.tetrahedralize(POINTS, FACES).to_pyvista()
+    for other in (solid, pyvista.Cube().clean().cast_to_unstructured_grid()):
+        with pytest.raises(delone.InputError, match=r"extract_surface\(\)\.triangulate\(\)"):
+            delone.tetrahedralize(other)
+    with pytest.raises(delone.DtypeError, match="without faces"):
+        delone.tetrahedralize(pyvista.ImageData(dimensions=(2, 2, 2)))
 
 
 def test_names_of_trimesh() -> None:

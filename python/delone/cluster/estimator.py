@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._arrays import as_count, as_number, as_plain_array, require_finite
+from delone._arrays import (
+    as_count,
+    as_number,
+    as_plain_array,
+    refuse_geometries,
+    require_finite,
+)
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.georeference import warn_of_degrees
 from delone.immutable import own_copy, sealed
@@ -158,6 +164,7 @@ class Clusterer:
                 "project longitudes and latitudes, or use scikit-learn for other metrics"
             )
         array = as_plain_array(points, "points")
+        refuse_geometries(array, "points")
         if array.ndim == 2 and array.shape[1] not in (2, 3):
             raise ShapeError(
                 f"points must have 2 or 3 coordinates, got shape {array.shape}; for other "

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers
+from delone._arrays import as_workers, require_finite
 from delone.compat.qhull import DimensionError
 from delone.voronoi.rows import as_lists
 
@@ -113,6 +113,9 @@ class SphericalVoronoi:
             )
         self.center: Floats
         self.center = np.zeros(3) if center is None else np.array(center, dtype=float)
+        # The rank of anything else is an error of LAPACK.
+        require_finite(self.points)
+        require_finite(np.atleast_2d(self.center), name="center")
         tolerance = threshold * self.radius
         self._rank = np.linalg.matrix_rank(self.points - self.points[0], tol=tolerance)
         if self._rank < self._dim:

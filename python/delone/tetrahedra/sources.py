@@ -20,6 +20,9 @@ _ACCEPTED = (
     "delone"
 )
 
+# VTK's number of the type of a triangle.
+_VTK_TRIANGLE = 5
+
 
 class Given(NamedTuple):
     """A surface with what belongs to it, not checked."""
@@ -50,6 +53,8 @@ def _of(surface: Any) -> Given:
     # trimesh.Trimesh, and whatever has its names
     if hasattr(surface, "vertices") and hasattr(surface, "faces"):
         return Given(np.asarray(surface.vertices), np.asarray(surface.faces))
+    if hasattr(surface, "celltypes") and hasattr(surface, "cells_dict"):
+        return _of_grid(surface)
     if hasattr(surface, "cells_dict"):
         return _of_meshio(surface)
     if hasattr(surface, "points") and hasattr(surface, "simplices"):
@@ -77,6 +82,17 @@ def _of_meshio(mesh: Any) -> Given:
     if "triangle" not in mesh.cells_dict:
         raise InputError("the mesh has no triangles")
     return Given(np.asarray(mesh.points), mesh.cells_dict["triangle"])
+
+
+def _of_grid(grid: Any) -> Given:
+    """The triangles of an UnstructuredGrid of PyVista, whose types of cells are those of VTK."""
+    kinds = set(np.unique(np.asarray(grid.celltypes)).tolist())
+    if kinds != {_VTK_TRIANGLE}:
+        raise InputError(
+            "the UnstructuredGrid has other cells than triangles: pass "
+            "grid.extract_surface().triangulate(), its boundary"
+        )
+    return Given(np.asarray(grid.points), np.asarray(grid.cells_dict[_VTK_TRIANGLE]))
 
 
 def _of_simplices(surface: Any) -> Given:

@@ -15,7 +15,7 @@ import warnings
 from contextlib import contextmanager
 from typing import IO, TYPE_CHECKING
 
-from delone.errors import BusyError
+from delone.errors import BusyError, InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,6 +31,11 @@ LOCK = "delone.lock"
 def locked(root: Path) -> Iterator[None]:
     """Lock a folder, which is created if necessary; BusyError if another run is using it."""
     made = not root.exists()
+    if made and root.is_symlink():
+        raise InputError(
+            f"{root} is a link to {os.readlink(root)!r:.100}, which does not exist: create that "
+            "folder, or choose another output"
+        )
     path = root / LOCK
     file = _taken(path)
     try:
