@@ -45,14 +45,25 @@ def along(
     that are kept, -1 if removed and at the end; None keeps all. Unless it is None, a and b must
     differ.
     """
+    return np.concatenate([np.empty(0, dtype=np.int32), *stretches(index, tiling, number, a, b)])
+
+
+def stretches(
+    index: _core.Locator2,
+    tiling: tuple[Floats, Indices, Indices],
+    number: Indices | None,
+    a: Floats,
+    b: Floats,
+) -> list[Indices]:
+    """Return the triangles as `along` does, in parts between which some are removed."""
     met = index.along(a, b)
     if number is None:
-        return met
+        return [met] if len(met) else []
     found = number[met]
     removed = found < 0
     found[removed] = number[across_line(*tiling, met[removed], a, b)]
-    kept: Indices = found[found >= 0]
-    return kept
+    ends = np.flatnonzero(np.diff(found >= 0)) + 1
+    return [part for part in np.split(found, ends) if len(part) and part[0] >= 0]
 
 
 def across_line(  # noqa: PLR0917 (a tiling is three arrays)

@@ -109,10 +109,9 @@ def _on_ground(line: Floats, ground: Surface, *, ring: bool) -> Floats:
     tables = [np.append(places[0], z[0])[None]]
     for k in range(len(places) - 1):
         # The surface of points is convex: a segment has at most one part on it.
-        for share, height in parts_of(ground, places[k], places[k + 1]):
-            between = (share > 0) & (share < 1)
-            way = share[between, None] * (places[k + 1] - places[k])
-            tables.append(np.column_stack((places[k] + way, height[between])))
+        for part in parts_of(ground, places[k], places[k + 1]):
+            between = (part.share > 0) & (part.share < 1)
+            tables.append(np.column_stack((part.places, part.z))[between])
         tables.append(np.append(places[k + 1], z[k + 1])[None])
     table = np.concatenate(tables)
     again = (table[1:, :2] == table[:-1, :2]).all(axis=1)

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from delone import _core
 from delone._arrays import as_number, as_points, require_finite
 from delone.errors import InputError, ShapeError
 from delone.extras import require
 from delone.immutable import ReadOnly
+from delone.plane.geometry import areas
 from delone.terrain.lines import line_of
 
 if TYPE_CHECKING:
@@ -122,10 +124,11 @@ class Sight(ReadOnly):
 
 
 class _Part(NamedTuple):
-    """A part of a segment that is on the surface: shares of the way, and heights."""
+    """A part of a segment that is on the surface: shares of the way, heights and positions."""
 
     share: Floats
     z: Floats
+    places: Floats
 
 
 def profile(tin: Surface, line: Any) -> Profile:
@@ -136,9 +139,7 @@ def profile(tin: Surface, line: Any) -> Profile:
     rows: list[Floats] = []
     for a, b, length in zip(points[:-1], points[1:], lengths.tolist(), strict=True):
         for part in parts_of(tin, a, b):
-            places = a + part.share[:, None] * (b - a)
-            places[part.share == 1] = b
-            table = np.column_stack((start + part.share * length, part.z, places))
+            table = np.column_stack((start + part.share * length, part.z, part.places))
             if rows and rows[-1][-1, 0] < table[0, 0]:
                 gap = table[:1].copy()
                 gap[0, 1] = np.nan
@@ -157,60 +158,89 @@ def parts_of(tin: Surface, a: Floats, b: Floats) -> list[_Part]:
     """Return the parts of a segment that are on the surface."""
     if (a == b).all():
         z = tin.heights(a[None])
-        return [] if np.isnan(z[0]) else [_Part(np.zeros(1), z)]
-    met = tin.walk(a, b)
-    if not len(met):
-        return []
-    enter, leave = _crossings(tin, met, a, b)
-    # A triangle that has a corner in common with the next one belongs to the same part.
+        return [] if np.isnan(z[0]) else [_Part(np.zeros(1), z, a[None].copy())]
+    return [_part(tin, met, a, b) for met in tin._stretches(a, b)]
+
+
+def _part(tin: Surface, met: Indices, a: Floats, b: Floats) -> _Part:
+    """Return the part of a segment in triangles of which each touches the next one on it."""
     corners = tin.simplices[met]
-    joined = (corners[:-1, :, None] == corners[1:, None, :]).any(axis=(1, 2))
-    ends = np.append(np.flatnonzero(~joined), len(met) - 1)
-    parts = []
-    first = 0
-    for last in ends.tolist():
-        share = np.append(enter.share[first : last + 1], leave.share[last])
-        z = np.append(enter.z[first : last + 1], leave.z[last])
-        share = np.maximum.accumulate(share)
-        parts.append(_Part(share, z))
-        first = last + 1
-    return parts
-
-
-def _crossings(tin: Surface, met: Indices, a: Floats, b: Floats) -> tuple[_Part, _Part]:
-    """Return where a segment enters and leaves triangles that it meets."""
-    corners = tin.simplices[met]
-    # The edge opposite each corner, from the smaller row on: both triangles compute the same.
-    ends = np.sort(corners[:, [[1, 2], [2, 0], [0, 1]]], axis=2)
-    p, q = (tin.points[ends[..., k]] for k in range(2))
-    apex = tin.points[corners]
-    inward = np.sign(_cross(q - p, apex - p))
-    from_a, from_b = _cross(q - p, a - p) * inward, _cross(q - p, b - p) * inward
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = from_a / (from_a - from_b)
-        along = _cross(a - p, b - a) / _cross(q - p, b - a)
-    along = np.clip(along, 0, 1)
-    low, high = (tin.z[ends[..., k]] for k in range(2))
-    z = low + along * (high - low)
-    z = np.where(along == 1, high, z)
-    inside = tin.heights(np.stack((a, b)))
-    rows = np.arange(len(met))
-    entered = np.where((from_a < 0) & (from_b >= 0), share, -np.inf)
-    left = np.where((from_b < 0) & (from_a >= 0), share, np.inf)
-    k, j = entered.argmax(axis=1), left.argmin(axis=1)
-    starts, stops = entered[rows, k], left[rows, j]
-    enter = _Part(
-        np.where(starts == -np.inf, 0.0, starts), np.where(starts == -np.inf, inside[0], z[rows, k])
+    first, last = _opening(tin, corners[0], a, b), _opening(tin, corners[-1], b, a)
+    sides = _between(corners)
+    sides = np.concatenate([side for side in (first, sides, last) if side is not None])
+    found = _crossings(tin, sides, a, b)
+    # The ends of the segment, if they are on the surface.
+    ends = [
+        _Part(np.full(1, share), _height(tin, triangle, end), end[None])
+        for side, share, triangle, end in ((first, 0.0, met[0], a), (last, 1.0, met[-1], b))
+        if side is None
+    ]
+    before, after = ends[: first is None], ends[first is None :]
+    share, z, places = (
+        np.concatenate(column) for column in zip(*before, found, *after, strict=True)
     )
-    leave = _Part(
-        np.where(stops == np.inf, 1.0, stops), np.where(stops == np.inf, inside[1], z[rows, j])
-    )
-    return enter, leave
+    return _Part(np.maximum.accumulate(share), z, places)
 
 
-def _cross(u: Floats, v: Floats) -> Floats:
-    found: Floats = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
-    return found
+def _height(tin: Surface, triangle: int, place: Floats) -> Floats:
+    """The height at a place that is in a triangle."""
+    z = tin.heights(place[None])
+    if not np.isnan(z[0]):
+        return z
+    corner = tin.simplices[triangle, 0]
+    apart = place - tin.points[corner]
+    return np.atleast_1d(tin.z[corner] + tin.gradient[triangle] @ apart)
+
+
+def _opening(tin: Surface, corners: Indices, a: Floats, b: Floats) -> Indices | None:
+    """Return the side through which the segment from a enters a triangle; None if a is in it."""
+    tail, head = corners[[1, 2, 0]], corners[[2, 0, 1]]
+    start, end = (np.broadcast_to(each, (3, 2)).copy() for each in (a, b))
+    beyond = _core.orient2d(tin.points[tail], tin.points[head], start) < 0
+    if not beyond.any():
+        return None
+    one, two = (_core.orient2d(start, end, tin.points[each]) for each in (tail, head))
+    crossed = np.flatnonzero(beyond & (one * two <= 0) & ((one != 0) | (two != 0)))
+    # Of two sides that meet on the segment either one will do: it passes through their corner.
+    return np.column_stack((tail, head))[crossed[:1]]
+
+
+def _between(corners: Indices) -> Indices:
+    """Return what each triangle has in common with the next: a side, or a corner twice."""
+    common = (corners[:-1, :, None] == corners[1:, None, :]).any(axis=2)
+    # Corners in common first.
+    order = np.argsort(~common, axis=1, kind="stable")
+    sides = np.take_along_axis(corners[:-1], order, axis=1)[:, :2]
+    single = common.sum(axis=1) == 1
+    sides[single, 1] = sides[single, 0]
+    return sides
+
+
+def _crossings(tin: Surface, sides: Indices, a: Floats, b: Floats) -> _Part:
+    """Return where a segment passes through sides, or through a corner of them."""
+    u, v = np.sort(sides, axis=1).T
+    points, count = tin.points, len(u)
+    start, end = (np.broadcast_to(each, (count, 2)).copy() for each in (a, b))
+    on_u, on_v = (_core.orient2d(start, end, points[each]) == 0 for each in (u, v))
+    # Areas have small relative errors, so that shares are right on needles, too.
+    of_u, of_v = (_areas(start, end, points[each]) for each in (u, v))
+    of_a, of_b = (_areas(points[u], points[v], each) for each in (start, end))
+    with np.errstate(invalid="ignore"):
+        along, share = of_u / (of_u + of_v), of_a / (of_a + of_b)
+    z = tin.z[u] + along * (tin.z[v] - tin.z[u])
+    places = start + share[:, None] * (end - start)
+    vertex = np.where(on_u, u, v)
+    at = np.flatnonzero(on_u | on_v)
+    z[at], places[at] = tin.z[vertex[at]], points[vertex[at]]
+    way = end[at] - start[at]
+    share[at] = ((places[at] - start[at]) * way).sum(axis=1) / (way * way).sum(axis=1)
+    return _Part(np.clip(share, 0, 1), z, places)
+
+
+def _areas(a: Floats, b: Floats, c: Floats) -> Floats:
+    """The areas of triangles, without a sign."""
+    rows = np.arange(3 * len(a), dtype=np.int32).reshape(3, -1).T
+    return np.abs(areas(np.concatenate((a, b, c)), np.ascontiguousarray(rows)))
 
 
 def drape(tin: Surface, geometry: Any) -> Any:
@@ -266,7 +296,8 @@ def sight(tin: Surface, a: ArrayLike, b: ArrayLike, height: float, target: float
     found = profile(tin, places)
     share = found.distance / np.hypot(*(places[1] - places[0]))
     line = z[0] + share * (z[1] - z[0])
-    slack = _ROUNDING * float(np.abs(np.append(tin.z[:0], [*z, np.nanmax(np.abs(found.z))])).max())
+    largest = np.fmax.reduce(np.abs(np.concatenate((found.z, z))))
+    slack = _ROUNDING * float(largest)
     hidden = np.flatnonzero((found.z > line + slack) & (share > 0) & (share < 1))
     if not len(hidden):
         return Sight(visible=True, obstruction=None)

@@ -135,5 +135,5 @@ class Surface(Protocol):
     def locate(self, xi: ArrayLike) -> Located:
         """Triangles and weights at positions."""
 
-    def walk(self, a: ArrayLike, b: ArrayLike) -> Indices:
-        """The triangles along a segment."""
+    def _stretches(self, a: Floats, b: Floats) -> list[Indices]:
+        """The triangles along a segment, in parts between which there is no surface."""

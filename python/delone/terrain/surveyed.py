@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.immutable import kept, sealed
+from delone.plane.location import stretches
 from delone.triangulation import HullTiling
 
 if TYPE_CHECKING:
@@ -62,6 +63,11 @@ class Surveyed(HullTiling):
     def units(self) -> str | None:
         """The unit of heights, as ``"m"``, ``"ft"`` or ``"us-ft"``; None if it is unknown."""
         return str(self._units) or None
+
+    def _stretches(self, a: Floats, b: Floats) -> list[Indices]:
+        """The triangles along a segment, in parts between which there is no surface."""
+        tiling = (self._points, *self._tiling())
+        return stretches(self._whole_locator, tiling, self._number, a, b)
 
     def _parts(self) -> Parts:
         from delone.exchange.parts import Parts
