@@ -1,4 +1,4 @@
-"""Rejection of masked arrays, which other functions would treat as plain arrays."""
+"""Rejection of masked entries of arrays, which other functions would treat as numbers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from delone.errors import DtypeError
 if TYPE_CHECKING:
     from typing import TypeGuard
 
-__all__ = ["is_masked", "refuse_masks"]
+__all__ = ["hides", "is_masked", "refuse_masks"]
 
 
 def is_masked(value: Any) -> TypeGuard[np.ma.MaskedArray[Any, Any]]:
@@ -24,11 +24,20 @@ def is_masked(value: Any) -> TypeGuard[np.ma.MaskedArray[Any, Any]]:
     return "numpy.ma" in sys.modules and isinstance(value, np.ma.MaskedArray)
 
 
+def hides(value: Any) -> bool:
+    """Return whether `value` is a masked array, or a masked number, with masked entries.
+
+    Files of NetCDF are read as masked arrays, most of which mask nothing: these are plain arrays.
+    """
+    return is_masked(value) and bool(np.ma.is_masked(value))
+
+
 def refuse_masks(given: Any, name: str) -> None:
-    """Reject a masked array, or a list of them, before the mask is silently dropped."""
+    """Reject masked entries, also those of arrays in a list, before they are taken for numbers."""
     rows = given if isinstance(given, list | tuple) else ()
-    if is_masked(given) or any(map(is_masked, rows)):
+    if hides(given) or any(map(hides, rows)):
+        count = int(np.ma.getmaskarray(given).sum()) if is_masked(given) else sum(map(hides, rows))
         raise DtypeError(
-            f"{name} is a masked array; pass only the valid rows, "
-            "for example np.ma.compress_rows(points), or points.data if none is masked"
+            f"{name} is a masked array, with {count} masked: pass only the valid rows, for example "
+            f"np.ma.compress_rows({name})"
         )

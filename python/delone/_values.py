@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone._arrays import as_plain_array
-from delone._masks import is_masked
+from delone._masks import hides
 from delone.errors import DtypeError, ShapeError
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ def as_values(
     """Return one float64 value for each of `count` points; None for None."""
     if values is None:
         return None
-    if is_masked(values):
+    if hides(values):
         raise DtypeError(f"{name} is a masked array; fill it: {name}.filled(numpy.nan)")
     array = as_plain_array(values, name)
     if array.dtype.kind not in "iufb":

@@ -27,7 +27,24 @@ if TYPE_CHECKING:
     # Names and seconds; a dictionary is made when it is asked for.
     Stages = dict[str, float] | tuple[tuple[str, float], ...]
 
-__all__ = ["Complex", "Stored"]
+__all__ = ["Complex", "Stored", "points_alone"]
+
+
+def points_alone(given: Stored, *, what: str) -> Floats:
+    """Return the points of an object for `what`, which takes no more of it; refuse to lose more."""
+    name = type(given).__name__
+    if hasattr(given, "lonlat"):
+        raise InputError(
+            f"{what} is not available on the sphere: the points of this {name} are directions: "
+            "pass projected coordinates, or its points for chords through the sphere"
+        )
+    for lost in ("periods", "weights"):
+        if getattr(given, lost, None) is not None:
+            raise InputError(
+                f"{what} would lose the {lost} of a {name}: pass its points if that is meant"
+            )
+    found: Floats = getattr(given, "points")  # noqa: B009
+    return found
 
 
 class Stored(Immutable):

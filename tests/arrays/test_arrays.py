@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from delone import _arrays
+from delone import Delaunay, _arrays, _values, interpolate
 from delone.errors import DtypeError, InputError, LimitError, NonFiniteError, ShapeError
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -119,14 +119,28 @@ def test_ndim_narrows_the_shape() -> None:
         (np.zeros((3, 2), dtype="M8[s]"), "dates"),
         (np.zeros((3, 2), dtype="m8[s]"), "time spans"),
         (np.zeros(3, dtype=[("x", float), ("y", float)]), "column_stack"),
-        (np.ma.masked_array(SQUARE, mask=SQUARE > 0), "masked"),
-        (np.ma.masked_array(SQUARE), "masked"),
+        (np.ma.masked_array(SQUARE, mask=SQUARE > 0), "masked array, with 4 masked: pass only"),
         ([np.ma.masked_array([1.0, 2.0], mask=[True, False])], "masked"),
     ],
 )
 def test_refuses_kinds_by_name(values: Any, words: str) -> None:
     with pytest.raises(DtypeError, match=words):
         _arrays.as_points(values)
+
+
+@pytest.mark.parametrize("mask", [np.ma.nomask, False, np.zeros(SQUARE.shape, dtype=bool)])
+def test_takes_masked_arrays_that_mask_nothing(mask: Any) -> None:
+    # What files of NetCDF are read as.
+    given = np.ma.masked_array(SQUARE.copy(), mask=mask)
+    found = _arrays.as_points(given)
+    assert type(found) is np.ndarray and np.array_equal(found, SQUARE)
+    assert _values.as_values(given[:, 0], len(SQUARE)).tolist() == SQUARE[:, 0].tolist()
+    mesh, plain = (Delaunay(each) for each in (given, SQUARE))
+    assert np.array_equal(mesh.simplices, plain.simplices)
+    linear = interpolate.Linear(given, given[:, 1])
+    assert linear(given[:1]).tolist() == SQUARE[:1, 1].tolist()
+    given[0, 0] = 77.0
+    assert mesh.points[0, 0] == SQUARE[0, 0] != 77.0
 
 
 def test_refuses_ragged_rows() -> None:

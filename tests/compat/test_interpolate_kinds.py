@@ -125,3 +125,18 @@ def test_what_a_line_refuses(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "scipy", None)
     with pytest.raises(MissingExtraError, match="pip install scipy"):
         griddata(LINE, LINE, [1.0])
+
+
+@pytest.mark.parametrize("name", ["LinearNDInterpolator", "CloughTocher2DInterpolator"])
+def test_interpolators_of_scipy_say_what_to_import(name: str) -> None:
+    from scipy import interpolate
+
+    from delone.compat import scipy as drop_in
+    from delone.errors import DtypeError
+
+    points = np.random.default_rng(0).random((20, 2))
+    tri = drop_in.Delaunay(points)
+    with pytest.raises(DtypeError, match=r"from delone\.compat\.scipy import LinearNDInterpolator"):
+        getattr(interpolate, name)(tri, points[:, 0])
+    height = getattr(drop_in, name)(tri, points[:, 0])
+    assert np.isclose(height([[0.5, 0.5]]), 0.5).all()

@@ -100,7 +100,12 @@ def test_wrong_shapes_are_refused(bad: Any) -> None:
 
 def test_wrong_dtypes_are_refused() -> None:
     mesh = Delaunay(datasets.uniform(10))
-    for bad in ([(1j, 0)], [("a", "b")], [(True, False)], np.ma.masked_array([(0.0, 0.0)])):
+    for bad in (
+        [(1j, 0)],
+        [("a", "b")],
+        [(True, False)],
+        np.ma.masked_array([(0.0, 0.0)], mask=True),
+    ):
         with pytest.raises(DtypeError, match="xi"):
             mesh.find_simplex(bad)  # type: ignore[arg-type]
 

@@ -111,7 +111,7 @@ REFUSED: dict[str, tuple[Any, type[Exception]]] = {
     "bytes": (POINTS.astype("S"), DtypeError),
     "dates": (POINTS.astype("M8[s]"), DtypeError),
     "records": (np.zeros(5, dtype=[("x", float), ("y", float)]), InputError),
-    "masked": (np.ma.masked_array(POINTS, mask=False), DtypeError),
+    "masked": (np.ma.masked_array(POINTS, mask=POINTS[0] == POINTS), DtypeError),
     "large int": (POINTS + 2**53, DtypeError),
     "large uint": (POINTS.astype(np.uint64) + 2**63, DtypeError),
 }

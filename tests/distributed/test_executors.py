@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, datasets, distributed
+from delone.distributed.run import executors
 from delone.errors import DeloneError, FileFormatError, InputError
 
 if TYPE_CHECKING:
@@ -228,3 +229,11 @@ except MissingExtraError as error:
     assert done.stdout.count("\n") == 1
     assert f"needs {missing}" in done.stdout
     assert 'pip install "delone[dask]"' in done.stdout
+
+
+def test_the_cores_of_this_process_are_used_and_no_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("delone._arrays._usable_cores", lambda: 3)
+    assert executors.Processes().workers == executors.Serial().threads == 3
+    assert executors.Processes(2).workers == 2
+    with pytest.raises(InputError, match="workers must be"):
+        executors.Processes(0)

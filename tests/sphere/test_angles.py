@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import directions as oracle
-from delone import _core
+from delone import _core, sphere
+from delone.errors import DirectionError
 
 BITS = 300
 ONE = 1 << BITS
@@ -186,3 +187,22 @@ def test_long_arrays_are_converted_to_their_end(workers):
         piece = _core.sphere_directions(angles[part], True, 1)
         assert np.array_equal(piece, found[part])
         assert np.array_equal(_core.sphere_units(piece, 1), units[part])
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.float16])
+def test_short_floats_mean_quarter_turns(kind: type) -> None:
+    quarter = np.pi / 2
+    angles = np.array(
+        [(0, quarter), (np.pi, 0), (-np.pi, 0), (quarter, 0), (4, 0), (0, -quarter)], kind
+    )
+    mesh = sphere.Delaunay(lonlat=angles, degrees=False)
+    assert mesh.vectors[[0, -1]][:, :2].tolist() == [[0, 0]] * 2 and mesh.duplicates[
+        0
+    ].tolist() == [2, 1]
+    assert mesh.nearest(np.array([(0, quarter)], kind)).tolist() == [0]
+    if kind is np.float32:  # which is larger than the double
+        with pytest.raises(DirectionError, match="beyond a pole"):
+            sphere.Delaunay(lonlat=angles.astype(np.float64), degrees=False)
+    beyond = np.nextafter(angles, kind(9))
+    with pytest.raises(DirectionError, match="beyond a pole"):
+        sphere.Delaunay(lonlat=beyond, degrees=False)

@@ -10,7 +10,7 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_flag, as_number, as_workers, require_finite
 from delone.alpha.shape import ConcaveHull
-from delone.complex import Stored
+from delone.complex import Stored, points_alone
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, InputError
 from delone.georeference import warn_of_degrees
@@ -102,7 +102,9 @@ def concave_hull(
     if isinstance(points, Delaunay):
         mesh: Any = points
     else:
-        plain: Any = getattr(points, "points") if isinstance(points, Stored) else points  # noqa: B009
+        plain: Any = points
+        if isinstance(points, Stored):
+            plain = points_alone(points, what="a concave hull")
         own = own_copy(plain, ndim=None)
         warn_of_degrees(plain, own, planar=planar)
         require_finite(own)

@@ -11,14 +11,14 @@ from delone import _core
 from delone._arrays import as_count, as_flag, as_number, as_workers, require_finite
 from delone.alpha.shape import AlphaShape
 from delone.alpha.values import Valued, known_mesh, of_periodic, of_points, simplices_of
-from delone.complex import Stored
+from delone.complex import Stored, points_alone
 from delone.counting import counted
 from delone.errors import InputError
 from delone.extras import require
 from delone.georeference import warn_of_degrees
 from delone.immutable import kept, own_copy, sealed
 from delone.periodic import PeriodicDelaunay, as_periods
-from delone.regular import as_weights
+from delone.regular import RegularTriangulation, as_weights
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,7 +39,8 @@ class AlphaComplex(Stored):
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Finite coordinates in any unit. A `Delaunay` or `RegularTriangulation` is used as it is.
+        Finite coordinates in any unit. A `Delaunay`, a `RegularTriangulation` or a
+        `PeriodicDelaunay` is used as it is, with its weights and periods.
     weights : array_like, shape (n,), optional
         Finite weights in the square of the unit of the points: squared radii of balls around them,
         as for `RegularTriangulation`. Of that, the weights are used.
@@ -121,12 +122,25 @@ class AlphaComplex(Stored):
     ) -> None:
         threads = as_workers(workers)
         mesh = known_mesh(points)
-        if mesh is not None and weights is None and periodic is None:
+        if isinstance(points, PeriodicDelaunay):
+            if weights is not None or periodic is not None:
+                raise InputError(
+                    "points is a PeriodicDelaunay, which has its own weights and periods: pass its "
+                    "points to choose others"
+                )
+            own, own_weights = points.points, points.weights
+            valued = of_periodic(points, threads)
+        elif mesh is not None and weights is None and periodic is None:
             own = mesh.points
             own_weights = getattr(mesh, "weights", None)
             valued = of_points(own, own_weights, threads, mesh)
         else:
-            plain: Any = getattr(points, "points") if isinstance(points, Stored) else points  # noqa: B009
+            if isinstance(points, RegularTriangulation):
+                weights = points.weights if weights is None else weights
+                points = points.points
+            plain: Any = points
+            if isinstance(points, Stored):
+                plain = points_alone(points, what="an alpha complex")
             own = own_copy(plain, ndim=None)
             warn_of_degrees(plain, own, planar=planar)
             require_finite(own)
@@ -442,7 +456,7 @@ def _valued(
         return of_points(points, weights, workers)
     if points.shape[1] != 2:
         raise InputError("periodic complexes are only available in 2-D: points are 3-D")
-    mesh = PeriodicDelaunay(points, as_periods(periodic), weights=weights)
+    mesh = PeriodicDelaunay(points, as_periods(periodic), weights=weights, workers=workers)
     return of_periodic(mesh, workers)
 
 

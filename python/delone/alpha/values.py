@@ -45,7 +45,7 @@ def of_points(points: Floats, weights: Floats | None, workers: int, mesh: Any = 
         return _of_chain(points, weights, np.empty(0, dtype=np.int32), workers)
     try:
         if weights is None:
-            found: Any = Delaunay(points, planar=True)
+            found: Any = Delaunay(points, workers=workers, planar=True)
             simplices, neighbors = found.simplices, found.neighbors
         else:
             arrays, chain = triangulated(points, weights, workers)

@@ -10,6 +10,7 @@ import numpy as np
 from delone import delaunay
 from delone.compat.qhull import Incremental, as_queries, told_as_qhull_does, triangulate
 from delone.dynamic import Dynamic
+from delone.errors import DtypeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -324,6 +325,14 @@ class Delaunay(Incremental):
         power = ((corner - x) * ((corner - center) + (x - center))).sum(axis=-1)
         distance: Floats = self.paraboloid_scale * power / length
         return -distance if self.furthest_site else distance
+
+    def __array__(self, *_: Any, **__: Any) -> NDArray[Any]:
+        # SciPy's interpolators take any object but their own class for an array of points.
+        raise DtypeError(
+            "a Delaunay of delone.compat.scipy is not an array of points: pass its points. SciPy's "
+            "interpolators take only SciPy's class; those of delone.compat.scipy take this one: "
+            "from delone.compat.scipy import LinearNDInterpolator"
+        )
 
     def find_simplex(
         self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None

@@ -8,7 +8,7 @@ import numpy as np
 
 from delone import _core, location
 from delone._arrays import as_choice, as_points, as_vectors, as_workers
-from delone.complex import Complex
+from delone.complex import Stored
 from delone.constrained import ConstrainedDelaunay
 from delone.counting import counted
 from delone.delaunay import Delaunay
@@ -150,7 +150,7 @@ class Dynamic(Segmented):
 
     def __init__(
         self,
-        points: ArrayLike | Complex | None = None,
+        points: ArrayLike | Delaunay | ConstrainedDelaunay | None = None,
         segments: ArrayLike | None = None,
         *,
         crossing: str | None = None,
@@ -161,7 +161,7 @@ class Dynamic(Segmented):
         dimension = _as_ndim(ndim)
         if points is None:
             points = np.empty((0, dimension or 2))
-        given = points.points if isinstance(points, Complex) else points
+        given = _given_points(points)
         if isinstance(points, ConstrainedDelaunay):
             given = points.points[: points.npoints - points.nadded]
             segments = points.input_segments if segments is None else segments
@@ -772,6 +772,19 @@ def _restore(core: _core.Live2 | _core.Live3, state: _core.LiveState2 | _core.Li
         return core.restore(state)
     own, other = (2, 3) if isinstance(core, _core.Live2) else (3, 2)
     raise DtypeError(f"a {other}-D snapshot cannot be restored to a {own}-D triangulation")
+
+
+def _given_points(points: Any) -> Any:
+    """The points of what is taken whole; others are refused by name."""
+    if not isinstance(points, Stored):
+        return points
+    if isinstance(points, Delaunay | ConstrainedDelaunay):
+        return points.points
+    name = type(points).__name__
+    raise InputError(
+        f"Dynamic takes points, a Delaunay or a ConstrainedDelaunay, not a {name}, of which the "
+        "points alone would be left: pass its points, and its segments if it has some"
+    )
 
 
 def _as_ndim(ndim: int | None) -> int | None:

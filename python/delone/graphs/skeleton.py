@@ -9,7 +9,7 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_workers, require_finite
-from delone.complex import Stored
+from delone.complex import Stored, points_alone
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, InputError
 from delone.georeference import warn_of_degrees
@@ -70,7 +70,7 @@ def coordinates(points: Points, *, ndim: int | None, planar: bool) -> Floats:
             "graphs of periodic points are not available, since their edges cross the periods; "
             "PeriodicDelaunay has edges"
         )
-    held: Floats = getattr(points, "points")  # noqa: B009
+    held = points_alone(points, what="a graph")
     if ndim not in (None, held.shape[1]):
         raise InputError(f"this graph is only available in {ndim}-D: points are {held.shape[1]}-D")
     return held

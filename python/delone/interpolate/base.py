@@ -561,7 +561,8 @@ class Interpolator:
 
     def _narrowed(self, field: Field) -> list[tuple[Rows, Any]]:
         """An interpolator for each pattern of missing values, with its part of the values."""
-        found, used = [], {}
+        found: list[tuple[Rows, Any]] = []
+        used: dict[bytes, Self] = {}
         for which in field.patterns():
             part = field.only(which)
             kept = self._kept_rows(part)

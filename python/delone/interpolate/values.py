@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone._arrays import as_plain_array
-from delone._masks import is_masked
+from delone._masks import hides
 from delone.counting import agreed, counted
 from delone.errors import ConflictingValuesError, DtypeError, InputError, NonFiniteError, ShapeError
 
@@ -156,7 +156,7 @@ class Field:
 
 def as_field(values: ArrayLike, count: int, *, name: str = "values") -> Field:
     """Convert values, (count, ...), to a field without rounding; NaN is allowed."""
-    if is_masked(values):
+    if hides(values):
         raise DtypeError(f"{name} is a masked array; fill it: {name}.filled(numpy.nan)")
     array = as_plain_array(values, name)
     if array.dtype.kind not in "iufc":

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -59,6 +59,7 @@ def directions_of(
             raise ShapeError(f"xyz must have shape (n, 3), got {vectors.shape}: see lonlat")
         return vectors
     angles = as_points(lonlat, name="lonlat")  # type: ignore[arg-type]
+    angles = angles if degrees else _quarters(angles, lonlat)
     if angles.shape[1] != 2:
         raise ShapeError(f"lonlat must have shape (n, 2), got {angles.shape}: see xyz")
     require_finite(angles, name="lonlat")
@@ -76,6 +77,7 @@ def queries_of(xi: ArrayLike, *, degrees: bool, workers: int | None) -> Floats:
     if columns == 3:
         return as_vectors(xi, 3, name="xi")
     angles = as_vectors(xi, 2, name="xi")
+    angles = angles if degrees else _quarters(angles, array)
     flat = angles.reshape(-1, 2)
     _refuse_angles(flat, degrees=degrees, name="xi")
     vectors = _core.sphere_directions(flat, degrees, as_workers(workers))
@@ -94,6 +96,20 @@ def lonlat_of(vectors: Floats) -> Floats:
     radians = np.column_stack((np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))))
     degrees: Floats = np.degrees(radians)
     return degrees
+
+
+def _quarters(angles: Floats, given: Any) -> Floats:
+    """Angles in radians, with those of shorter floats that mean quarter turns as such.
+
+    The float32 nearest to pi / 2 is beyond the double nearest to it; both mean the pole.
+    """
+    kind = getattr(given, "dtype", None)
+    if kind not in (np.float32, np.float16):
+        return angles
+    turns = np.arange(-4 * _TURNS, 4 * _TURNS + 1) * (math.pi / 2)
+    short = turns.astype(kind).astype(np.float64)
+    at = np.minimum(np.searchsorted(short, angles), len(short) - 1)
+    return np.where(short[at] == angles, turns[at], angles)
 
 
 def _refuse_angles(angles: Floats, *, degrees: bool, name: str) -> None:

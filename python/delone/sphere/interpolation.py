@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copy
 import math
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -71,7 +71,7 @@ class _Interpolator:
         self._kept: Rows | None = None
         self._field: tuple[Field, _Interpolator, Floats] | None = None
         # Interpolators without other rows, by these rows; those of the last call.
-        self._others: dict[bytes, Self] = {}
+        self._others: dict[bytes, _Interpolator] = {}
         self._parts: Parts | None = None
         if values is not None:
             field = as_field(values, self.npoints)
@@ -297,7 +297,7 @@ class _Interpolator:
         self._others = {owner._kept.tobytes(): owner}
         return owner
 
-    def _without(self, kept: Rows) -> Self:
+    def _without(self, kept: Rows) -> _Interpolator:
         """The interpolator of some rows, without values."""
         other = self._others.get(kept.tobytes())
         if other is None:
@@ -320,7 +320,8 @@ class _Interpolator:
 
     def _narrowed(self, field: Field) -> Parts:
         """An interpolator for each pattern of missing values, with its part of the values."""
-        found, used = [], {}
+        found: list[tuple[Rows, Any]] = []
+        used: dict[bytes, _Interpolator] = {}
         for which in field.patterns():
             part, narrow = field.only(which), copy.copy(self)
             dropped = part.not_finite

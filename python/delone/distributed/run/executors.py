@@ -6,11 +6,11 @@ few tasks per worker at a time, however many a stage has.
 
 from __future__ import annotations
 
-import os
 from collections import deque
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from typing import TYPE_CHECKING, Any, Protocol
 
+from delone._arrays import as_workers
 from delone.distributed.run.stages import perform
 from delone.distributed.run.worker import Worker, WorkerDiedError
 from delone.errors import DeloneError
@@ -46,7 +46,11 @@ class Serial:
     """Tasks one after another in this process, each with all cores."""
 
     workers = 1
-    threads = os.cpu_count() or 1
+
+    @property
+    def threads(self) -> int:
+        """All cores that this process may use."""
+        return as_workers(None)
 
     def run(
         self, root: str, stage: str, tasks: Mapping[int, Sequence[Any]]
@@ -57,12 +61,12 @@ class Serial:
 
 
 class Processes:
-    """Tasks in processes of this machine, by default one per core."""
+    """Tasks in processes of this machine, by default one per core that may be used."""
 
     threads = 1
 
     def __init__(self, workers: int | None = None) -> None:
-        self.workers = workers or os.cpu_count() or 1
+        self.workers = as_workers(workers)
         self._idle: list[Worker] = []
 
     def close(self) -> None:
