@@ -108,7 +108,9 @@ class Dynamic(Segmented):
     crosses, and those that cross these (`insert_segments`).
 
     An edit is all or nothing: on any error, Ctrl-C and refused memory included, nothing has
-    changed. Edits from several threads take turns.
+    changed. A Ctrl-C that comes when the edit is complete, and only its result is lost, leaves it
+    complete: ``len`` tells, and the handles of points inserted are the last of `handles`. Edits
+    from several threads take turns.
 
     An insertion takes a walk from the last edit, or from a tree of starting points, and time in
     proportion to the simplices that it replaces (A. Bowyer; D. F. Watson, both 1981). A removal
@@ -291,9 +293,7 @@ class Dynamic(Segmented):
         if len(array) > FEW:
             array, threads = own_copy(array, ndim=self.ndim), as_workers(self._workers)
         warn_of_degrees(points, array, planar=self._planar)
-        made = self._live.insert(array, threads)
-        self._edit = object()
-        return made
+        return self._edited(self._live.insert, array, threads)
 
     def remove(self, handles: ArrayLike) -> None:
         """Remove points.
@@ -321,12 +321,11 @@ class Dynamic(Segmented):
         """
         own = as_handles(handles)
         try:
-            self._live.remove(own, self._threads(own))
+            self._edited(self._live.remove, own, self._threads(own))
         except ShapeError:
             self._refuse(own)
             self._refuse_held(own)
             raise
-        self._edit = object()
 
     def move(self, handles: ArrayLike, points: ArrayLike) -> None:
         """Move points, all at once, with their segments.
@@ -358,13 +357,12 @@ class Dynamic(Segmented):
         """
         own, places = as_handles(handles), _own(points, self.ndim)
         try:
-            self._live.relocate(own, places, self._threads(own))
+            self._edited(self._live.relocate, own, places, self._threads(own))
         except ShapeError:
             self._refuse(own)
             if len(own) == len(places):
                 self._refuse_held(own)
             raise
-        self._edit = object()
 
     def _threads(self, items: Handles) -> int:
         return 1 if len(items) <= FEW else as_workers(self._workers)
@@ -429,8 +427,7 @@ class Dynamic(Segmented):
         """
         if not isinstance(snapshot, Snapshot):
             raise DtypeError(f"snapshot must be a Snapshot, got {type(snapshot).__name__}")
-        _restore(self._live, snapshot._state)
-        self._edit = object()
+        self._edited(_restore, self._live, snapshot._state)
 
     def changes(self) -> Changes:
         """Return the simplices that went and came since the last call.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -13,11 +13,15 @@ from delone.errors import DtypeError, HandleError, InputError, ShapeError
 from delone.immutable import sealed
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
     Handles = NDArray[np.int64]
+
+T = TypeVar("T")
 
 __all__ = ["Segmented", "adopt", "as_handles", "given_segments", "refuse", "saved_segments"]
 
@@ -39,6 +43,19 @@ class Segmented:
         if isinstance(self._live, _core.Live2):
             return self._live
         raise InputError("segments are for 2-D triangulations; this one is 3-D")
+
+    def _edited(self, change: Callable[..., T], *arguments: Any) -> T:
+        """Change the core, after which the arrays are not those of before, whatever interrupts.
+
+        A signal may be handled when the core has finished and before anything else happens here,
+        so the edit counts as done from the start; it counts again after it, for readers in other
+        threads.
+        """
+        self._edit = object()
+        try:
+            return change(*arguments)
+        finally:
+            self._edit = object()
 
     def _arrays(self) -> _core.LiveArrays2 | _core.LiveArrays3:
         raise NotImplementedError
@@ -98,9 +115,7 @@ class Segmented:
                 f"handle {crossed[0]} is a crossing of segments, not a point that was inserted",
                 handles=crossed,
             )
-        made = plane.insert_segments(own, as_workers(self._workers))
-        self._edit = object()
-        return made
+        return self._edited(plane.insert_segments, own, as_workers(self._workers))
 
     def remove_segments(self, segments: ArrayLike) -> None:
         """Remove segments.
@@ -128,8 +143,7 @@ class Segmented:
         plane, own = self._plane(), as_handles(segments, "segments")
         gone, twice = plane.segment_faults(own)
         refuse(gone, twice, "segment")
-        plane.remove_segments(own, as_workers(self._workers))
-        self._edit = object()
+        self._edited(plane.remove_segments, own, as_workers(self._workers))
 
     @property
     def segment_handles(self) -> Handles:
