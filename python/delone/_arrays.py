@@ -36,6 +36,9 @@ _LARGEST_INDEX = 2**31 - 1
 LARGEST_LIMIT = 2**31 - 1
 # More threads only cost memory for stacks: the result does not depend on their number.
 _MOST_WORKERS = 256
+# Columns that are x and y of points, and third ones that are numbers of rows.
+_PLANAR_COLUMNS = (("x", "y"), ("lon", "lat"), ("longitude", "latitude"), ("easting", "northing"))
+_NUMBERS_OF_ROWS = {"id", "fid", "gid", "oid", "index", "row", "number", "nr", "no", "label"}
 _REFUSED_KINDS = {
     "b": "booleans",
     "c": "complex numbers",
@@ -60,6 +63,7 @@ def as_points(
     if _is_right(points, ndim):
         return points
     array = as_plain_array(points, name)
+    _refuse_columns(points, array, name)
     refuse_geometries(array, name)
     _refuse_kind(array, name)
     _refuse_shape(array, ndim, name)
@@ -264,6 +268,22 @@ def as_plain_array(points: Any, name: str) -> NDArray[Any]:
         if not isinstance(points, list | tuple):
             raise
         raise ShapeError(f"{name} has rows of unequal length: {error}") from error
+
+
+def _refuse_columns(points: Any, array: NDArray[Any], name: str) -> None:
+    """Reject a table of three columns that are named x and y, and a third that is no coordinate."""
+    listed: Any = getattr(points, "columns", None)
+    if array.ndim != 2 or array.shape[1] != 3 or not hasattr(listed, "__iter__"):
+        return
+    words = [str(column).strip().casefold() for column in listed]
+    for pair in _PLANAR_COLUMNS:
+        known = [words.index(word) for word in pair if word in words]
+        if len(known) == 2 and (known != [0, 1] or words[2] in _NUMBERS_OF_ROWS):
+            pair_given = [str(list(listed)[k]) for k in known]
+            raise InputError(
+                f"{name} is a table with the columns {', '.join(map(str, listed))}, three "
+                f"coordinates in this order: pass {name}[{pair_given}] for points in 2-D"
+            )
 
 
 def refuse_geometries(array: NDArray[Any], name: str) -> None:

@@ -30,15 +30,17 @@ if TYPE_CHECKING:
 __all__ = ["Complex", "Stored", "points_alone"]
 
 
-def points_alone(given: Stored, *, what: str) -> Floats:
-    """Return the points of an object for `what`, which takes no more of it; refuse to lose more."""
+def points_alone(
+    given: Stored, *, what: str, needs: tuple[str, ...] = ("periods", "weights")
+) -> Floats:
+    """Return the points of an object for `what`; refuse to lose what it `needs`, or the sphere."""
     name = type(given).__name__
     if hasattr(given, "lonlat"):
         raise InputError(
             f"{what} is not available on the sphere: the points of this {name} are directions: "
             "pass projected coordinates, or its points for chords through the sphere"
         )
-    for lost in ("periods", "weights"):
+    for lost in needs:
         if getattr(given, lost, None) is not None:
             raise InputError(
                 f"{what} would lose the {lost} of a {name}: pass its points if that is meant"

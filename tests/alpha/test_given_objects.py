@@ -49,7 +49,6 @@ def test_alpha_complexes_keep_periods_and_weights() -> None:
         (delone.concave_hull, GLOBE, "a concave hull is not available on the sphere"),
         (delone.AlphaComplex, GLOBE, "an alpha complex is not available on the sphere"),
         (graphs.delaunay_graph, GLOBE, "a graph is not available on the sphere"),
-        (graphs.gabriel, REGULAR, "a graph would lose the weights"),
         (delone.Dynamic, GLOBE, "not a Delaunay, of which the points alone"),
         (delone.Dynamic, PERIODIC, "not a PeriodicDelaunay"),
         (delone.Dynamic, REGULAR, "not a RegularTriangulation"),

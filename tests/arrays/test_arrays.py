@@ -251,3 +251,14 @@ def test_frozen_is_a_view_that_cannot_be_written() -> None:
     assert np.shares_memory(view, array) and array.flags.writeable
     with pytest.raises(ValueError, match="read-only"):
         view[0] = 1
+
+
+def test_tables_with_other_columns_are_not_3d() -> None:
+    pandas = pytest.importorskip("pandas")
+    table = pandas.DataFrame({"id": range(4), "x": SQUARE[:, 0], "y": SQUARE[:, 1]})
+    for each in (table, table[["x", "y", "id"]], table.rename(columns={"x": "Lon", "y": "Lat"})):
+        with pytest.raises(InputError, match=r"pass points\[\['(x|Lon)', '(y|Lat)'\]\]"):
+            _arrays.as_points(each)
+    assert _arrays.as_points(table[["x", "y"]]).shape == (4, 2)
+    assert _arrays.as_points(table.rename(columns={"id": "z"})[["x", "y", "z"]]).shape == (4, 3)
+    assert _arrays.as_points(table.rename(columns={"x": "a", "y": "b"})).shape == (4, 3)

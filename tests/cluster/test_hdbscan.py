@@ -10,7 +10,8 @@ import sklearn.cluster
 
 import density
 from clustered import SMALL, partition
-from delone.cluster import HDBSCAN
+from delone import datasets
+from delone.cluster import DBSCAN, HDBSCAN
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -182,3 +183,10 @@ def test_fewer_points_than_samples_are_noise(n: int, d: int) -> None:
     assert model.probabilities_.tolist() == [0] * n
     assert model.condensed_tree_["lambda_val"].tolist() == [0] * n
     assert model.condensed_tree_["parent"].tolist() == [n] * n
+
+
+def test_labels_can_be_written() -> None:
+    points = datasets.gaussian_clusters(60)
+    for model in (HDBSCAN(5).fit(points), DBSCAN(0.1).fit(points)):
+        model.labels_[:] = 7
+        assert set(model.labels_.tolist()) == {7}

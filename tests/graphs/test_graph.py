@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import pickle
 import zipfile
 from fractions import Fraction
@@ -338,6 +339,10 @@ def test_networkx() -> None:
     assert found.nodes[3]["pos"] == tuple(graph.points[3].tolist())
     assert networkx.number_connected_components(graph.with_duplicates().to_networkx()) == 1
     assert found.size("length") == pytest.approx(graph.lengths.sum())
+    # Algorithms read weight by default: paths by length, not by the number of edges.
+    assert found.size("weight") == found.size("length")
+    bent = Graph([(0, 0), (9, 0), (1, 1), (2, 0)], [(0, 1), (0, 2), (2, 3), (3, 1)]).to_networkx()
+    assert networkx.minimum_spanning_tree(bent).size("weight") == pytest.approx(7 + 2 * 2**0.5)
     assert graphs.nearest_neighbors(graph, 2, directed=True).to_networkx().is_directed()
 
 
@@ -407,3 +412,33 @@ def test_plots_in_space() -> None:
     plotter = graph.plot(values=graph.lengths, off_screen=True)
     assert len(plotter.actors) >= 2
     assert Graph([(1, 1, 1)], []).plot(off_screen=True) is not None
+
+
+def exactly_kept(graph: Graph, percentile: float) -> int:
+    """How many edges are not longer than the one at the rank, by fractions."""
+    points = [[Fraction(x) for x in row] for row in graph.points.tolist()]
+    squared = [
+        sum((a - b) ** 2 for a, b in zip(points[i], points[j], strict=True))
+        for i, j in graph.edges.tolist()
+    ]
+    rank = max(math.ceil(Fraction(percentile) / 100 * len(squared)), 1)
+    limit = sorted(squared)[rank - 1]
+    return sum(each <= limit for each in squared)
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0**-1060, 2.0**1022])
+@pytest.mark.parametrize("ndim", [2, 3])
+def test_percentiles_rank_exact_lengths(scale: float, ndim: int) -> None:
+    for seed in range(20):
+        angles = np.random.default_rng(seed).random(8) * 2 * np.pi
+        rim = np.column_stack((np.cos(angles), np.sin(angles), 0 * angles))[:, :ndim]
+        # Spokes of almost the same length; in the largest doubles, with differences beyond them.
+        center = np.where(np.arange(ndim) == 0, -0.5 if scale > 1 else 0.0, 0.0)
+        points = np.vstack([center, rim]) * scale
+        graph = Graph(points, [(0, k) for k in range(1, 9)])
+        for percentile in (12.5, 25, 50, 75, 100):
+            kept = graph.prune(percentile=percentile)
+            assert kept.nedges == exactly_kept(graph, percentile)
+    step = 2.0**-52
+    close = Graph([(0, 0), (1, 1), (1, 1 + step)], [(0, 1), (0, 2)])
+    assert close.prune(percentile=50).edges.tolist() == [[0, 1]]

@@ -9,7 +9,6 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_workers
 from delone.cluster.estimator import Clusterer, as_least, as_reach, numbered
-from delone.immutable import sealed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -126,6 +125,6 @@ class DBSCAN(Clusterer):
         # A count above that of all rows stands for every larger one.
         clusters, is_core = core(points, eps, min(samples, len(points) + 1), workers)
         self.labels_ = numbered(clusters)
-        self.core_sample_indices_ = sealed(np.flatnonzero(is_core).astype(np.int32))
-        self.components_ = sealed(points[self.core_sample_indices_])
+        self.core_sample_indices_ = np.flatnonzero(is_core).astype(np.int32)
+        self.components_ = points[self.core_sample_indices_]
         return self

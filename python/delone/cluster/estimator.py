@@ -16,7 +16,7 @@ from delone._arrays import (
 )
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.georeference import warn_of_degrees
-from delone.immutable import own_copy, sealed
+from delone.immutable import own_copy
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -206,4 +206,5 @@ def numbered(clusters: NDArray[np.integer[Any]]) -> Indices:
     order = order[found[order] >= 0]
     number[found < 0] = -1
     number[order] = np.arange(len(order), dtype=np.int32)
-    return sealed(number[inverse.ravel()])
+    labels: Indices = number[inverse.ravel()]
+    return labels

@@ -10,7 +10,6 @@ from delone._arrays import as_choice, as_flag, as_workers
 from delone.cluster.condensed import condensed_tree
 from delone.cluster.estimator import Clusterer, as_least, as_reach, numbered
 from delone.cluster.selection import labeled, memberships, selected
-from delone.immutable import sealed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -171,6 +170,6 @@ class HDBSCAN(Clusterer):
             chosen = selected(tree, method=method, epsilon=epsilon, single=single, largest=largest)
         labels = labeled(tree, chosen, epsilon=epsilon)
         self.labels_ = numbered(labels)
-        self.probabilities_ = sealed(memberships(tree, labels))
+        self.probabilities_ = memberships(tree, labels)
         self.condensed_tree_ = tree.table()
         return self

@@ -52,8 +52,9 @@ def to_networkx(links: Links, points: Floats) -> Any:
     networkx = require("networkx", extra="graph", what="a graph of NetworkX")
     graph = networkx.DiGraph() if links.directed else networkx.Graph()
     graph.add_nodes_from((i, {"pos": tuple(p)}) for i, p in enumerate(points.tolist()))
+    # Algorithms of NetworkX read the attribute weight by default, and count edges without it.
     rows = zip(*links.edges.T.tolist(), links.weights.tolist(), strict=True)
-    graph.add_weighted_edges_from(rows, weight="length")
+    graph.add_edges_from((a, b, {"length": w, "weight": w}) for a, b, w in rows)
     return graph
 
 

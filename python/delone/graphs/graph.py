@@ -297,7 +297,7 @@ class Graph(Stored):
         share = as_number(0.0 if percentile is None else percentile, name="percentile")
         if not 0 < share <= 100:
             raise InputError(f"percentile must be above 0 and at most 100, got {percentile}")
-        return self._with(lowest(self._points, self._edges, self.lengths, share, self._workers))
+        return self._with(lowest(self._points, self._edges, self.lengths, share))
 
     def subgraph(self, rows: ArrayLike) -> Self:
         """Return the graph of some of the points, with the edges between them.
@@ -429,7 +429,8 @@ class Graph(Stored):
         -------
         networkx.Graph or networkx.DiGraph
             Nodes are the rows from 0 on, duplicates included, with their coordinates as attribute
-            ``pos``; edges have their ``length``.
+            ``pos``; edges have their ``length``, also as ``weight``, which the algorithms of
+            NetworkX take by default.
 
         Raises
         ------
@@ -440,7 +441,7 @@ class Graph(Stored):
         --------
         >>> from delone.graphs import Graph
         >>> Graph([(0, 0), (3, 4), (1, 0)], [(0, 1)]).to_networkx().edges[0, 1]
-        {'length': 5.0}
+        {'length': 5.0, 'weight': 5.0}
         """
         from delone.exchange.graphs import to_networkx
 

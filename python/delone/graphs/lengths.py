@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import sys
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +17,9 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
+
+# More than the relative error of a rounded length, and than the absolute one of the smallest.
+_ROUNDED, _SMALLEST = 2.0**-48, 2.0**-1070
 
 __all__ = ["lengths_of", "lowest", "squares", "up_to"]
 
@@ -44,25 +49,51 @@ def up_to(points: Floats, edges: Indices, limit: float, workers: int | None) -> 
     return _not_longer(points, edges, ends, workers)
 
 
-def lowest(
-    points: Floats, edges: Indices, lengths: Floats, share: float, workers: int | None
-) -> Indices:
-    """Return the edges that are not longer than the one at a rank, given in percent."""
+def lowest(points: Floats, edges: Indices, lengths: Floats, share: float) -> Indices:
+    """Return the edges that are not longer than the one at a rank, given in percent.
+
+    Rounded lengths leave only those next to that of the rank, which are compared as fractions.
+    """
     if not len(edges):
         return edges
-    rank = max(math.ceil(share / 100 * len(edges)), 1) - 1
-    at_rank = np.partition(lengths, rank)[rank]
-    # Of several with the same rounded length, the longest.
-    tied = edges[lengths == at_rank]
-    longest = tied[0]
-    while True:
-        shorter = _not_longer(points, tied, points[longest], workers)
-        if len(shorter) == len(tied):
-            return _not_longer(points, edges, points[longest], workers)
-        keys = tied[:, 0].astype(np.int64) << 32 | tied[:, 1]
-        rest = ~np.isin(keys, shorter[:, 0].astype(np.int64) << 32 | shorter[:, 1])
-        tied = tied[rest]
-        longest = tied[0]
+    rank = max(math.ceil(Fraction(share) * len(edges) / 100), 1) - 1
+    at_rank = min(float(np.partition(lengths, rank)[rank]), sys.float_info.max)
+    # Differences and roots are rounded a few times each; among the smallest doubles by a unit.
+    slack = at_rank * _ROUNDED + _SMALLEST
+    shorter = lengths < at_rank - slack
+    near = np.flatnonzero(~shorter & ~(lengths > at_rank + slack))
+    squared, which = _exact_squares(points, edges[near])
+    order = sorted(range(len(squared)), key=squared.__getitem__)
+    counts = np.bincount(which, minlength=len(squared))[order]
+    # The length at the rank, and all that are equal to it.
+    last = int(np.searchsorted(np.cumsum(counts), rank - np.count_nonzero(shorter), side="right"))
+    longest = squared[order[last]]
+    kept = shorter
+    kept[near] = np.array([each <= longest for each in squared])[which]
+    return edges[kept]
+
+
+def _exact_squares(points: Floats, edges: Indices) -> tuple[list[Fraction], NDArray[np.intp]]:
+    """Squared lengths of edges as fractions, and the one of each edge; equal steps have one."""
+    tails, heads = points[edges[:, 0]], points[edges[:, 1]]
+    with np.errstate(over="ignore", invalid="ignore"):
+        step = heads - tails
+        # What rounding took from the difference, exactly.
+        back = step - heads
+        lost = (heads - (step - back)) + (-tails - back)
+    # Where differences are beyond the doubles, by the coordinates themselves.
+    keys = np.hstack((step, lost) if np.isfinite(lost).all() else (tails, heads))
+    rows, which = np.unique(keys, axis=0, return_inverse=True)
+    ndim = points.shape[1]
+    sign = 1 if np.isfinite(lost).all() else -1
+    squares = [
+        sum(
+            ((Fraction(row[ndim + k]) + sign * Fraction(row[k])) ** 2 for k in range(ndim)),
+            Fraction(0),
+        )
+        for row in rows.tolist()
+    ]
+    return squares, which.reshape(-1)
 
 
 def _not_longer(points: Floats, edges: Indices, ends: Floats, workers: int | None) -> Indices:

@@ -70,7 +70,7 @@ def coordinates(points: Points, *, ndim: int | None, planar: bool) -> Floats:
             "graphs of periodic points are not available, since their edges cross the periods; "
             "PeriodicDelaunay has edges"
         )
-    held = points_alone(points, what="a graph")
+    held = points_alone(points, what="a graph", needs=("periods",))
     if ndim not in (None, held.shape[1]):
         raise InputError(f"this graph is only available in {ndim}-D: points are {held.shape[1]}-D")
     return held

@@ -97,7 +97,7 @@ class Interpolator:
         self._respect_constraints = as_flag(respect_constraints, name="respect_constraints")
         self._cache: dict[str, Any] = {}
         # Interpolators without other rows, by these rows; those of the last call.
-        self._others: dict[bytes, Self] = {}
+        self._others: dict[bytes, Any] = {}
         self._parts: Parts | None = None
         as_workers(workers)
         given = points if isinstance(points, Triangulation) else None
@@ -562,7 +562,7 @@ class Interpolator:
     def _narrowed(self, field: Field) -> list[tuple[Rows, Any]]:
         """An interpolator for each pattern of missing values, with its part of the values."""
         found: list[tuple[Rows, Any]] = []
-        used: dict[bytes, Self] = {}
+        used: dict[bytes, Any] = {}
         for which in field.patterns():
             part = field.only(which)
             kept = self._kept_rows(part)
