@@ -254,7 +254,7 @@ def __getattr__(name: str) -> Any:
         return found
     if name in _MODULES:
         return importlib.import_module(f"delone.{name}")
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    raise AttributeError(f"module {__name__!r:.80} has no attribute {name!r:.80}")
 
 
 def __dir__() -> list[str]:

@@ -163,7 +163,7 @@ def as_choice(value: str, choices: tuple[str, ...], *, name: str) -> str:
     """Return a string argument if it is one of the given choices; otherwise raise an error."""
     if isinstance(value, str) and value in choices:
         return value
-    raise InputError(f"{name} must be one of {', '.join(map(repr, choices))}, got {value!r}")
+    raise InputError(f"{name} must be one of {', '.join(map(repr, choices))}, got {value!r:.60}")
 
 
 def as_neighbors(
@@ -179,6 +179,11 @@ def as_neighbors(
 def as_count(n: int, *, name: str = "n") -> int:
     """Return an integer of at least 0 as a Python integer; booleans are rejected."""
     return _as_integer(n, 0, f"{name} must be an integer of at least 0")
+
+
+def as_least(n: int, least: int, *, name: str) -> int:
+    """Return an integer of at least `least` as a Python integer; booleans are rejected."""
+    return _as_integer(n, least, f"{name} must be an integer of at least {least}")
 
 
 def as_limit(n: int, *, name: str) -> int:
@@ -231,13 +236,13 @@ def as_workers(workers: int | None) -> int:
 
 def _as_integer(value: int, least: int, wanted: str) -> int:
     if isinstance(value, bool | np.bool_) or is_masked(value):
-        raise DtypeError(f"{wanted}, got {value}")
+        raise DtypeError(f"{wanted}, got {value!s:.60}")
     try:
         number = operator.index(value)
     except TypeError:
-        raise DtypeError(f"{wanted}, got {value!r}") from None
+        raise DtypeError(f"{wanted}, got {value!r:.60}") from None
     if number < least:
-        raise InputError(f"{wanted}, got {number}")
+        raise InputError(f"{wanted}, got {number!s:.60}")
     return number
 
 

@@ -51,7 +51,7 @@ def archived(path: Path, file: IO[bytes] | None = None) -> Iterator[zipfile.ZipF
             )
         for entry in entries:
             if entry.compress_type not in _METHODS:
-                raise FileFormatError(f"{path}: {entry.filename!r} is not stored or deflated")
+                raise FileFormatError(f"{path}: {entry.filename!r:.80} is not stored or deflated")
         yield archive
 
 

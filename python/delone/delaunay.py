@@ -33,7 +33,7 @@ _METHODS = {2: _core.methods2(), 3: ["auto", "bowyer-watson"]}
 # Arguments of scipy.spatial.Delaunay without a meaning here, and of other classes.
 _INSTEAD = {
     "furthest_site": "use delone.compat.scipy.Delaunay",
-    "incremental": "leave it out, or use delone.compat.scipy.Delaunay",
+    "incremental": "use delone.Dynamic(points), or delone.compat.scipy.Delaunay",
     "qhull_options": "leave it out, or use delone.compat.scipy.Delaunay",
     "periodic": "use delone.PeriodicDelaunay(points, periods)",
     "periods": "use delone.PeriodicDelaunay(points, periods)",
@@ -192,7 +192,7 @@ class Delaunay(PointTriangulation):
         if not isinstance(method, str) or method not in methods:
             names = ", ".join(map(repr, methods))
             where = "" if own.shape[1] == 2 else " in 3-D"
-            raise InputError(f"method must be one of {names}{where}, got {method!r}")
+            raise InputError(f"method must be one of {names}{where}, got {method!r:.80}")
         try:
             made = _triangles(own, method, threads)
         except InternalError as error:
@@ -248,7 +248,7 @@ def _refuse_options(unknown: Mapping[str, Any]) -> None:
     for name in unknown:
         if name in _INSTEAD:
             raise DtypeError(f"delone.Delaunay does not accept {name}: {_INSTEAD[name]}")
-        raise TypeError(f"Delaunay() got an unexpected keyword argument {name!r}")
+        raise TypeError(f"Delaunay() got an unexpected keyword argument {name!r:.80}")
 
 
 def _triangles(points: NDArray[np.float64], method: str, workers: int) -> _core.Triangulation:

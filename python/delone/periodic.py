@@ -301,13 +301,13 @@ def as_periods(periods: Any) -> tuple[float | None, float | None]:
         x, y = (None if length is None else as_number(length, name="periods") for length in periods)
     except (TypeError, ValueError):
         raise InputError(
-            f"periods must be two values, each a number or None, got {periods!r}"
+            f"periods must be two values, each a number or None, got {periods!r:.80}"
         ) from None
     given = [length for length in (x, y) if length is not None]
     if not given:
         raise InputError("periods has no number: pass a period in x or y, or use delone.Delaunay")
     if not all(0 < length < np.inf for length in given):
-        raise InputError(f"periods must be positive and finite, got {periods!r}")
+        raise InputError(f"periods must be positive and finite, got {periods!r:.80}")
     return x, y
 
 
@@ -326,8 +326,8 @@ def _require_one_period(points: Floats, periods: tuple[float | None, float | Non
             shown = repr(float(spread)) if spread <= _LARGEST else f"more than {_LARGEST!r}"
             raise InputError(
                 f"rows {low} and {high} lie {shown} apart in {'xy'[k]}, not less "
-                f"than the period {length!r}: first move all points into one period, for example "
-                "with numpy.mod"
+                f"than the period {length!r:.40}: first move all points into one period, for "
+                "example with numpy.mod"
             )
 
 

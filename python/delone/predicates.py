@@ -227,5 +227,5 @@ def _broadcast(ndim: int, *points: ArrayLike) -> tuple[list[NDArray[np.float64]]
 
 def _is_canonical(ties: str) -> bool:
     if ties not in ("zero", "canonical"):
-        raise InputError(f'ties must be "zero" or "canonical", got {ties!r}')
+        raise InputError(f'ties must be "zero" or "canonical", got {ties!r:.80}')
     return ties == "canonical"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_count, as_flag, as_number, as_workers, require_finite
+from delone._arrays import as_flag, as_least, as_number, as_workers, require_finite
 from delone.alpha.shape import AlphaShape
 from delone.alpha.values import Valued, known_mesh, of_periodic, of_points, simplices_of
 from delone.complex import Stored, points_alone
@@ -360,9 +360,7 @@ class AlphaComplex(Stored):
         >>> delone.AlphaComplex([(0, 0), (4, 0), (0, 3), (4, 3), (9, 9)]).optimal()
         49.5625
         """
-        most = as_count(components, name="components")
-        if not most:
-            raise InputError("components must be at least 1, got 0")
+        most = as_least(components, 1, name="components")
         allowed = as_flag(holes, name="holes")
         if self.dimension < 0:
             raise InputError("there are no points, and so no alpha: pass at least one point")

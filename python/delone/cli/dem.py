@@ -221,7 +221,7 @@ def _numbers(text: str, option: str, counts: tuple[int, ...]) -> list[float]:
     try:
         found = [float(part) for part in text.split(",")]
     except ValueError:
-        raise Failure(f"{option} takes numbers, got {text!r}", Exit.USAGE) from None
+        raise Failure(f"{option} takes numbers, got {text!r:.80}", Exit.USAGE) from None
     if len(found) not in counts:
-        raise Failure(f"{option} takes {words}, got {text!r}", Exit.USAGE)
+        raise Failure(f"{option} takes {words}, got {text!r:.80}", Exit.USAGE)
     return found

@@ -265,12 +265,14 @@ def _raster_options(size: str | None, resolution: str | None, bounds: str | None
         found["shape"] = tuple(_numbers(size.replace("x", ","), int, "--grid"))
         if len(found["shape"]) != 2:
             raise Failure(
-                f"--grid takes columns and rows, such as 500x400; got {size!r}", Exit.USAGE
+                f"--grid takes columns and rows, such as 500x400; got {size!r:.80}", Exit.USAGE
             )
     if resolution is not None:
         cells = _numbers(resolution, float, "--resolution")
         if len(cells) > 2:
-            raise Failure(f"--resolution takes one or two numbers, got {resolution!r}", Exit.USAGE)
+            raise Failure(
+                f"--resolution takes one or two numbers, got {resolution!r:.80}", Exit.USAGE
+            )
         found["resolution"] = cells[0] if len(cells) == 1 else tuple(cells)
     if bounds is not None:
         found["bounds"] = _numbers(bounds, float, "--bounds")
@@ -281,7 +283,7 @@ def _numbers(text: str, kind: type, option: str) -> list[Any]:
     try:
         return [kind(part) for part in text.split(",")]
     except ValueError:
-        raise Failure(f"{option} takes numbers, got {text!r}", Exit.USAGE) from None
+        raise Failure(f"{option} takes numbers, got {text!r:.80}", Exit.USAGE) from None
 
 
 def _figures(

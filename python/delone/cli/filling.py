@@ -161,7 +161,9 @@ def _numbers(given: Sequence[str] | None, option: str, columns: int) -> list[lis
         except ValueError:
             numbers = []
         if len(numbers) != columns or not all(map(math.isfinite, numbers)):
-            raise Failure(f"{option} takes {columns} numbers with commas, got {text!r}", Exit.USAGE)
+            raise Failure(
+                f"{option} takes {columns} numbers with commas, got {text!r:.80}", Exit.USAGE
+            )
         found.append(numbers)
     return found
 

@@ -132,7 +132,7 @@ def _view(text: str | None) -> tuple[float, float] | None:
     except ValueError:
         lon = lat = math.nan
     if not (math.isfinite(lon) and abs(lat) <= 90):
-        raise Failure(f"--view must be a longitude and a latitude, got {text!r}", Exit.USAGE)
+        raise Failure(f"--view must be a longitude and a latitude, got {text!r:.80}", Exit.USAGE)
     return lon, lat
 
 

@@ -85,5 +85,5 @@ def class_numbers(text: str | None) -> list[int] | None:
         return None if text is None else [int(part) for part in text.split(",")]
     except ValueError:
         raise Failure(
-            f"--classes takes numbers such as 2 or 2,6; got {text!r}", Exit.USAGE
+            f"--classes takes numbers such as 2 or 2,6; got {text!r:.80}", Exit.USAGE
         ) from None

@@ -244,7 +244,7 @@ def _numbers(text: str, option: str) -> list[float]:
     try:
         return [float(part) for part in text.split(",")]
     except ValueError:
-        raise Failure(f"{option} takes numbers, got {text!r}", Exit.USAGE) from None
+        raise Failure(f"{option} takes numbers, got {text!r:.80}", Exit.USAGE) from None
 
 
 def _check(output: list[Path], source: Path, options: SurfaceOptions, what: str) -> None:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers
-from delone.cluster.estimator import Clusterer, as_least, as_reach, numbered
+from delone._arrays import as_least, as_workers
+from delone.cluster.estimator import Clusterer, as_reach, numbered
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

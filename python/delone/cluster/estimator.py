@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone._arrays import (
-    as_count,
     as_number,
     as_plain_array,
     refuse_geometries,
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Clusterer", "as_least", "as_reach", "numbered"]
+__all__ = ["Clusterer", "as_reach", "numbered"]
 
 _METRICS = ("euclidean", "l2")
 
@@ -160,7 +159,7 @@ class Clusterer:
             raise DtypeError(f"metric must be a string, got {self.metric!r:.60}")
         if self.metric not in _METRICS:
             raise InputError(
-                f"metric {self.metric!r} is not available: distances are Euclidean, and exact; "
+                f"metric {self.metric!r:.80} is not available: distances are Euclidean, and exact; "
                 "project longitudes and latitudes, or use scikit-learn for other metrics"
             )
         array = as_plain_array(points, "points")
@@ -180,14 +179,6 @@ class Clusterer:
         elif hasattr(self, "feature_names_in_"):
             del self.feature_names_in_
         return own
-
-
-def as_least(value: int, least: int, *, name: str) -> int:
-    """Return an integer option of at least `least`."""
-    count = as_count(value, name=name)
-    if count < least:
-        raise InputError(f"{name} must be an integer of at least {least}, got {value}")
-    return count
 
 
 def as_reach(value: float, *, name: str) -> float:

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._arrays import as_choice, as_flag, as_workers
+from delone._arrays import as_choice, as_flag, as_least, as_workers
 from delone.cluster.condensed import condensed_tree
-from delone.cluster.estimator import Clusterer, as_least, as_reach, numbered
+from delone.cluster.estimator import Clusterer, as_reach, numbered
 from delone.cluster.selection import labeled, memberships, selected
 
 if TYPE_CHECKING:

@@ -24,7 +24,8 @@ from delone import delaunay
 from delone._masks import is_masked
 from delone.compat.qhull import DimensionError, QhullError, as_low_points, unboxed, unmasked
 from delone.compat.scipy_delaunay import Delaunay
-from delone.errors import DegenerateInputError, InputError, MissingExtraError, ShapeError
+from delone.errors import DegenerateInputError, InputError, ShapeError
+from delone.extras import require
 from delone.interpolate import CloughTocher, Linear
 from delone.interpolate.values import as_field
 
@@ -377,14 +378,8 @@ class NearestNDInterpolator:
         return found
 
     def _nearest_by_tree(self, queries: Floats, p: float) -> NDArray[np.integer]:
-        try:
-            from scipy.spatial import KDTree
-        except ImportError as error:
-            raise MissingExtraError(
-                "norms other than p=2 need SciPy, which is not installed: pip install scipy",
-                extra="learn",
-            ) from error
-        rows: NDArray[np.integer] = KDTree(self._scaled).query(queries, p=p)[1]
+        spatial = require("scipy.spatial", extra="graph", what="a norm other than p=2")
+        rows: NDArray[np.integer] = spatial.KDTree(self._scaled).query(queries, p=p)[1]
         return rows
 
 
@@ -444,7 +439,9 @@ def griddata(  # noqa: PLR0917 (as in SciPy)
     if method == "cubic":
         cubic = CloughTocher2DInterpolator(points, values, fill_value=fill_value, rescale=rescale)
         return cubic(xi)
-    raise InputError(f"unknown interpolation method {method!r}; choose linear, nearest or cubic")
+    raise InputError(
+        f"unknown interpolation method {method!r:.80}; choose linear, nearest or cubic"
+    )
 
 
 def _is_line(points: Any) -> bool:
@@ -459,13 +456,7 @@ def _on_line(  # noqa: PLR0917 (as in SciPy)
     points: Any, values: ArrayLike, xi: Any, method: str, fill_value: Any, rescale: bool
 ) -> NDArray[Any]:
     """Interpolate 1-D points with SciPy, as no triangulation is needed."""
-    try:
-        from scipy import interpolate
-    except ImportError as error:
-        raise MissingExtraError(
-            "griddata of 1-D points needs SciPy, which is not installed: pip install scipy",
-            extra="learn",
-        ) from error
+    interpolate = require("scipy.interpolate", extra="graph", what="griddata of 1-D points")
     line = points[0] if isinstance(points, tuple) and np.ndim(points[0]) == 1 else points
     found: NDArray[Any] = interpolate.griddata(
         _real_points(line),

@@ -223,7 +223,7 @@ def unboxed(array: NDArray[Any], name: str = "points") -> Floats:
     numbers = array.astype(np.float64)
     if array.dtype.kind == "O" and not ((numbers == array) | np.isnan(numbers)).all():
         wrong = array[(numbers != array) & ~np.isnan(numbers)]
-        raise DtypeError(f"{name} contain {wrong.flat[0]!r}, which float64 cannot represent")
+        raise DtypeError(f"{name} contain {wrong.flat[0]!r:.80}, which float64 cannot represent")
     return numbers
 
 

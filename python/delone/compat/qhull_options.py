@@ -87,17 +87,17 @@ class QhullOptions:
 def _check(option: str, incremental: bool, what: str) -> None:
     """Reject unknown options and those that require a different result."""
     if option in ("Qbb", "Qz", "QbB") and incremental:
-        raise InputError(f"option {option!r} is incompatible with incremental=True")
+        raise InputError(f"option {option!r:.80} is incompatible with incremental=True")
     if option in _OF_SITES:
         if what in (DELAUNAY, VORONOI):
             return
         raise QhullOptionError(
-            f"option {option!r} is for Delaunay triangulations and Voronoi diagrams, "
+            f"option {option!r:.80} is for Delaunay triangulations and Voronoi diagrams, "
             f"not for the {what}"
         )
     if _WITHOUT_EFFECT.fullmatch(option):
         return
     for pattern, reason in _REFUSED:
         if re.fullmatch(pattern, option):
-            raise InputError(f"option {option!r} is not supported for the {what}: it {reason}")
-    raise QhullOptionError(f"unknown Qhull option {option!r}")
+            raise InputError(f"option {option!r:.80} is not supported for the {what}: it {reason}")
+    raise QhullOptionError(f"unknown Qhull option {option!r:.80}")

@@ -142,7 +142,7 @@ into Triangle; use size= of delone.mesh
     switches = _parsed(opts)
     unknown = sorted(set(tri) - set(_KEYS))
     if unknown:
-        raise InputError(f"unknown key {unknown[0]!r}; known are {', '.join(_KEYS)}")
+        raise InputError(f"unknown key {unknown[0]!r:.80}; known are {', '.join(_KEYS)}")
     if "vertices" not in tri:
         raise InputError("key 'vertices' is missing")
     points = as_points(tri["vertices"], ndim=2, name="vertices")
@@ -173,7 +173,7 @@ def _parsed(opts: str) -> Switches:
             steiner = int(min(float(number or 0), LARGEST_LIMIT))
     rest = _SWITCH.sub("", opts).strip()
     if rest:
-        raise InputError(f"switches {opts!r} contain {rest!r}, which belongs to no switch")
+        raise InputError(f"switches {opts!r:.80} contain {rest!r:.80}, which belongs to no switch")
     fixed: bool | str = on.count("Y") > 1 or ("boundary" if "Y" in on else False)
     return Switches(frozenset(on), angle, area, steiner, fixed)
 

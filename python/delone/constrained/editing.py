@@ -377,7 +377,7 @@ def _row(row: int) -> int:
     try:
         return operator.index(row)
     except TypeError:
-        raise DtypeError(f"a row must be an integer, got {row!r}") from None
+        raise DtypeError(f"a row must be an integer, got {row!r:.80}") from None
 
 
 def _rows(rows: ArrayLike, count: int, name: str) -> NDArray[np.int64]:

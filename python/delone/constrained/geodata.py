@@ -260,7 +260,7 @@ def _of_mapping(mapping: Mapping[str, Any], name: str) -> Iterator[Parts]:
             for i, ring in enumerate(polygon):
                 yield _run(ring, INTERIOR if i else EXTERIOR, kind)
     else:
-        raise InputError(f"{name}: unknown geometry type {kind!r}")
+        raise InputError(f"{name}: unknown geometry type {kind!r:.80}")
 
 
 def _run(coordinates: Any, kind: int, what: str) -> Parts:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_callback, as_choice, as_count, as_flag
+from delone._arrays import as_callback, as_choice, as_count, as_flag, as_least
 from delone.distributed.arguments import as_classes, as_names, as_path
 from delone.distributed.read.opened import TiledDelaunay, open
 from delone.distributed.run.costs import Plan, estimate
@@ -202,8 +202,7 @@ def plan(
     500000
     """
     size = _tile_points(tile_points)
-    if as_count(workers, name="workers") < 1:
-        raise InputError(f"workers must be at least 1, got {workers}")
+    as_least(workers, 1, name="workers")
     choice = _choice(columns, classes, attributes)
     if isinstance(source, int | np.integer):
         count = as_count(int(source) if isinstance(source, np.integer) else source, name="source")
@@ -222,7 +221,9 @@ def _choice(
     names = as_names(attributes, name="attributes")
     clash = sorted({"id", "x", "y", "z", "owned"} & set(names))
     if clash:
-        raise InputError(f"{clash[0]!r} is a column of its own and cannot be one of the attributes")
+        raise InputError(
+            f"{clash[0]!r:.80} is a column of its own and cannot be one of the attributes"
+        )
     return Choice(
         None if columns is None else as_names(columns, name="columns", places=True),
         None if classes is None else as_classes(classes),
@@ -231,7 +232,7 @@ def _choice(
 
 
 def _tile_points(tile_points: int) -> int:
-    size = as_count(tile_points, name="tile_points")
+    size = as_least(tile_points, 3, name="tile_points")
     if not 3 <= size <= 1 << 27:
         raise InputError(f"tile_points must be from 3 to {1 << 27}, got {size}")
     return size

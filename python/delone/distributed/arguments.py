@@ -37,7 +37,7 @@ def as_names(names: Any, *, name: str, places: bool = False) -> tuple[Any, ...]:
         elif not one:
             raise InputError(f"{wanted}, and none may be empty")
         if found.count(one) > 1:
-            raise InputError(f"{name}: {one!r} is repeated")
+            raise InputError(f"{name}: {one!r:.80} is repeated")
     return tuple(one if isinstance(one, str) else int(one) for one in found)
 
 

@@ -787,7 +787,7 @@ def _given_points(points: Any) -> Any:
 def _as_ndim(ndim: int | None) -> int | None:
     """Return a number of coordinates, checked."""
     if ndim not in (None, 2, 3):
-        raise ShapeError(f"ndim must be 2 or 3, got {ndim!r}")
+        raise ShapeError(f"ndim must be 2 or 3, got {ndim!r:.80}")
     return ndim
 
 

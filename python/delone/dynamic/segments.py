@@ -256,7 +256,7 @@ def _as_ends(ends: ArrayLike) -> Handles:
 def _as_integers(handles: ArrayLike, name: str) -> Handles:
     array = as_plain_array(handles, name)
     if array.ndim == 0:
-        raise ShapeError(f"{name} must be an array, got one number: {handles!r}")
+        raise ShapeError(f"{name} must be an array, got one number: {handles!r:.80}")
     if array.size == 0:
         return np.empty(0, dtype=np.int64)
     if array.dtype.kind not in "iu":

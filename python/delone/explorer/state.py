@@ -100,7 +100,7 @@ class Exploration:
     def _target(self, vertex: Any, x: Any, y: Any) -> tuple[int, tuple[float, float]]:
         """Return the row and its new coordinates, checked."""
         if not isinstance(vertex, Integral) or isinstance(vertex, bool):
-            raise InputError(f"a point is named by its number; got {vertex!r}")
+            raise InputError(f"a point is named by its number; got {vertex!r:.80}")
         row = int(vertex)
         if not 0 <= row < self.movable:
             raise InputError(f"point {row} does not exist or cannot be moved")
@@ -117,7 +117,7 @@ class Exploration:
 
 def _as_coordinate(given: Any, row: int) -> float:
     if not isinstance(given, Real) or isinstance(given, bool):
-        raise InputError(f"coordinates are numbers; got {given!r}")
+        raise InputError(f"coordinates are numbers; got {given!r:.80}")
     try:
         number = float(given)
     except OverflowError:

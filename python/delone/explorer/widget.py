@@ -6,7 +6,7 @@ import functools
 import re
 from typing import TYPE_CHECKING, Any
 
-from delone._arrays import as_count
+from delone._arrays import as_least
 from delone.errors import DeloneError, InputError
 from delone.explorer import script
 from delone.explorer.state import Exploration
@@ -94,9 +94,7 @@ def explore(
     [2.5, 1.5]
     """
     chosen = _as_layers(layers)
-    pixels = as_count(height, name="height")
-    if pixels < 1:
-        raise InputError(f"height must be at least 1 pixel, got {height}")
+    pixels = as_least(height, 1, name="height (pixels)")
     require("anywidget", extra="explore", what="exploring in a notebook")
     state = Exploration(mesh, values=values, quality=quality)
     return _widget_class()(state, layers=chosen, height=pixels)
@@ -106,9 +104,9 @@ def _as_layers(layers: Mapping[str, bool] | None) -> dict[str, bool]:
     chosen = {} if layers is None else dict(layers)
     for name, on in chosen.items():
         if name not in _LAYERS:
-            raise InputError(f"{name!r} is not a layer; layers are {', '.join(_LAYERS)}")
+            raise InputError(f"{name!r:.80} is not a layer; layers are {', '.join(_LAYERS)}")
         if not isinstance(on, bool):
-            raise InputError(f"layer {name!r} is switched by True or False; got {on!r}")
+            raise InputError(f"layer {name!r:.80} is switched by True or False; got {on!r:.80}")
     return chosen
 
 

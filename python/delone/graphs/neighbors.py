@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from delone import _core
-from delone._arrays import as_choice, as_count, as_flag, as_workers
+from delone._arrays import as_choice, as_flag, as_least, as_workers
 from delone.counting import counted
 from delone.errors import InputError
 from delone.graphs.coincident import repeated
@@ -80,7 +80,7 @@ def nearest_neighbors(
     >>> nearest_neighbors(points, 1, directed=True).edges.tolist()
     [[0, 1], [1, 0], [2, 1], [3, 2]]
     """
-    count, one_way = as_count(k, name="k"), as_flag(directed, name="directed")
+    count, one_way = as_least(k, 1, name="k"), as_flag(directed, name="directed")
     own = coordinates(points, ndim=None, planar=planar)
     threads = as_workers(workers)
     if not 1 <= count < len(own):
@@ -159,5 +159,5 @@ def _require_k(k: int, rows: int, duplicates: int) -> None:
         return
     if most < 1:
         there = counted(rows - duplicates, "distinct point")
-        raise InputError(f"k = {k}: {there}, so there are no neighbors; two are needed at least")
-    raise InputError(f"k must be from 1 to {most}, one less than the distinct points, got {k}")
+        raise InputError(f"k = {k!s:.60}: {there}, so there are no neighbors; two are needed at least")
+    raise InputError(f"k must be from 1 to {most}, one less than the distinct points, got {k!s:.60}")

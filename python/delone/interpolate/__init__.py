@@ -46,4 +46,4 @@ def __getattr__(name: str) -> Any:
         from delone.interpolate.regressor import DelaunayRegressor
 
         return DelaunayRegressor
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    raise AttributeError(f"module {__name__!r:.80} has no attribute {name!r:.80}")

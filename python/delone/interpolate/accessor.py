@@ -471,7 +471,7 @@ def _variables(data: Any, plain: Any, sites: _Sites) -> tuple[list[Any], list[An
     for name in names:
         kind = plain[name].dtype
         if kind.kind not in "iufc":
-            raise DtypeError(f"variable {name!r} is not numeric (dtype {kind}); drop it")
+            raise DtypeError(f"variable {name!r:.80} is not numeric (dtype {kind}); drop it")
     others = [name for name in some if name not in names]
     partial = [name for name in others if name not in ours]
     if partial:

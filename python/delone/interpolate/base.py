@@ -433,7 +433,7 @@ class Interpolator:
             return None
         if self._duplicates != "mean":
             raise InputError(
-                f"duplicates={self._duplicates!r} selects one value of the points that coincide, "
+                f"duplicates={self._duplicates!r:.20} selects one value of points that coincide, "
                 "which depends on the values; use apply"
             )
         # The points of a group are adjacent; each of its rows lists the whole group.
@@ -665,7 +665,7 @@ def as_max_distance(max_distance: float | None) -> float | None:
         return None
     limit = as_number(max_distance, name="max_distance")
     if not limit >= 0:
-        raise InputError(f"max_distance must be at least 0, got {max_distance!r}")
+        raise InputError(f"max_distance must be at least 0, got {max_distance!r:.80}")
     return limit
 
 

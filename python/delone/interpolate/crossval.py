@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_callback, as_count, as_optional_flag, as_points, as_workers
+from delone._arrays import as_callback, as_least, as_optional_flag, as_points, as_workers
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, DtypeError, InputError
 from delone.georeference import warn_of_degrees
@@ -306,7 +306,7 @@ class _Task:
     def folded(self, folds: int, rng: np.random.Generator) -> Floats:
         """Predictions of each vertex from the other folds, as columns."""
         vertices = self._vertices()
-        if not 2 <= as_count(folds, name="folds") <= len(vertices):
+        if not 2 <= as_least(folds, 2, name="folds") <= len(vertices):
             raise InputError(
                 f"folds must be from 2 to {len(vertices)} (the number of sites), got {folds}"
             )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 from typing import TYPE_CHECKING, Any
 
-from delone.errors import InputError
+from delone.errors import DtypeError, InputError
 from delone.interpolate.clough_tocher import CloughTocher
 from delone.interpolate.linear import Linear
 from delone.interpolate.natural import NaturalNeighbor
@@ -70,6 +70,11 @@ def interpolator(
     >>> interpolator("nearest", [(0, 0), (1, 0), (0, 1)], [1, 2, 3])((2, 0))
     array(2.)
     """
+    if not isinstance(method, str):
+        raise DtypeError(
+            "the first argument is the method, as in interpolator('linear', points, values); got "
+            f"an object of type {type(method).__name__}"
+        )
     kind, fixed = METHODS[chosen("method", method, tuple(METHODS))]
     require_options(method, options)
     return kind(points, values, **fixed, **options)
@@ -95,4 +100,4 @@ def require_options(method: str, options: Mapping[str, Any]) -> None:
         known = [*inspect.signature(kind).parameters][2:]
         if name not in known or name in fixed:
             listed = ", ".join(each for each in known if each not in fixed)
-            raise InputError(f"{name} is not an option of {method!r}; its options are {listed}")
+            raise InputError(f"{name} is not an option of {method!r:.80}; its options are {listed}")

@@ -169,7 +169,7 @@ class NaturalNeighbor(Smooth):
             refuse("site_gradients", f"kind={self._kind!r} has no gradients at the sites")
         instead = " or ".join(f"kind={kind!r}" for kind in _WITH_GRADIENTS)
         raise InputError(
-            f"kind={self._kind!r} has no gradients at the sites: choose {instead}, "
+            f"kind={self._kind!r:.80} has no gradients at the sites: choose {instead}, "
             "or get the gradient of the interpolant anywhere else with gradient(xi)"
         )
 

@@ -306,14 +306,14 @@ def raster_nodes(
     if shape is not None:
         counts = [as_count(count, name="shape") for count in _listed(shape, "shape", 2)]
         if min(counts) < 1:
-            raise InputError(f"shape must be two numbers of at least 1, got {shape!r}")
+            raise InputError(f"shape must be two numbers of at least 1, got {shape!r:.80}")
         cells = []
     else:
         side: Any = resolution
         given = [side] * 2 if _is_one(side) else side
         cells = [as_number(cell, name="resolution") for cell in _listed(given, "resolution", 2)]
         if not all(0 < cell < math.inf for cell in cells):
-            raise InputError(f"resolution must be above 0, got {resolution!r}")
+            raise InputError(f"resolution must be above 0, got {resolution!r:.80}")
         cells = [cells[k] * units[k] for k in range(2)]
         counts = [max(1, _cells(_length(low[k], high[k], units[k]), cells[k])) for k in range(2)]
     columns, rows = counts
@@ -372,7 +372,7 @@ def _cells(length: float, cell: float) -> int:
 def _bounded(bounds: Sequence[float]) -> tuple[list[float], list[float]]:
     box = [as_number(bound, name="bounds") for bound in _listed(bounds, "bounds", 4)]
     if not (box[0] < box[2] and box[1] < box[3] and np.isfinite(box).all()):
-        raise InputError(f"bounds must be left, bottom, right, top; got {bounds!r}")
+        raise InputError(f"bounds must be left, bottom, right, top; got {bounds!r:.80}")
     return box[:2], box[2:]
 
 

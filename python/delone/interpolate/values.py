@@ -140,7 +140,7 @@ class Field:
             columns[some] += offset[some] / count[some, None]
         elif policy in ("min", "max"):
             if self.is_complex:
-                raise InputError(f"duplicates={policy!r}: complex values have no order")
+                raise InputError(f"duplicates={policy!r:.80}: complex values have no order")
             extreme = np.minimum if policy == "min" else np.maximum
             extreme.at(columns, owner, self.columns[again])
         columns[again] = columns[owner]
@@ -176,7 +176,9 @@ def as_field(values: ArrayLike, count: int, *, name: str = "values") -> Field:
 def chosen(what: str, value: str, choices: tuple[str, ...]) -> str:
     """Validate an argument that must be one of several strings."""
     if not isinstance(value, str) or value not in choices:
-        raise InputError(f"{what} must be one of {', '.join(map(repr, choices))}, got {value!r}")
+        raise InputError(
+            f"{what} must be one of {', '.join(map(repr, choices))}, got {value!r:.80}"
+        )
     return value
 
 

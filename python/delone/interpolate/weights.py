@@ -14,7 +14,8 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_workers
-from delone.errors import InputError, MissingExtraError
+from delone.errors import InputError
+from delone.extras import require
 from delone.interpolate.values import as_field
 
 if TYPE_CHECKING:
@@ -194,13 +195,7 @@ class Weights:
             raise InputError(
                 "this interpolant needs gradients, which a matrix cannot represent; use apply"
             )
-        try:
-            from scipy.sparse import csr_array
-        except ImportError as error:
-            raise MissingExtraError(
-                'a sparse matrix needs SciPy, which is not installed: pip install "delone[learn]"',
-                extra="learn",
-            ) from error
+        csr_array = require("scipy.sparse", extra="graph", what="a sparse matrix").csr_array
         groups = self.sites.mixed_rows()
         empty = np.flatnonzero(np.diff(self.indptr) == 0)
         ends = self.indptr[empty]

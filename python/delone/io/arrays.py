@@ -161,7 +161,7 @@ def write_mesh(
         taken = (_names(archive) | own) & set(further)
         if taken:
             raise FileFormatError(
-                f"{taken.pop()!r} is the name of an array of the file; rename the attribute"
+                f"{taken.pop()!r:.80} is the name of an array of the file; rename the attribute"
             )
         for name, array in further.items():
             with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
@@ -216,7 +216,7 @@ def _from_table(
         if column(i).ndim != 1:
             shape = column(i).shape[1:]
             raise FileFormatError(
-                f"{source}: {names[i]!r} has shape {shape} in each row, not one number"
+                f"{source}: {names[i]!r:.80} has shape {shape} in each row, not one number"
             )
 
     # In the default case, one slice avoids reading the rows of a wide table twice.
@@ -241,7 +241,7 @@ def _from_archive(
     if layer is not None or "points" in names:
         wanted = layer if layer is not None else "points"
         if wanted not in names:
-            raise FileFormatError(f"{source} has no array {wanted!r}: {_listed(names)}")
+            raise FileFormatError(f"{source} has no array {wanted!r:.80}: {_listed(names)}")
         survey = _from_table(_member(archive, wanted), columns, (), source)
         z = survey.z
         if z is None and "z" in names and columns is None and layer is None:
@@ -291,6 +291,6 @@ def _member(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
         entry = archive.getinfo(f"{name}.npy")
     except KeyError:
         raise FileFormatError(
-            f"{archive.filename} has no array {name!r}: {_listed(_names(archive))}"
+            f"{archive.filename} has no array {name!r:.80}: {_listed(_names(archive))}"
         ) from None
     return read_array(archive, entry, f"{archive.filename}: array {name!r}")

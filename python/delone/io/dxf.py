@@ -131,7 +131,7 @@ def _layers(drawing: Any, space: Any, name: str | None, source: str) -> set[str]
     if missing:
         shown = ", ".join(known[:_SHOWN]) + (", ..." if len(known) > _SHOWN else "")
         raise FileFormatError(
-            f"{source} has nothing on layer {missing[0]!r}; its layers are {shown or 'none'}"
+            f"{source} has nothing on layer {missing[0]!r:.80}; its layers are {shown or 'none'}"
         )
     return {each.casefold() for each in wanted}
 

@@ -26,7 +26,7 @@ def split_attributes(
             of_cells[name] = values
         else:
             raise ShapeError(
-                f"attribute {name!r} of shape {values.shape} matches neither {npoints} points nor "
-                f"{ncells} cells"
+                f"attribute {name!r:.40} of shape {values.shape} matches neither {npoints} points "
+                f"nor {ncells} cells"
             )
     return of_points, of_cells

@@ -130,7 +130,7 @@ def _chosen(drafts: list[Draft], name: str | None, source: str) -> Draft:
         raise FileFormatError(f"{source} contains no surface")
     found = [draft for draft in drafts if name in (None, draft.name)]
     if not found:
-        raise FileFormatError(f"{source} has no surface {name!r}; its surfaces are {names}")
+        raise FileFormatError(f"{source} has no surface {name!r:.80}; its surfaces are {names}")
     if len(found) > 1:
         what = "several surfaces" if name is None else f"{len(found)} surfaces {name!r}"
         raise FileFormatError(f"{source} has {what}; choose one (--layer): {names}")

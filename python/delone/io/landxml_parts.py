@@ -192,7 +192,7 @@ class Draft:
         head = self.head
         if self._is_grid and not self._has_faces:
             raise FileFormatError(
-                f"{head.source}, line {self.line}: surface {self.name!r} is a grid without faces"
+                f"{head.source}, line {self.line}: {self.name!r:.60} is a grid without faces"
             )
         for place, (name,), line in self._pending:
             if name not in self._rows:
@@ -205,7 +205,7 @@ class Draft:
         faces = self._triangles()
         if self._has_faces and not len(faces):
             raise FileFormatError(
-                f"{head.source}, line {self.line}: all faces of surface {self.name!r} are "
+                f"{head.source}, line {self.line}: all faces of surface {self.name!r:.80} are "
                 "invisible, or repeat a corner"
             )
         measured = self._lines.get("DataPoints", ())

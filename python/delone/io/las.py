@@ -163,7 +163,9 @@ def _check_names(path: Path, header: Any, names: Sequence[str]) -> None:
     known = set(header.point_format.dimension_names)
     unknown = [name for name in names if name not in known]
     if unknown:
-        raise FileFormatError(f"{path} has no {unknown[0]!r}; it has {', '.join(sorted(known))}")
+        raise FileFormatError(
+            f"{path} has no {unknown[0]!r:.80}; it has {', '.join(sorted(known))}"
+        )
 
 
 @contextmanager

@@ -66,7 +66,7 @@ def _codec(head: bytes, path: Path) -> str | None:
         return _SEVERAL_BYTES.get(codecs.lookup(name).name)
     except LookupError as error:
         raise FileFormatError(
-            f"{path} declares the encoding {name!r}, which is unknown: convert it to UTF-8"
+            f"{path} declares the encoding {name!r:.80}, which is unknown: convert it to UTF-8"
         ) from error
 
 

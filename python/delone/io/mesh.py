@@ -58,7 +58,7 @@ def read_points(
     mesh = _read(path, attributes)
     missing = [name for name in attributes if name not in mesh.point_data]
     if missing:
-        raise FileFormatError(f"{path} has no values {missing[0]!r} of points")
+        raise FileFormatError(f"{path} has no values {missing[0]!r:.80} of points")
     points, z = _coordinates(mesh, path, least=0)
     further = {name: np.asarray(mesh.point_data[name]) for name in attributes}
     return PointSet(points=points, z=z, attributes=further, source=str(path))

@@ -256,8 +256,8 @@ def _nearest_double(value: Decimal, scale: int, name: str) -> float:
         back = Decimal(nearest).quantize(Decimal((0, (1,), -scale)))
     if back != value:
         raise InputError(
-            f"column {name!r} has the value {value}, with more digits than a double keeps: round "
-            "the column to fewer digits, or subtract an offset"
+            f"column {name!r:.40} has the value {value}, with more digits than a double keeps: "
+            "round the column to fewer digits, or subtract an offset"
         )
     return nearest
 
@@ -270,5 +270,5 @@ def _refuse_large_integers(column: Any, name: str) -> None:
     values = column.drop_null().to_numpy()
     if len(values) and (int(values.max()) > 1 << 53 or int(values.min()) < -(1 << 53)):
         raise InputError(
-            f"column {name!r} has integers beyond 2**53, which a double cannot represent"
+            f"column {name!r:.40} has integers beyond 2**53, which a double cannot represent"
         )

@@ -127,7 +127,7 @@ def find_column(names: Sequence[str], wanted: Column, source: str) -> int:
     if not isinstance(wanted, int):
         if names.count(text) > 1:
             raise FileFormatError(
-                f"{source} has {names.count(text)} columns {text!r}: choose one by number from 0"
+                f"{source} has {names.count(text)} columns {text!r:.40}: choose one by its number"
             )
         if text in names:
             return list(names).index(text)
@@ -135,7 +135,7 @@ def find_column(names: Sequence[str], wanted: Column, source: str) -> int:
             return folded.index(text.casefold())
     if text.isdecimal() and len(text) <= _DIGITS and int(text) < len(names):
         return int(text)
-    raise FileFormatError(f"{source} has no column {text!r:.80}; its columns are {_listed(names)}")
+    raise FileFormatError(f"{source} has no column {text!r:.40}; its columns are {_listed(names)}")
 
 
 def names_height(name: str) -> bool:

@@ -669,7 +669,7 @@ def _plain(
         kind = array.dtype.kind
         if (suffix in _MESHES and kind not in "iufb") or (suffix == ".npz" and kind == "O"):
             raise DtypeError(
-                f"attribute {name!r} must hold real numbers in {suffix} files, got dtype "
+                f"attribute {name!r:.80} must hold real numbers in {suffix} files, got dtype "
                 f"{array.dtype}"
             )
         found[name] = array

@@ -178,7 +178,9 @@ def _split(rows: list[str], source: str) -> _Layout:
         if usual > 1 and numbers and (best is None or score > best[0]):
             best = score, delimiter, decimal
     if best is None:
-        raise FileFormatError(f"{source}: its lines are not columns of numbers: {rows[-1][:60]!r}")
+        raise FileFormatError(
+            f"{source}: its lines are not columns of numbers: {rows[-1][:60]!r:.80}"
+        )
     _, delimiter, decimal = best
     first = _fields(rows[0], delimiter)
     named = not any(_is_number(field, decimal) for field in first)

@@ -164,7 +164,9 @@ def _layer(pyogrio: Any, name: str, layer: str | None, path: Path) -> str | None
         raise FileFormatError(f"{path}: compressed files of geometries have no layers")
     names = [str(found) for found, _ in pyogrio.list_layers(name)]
     if layer is not None and layer not in names:
-        raise FileFormatError(f"{path} has no layer {layer!r}; its layers are {', '.join(names)}")
+        raise FileFormatError(
+            f"{path} has no layer {layer!r:.80}; its layers are {', '.join(names)}"
+        )
     if layer is None and len(names) > 1:
         raise FileFormatError(
             f"{path} has several layers; choose one (--layer): {', '.join(names)}"
@@ -232,7 +234,7 @@ def _system(crs: str | None, suffix: str) -> Any:
         return pyproj.CRS.from_user_input(crs)
     except (pyproj.exceptions.CRSError, ValueError) as error:
         raise FileFormatError(
-            f"{suffix} files cannot store the reference system {crs!r}: it is unknown to pyproj"
+            f"{suffix} files cannot store the reference system {crs!r:.80}: it is unknown to pyproj"
         ) from error
 
 

@@ -63,7 +63,7 @@ def draw(path: str | os.PathLike[str], mesh: Simplices | Cells3, **options: Any)
     """
     suffix = Path(path).suffix
     if suffix.lower() not in _FORMATS:
-        raise InputError(f"path must end with {', '.join(_FORMATS)}; got {suffix!r}")
+        raise InputError(f"path must end with {', '.join(_FORMATS)}; got {suffix!r:.80}")
     with _drawn(mesh, options) as plotter:
         plotter.screenshot(str(path))
 

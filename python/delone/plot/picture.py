@@ -116,7 +116,7 @@ def _require_format(suffix: str) -> None:
     bases = require("matplotlib.backend_bases", extra="plot", what="drawing")
     known = bases.FigureCanvasBase.get_supported_filetypes()
     if suffix[1:].lower() not in known:
-        raise InputError(f"path must end with .{', .'.join(sorted(known))}; got {suffix!r}")
+        raise InputError(f"path must end with .{', .'.join(sorted(known))}; got {suffix!r:.80}")
 
 
 def _numbers(mesh: Triangles) -> str:

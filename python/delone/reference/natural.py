@@ -59,7 +59,7 @@ def natural_weights(
     {0: '3/8', 1: '1/8', 2: '1/8', 3: '3/8'}
     """
     if kind not in ("sibson", "laplace"):
-        raise InputError(f"kind must be 'sibson' or 'laplace', got {kind!r}")
+        raise InputError(f"kind must be 'sibson' or 'laplace', got {kind!r:.80}")
     if len(query) == 3:
         if kind != "laplace":
             raise InputError("kind='sibson' is only available in 2-D; in 3-D use kind='laplace'")

@@ -50,7 +50,7 @@ def finer(
     """Return a finer mesh; see ``Mesh.refine``."""
     ratio = as_number(ratio, name="ratio")
     if not 0 < ratio <= 1:
-        raise InputError(f"ratio must be above 0 and at most 1, got {ratio!r}")
+        raise InputError(f"ratio must be above 0 and at most 1, got {ratio!r:.80}")
     bound = float(mesh._bound[0]) if min_angle is None else as_min_angle(min_angle)
     budget = MOST_ADDED if max_points is None else as_limit(max_points, name="max_points")
     limits = Limits(bound, budget, False, as_callback(progress, name="progress"), mesh._workers)

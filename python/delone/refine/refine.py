@@ -250,7 +250,7 @@ def _segment_markers(base: ConstrainedDelaunay, given: ArrayLike | None) -> Indi
 def _fixed(fixed: bool | str | ArrayLike, count: int) -> Bools:
     if isinstance(fixed, str):
         if fixed != "boundary":
-            raise InputError(f"fixed must be a bool, 'boundary' or a mask, got {fixed!r}")
+            raise InputError(f"fixed must be a bool, 'boundary' or a mask, got {fixed!r:.80}")
         return np.zeros(count, dtype=bool)
     array = as_plain_array(fixed, "fixed")
     if array.dtype.kind != "b":

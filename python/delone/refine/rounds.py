@@ -100,7 +100,9 @@ def as_min_angle(min_angle: float) -> float:
     """Return a bound on angles in degrees, in [0, 60); a warning if it is above 33."""
     angle = as_number(min_angle, name="min_angle")
     if not 0 <= angle < 60:
-        raise InputError(f"min_angle must be at least 0 and below 60 degrees, got {min_angle!r}")
+        raise InputError(
+            f"min_angle must be at least 0 and below 60 degrees, got {min_angle!r:.80}"
+        )
     if angle > _LARGEST_USUAL:
         warnings.warn(
             f"min_angle={angle:g} is above {_LARGEST_USUAL:g} degrees: refinement is not proven to "

@@ -67,7 +67,9 @@ class Sizing:
         unknown = sorted(set(given) - set(regions.tolist()))
         if unknown:
             known = ", ".join(map(str, regions[:10].tolist()))
-            raise InputError(f"{name}: there is no region {unknown[0]!r}; the regions are {known}")
+            raise InputError(
+                f"{name}: there is no region {unknown[0]!r:.80}; the regions are {known}"
+            )
         for region, value in given.items():
             at = np.flatnonzero(regions == region)
             cap = self._cap(value, f"{name} of region {region}", area)
@@ -77,7 +79,7 @@ class Sizing:
         number = _positive(value, name)
         cap = area(number)
         if cap == 0 or (self._unit == 1 and math.isinf(cap) and math.isfinite(number)):
-            raise LimitError(_out_of_range(f"{name} {value!r}"))
+            raise LimitError(_out_of_range(f"{name} {value!r:.80}"))
         return cap
 
     @property
@@ -194,7 +196,7 @@ def _is_number(value: Any) -> bool:
 def _positive(value: Any, name: str) -> float:
     number = as_number(value, name=name)
     if not number > 0:
-        raise InputError(f"{name} must be above 0, got {value!r}")
+        raise InputError(f"{name} must be above 0, got {value!r:.80}")
     return number
 
 

@@ -106,7 +106,7 @@ class TetQuality(Measures):
         """
         step = as_number(width, name="width")
         if not _NARROWEST <= step <= 180:
-            raise InputError(f"width must be from {_NARROWEST} to 180 degrees, got {width!r}")
+            raise InputError(f"width must be from {_NARROWEST} to 180 degrees, got {width!r:.80}")
         most = np.degrees(np.arccos(1 / 3))
         bounds: Floats = step * np.arange(int(np.ceil(most / step)) + 1, dtype=np.float64)
         # The angle of the regular tetrahedron may be rounded to above the last edge.

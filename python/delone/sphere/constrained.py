@@ -10,7 +10,7 @@ from delone import _core
 from delone._arrays import as_choice, as_flag, as_limit, as_segments, as_workers
 from delone.constrained import regions, segments
 from delone.counting import counted
-from delone.errors import CrossingSegmentsError, InternalError
+from delone.errors import CrossingSegmentsError, DirectionError, InternalError
 from delone.immutable import kept, sealed
 from delone.sphere.coordinates import directions_of, lonlat_of
 from delone.sphere.crossings import split
@@ -185,6 +185,8 @@ class ConstrainedDelaunay(Delaunay):
             raise
         except CrossingSegmentsError as error:
             raise _with_places(error, vectors, given.segments) from None
+        except DirectionError as error:
+            raise _between_opposites(error, vectors, given) from None
         self._put(vectors, given, made, degrees, workers)
 
     def _put(
@@ -398,6 +400,21 @@ def most_added(crossing: str, max_points: int | None) -> int | None:
     """Return how many vertices may be added; None if crossings are errors."""
     most = _MOST_ADDED if max_points is None else as_limit(max_points, name="max_points")
     return most if as_choice(crossing, _CROSSINGS, name="crossing") == "split" else None
+
+
+def _between_opposites(error: DirectionError, vectors: Floats, given: Given) -> DirectionError:
+    """Return the error of an arc between opposite directions with its ends, and its geometry."""
+    row = int(error.rows[0])
+    (a, b), geometry = given.segments[row], int(given.origin.geometries[row])
+    places = [f"({x:.10g}, {y:.10g})" for x, y in lonlat_of(vectors[[a, b]]).tolist()]
+    what = f"segment {row}" if geometry < 0 else f"a side of geometry {geometry}"
+    more = "" if error.count == 1 else f" ({error.count} do)"
+    return DirectionError(
+        f"{what} joins the opposite directions {places[0]} and {places[1]}{more}, which no single "
+        "shorter arc joins: add a point between them",
+        rows=error.rows if geometry < 0 else np.array([geometry]),
+        count=error.count,
+    )
 
 
 def _with_places(

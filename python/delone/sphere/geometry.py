@@ -10,7 +10,7 @@ import numpy as np
 from delone._arrays import as_choice, as_flag
 from delone.constrained import geodata
 from delone.duplicates import first_rows
-from delone.errors import InputError
+from delone.errors import DirectionError, InputError
 from delone.georeference import as_degrees, common_crs
 from delone.sphere.constrained import WINDINGS, ConstrainedDelaunay, Given, most_added
 from delone.sphere.coordinates import directions_of
@@ -148,7 +148,10 @@ def read(
     distinct = first == np.arange(len(first))
     vertex = (np.cumsum(distinct) - 1)[first].astype(np.int32)
     lonlat = parts.coordinates[distinct]
-    vectors = directions_of(lonlat, None, degrees=degrees, workers=workers)
+    try:
+        vectors = directions_of(lonlat, None, degrees=degrees, workers=workers)
+    except DirectionError as error:
+        raise _placed(error, parts, np.flatnonzero(distinct), name) from None
     ends, part = geodata.steps_of(parts)
     kinds = parts.kinds[part]
     origin = Origin(
@@ -158,3 +161,22 @@ def read(
     )
     whole = whole_sphere(parts, vectors, vertex[ends], origin)
     return vectors, Given(vertex[ends], origin, winding, len(vectors)), whole
+
+
+def _placed(
+    error: DirectionError, parts: geodata.Parts, rows: NDArray[np.int64], name: str
+) -> DirectionError:
+    """Return the error of coordinates with the geometry and the place of the first."""
+    row = int(rows[int(error.rows[0])])
+    part = int(np.searchsorted(parts.starts, row, side="right")) - 1
+    x, y = parts.coordinates[row].tolist()
+    # What is wrong and what to do are the same; row numbers are those of an inner array.
+    _, _, what = str(error).partition(" a ")
+    kind, _, hint = what.partition(", first row")
+    _, _, hint = hint.partition(": ")
+    return DirectionError(
+        f"{name}: geometry {int(parts.geometries[part])} has a {kind} at ({x:.10g}, {y:.10g}): "
+        f"{hint}; project other coordinates to longitudes and latitudes first",
+        rows=parts.geometries[[part]],
+        count=error.count,
+    )

@@ -261,7 +261,7 @@ class _Interpolator:
             return None
         if self._duplicates != "mean":
             raise InputError(
-                f"duplicates={self._duplicates!r} selects one value of the points that coincide, "
+                f"duplicates={self._duplicates!r:.20} selects one value of points that coincide, "
                 "which depends on the values; use apply"
             )
         # The rows of a group are adjacent in `order`; each of its rows lists the whole group.
@@ -442,7 +442,7 @@ class _Continuous(_Interpolator):
         """
         radius = as_number(radius, name="radius")
         if not 0 < radius < math.inf:
-            raise InputError(f"radius must be positive, got {radius!r}")
+            raise InputError(f"radius must be positive, got {radius!r:.80}")
         if several := self._several(values):
             field, narrow = several
             return field.joined([(k, part.gradient(xi, radius=radius)) for k, part in narrow], 1)

@@ -36,7 +36,7 @@ def interpolator(
     for name in options:
         if name not in known:
             raise InputError(
-                f"{name} is not an option of {method!r} on the sphere; its options are "
+                f"{name} is not an option of {method!r:.80} on the sphere; its options are "
                 f"{', '.join(known)}"
             )
     return kind(points, **fixed, **options)

@@ -719,7 +719,7 @@ def _as_radius(radius: Any) -> float:
     except (TypeError, ValueError):
         raise DtypeError(f"radius must be a number, got {radius!r:.60}") from None
     if not 0 < value < np.inf:
-        raise InputError(f"radius must be positive and finite, got {value!r}")
+        raise InputError(f"radius must be positive and finite, got {value!r:.80}")
     return value
 
 

@@ -130,7 +130,7 @@ def build(
     if max_edge is not None:
         limit = as_number(max_edge, name="max_edge")
         if not limit > 0:
-            raise InputError(f"max_edge must be above 0, got {max_edge!r}")
+            raise InputError(f"max_edge must be above 0, got {max_edge!r:.80}")
         kept = peeled(mesh.points, mesh.simplices, mesh.neighbors, kept, mesh.constrained, limit)
     return compact(mesh, heights, kept, soft, system, heights_in)
 

@@ -90,7 +90,7 @@ def _slopes(slope: Any, cut: Any, fill: Any) -> tuple[float, float]:
         if not _MILDEST <= number <= 1 / _MILDEST:
             raise InputError(
                 f"{'slope' if value is None else name} must be from 1e-6 to 1e6: the rise for one "
-                f"unit of distance, as 0.5 for 1 : 2; got {given!r}. A vertical wall cannot be "
+                f"unit of distance, as 0.5 for 1 : 2; got {given!r:.80}. A vertical wall cannot be "
                 "part of a TIN"
             )
         found.append(number)

@@ -259,5 +259,5 @@ def _mask(fixed: ArrayLike | None, count: int) -> Bools:
 def _angle(value: float) -> float:
     goal = as_number(value, name="min_angle")
     if not 0 <= goal <= _LARGEST_GOAL:
-        raise InputError(f"min_angle must be from 0 to {_LARGEST_GOAL}, got {value!r}")
+        raise InputError(f"min_angle must be from 0 to {_LARGEST_GOAL}, got {value!r:.80}")
     return goal

@@ -16,7 +16,13 @@ from delone._arrays import (
     as_workers,
 )
 from delone.counting import counted, listed
-from delone.errors import CrowdedFacesError, DanglingFacesError, InputError, ShapeError
+from delone.errors import (
+    BudgetExceededError,
+    CrowdedFacesError,
+    DanglingFacesError,
+    InputError,
+    ShapeError,
+)
 from delone.space.locking import Sides, cells, directions
 from delone.surface import check_surface
 from delone.tetmesh.tetmesh import TetMesh
@@ -257,13 +263,25 @@ class _Stages(NamedTuple):
             if not len(alone):
                 raise
             raise _dangling(alone) from error
+        except BudgetExceededError as error:
+            error.args = (f"{error}{self._advice()}", *error.args[1:])
+            raise
         if len(made.crowded):
-            raise _crowded(parts.source[made.crowded])
+            raise _crowded(parts.source[made.crowded], self._advice())
         further = made.points[len(used) :]
         rows = np.concatenate((used, len(points) + np.arange(len(further)))).astype(np.int32)
         everywhere = np.concatenate((points, further))
         tiling = Tiling(everywhere, rows[made.tetrahedra], made.neighbors, parts.faces)
         return _Everything(tiling, made.walls, made.nadded, made.counts)
+
+    def _advice(self) -> str:
+        """Say what adds fewer points, unless it has been chosen."""
+        if self.boundary == "surface":
+            return ""
+        return (
+            '; boundary="surface" cuts triangles in one plane again, which needs fewer points, '
+            "often none"
+        )
 
     def _inside(self, tiling: Tiling, solid: _Solid, parts: Parts) -> Bools:
         """Return which tetrahedra remain."""
@@ -273,7 +291,7 @@ class _Stages(NamedTuple):
         if not inner.any():
             raise InputError(
                 "nothing is left inside: every region is a hole, or not inside by the rule "
-                f"inside={self.rule!r}"
+                f"inside={self.rule!r:.80}"
             )
         kept: Bools = inner[solid.cell]
         return kept
@@ -339,7 +357,7 @@ def _checked(points: Floats, faces: Indices, workers: int | None) -> SurfaceChec
 
 def _require_inside(tiling: Tiling, extra: Floats, workers: int | None) -> None:
     """Require that extra points are different, enclosed, and not on a face."""
-    seeds.located(tiling, extra, "extra_points", workers)
+    seeds.located(tiling, extra, "extra_points", workers, kind="point")
     _, first = np.unique(extra, axis=0, return_index=True)
     if len(first) < len(extra):
         again = np.setdiff1d(np.arange(len(extra)), first)
@@ -358,11 +376,11 @@ def _without_unused(points: Floats, simplices: Indices, nadded: int) -> tuple[Fl
     return points[used], number[simplices], int(used.sum()) - given
 
 
-def _crowded(faces: Indices) -> CrowdedFacesError:
+def _crowded(faces: Indices, advice: str) -> CrowdedFacesError:
     rows = np.unique(faces)
     return CrowdedFacesError(
         f"between {counted(len(rows), 'face')} no double is left for a point that is needed there: "
-        f"{listed(rows, 10)}; `error.faces` has them: move them apart, or subdivide them",
+        f"{listed(rows, 10)}; `error.faces` has them: move them apart, or subdivide them" + advice,
         faces=rows,
     )
 

@@ -70,7 +70,9 @@ class Tiling(NamedTuple):
     faces: Indices
 
 
-def located(tiling: Tiling, seeds: Floats, name: str, workers: int | None) -> Indices:
+def located(
+    tiling: Tiling, seeds: Floats, name: str, workers: int | None, *, kind: str = "seed"
+) -> Indices:
     """Return the tetrahedron of each seed, which must be inside and not on a face."""
     if not len(seeds):
         return np.empty(0, dtype=np.int32)
@@ -79,13 +81,13 @@ def located(tiling: Tiling, seeds: Floats, name: str, workers: int | None) -> In
     outside = np.flatnonzero(found < 0)
     if len(outside):
         raise InputError(
-            f"{name}: {counted(len(outside), 'seed')} outside of all that the faces enclose: "
+            f"{name}: {counted(len(outside), kind)} outside of all that the faces enclose: "
             f"{agreed(len(outside), 'row', 'rows')} {listed(outside, _SHOWN)}"
         )
     on = np.flatnonzero(_on_surface(points, simplices[found], faces, seeds))
     if len(on):
         raise InputError(
-            f"{name}: {counted(len(on), 'seed')} on a face of the surface: "
+            f"{name}: {counted(len(on), kind)} on a face of the surface: "
             f"{agreed(len(on), 'row', 'rows')} {listed(on, _SHOWN)}; move "
             f"{agreed(len(on), 'it', 'them')} inside"
         )

@@ -104,7 +104,7 @@ def as_clip(
         return _strip(clip, points, periods)
     if isinstance(clip, str):
         if clip != "box":
-            raise InputError(f"clip must be 'box', four numbers or a polygon, got {clip!r}")
+            raise InputError(f"clip must be 'box', four numbers or a polygon, got {clip!r:.80}")
         return _box([*points.min(axis=0), *points.max(axis=0)])
     geometry = _geometry(clip)
     return _box(clip) if geometry is None else _outline(geometry, fix)
@@ -134,7 +134,7 @@ def _strip(clip: Any, points: Floats, periods: tuple[float | None, float | None]
     if not (np.isfinite([low, high]).all() and (box[[axis, axis + 2]] == [-np.inf, np.inf]).all()):
         raise InputError(f"{only}, got {clip!r:.80}")
     if not low < high:
-        raise InputError(f"the box of clip has no area: {low!r} must be below {high!r}")
+        raise InputError(f"the box of clip has no area: {low!r:.80} must be below {high!r:.80}")
     left, bottom, right, top = box.tolist()
     return Clip(bounds=(left, bottom, right, top))
 
@@ -194,14 +194,14 @@ def _box(numbers: Any) -> Clip:
     except (TypeError, ValueError):
         raise InputError(
             f"clip must be 'box', four numbers (xmin, ymin, xmax, ymax) or a polygon, got "
-            f"{numbers!r}"
+            f"{numbers!r:.80}"
         ) from None
     if not np.isfinite([left, bottom, right, top]).all():
         raise InputError("the box of clip must be finite")
     if not (left < right and bottom < top):
         raise InputError(
-            f"the box of clip has no area: xmin {left!r} must be below xmax {right!r}, and ymin "
-            f"{bottom!r} below ymax {top!r}"
+            f"the box of clip has no area: xmin {left!r:.30} must be below xmax {right!r:.30}, "
+            f"and ymin {bottom!r:.30} below ymax {top!r:.30}"
         )
     return Clip(bounds=(left, bottom, right, top))
 

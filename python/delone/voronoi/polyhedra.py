@@ -87,7 +87,7 @@ def as_polyhedron(clip: Any, points: Floats) -> Polyhedron | None:
         return clip
     if isinstance(clip, str):
         if clip != "box":
-            raise InputError(f"{_CHOICES}; got {clip!r}")
+            raise InputError(f"{_CHOICES}; got {clip!r:.80}")
         return _box(np.stack((points.min(axis=0), points.max(axis=0))))
     if hasattr(clip, "simplices") and hasattr(clip, "points"):
         clip = np.asarray(clip.points)[np.unique(clip.simplices)]

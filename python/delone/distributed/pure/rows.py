@@ -73,7 +73,7 @@ def widen(rows: Rows, kind: np.dtype[np.void]) -> Rows:
             lost = np.flatnonzero((values > _EXACT) | (values.astype(np.float64) < -_EXACT))
             if len(lost):
                 raise DtypeError(
-                    f"attribute {name!r} has integers in some files and floats or gaps in "
+                    f"attribute {name!r:.80} has integers in some files and floats or gaps in "
                     f"others; {values[lost[0]]} of row {rows['id'][lost[0]]} is beyond the 2**53 "
                     "up to which a double can represent every integer"
                 )

@@ -169,5 +169,5 @@ class TileFolder:
         has += self.manifest["attributes"]
         if value not in has:
             raise InputError(
-                f"{self.path} has no {value!r}; it has {', '.join(has) or 'no values'}"
+                f"{self.path} has no {value!r:.80}; it has {', '.join(has) or 'no values'}"
             )

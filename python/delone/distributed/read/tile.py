@@ -109,7 +109,7 @@ def read_columns(path: Path, wanted: Mapping[str, str | Sequence[str]]) -> dict[
         with parquet.ParquetFile(path) as file:
             names = file.schema_arrow.names
             if missing := [name for name in wanted if names.count(name) != 1]:
-                raise FileFormatError(f"{path} has no column {missing[0]!r}, or two")
+                raise FileFormatError(f"{path} has no column {missing[0]!r:.80}, or two")
             table = file.read(columns=list(wanted))
             columns = {name: table[name].to_numpy() for name in wanted}
             gaps = [name for name in wanted if table[name].null_count]
@@ -123,7 +123,9 @@ def read_columns(path: Path, wanted: Mapping[str, str | Sequence[str]]) -> dict[
     for name, kinds in wanted.items():
         if name in gaps or columns[name].dtype.kind not in kinds:
             found = "has gaps" if name in gaps else f"has dtype {columns[name].dtype}"
-            raise FileFormatError(f"{path}: column {name!r} {found}, which is invalid in a tile")
+            raise FileFormatError(
+                f"{path}: column {name!r:.80} {found}, which is invalid in a tile"
+            )
     return columns
 
 

@@ -41,7 +41,7 @@ class DaskExecutor:
         if not isinstance(client, self._distributed.Client) or client.asynchronous:
             raise InputError(
                 "executor must be 'serial', 'processes' or a dask.distributed.Client that is not "
-                f"asynchronous, got {client!r}"
+                f"asynchronous, got {client!r:.80}"
             )
         self.client = client
 
@@ -62,7 +62,7 @@ class DaskExecutor:
             yield from self._run(root, stage, tasks)
         except self._distributed.KilledWorker as error:
             raise DeloneError(
-                f"a task of the stage {stage!r} killed worker after worker: is there enough "
+                f"a task of the stage {stage!r:.80} killed worker after worker: is there enough "
                 "memory for tiles of this size? Finished work is kept; run the same again to resume"
             ) from error
         except self._lost() as error:

@@ -101,7 +101,7 @@ class Processes:
                     future.cancel()
         if queue:
             raise DeloneError(
-                f"worker processes died {deaths} times in the stage {stage!r}: is there enough "
+                f"worker processes died {deaths} times in the stage {stage!r:.80}: is there enough "
                 "memory for tiles of this size? Finished work is kept; run the same again to resume"
             )
 

@@ -234,10 +234,10 @@ def _number(found: PointSet, name: str) -> NDArray[Any]:
     names = [other for other in found.attributes if other.casefold() == name.casefold()]
     if name not in found.attributes and len(names) != 1:
         raise FileFormatError(
-            f"{found.source} has no column {name!r}; attributes are given by name"
+            f"{found.source} has no column {name!r:.80}; attributes are given by name"
         )
     values = np.asarray(found.attributes[name if name in found.attributes else names[0]])
     if values.dtype.kind not in "biuf" or values.ndim != 1:
         what = f"{values.dtype}, several per row" if values.ndim > 1 else values.dtype
-        raise FileFormatError(f"{found.source}: {name!r} is not one number per row ({what})")
+        raise FileFormatError(f"{found.source}: {name!r:.80} is not one number per row ({what})")
     return values

@@ -190,7 +190,7 @@ def check_manifest(found: Any, path: Path) -> None:
     try:
         # In another format everything may be different.
         if not isinstance(found, dict) or found.get("format") != FORMAT:
-            raise _WrongFieldError(f"it is not {FORMAT!r}")
+            raise _WrongFieldError(f"it is not {FORMAT!r:.80}")
         _MANIFEST(found, "")
         _check_tiles(found["tiles"])
         _check_tree(found["tree"], len(found["tiles"]))
