@@ -95,8 +95,8 @@ def test_arguments_state_their_ranges() -> None:
             graphs.beta_skeleton(points, beta)
     with pytest.raises(DtypeError, match="beta"):
         graphs.beta_skeleton(points, "1.5")  # type: ignore[arg-type]
-    for k in (0, 20, 21):
-        with pytest.raises(InputError, match="from 1 to 19"):
+    for k, words in ((0, "at least 1"), (-1, "at least 1"), (20, "from 1 to 19"), (21, "from 1")):
+        with pytest.raises(InputError, match=words):
             graphs.nearest_neighbors(points, k)
     with pytest.raises(InputError, match="from 1 to 19"):
         graphs.nearest_neighbors(np.concatenate((points, points)), 20)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_count, as_least, as_number, as_workers
+from delone._arrays import as_count, as_number, as_workers
 from delone.counting import counted
 from delone.errors import InputError
 from delone.graphs import Graph, minimum_spanning_tree
@@ -138,7 +138,7 @@ class SingleLinkage(Immutable):
             if not limit >= 0:
                 raise InputError(f"height must be a number of at least 0, got {height}")
             return self._tree.prune(max_length=limit).components()
-        wanted = as_count(0) if n_clusters is None else as_least(n_clusters, 1, name="n_clusters")
+        wanted = as_count(0 if n_clusters is None else n_clusters, name="n_clusters")
         n = self.npoints
         if not min(n, 1) <= wanted <= n:
             raise InputError(

@@ -159,5 +159,9 @@ def _require_k(k: int, rows: int, duplicates: int) -> None:
         return
     if most < 1:
         there = counted(rows - duplicates, "distinct point")
-        raise InputError(f"k = {k!s:.60}: {there}, so there are no neighbors; two are needed at least")
-    raise InputError(f"k must be from 1 to {most}, one less than the distinct points, got {k!s:.60}")
+        raise InputError(
+            f"k = {k!s:.60}: {there}, so there are no neighbors; two are needed at least"
+        )
+    raise InputError(
+        f"k must be from 1 to {most}, one less than the distinct points, got {k!s:.60}"
+    )
