@@ -56,6 +56,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "tetmesh": ("improve",),
     "triangulation": ("delaunay", "classes"),
     "units": ("cli",),
+    "xarray": ("interpolate", "sphere"),
     # Modules of the core.
     "consistency": ("delaunay", "validation"),
     "contour": ("terrain",),

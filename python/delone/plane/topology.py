@@ -102,7 +102,9 @@ def rows_among(triangles: Indices, some: Indices) -> Indices:
     return found
 
 
-def triangles_among(triangles: Indices, others: Indices) -> NDArray[np.bool_]:
+def triangles_among(
+    triangles: NDArray[np.integer], others: NDArray[np.integer]
+) -> NDArray[np.bool_]:
     """Return which triangles have the same corners as one of the others."""
     corners = np.sort(np.concatenate((triangles, others)), axis=1).astype(np.int64)
     count = int(corners.max(initial=0)) + 1

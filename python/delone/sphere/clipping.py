@@ -19,7 +19,7 @@ from delone.errors import InputError
 from delone.plane.topology import half_edges
 from delone.sphere.constrained import WINDINGS, ConstrainedDelaunay, Given, most_added
 from delone.sphere.geometry import read
-from delone.sphere.land import Origin
+from delone.sphere.sides import Origin
 
 if TYPE_CHECKING:
     from collections.abc import Callable

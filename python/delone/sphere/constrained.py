@@ -15,7 +15,8 @@ from delone.immutable import kept, sealed
 from delone.sphere.coordinates import directions_of, lonlat_of
 from delone.sphere.crossings import split
 from delone.sphere.delaunay import Delaunay
-from delone.sphere.land import Origin, Rings, first_polygon
+from delone.sphere.land import Rings, first_polygon
+from delone.sphere.sides import Origin
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

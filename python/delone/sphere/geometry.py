@@ -14,8 +14,7 @@ from delone.errors import DirectionError, InputError
 from delone.georeference import as_degrees, common_crs
 from delone.sphere.constrained import WINDINGS, ConstrainedDelaunay, Given, most_added
 from delone.sphere.coordinates import directions_of
-from delone.sphere.land import Origin
-from delone.sphere.sides import SIDES, divided, whole_sphere
+from delone.sphere.sides import SIDES, Origin, divided, whole_sphere
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -20,7 +20,7 @@ from delone.counting import agreed, counted
 from delone.errors import InputError
 from delone.georeference import caller_level
 from delone.plane.topology import edge_keys, half_edges
-from delone.sphere.sides import PolygonWarning
+from delone.sphere.sides import Origin, PolygonWarning
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -38,23 +38,6 @@ __all__ = ["Origin", "Rings", "first_polygon"]
 
 # Areas within this of half the sphere, in steradians, are half: they are sums of rounded ones.
 _HALF = 1e-9
-
-
-class Origin(NamedTuple):
-    """Where each input segment came from."""
-
-    # (s,): its geometry, -1 without one.
-    geometries: Indices
-    # (s,): whether it is the side of a ring.
-    rings: Bools
-    # (s,): whether it is the side of the outer ring of a polygon.
-    outer: Bools
-
-    @classmethod
-    def of_arrays(cls, count: int) -> Origin:
-        """Return the origin of segments that did not come from geometries."""
-        none = np.zeros(count, dtype=bool)
-        return cls(np.full(count, -1, dtype=np.int32), none, none.copy())
 
 
 class Rings(NamedTuple):

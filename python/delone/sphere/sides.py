@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import warnings
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -22,18 +22,35 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone.constrained.geodata import Parts
-    from delone.sphere.land import Origin
 
+    Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["SIDES", "PolygonWarning", "divided", "whole_sphere"]
+__all__ = ["SIDES", "Origin", "PolygonWarning", "divided", "whole_sphere"]
 
 SIDES = ("arc", "parallel")
 # Longer arcs leave the parallel of their ends by more than a degree, in middle latitudes.
 _LONG = np.radians(30.0)
 # Pieces of a quarter: a degree.
 _PIECES = 90
+
+
+class Origin(NamedTuple):
+    """Where each input segment came from."""
+
+    # (s,): its geometry, -1 without one.
+    geometries: Indices
+    # (s,): whether it is the side of a ring.
+    rings: Bools
+    # (s,): whether it is the side of the outer ring of a polygon.
+    outer: Bools
+
+    @classmethod
+    def of_arrays(cls, count: int) -> Origin:
+        """Return the origin of segments that did not come from geometries."""
+        none = np.zeros(count, dtype=bool)
+        return cls(np.full(count, -1, dtype=np.int32), none, none.copy())
 
 
 class PolygonWarning(UserWarning):

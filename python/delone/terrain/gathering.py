@@ -104,8 +104,8 @@ def _on_ground(line: Floats, ground: Surface, *, ring: bool) -> Floats:
     if not without.all():
         return np.column_stack((places, z))
     if not np.isnan(z).any():
-        found = profile(ground, places)
-        return np.column_stack((found.points, found.z))
+        section = profile(ground, places)
+        return np.column_stack((section.points, section.z))
     tables = [np.append(places[0], z[0])[None]]
     for k in range(len(places) - 1):
         # The surface of points is convex: a segment has at most one part on it.
