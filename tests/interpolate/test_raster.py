@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -193,3 +194,25 @@ def test_more_cells_than_any_memory_has(
     with pytest.raises(MemoryError, match="choose larger cells") as caught:
         grid(SQUARE, VALUES, **options)
     assert len(str(caught.value)) < 200
+
+
+@pytest.mark.parametrize("shift", [0.0, 85_000.0, 5.4e6])
+@pytest.mark.parametrize("resolution", [0.01, 0.05, 0.1, 0.25])
+def test_rasters_at_large_offsets_have_no_extra_row_and_decimal_nodes(shift, resolution):
+    for cells in (1, 7, 29, 59):
+        high = shift + cells * resolution
+        corners = [(shift, shift), (high, shift), (high, high), (shift, high)]
+        found = grid(corners, [0.0, 1, 1, 0], resolution=resolution)
+        assert found.values.shape == (cells, cells)
+        start, step = Decimal(repr(shift)), Decimal(repr(resolution))
+        want = [float(start + step * (2 * k + 1) / 2) for k in range(cells)]
+        assert found.x.tolist() == want and found.y.tolist() == want
+        if cells > 1:
+            assert found.cell == (resolution, resolution)
+            end = float(start + step * cells)
+            assert found.extent == (shift, end, shift, end)
+
+
+def test_a_point_beyond_the_last_cell_has_a_cell():
+    found = grid([(0, 0), (1.001, 0), (0, 1)], [0.0, 1, 2], resolution=0.1)
+    assert found.values.shape == (10, 11)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from decimal import Decimal
 from fractions import Fraction
 from itertools import pairwise
 
@@ -244,3 +245,25 @@ def test_contours_skip_holes_and_bays():
     assert tin.contours([1.5]).points[:, 0] == pytest.approx(1.5)
     bands = tin.bands([4.25])
     assert shapely.area(bands.to_shapely()).sum() == pytest.approx(64 - 9)
+
+
+@pytest.mark.parametrize(("interval", "base"), [(0.1, 0.0), (0.3, 0.05), (0.01, -1.07), (2.5, 1e6)])
+def test_levels_are_the_doubles_nearest_to_decimal_multiples(interval, base):
+    tin = TIN.from_points([(0, 0, base), (1, 0, base + 20), (0, 1, base)])
+    found = tin.contours(interval=interval, base=base, index=5)
+    step, start = Decimal(repr(interval)), Decimal(repr(base))
+    want = [float(start + k * step) for k in range(int(Decimal(20) / step) + 1)]
+    assert found.levels.tolist() == want
+    assert tin.bands(interval=interval, base=base).low.tolist() == want[: len(tin.bands(want[1:]))]
+
+
+def test_a_terrace_at_a_level_is_not_below_it():
+    terrace = [
+        (x, y, 0.3 if 2 <= x <= 6 and 2 <= y <= 6 else 0.0) for x in range(9) for y in range(9)
+    ]
+    tin = TIN.from_points(terrace)
+    assert 0.3 in tin.contours(interval=0.1).level
+    assert tin.contours(interval=0.1).level.tolist() == tin.contours([0.1, 0.2, 0.3]).level.tolist()
+    # A number of 17 digits is no decimal: the multiples are those of the double.
+    third = TIN.from_points([(0, 0, 0), (1, 0, 1), (0, 1, 0)]).contours(interval=1 / 3)
+    assert third.levels.tolist() == [0, 1 / 3, 2 / 3, 1]

@@ -12,6 +12,7 @@ import os
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,7 @@ import numpy as np
 
 from delone._arrays import as_callback, as_count, as_number, as_plain_array
 from delone.counting import gigabytes, grouped
+from delone.decimals import exact, multiples, outer, spacing
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.interpolate.base import Interpolator, as_max_distance
 from delone.interpolate.methods import interpolator
@@ -40,6 +42,8 @@ __all__ = ["Grid", "grid", "raster_nodes", "require_memory"]
 _BLOCK = 1 << 18
 # Memory beside the result: a block of queries, and room for further use of the result.
 _SPARE = 1 << 26
+# Both ends of a box and their difference are rounded, and may have been computed from others.
+_ROUNDINGS = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,19 +77,12 @@ class Grid:
     @property
     def cell(self) -> tuple[float, float]:
         """Width and height of a cell; 0 if there is only one."""
-        return _step(self.x), _step(self.y)
+        return float(spacing(self.x)), float(spacing(self.y))
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
         """Left, right, bottom and top of the outermost cells, in the order of imshow."""
-        half_x, half_y = (side / 2 for side in self.cell)
-        x, y = self.x, self.y
-        return (
-            float(x[0] - half_x),
-            float(x[-1] + half_x),
-            float(y[0] - half_y),
-            float(y[-1] + half_y),
-        )
+        return *outer(self.x), *outer(self.y)
 
     def to_xarray(self, *, name: str | None = None, crs: str | None = None) -> Any:
         """Return the grid as an xarray.DataArray (extra ``xarray``).
@@ -302,7 +299,6 @@ def raster_nodes(
     if (resolution is None) == (shape is None):
         raise InputError("give one of resolution, shape, or x and y")
     low, high = box if bounds is None else _bounded(bounds)
-    units = [_unit(low[k], high[k]) for k in range(2)]
     if shape is not None:
         counts = [as_count(count, name="shape") for count in _listed(shape, "shape", 2)]
         if min(counts) < 1:
@@ -314,36 +310,28 @@ def raster_nodes(
         cells = [as_number(cell, name="resolution") for cell in _listed(given, "resolution", 2)]
         if not all(0 < cell < math.inf for cell in cells):
             raise InputError(f"resolution must be above 0, got {resolution!r:.80}")
-        cells = [cells[k] * units[k] for k in range(2)]
-        counts = [max(1, _cells(_length(low[k], high[k], units[k]), cells[k])) for k in range(2)]
+        counts = [max(1, _cells(low[k], high[k], cells[k])) for k in range(2)]
     columns, rows = counts
     if room is None:
         require_memory(columns, rows, 1)
     else:
         room(columns, rows)
         require_memory(columns + rows, 1, 1)
-    if not cells:
-        cells = [_length(low[k], high[k], units[k]) / counts[k] for k in range(2)]
-    x, y = (_centers(low[k], cells[k], counts[k], units[k]) for k in range(2))
+    steps = [exact(cell) for cell in cells] or [
+        (exact(high[k]) - exact(low[k])) / counts[k] for k in range(2)
+    ]
+    x, y = (_centers(low[k], steps[k], counts[k]) for k in range(2))
     return x, y
 
 
-def _unit(low: float, high: float) -> float:
-    """The factor by which a length is a double: 1, or 1/2 if a box is wider than any."""
-    return 1.0 if math.isfinite(high - low) else 0.5
-
-
-def _length(low: float, high: float, unit: float) -> float:
-    return high * unit - low * unit
-
-
-def _centers(low: float, cell: float, count: int, unit: float) -> Floats:
-    """Centers of cells; `cell` is in the given unit."""
-    with np.errstate(over="ignore"):
-        nodes: Floats = (low * unit + cell * (np.arange(count, dtype=np.float64) + 0.5)) / unit
-    if not np.isfinite(nodes[-1]):
-        raise InputError("cells go beyond the range of doubles; choose smaller ones, or bounds")
-    return nodes
+def _centers(low: float, step: Fraction, count: int) -> Floats:
+    """Centers of cells: the doubles nearest to the decimal numbers."""
+    try:
+        return multiples(exact(low) + step / 2, step, range(count))
+    except OverflowError:
+        raise InputError(
+            "cells go beyond the range of doubles; choose smaller ones, or bounds"
+        ) from None
 
 
 def _listed(given: Any, name: str, count: int) -> list[Any]:
@@ -361,12 +349,14 @@ def _is_one(given: Any) -> bool:
     return getattr(given, "ndim", 1) == 0 or isinstance(given, Mapping)
 
 
-def _cells(length: float, cell: float) -> int:
-    """How many cells cover a length; an excess by a rounding error adds none."""
-    count = length / cell
-    if not math.isfinite(count):
-        raise InputError(f"cells of {cell} are too small for a box of {length}")
-    return round(count) if abs(count - round(count)) < 1e-9 * count else math.ceil(count)
+def _cells(low: float, high: float, cell: float) -> int:
+    """How many cells cover a length; an excess by a rounding of the coordinates adds none."""
+    length, side = exact(high) - exact(low), exact(cell)
+    count = math.ceil(length / side)
+    if count > sys.float_info.max:
+        raise InputError(f"cells of {cell} are too small for a box of {float(length):g}")
+    excess = length - (count - 1) * side
+    return count - 1 if excess <= _ROUNDINGS * np.spacing(max(abs(low), abs(high))) else count
 
 
 def _bounded(bounds: Sequence[float]) -> tuple[list[float], list[float]]:
@@ -412,11 +402,3 @@ def _free_memory() -> int | None:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, OSError, ValueError):
         return None
-
-
-def _step(nodes: Floats) -> float:
-    if len(nodes) < 2:
-        return 0.0
-    low, high = float(nodes[0]), float(nodes[-1])
-    unit = _unit(low, high)
-    return _length(low, high, unit) / (len(nodes) - 1) / unit

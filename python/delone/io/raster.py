@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from delone.atomic import replacing
+from delone.decimals import outer, spacing
 from delone.errors import FileFormatError, InputError
 from delone.extras import require
 from delone.georeference import as_crs
@@ -186,7 +187,7 @@ def _cell(nodes: Floats, path: Path) -> float:
     if len(nodes) < 2:
         raise FileFormatError(f"{path}: a GeoTIFF needs at least two rows and two columns")
     steps = np.diff(nodes)
-    step = float((nodes[-1] - nodes[0]) / (len(nodes) - 1))
+    step = float(spacing(nodes))
     if np.abs(steps - step).max() > _EVEN * step:
         raise FileFormatError(
             f"{path}: the cells of a GeoTIFF must have the same size; use .nc or .csv"
@@ -199,7 +200,7 @@ def _write_geotiff(
 ) -> None:
     values = _checked(path, raster)
     width, height = _cell(raster.x, path), _cell(raster.y, path)
-    corner = float(raster.x[0] - width / 2), float(raster.y[-1] + height / 2)
+    corner = outer(raster.x)[0], outer(raster.y)[1]
     cell = width, height
     write_geotiff(path, values, corner=corner, cell=cell, name=name, crs=crs, units=units)
 

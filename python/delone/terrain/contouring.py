@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from delone import _core
 from delone._arrays import LARGEST_LIMIT, as_count, as_number, as_plain_array
 from delone.counting import counted
+from delone.decimals import exact, multiples
 from delone.errors import BudgetExceededError, DtypeError, InputError
 from delone.extras import require
 from delone.immutable import ReadOnly, sealed
@@ -324,9 +326,24 @@ def levels_of(
             limit=_LEVELS,
             found=LARGEST_LIMIT if not last - first < LARGEST_LIMIT else int(last - first),
         )
-    numbers = np.arange(math.ceil(first), math.floor(last) + 1)
+    return _multiples(float(z.min()), float(z.max()), exact(start), exact(step), every)
+
+
+def _multiples(
+    low: float, high: float, start: Fraction, step: Fraction, every: int
+) -> tuple[Floats, Bools]:
+    """Return the doubles nearest to multiples from a height to another one; each `every`-th."""
+    # One more on both sides: a height may be the double that is nearest to a multiple.
+    first, last = (Fraction(each) - start for each in (low, high))
+    numbers = np.arange(math.ceil(first / step) - 1, math.floor(last / step) + 2)
+    try:
+        found = multiples(start, step, numbers.tolist())
+    except OverflowError:
+        numbers = numbers[1:-1]
+        found = multiples(start, step, numbers.tolist())
+    within = (found >= low) & (found <= high)
     marked = numbers % every == 0 if every else np.zeros(len(numbers), dtype=bool)
-    return np.asarray(start + numbers * step, dtype=np.float64), np.asarray(marked)
+    return found[within], np.asarray(marked)[within]
 
 
 def lines(tin: Surface, levels: Floats, marked: Bools, smooth: int, max_points: int) -> Contours:

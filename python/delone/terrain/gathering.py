@@ -115,8 +115,8 @@ def _on_ground(line: Floats, ground: Surface, *, ring: bool) -> Floats:
         tables.append(np.append(places[k + 1], z[k + 1])[None])
     table = np.concatenate(tables)
     again = (table[1:, :2] == table[:-1, :2]).all(axis=1)
-    found: Floats = table[np.append(True, ~again)]
-    return found
+    chain: Floats = table[np.append(True, ~again)]
+    return chain
 
 
 def off_ground(x: float, y: float) -> InputError:

@@ -343,7 +343,7 @@ def _outline(tin: Surface, mesh: ConstrainedDelaunay, row: Rows, ends: Bools) ->
     start, source = mesh.segment_source
     new = np.add.reduceat(ends[source].astype(np.int64), start[:-1]) > 0
     old = row[tin.simplices[:, [[1, 2], [2, 0], [0, 1]]][tin.neighbors < 0]]
-    known: NDArray[np.int64] = np.concatenate((mesh.segments[new], old[(old >= 0).all(axis=1)]))
+    known: Rows = np.concatenate((mesh.segments[new].astype(np.int64), old[(old >= 0).all(axis=1)]))
     sides = mesh.simplices[:, [[1, 2], [2, 0], [0, 1]]]
     return among(
         edge_keys(sides[..., 0], sides[..., 1], mesh.npoints),

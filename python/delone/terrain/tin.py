@@ -534,7 +534,8 @@ class TIN(Surveyed, Earthworks):
             Heights of the contours.
         interval : float, optional
             Distance of levels, instead of `levels`: all multiples of it, from `base` on, that the
-            surface reaches.
+            surface reaches. They are the doubles nearest to the decimal numbers: of 0.1 the third
+            is 0.3.
         base : float, optional
             A level from which `interval` counts.
         index : int, optional
