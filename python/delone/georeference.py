@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.errors import DtypeError, InputError
+from delone.extras import require
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -39,7 +40,9 @@ __all__ = [
     "names_degrees",
     "parsed",
     "same_crs",
+    "transformed",
     "warn_of_degrees",
+    "warn_of_unknown",
 ]
 
 _LONGITUDE = {"lon", "long", "lng", "longitude"}
@@ -73,7 +76,10 @@ class GeographicWarning(UserWarning):
 
 
 class CRSWarning(UserWarning):
-    """A file is written without the reference system, because its format cannot store one.
+    """A reference system is unknown, or gets lost.
+
+    Data that could declare their system and do not are used with data in a known system, as if
+    they were in the same one; or a file is written without it, because its format cannot store it.
 
     Examples
     --------
@@ -132,6 +138,52 @@ def common_crs(geometries: Any) -> str | None:
             )
         found = found or crs
     return found
+
+
+def transformed(
+    data: Any, points: NDArray[np.float64], target: str | None, *, name: str, to: str
+) -> NDArray[np.float64]:
+    """Return points of `data`, x and y first, in the reference system of other data.
+
+    If both systems are known and different, pyproj transforms. If one of them is unknown, both are
+    taken as the same, with a warning where data could declare one. `to` describes the other data.
+    """
+    source = common_crs(data)
+    if source is None or target is None:
+        if source is not None:
+            warn_of_unknown(source, known=name, unknown=to)
+        elif target is not None and _could_declare(data):
+            warn_of_unknown(target, known=to, unknown=name)
+        return points
+    if same_crs(source, target):
+        return points
+    pyproj = require("pyproj", extra="geo", what=f"{_short(source)} to {_short(target)}")
+    convert = pyproj.Transformer.from_crs(source, target, always_xy=True)
+    moved = points.copy()
+    moved[:, 0], moved[:, 1] = convert.transform(points[:, 0], points[:, 1])
+    if not np.isfinite(moved[:, :2]).all():
+        x, y = points[~np.isfinite(moved[:, :2]).all(axis=1)][0, :2]
+        raise InputError(
+            f"{name}: ({x:.10g}, {y:.10g}) has no place in {_short(target)}: it is not in "
+            f"{_short(source)}, which the data declare"
+        )
+    return moved
+
+
+def warn_of_unknown(system: str, *, known: str, unknown: str) -> None:
+    """Warn that data without a reference system are taken to be in that of other data."""
+    warnings.warn(
+        f"the reference system of {known} is {_short(system)}; that of {unknown} is unknown, and "
+        "taken as the same",
+        CRSWarning,
+        stacklevel=caller_level(),
+    )
+
+
+def _could_declare(data: Any) -> bool:
+    """Return whether data have an attribute for their reference system."""
+    parts = data if isinstance(data, list | tuple) else [data]
+    return any(hasattr(part, "crs") for part in parts)
 
 
 def same_crs(a: str, b: str) -> bool:

@@ -62,7 +62,7 @@ def test_contours(folder, figures):
     ("option", "sharp"), [("--breaklines", True), ("--soft-breaklines", False)]
 )
 def test_hard_and_soft_breaklines(folder, figures, option, sharp):
-    dike = folder / "a ridge.geojson"
+    dike = folder / "a ridge.gpkg"
     ridge = shapely.LineString([(20, 0, 20), (20, 40, 40)])
     geopandas.GeoSeries([ridge]).to_file(dike)
     out = folder / "smooth ones.gpkg"
@@ -103,6 +103,33 @@ def test_volume(folder, figures):
     assert (found["cut"], found["fill"]) == pytest.approx((2000, 2000)) and found["area"] == 800
     found = figures("volume", folder / "the points.csv", 0)
     assert (found["cut"], found["fill"]) == pytest.approx((16000, 0))
+
+
+def test_regions_and_lines_in_degrees_are_transformed(tmp_path, figures, command):
+    low = np.array([155_000.0, 463_000.0])
+    points = [(*(low + at), 1) for at in ((0, 0), (100, 0), (100, 100), (0, 100))]
+    source, pit, road = (tmp_path / name for name in ("site.csv", "pit.geojson", "road.geojson"))
+    np.savetxt(source, points, delimiter=",", header="x,y,z", comments="", fmt="%.17g")
+    for path, geometry in {
+        pit: shapely.box(*(low + 10), *(low + 20)),
+        road: shapely.LineString([low + 10, low + 40]),
+    }.items():
+        geopandas.GeoSeries([geometry], crs=28992).to_crs(4326).to_file(path)
+    there = ("--crs", "EPSG:28992")
+    found = figures("volume", source, 0, "--region", pit, *there)
+    assert found["cut"] == pytest.approx(100, rel=1e-4)
+    assert figures("profile", source, road, *there)["length"] == pytest.approx(42.43, abs=0.01)
+    code, _, notes = command("volume", source, 0, "--region", pit)
+    assert code == 0 and "that of the surface is unknown, and taken as the same" in notes
+    assert "no area in common" in notes
+
+
+def test_heights_that_differ_are_within_a_tolerance(folder, figures, command):
+    path = folder / "the points.csv"
+    path.write_text(path.read_text() + "40,0,0.002\n")
+    code, _, message = command("volume", path, 0)
+    assert code == 4 and "0 to 0.002" in message and "tolerance" in message
+    assert figures("volume", path, 0, "--tolerance", 0.005)["points"] == 4
 
 
 @pytest.mark.parametrize("what", ["height", "slope", "aspect", "hillshade"])

@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 import typer
 
 from delone.cli.exits import Exit, Failure
-from delone.georeference import degrees_in, is_known, may_be_degrees, message_of_degrees, same_crs
+from delone.georeference import (
+    CRSWarning,
+    degrees_in,
+    is_known,
+    may_be_degrees,
+    message_of_degrees,
+    same_crs,
+)
 from delone.io import GeometrySet, PointSet, SurfaceFile
 from delone.io.referencing import left_out
 from delone.units import UnitsWarning
@@ -93,12 +100,17 @@ def note(message: str | None, *, quiet: bool = False) -> None:
 
 @contextmanager
 def noting(*, quiet: bool = False) -> Iterator[None]:
-    """Print warnings about units as notes, and pass all others on."""
+    """Print warnings about units and reference systems as notes, and pass all others on.
+
+    So are those without a class of their own.
+    """
+    kinds = (UnitsWarning, CRSWarning)
     with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", UnitsWarning)
+        for kind in (*kinds, UserWarning):
+            warnings.simplefilter("always", kind)
         yield
     for each in caught:
-        if issubclass(each.category, UnitsWarning):
+        if issubclass(each.category, kinds) or each.category is UserWarning:
             note(str(each.message), quiet=quiet)
         else:
             warnings.warn_explicit(each.message, each.category, each.filename, each.lineno)

@@ -13,7 +13,7 @@ import typer
 from delone.atomic import replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.options import Classes, Json, Layer, Quiet, Workers
-from delone.cli.referenced import Crs, Planar, require_known
+from delone.cli.referenced import Crs, Planar, noting, require_known
 from delone.cli.report import Stopwatch
 from delone.cli.show import spinner
 from delone.cli.surfaces import (
@@ -167,7 +167,7 @@ def profile(
             along = read_geometries(line)
         tin = surface(source, options, watch, say)
         say("computing the profile")
-        with watch.stage("profile"):
+        with watch.stage("profile"), noting(quiet=quiet):
             found = tin.profile(along)
         if output is not None:
             with writing(), replacing(output) as target, watch.stage(f"write {output.name}"):
@@ -226,7 +226,7 @@ def volume(
         within_other = replace(options, layer=other_layer or options.layer)
         goal = _goal(other, within_other, watch, say)
         say("computing volumes")
-        with watch.stage("volume"):
+        with watch.stage("volume"), noting(quiet=quiet):
             found = tin.volume(goal, region=within)
     figures = figures_of(source, tin, []) | {
         "cut": found.cut,

@@ -13,10 +13,12 @@ from delone.errors import InputError, ShapeError
 from delone.georeference import (
     as_known_crs,
     caller_level,
+    common_crs,
     crs_of,
     is_geographic,
     same_crs,
     warn_of_degrees,
+    warn_of_unknown,
 )
 from delone.terrain.extent import Part, refuse_crossing_rings, within, without_outer
 from delone.terrain.gathering import SOFT, Lines, gathered
@@ -101,16 +103,21 @@ def build(
     as_choice(crossing, POLICIES, name="crossing")
     allowed = as_tolerance(tolerance)
     points = _points_of(xyz)
-    system = system_of(crs, xyz, breaklines, soft_breaklines, boundary, holes, islands)
+    system = system_of(crs, xyz)
+    if system is None:
+        other = (breaklines, soft_breaklines, boundary, holes, islands)
+        system = system_of(None, *(common_crs(each) for each in other))
+        if system is not None:
+            warn_of_unknown(system, known="lines", unknown="the points")
     heights_in = settled_units(units, system, None, str(system))
     warn_of_degrees(xyz, points[:, :2], planar=planar, by=degrees_of(system))
     rings = [
-        rings_of(each, name=name)
+        rings_of(each, name=name, crs=system)
         for name, each in (("boundary", boundary), ("holes", holes), ("islands", islands))
     ]
     refuse_crossing_rings("boundary and holes", *rings)
     given = [
-        [Ring(line) for line in lines_of(each, name=name)]
+        [Ring(line) for line in lines_of(each, name=name, crs=system)]
         for name, each in (("breaklines", breaklines), ("soft_breaklines", soft_breaklines))
     ]
     lines = gathered([*given, *rings], points, surface_of)
@@ -180,7 +187,7 @@ def system_of(crs: Any, *data: Any) -> str | None:
     """Return the one reference system that is given or declared by data."""
     found = as_known_crs(crs)
     for each in data:
-        other = crs_of(each)
+        other = each if isinstance(each, str) else crs_of(each)
         if other is None:
             continue
         if found is not None and not same_crs(found, other):

@@ -16,6 +16,7 @@ from delone._arrays import as_plain_array, as_points, require_finite
 from delone.constrained.geodata import is_shapely
 from delone.errors import InputError, ShapeError
 from delone.extras import require
+from delone.georeference import transformed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,21 +38,32 @@ class Ring(NamedTuple):
     polygon: int | None = None  # None for a polygon of its own
 
 
-def lines_of(given: Any, *, name: str) -> list[Floats]:
+def lines_of(given: Any, *, name: str, crs: str | None) -> list[Floats]:
     """Return lines as arrays (k, 3); heights are NaN where there are none, also in the input.
 
     Taken are geometries of shapely, tables of them, a `GeometrySet`, arrays (k, 2) or (k, 3), and
-    sequences of these. Polygons become their rings, closed.
+    sequences of these. Polygons become their rings, closed. Lines that declare another reference
+    system than `crs` are transformed.
     """
-    return [line.points for line in _each(given, name, count(1)) if len(line.points)]
+    return [line.points for line in _placed(given, name, crs)]
 
 
-def rings_of(given: Any, *, name: str) -> list[Ring]:
+def _placed(given: Any, name: str, crs: str | None) -> list[Ring]:
+    """Return lines and rings with points, in a reference system."""
+    several = isinstance(given, list | tuple) and not _is_line(given)
+    number, found = count(1), []
+    for item in given if several else [given]:
+        for line, polygon in _each(item, name, number):
+            if len(line):
+                points = transformed(item, line, crs, name=name, to="the surface")
+                found.append(Ring(points, polygon))
+    return found
+
+
+def rings_of(given: Any, *, name: str, crs: str | None) -> list[Ring]:
     """Return closed rings: arrays that do not repeat their first point at the end are closed."""
     rings = []
-    for ring, polygon in _each(given, name, count(1)):
-        if not len(ring):
-            continue
+    for ring, polygon in _placed(given, name, crs):
         closed = ring if (ring[0, :2] == ring[-1, :2]).all() else np.vstack((ring, ring[:1]))
         if len(closed) < 4:
             raise InputError(f"{name}: a ring needs at least three points, got {len(closed) - 1}")
@@ -59,9 +71,9 @@ def rings_of(given: Any, *, name: str) -> list[Ring]:
     return rings
 
 
-def line_of(given: Any, *, name: str) -> Floats:
+def line_of(given: Any, *, name: str, crs: str | None) -> Floats:
     """Return one line of at least two points, (k, 2)."""
-    lines = lines_of(given, name=name)
+    lines = lines_of(given, name=name, crs=crs)
     if len(lines) != 1 or len(lines[0]) < 2:
         raise InputError(f"{name} must be one line of at least two points, got {given!r:.60}")
     return np.ascontiguousarray(lines[0][:, :2])

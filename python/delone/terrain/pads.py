@@ -84,10 +84,10 @@ def plane_at(plane: tuple[float, float, float], points: Floats) -> Floats:
     return found
 
 
-def pad_of(polygon: Any, z: Any) -> Pad:
+def pad_of(polygon: Any, z: Any, crs: str | None) -> Pad:
     """Return the polygon, or the union of several whose own rings do not cross, and its plane."""
     plane = _plane(z)
-    rings = rings_of(polygon, name="polygon")
+    rings = rings_of(polygon, name="polygon", crs=crs)
     if not rings:
         raise InputError("polygon has no ring")
     refuse_crossing_rings("polygon: edges", rings)

@@ -133,7 +133,7 @@ class _Part(NamedTuple):
 
 def profile(tin: Surface, line: Any) -> Profile:
     """Return the heights along a line."""
-    points = line_of(line, name="line")
+    points = line_of(line, name="line", crs=tin.crs)
     lengths = np.hypot(*np.diff(points, axis=0).T)
     start = 0.0
     rows: list[Floats] = []

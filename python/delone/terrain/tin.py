@@ -155,7 +155,7 @@ class TIN(Surveyed, Earthworks):
             several such the lowest.
         crs : optional
             Coordinate reference system, as ``"EPSG:28992"``, an EPSG code or a pyproj.CRS; by
-            default that of the data.
+            default that of the data. Lines that declare another one are transformed (pyproj).
         units : str, optional
             The unit of heights, as ``"m"``, ``"ft"`` or ``"us-ft"``; by default that of the
             vertical axis of the reference system, if it has one.
@@ -179,15 +179,16 @@ class TIN(Surveyed, Earthworks):
         CrossingSegmentsError
             The rings of a polygon cross themselves or each other.
         InputError
-            A line without heights leaves the points, data are in different reference systems, no
-            triangle is left, or an option is not one of its choices.
+            A line without heights leaves the points, `crs` is not the reference system of the
+            points, no triangle is left, or an option is not one of its choices.
         DegenerateInputError, ShapeError, DtypeError, MemoryError, KeyboardInterrupt
             As for `delone.Delaunay`.
 
         Warns
         -----
-        GeographicWarning, UnitsWarning
-            x and y are degrees, or in another unit than the heights.
+        GeographicWarning, UnitsWarning, CRSWarning
+            x and y are degrees, or in another unit than the heights; or the reference system of
+            points or lines is unknown, and taken to be that of the others.
 
         Examples
         --------
@@ -717,8 +718,8 @@ class TIN(Surveyed, Earthworks):
             A height; a plane (a, b, c) of the heights c + a x + b y; or the surface that is to be
             reached.
         region : optional
-            Polygons or rings to which the volume is limited; several polygons are a union, of
-            arrays inside is what an odd number of rings contain.
+            Polygons or rings, as `boundary` of `from_points`, to which the volume is limited; those
+            that declare another reference system are transformed.
 
         Returns
         -------
@@ -730,6 +731,11 @@ class TIN(Surveyed, Earthworks):
         InputError
             The surfaces are in different reference systems, or their heights in different units;
             or `other` is none of these.
+
+        Warns
+        -----
+        CRSWarning, UserWarning
+            One reference system is unknown, and the other known; there is no area in common.
 
         Notes
         -----

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -11,7 +12,7 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_number, as_workers
 from delone.errors import InputError
-from delone.georeference import same_crs
+from delone.georeference import caller_level, same_crs
 from delone.immutable import ReadOnly, sealed
 from delone.terrain.extent import inside_of_rings
 from delone.terrain.lines import rings_of
@@ -105,8 +106,17 @@ def volume(tin: Surface, other: Any, region: Any) -> Volume:
         require_same_units(tin.units, other.units, what="the surfaces")
     else:
         plane = _plane(other)
-    found = _core.volumes2(tin._sheet(), surface, plane, _region(region), as_workers(tin.workers))
+    found = _core.volumes2(
+        tin._sheet(), surface, plane, _region(region, tin.crs), as_workers(tin.workers)
+    )
     of_triangles = np.column_stack(found)
+    if not of_triangles[:, 4].any():
+        what = "region" if region is not None else "surface to be reached"
+        warnings.warn(
+            f"the surface and the {what} have no area in common: the volume is 0",
+            UserWarning,
+            stacklevel=caller_level(),
+        )
     # Correctly rounded sums: independent of the order of the triangles.
     cut, fill, cut_area, fill_area, area = map(math.fsum, found)
     return Volume(
@@ -134,11 +144,11 @@ def _plane(other: Any) -> list[float]:
     return numbers
 
 
-def _region(region: Any) -> _Region | None:
+def _region(region: Any, crs: str | None) -> _Region | None:
     """Return the triangles inside of polygons."""
     if region is None:
         return None
-    rings = rings_of(region, name="region")
+    rings = rings_of(region, name="region", crs=crs)
     if not rings:
         raise InputError("region has no polygon or ring")
     mesh, within = inside_of_rings(rings)
