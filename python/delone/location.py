@@ -6,16 +6,20 @@ to a point outside. Weights and points of the boundary are rounded.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._arrays import as_vectors, as_workers, require_finite
+from delone._arrays import as_number, as_vectors, as_workers, require_finite
 from delone.blocks import blocks
-from delone.errors import ShapeError
+from delone.errors import InputError, ShapeError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from delone.dimension import Dimension, Locator
@@ -138,6 +142,63 @@ def locate(
         facet.reshape((*leading, d)),
         weights.reshape((*leading, d)),
     )
+
+
+def find_near(
+    dimension: Dimension,
+    index: Any,
+    points: Floats,
+    xi: ArrayLike,
+    *,
+    tolerance: float,
+    workers: int | None,
+) -> Indices:
+    """Return the simplices that contain points, or those at most `tolerance` away, exactly.
+
+    Of points outside, that is the simplex at the nearest point of the boundary.
+    """
+    limit = as_number(tolerance, name="tolerance")
+    if not limit >= 0:
+        raise InputError(f"tolerance must be a number of at least 0, got {tolerance!r:.60}")
+    place = locate(dimension, index, points, xi, workers)
+    flat = as_vectors(xi, dimension.ndim, name="xi").reshape(-1, dimension.ndim)
+    found = place.simplex.reshape(-1).copy()
+    beside, facet = place.beside.reshape(-1), place.facet.reshape(-1, dimension.ndim)
+    for row in np.flatnonzero(beside >= 0).tolist():
+        corners = [_exact(each) for each in points[facet[row]]]
+        query = _exact(flat[row])
+        if math.isinf(limit) or _squared_distance(query, corners) <= Fraction(limit) ** 2:
+            found[row] = beside[row]
+    return found.reshape(place.simplex.shape)
+
+
+def _exact(point: Floats) -> list[Fraction]:
+    return [Fraction(x) for x in point.tolist()]
+
+
+def _dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
+    return sum((x * y for x, y in zip(a, b, strict=True)), Fraction(0))
+
+
+def _squared_distance(query: list[Fraction], corners: list[list[Fraction]]) -> Fraction:
+    """The squared distance from a point to an edge or a triangle."""
+    base, *others = corners
+    to, *sides = ([x - y for x, y in zip(each, base, strict=True)] for each in (query, *others))
+    if len(sides) == 1:
+        side, length = sides[0], _dot(sides[0], sides[0])
+        share = min(max(_dot(to, side) / length, Fraction(0)), Fraction(1)) if length else 0
+        gap = [x - share * y for x, y in zip(to, side, strict=True)]
+        return _dot(gap, gap)
+    u, v = sides
+    uu, uv, vv, up, vp = _dot(u, u), _dot(u, v), _dot(v, v), _dot(u, to), _dot(v, to)
+    # Not zero: faces of tetrahedra have an area.
+    area = uu * vv - uv * uv
+    s, t = (vv * up - uv * vp) / area, (uu * vp - uv * up) / area
+    if s >= 0 and t >= 0 and s + t <= 1:
+        gap = [x - s * y - t * z for x, y, z in zip(to, u, v, strict=True)]
+        return _dot(gap, gap)
+    # The nearest point is on a side.
+    return min(_squared_distance(query, [corners[k - 1], corners[k]]) for k in range(3))
 
 
 def segment_ends(a: ArrayLike, b: ArrayLike) -> tuple[Floats, Floats]:

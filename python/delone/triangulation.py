@@ -218,7 +218,12 @@ class Triangulation(Complex):
         return self._dimension.locator(sites, *triangulate(sites, as_workers(self._workers))), rows
 
     def find_simplex(
-        self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None
+        self,
+        xi: ArrayLike,
+        bruteforce: bool = False,
+        tol: float | None = None,
+        *,
+        tolerance: float = 0.0,
     ) -> Indices:
         """Find the simplices that contain points.
 
@@ -230,6 +235,11 @@ class Triangulation(Complex):
             Accepted as in SciPy, but has no effect: the walk cannot fail.
         tol : float, optional
             Accepted as in SciPy, but has no effect: the result is exact.
+        tolerance : float, optional
+            Points outside at most this far away, in the unit of the points, are in the simplex at
+            the nearest point of the boundary, such as points that lie on a side but for rounding.
+            By default 0. The distance is compared exactly, which takes some 20 microseconds for
+            each point outside.
 
         Returns
         -------
@@ -242,6 +252,8 @@ class Triangulation(Complex):
         ------
         ShapeError, DtypeError
             `xi` is not a real array of shape (..., d).
+        InputError
+            `tolerance` is negative or NaN.
 
         Notes
         -----
@@ -261,7 +273,17 @@ class Triangulation(Complex):
         >>> mesh = ConstrainedDelaunay(points, [(3, 4), (4, 5), (5, 3)], holes=[(1.2, 1.2)])
         >>> (mesh.find_simplex([(1.2, 1.2), (1, 1), (0.5, 0.5)]) >= 0).tolist()
         [False, True, True]
+
+        A point on a slanted side is rarely on it exactly:
+
+        >>> mesh = Delaunay([(0, 0), (3, 1), (1, 3)])
+        >>> place = (0.9, 0.3)
+        >>> mesh.find_simplex(place), mesh.find_simplex(place, tolerance=1e-15)
+        (array(-1, dtype=int32), array(0, dtype=int32))
         """
+        if tolerance != 0:
+            own = self._dimension, self._locator, self._points
+            return location.find_near(*own, xi, tolerance=tolerance, workers=self._workers)
         return location.find(self._dimension, self._locator, xi, self._workers)
 
     def nearest(self, xi: ArrayLike) -> Indices:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone import delaunay
+from delone._arrays import as_number
 from delone.compat.qhull import Incremental, as_queries, told_as_qhull_does, triangulate
 from delone.dynamic import Dynamic
 from delone.errors import DtypeError
@@ -343,8 +345,12 @@ class Delaunay(Incremental):
         ----------
         xi : array_like, shape (..., ndim)
             Points.
-        bruteforce, tol
+        bruteforce
             Accepted as in SciPy, without effect.
+        tol : float, optional
+            Points outside whose barycentric coordinates in the simplex at the nearest point of the
+            boundary are at least ``-tol``, exactly, are in that simplex. By default 0, where SciPy
+            has 100 machine epsilons.
 
         Returns
         -------
@@ -364,7 +370,37 @@ class Delaunay(Incremental):
         >>> Delaunay([(0, 0), (1, 0), (0, 1)]).find_simplex([(0.25, 0.25), (1, 1)])
         array([ 0, -1], dtype=int32)
         """
-        return self._mesh.find_simplex(as_queries(xi, self.ndim))
+        queries = as_queries(xi, self.ndim)
+        if tol is None:
+            return self._mesh.find_simplex(queries)
+        limit = Fraction(as_number(tol, name="tol"))
+        place = self._mesh.locate(queries)
+        found, beside = place.simplex.reshape(-1).copy(), place.beside.reshape(-1)
+        flat = np.reshape(queries, (-1, self.ndim))
+        for row in np.flatnonzero(beside >= 0).tolist():
+            corners = self._mesh.points[self._mesh.simplices[beside[row]]]
+            if min(_barycentric(corners, flat[row])) >= -limit:
+                found[row] = beside[row]
+        return found.reshape(place.simplex.shape)
+
+
+def _barycentric(corners: Floats, query: Floats) -> list[Fraction]:
+    """The barycentric coordinates of a point, exactly."""
+    origin, *others = ([Fraction(x) for x in each] for each in corners.tolist())
+    sides = [[x - y for x, y in zip(each, origin, strict=True)] for each in others]
+    to = [Fraction(x) - y for x, y in zip(query.tolist(), origin, strict=True)]
+    whole = _determinant(sides)
+    inner = [_determinant([*sides[:k], to, *sides[k + 1 :]]) / whole for k in range(len(sides))]
+    return [1 - sum(inner, Fraction(0)), *inner]
+
+
+def _determinant(rows: list[list[Fraction]]) -> Fraction:
+    """Of 2 or 3 rows."""
+    if len(rows) == 2:
+        return rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0]
+    (a, b, c), *rest = rows
+    minors = [_determinant([[row[j], row[k]] for row in rest]) for j, k in ((1, 2), (0, 2), (0, 1))]
+    return a * minors[0] - b * minors[1] + c * minors[2]
 
 
 def tsearch(tri: Any, xi: ArrayLike) -> Indices:
