@@ -279,3 +279,45 @@ def test_only_text_has_lines(tmp_path):
     np.save(tmp_path / "a.npy", np.zeros((3, 2)))
     with pytest.raises(FileFormatError, match="not a text file"):
         line_numbers(tmp_path / "a.npy", [0])
+
+
+PNEZD = (
+    "1{0}5000.123{0}2000.5{0}100.2{0}EP\n2{0}5010.123{0}2010.5{0}101.2{0}TREE\n"
+    "7{0}5020.1{0}2020.5{0}9.9{0}EP\n"
+)
+
+
+@pytest.mark.parametrize("mark", [",", " ", "\t", ";"])
+def test_point_numbers_without_names_are_asked_for(tmp_path, mark):
+    file = tmp_path / "a.txt"
+    file.write_text(PNEZD.format(mark))
+    with pytest.raises(FileFormatError, match=r"numbers of points \(1, 2, \.\.\.\).*2,1,3"):
+        read_points(file)
+    survey = read_points(file, columns=[2, 1, 3])
+    assert survey.points[0].tolist() == [2000.5, 5000.123] and survey.z[2] == 9.9
+    # Names, three columns, whole coordinates or numbers in any other order are no such case.
+    for text in (
+        "n,y,x,z,code\n" + PNEZD.format(","),
+        "1,2.5,3.5\n2,3.5,4.5\n",
+        "1,2,3,4\n2,3,4,5\n",
+        "2,2.5,3.5,4.5\n1,3.5,4.5,5.5\n",
+        "1.0,2.5,3.5,4.5\n2.0,3.5,4.5,5.5\n",
+    ):
+        file.write_text(text)
+        assert len(read_points(file)) >= 2
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ('x,y\n"1,234.5",2\n3,4\n', "'1,234.5', not a number: remove the separators"),
+        ("x;y\n1,234.5;2\n1,235;4\n", "'1,234.5', not a number: remove the separators"),
+        ("x;y\n1 234,5;2\n1 235;4\n", "'1 234,5', not a number: remove the separators"),
+        ("x y\n0.5D+03 2\n1 2\n", "'0.5D[+]03', not a number: .* with E, 0.5E[+]03"),
+        ("1 2\n3 -.25d2\n", "'-.25d2', not a number: .* with E, -.25E2"),
+    ],
+)
+def test_numbers_of_other_programs_are_shown(tmp_path, text, what):
+    (tmp_path / "a.csv").write_text(text)
+    with pytest.raises(FileFormatError, match=r"line \d+ .*" + what):
+        read_points(tmp_path / "a.csv")

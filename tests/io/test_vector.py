@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from delone import Delaunay, FileFormatError
-from delone.io import read_points, write_mesh
+from delone.io import read_geometries, read_points, write_mesh
 
 XY = np.array([(0.1, 0), (4, 0), (4, 3), (0, 3), (2, 1 / 3)])
 Z = np.array([1.0, 2, 3, 4, 5])
@@ -128,3 +128,23 @@ def test_doubles_beside_short_decimals_come_back(tmp_path, suffix):
     drawn = shapely.get_coordinates(data.geometry, include_z=True).reshape(-1, 4, 3)
     assert np.array_equal(drawn[:, :3], values[mesh.simplices])
     assert np.array_equal(data["w"], weights)
+
+
+@pytest.mark.parametrize("suffix", ["geojson", "json", "geojson.gz"])
+def test_a_ring_that_is_not_closed_is_named(tmp_path, suffix):
+    import gzip
+    import json
+
+    good, bad = [[0, 0], [4, 0], [4, 3], [0, 0]], [[0, 0], [4, 0], [4, 3], [0, 3]]
+    shapes = [
+        {"type": "Polygon", "coordinates": [good]},
+        {"type": "MultiPolygon", "coordinates": [[good], [good, bad]]},
+    ]
+    features = [{"type": "Feature", "properties": {}, "geometry": shape} for shape in shapes]
+    text = json.dumps({"type": "FeatureCollection", "features": features}).encode()
+    path = tmp_path / f"a.{suffix}"
+    path.write_bytes(gzip.compress(text) if suffix.endswith("gz") else text)
+    with pytest.raises(
+        FileFormatError, match=r"feature 1 .* begins at \[0, 0\] and ends at \[0, 3\]"
+    ):
+        read_geometries(path)

@@ -106,3 +106,43 @@ def test_tetrahedra_are_no_surface(tmp_path: Path) -> None:
     delone.tetrahedralize(POINTS, FACES).save(tmp_path / "mesh.npz")
     with pytest.raises(delone.FileFormatError, match="not a surface"):
         delone.tetrahedralize(tmp_path / "mesh.npz")
+
+
+@pytest.mark.parametrize("suffix", [".smesh", ".poly", ".face"])
+def test_faces_of_tetgen_have_any_orientation(suffix: str, tmp_path: Path) -> None:
+    turned = FACES.copy()
+    turned[::2] = turned[::2, ::-1]
+    node = f"{len(POINTS)} 3 0 0\n" + "".join(
+        f"{k} {x} {y} {z}\n" for k, (x, y, z) in enumerate(np.asarray(POINTS).tolist())
+    )
+    rows = [" ".join(map(str, face)) for face in turned.tolist()]
+    if suffix == ".face":
+        (tmp_path / "a.node").write_text(node)
+        text = f"{len(rows)} 0\n" + "".join(f"{k} {row}\n" for k, row in enumerate(rows))
+    else:
+        lead = "3 " if suffix == ".smesh" else "1\n3 "
+        text = f"{node}{len(rows)} 0\n" + "".join(f"{lead}{row}\n" for row in rows) + "0\n0\n"
+    path = tmp_path / f"a{suffix}"
+    path.write_text(text)
+    whole = delone.tetrahedralize(POINTS, FACES).volumes.sum()
+    assert np.isclose(delone.tetrahedralize(path).volumes.sum(), whole)
+    with pytest.raises(delone.InputError, match="not oriented alike"):
+        delone.tetrahedralize(path, inside="winding")
+
+
+def test_extra_points_in_a_void() -> None:
+    (points, faces), (inner, others) = (
+        solids.box((a,) * 3, (b,) * 3) for a, b in ((0, 2), (0.5, 1.5))
+    )
+    faces, others = np.asarray(faces), np.asarray(others)
+    both = np.concatenate((points, inner)), np.concatenate((faces, others[:, ::-1] + len(points)))
+    mesh = delone.tetrahedralize(*both, extra_points=[(0.25, 1, 1)])
+    assert 16 in mesh.simplices and solids.filled(mesh.points, mesh.simplices) == 7
+    with pytest.raises(
+        delone.InputError, match="extra_points: 1 point in what is left empty, row 1:"
+    ):
+        delone.tetrahedralize(*both, extra_points=[(0.25, 1, 1), (1, 1, 1)])
+    with pytest.raises(delone.InputError, match="row 0:"):
+        delone.tetrahedralize(
+            *both, inside="enclosed", holes=[(1, 1, 1.1)], extra_points=[(1, 1, 1)]
+        )

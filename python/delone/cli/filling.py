@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
     from delone.cli.show import Row
 
+_UNORIENTED = (".smesh", ".poly", ".face")
 __all__ = ["fill"]
 
 _STAGES = {
@@ -67,11 +68,12 @@ def fill(
     *,
     output: MeshOutput = None,
     inside: Annotated[
-        str,
+        str | None,
         typer.Option(
-            help="What is filled: winding (numbers other than 0), parity (odd) or enclosed (all)."
+            help="What is filled: winding (numbers other than 0), parity (odd) or enclosed (all); "
+            "by default winding, and enclosed for .smesh, .poly and .face."
         ),
-    ] = "winding",
+    ] = None,
     boundary: Annotated[
         str,
         typer.Option(
@@ -107,7 +109,8 @@ def fill(
         writers = {path: _ready(path) for path in output or ()}
     options = {
         "boundary": boundary,
-        "inside": inside,
+        # Faces of TetGen's files have any orientation.
+        "inside": inside or ("enclosed" if source.suffix.lower() in _UNORIENTED else "winding"),
         "holes": _numbers(hole, "--hole", 3),
         "regions": _numbers(region, "--region", 4),
         "max_points": max_points,

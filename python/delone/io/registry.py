@@ -205,8 +205,9 @@ def read_points(
         vertices of a mesh.
     columns : sequence of str or int, optional
         Columns of x, y and (optionally) z, by name or by number from 0. By default columns are
-        recognized by their names; without names the first two or three are used, even if the first
-        contains point numbers. For files of geometries: the one attribute that is z.
+        recognized by their names; without names the first two or three are used, unless the first
+        looks like point numbers, which is an error. For files of geometries: the one attribute
+        that is z.
     classes : sequence of int, optional
         Keep the points of these classes (LAS and LAZ).
     layer : str, optional

@@ -34,6 +34,12 @@ if TYPE_CHECKING:
 
 __all__ = ["line_numbers", "read_points"]
 
+# 1,234.5 or 1'234 or 1 234,5; and 0.1D+03.
+_THOUSANDS = re.compile(
+    r"[+-]?\d{1,3}(?:(?:,\d{3})+(?:\.\d*)?|(?:['\u2019 \xa0]\d{3})+(?:[.,]\d*)?)"
+)
+_FORTRAN = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)[dD][+-]?\d+")
+_DECIMALS = re.compile(r"[+-]?\d+[.,]\d+")
 _COMMENTS = ("#", "//", "%", "!")
 _SAMPLE_BYTES = 1 << 16
 _SAMPLE_ROWS = 50
@@ -52,6 +58,7 @@ class _Layout:
     named: bool
     skip: int  # lines before the first row
     claimed: int | None  # the number of rows declared by a first line with one integer
+    sample: list[list[str]]  # the fields of the first rows
 
 
 def read_points(
@@ -62,6 +69,8 @@ def read_points(
     with _no_text_is_an_error(source):
         require_expansion(path)
         layout = _layout(path, source)
+        if columns is None and not layout.named:
+            _refuse_point_numbers(layout.sample, source)
         chosen = choose_columns(layout.names, columns, source, named=layout.named)
         extra = [find_column(layout.names, name, source) for name in attributes]
         with _opened(path) as lines:
@@ -186,7 +195,13 @@ def _split(rows: list[str], source: str) -> _Layout:
     named = not any(_is_number(field, decimal) for field in first)
     names = first if named else [str(i) for i in range(len(first))]
     return _Layout(
-        delimiter=delimiter, decimal=decimal, names=tuple(names), named=named, skip=0, claimed=None
+        delimiter=delimiter,
+        decimal=decimal,
+        names=tuple(names),
+        named=named,
+        skip=0,
+        claimed=None,
+        sample=[_fields(row, delimiter) for row in rows],
     )
 
 
@@ -195,11 +210,45 @@ def _fields(row: str, delimiter: str | None) -> list[str]:
     return [field.strip().strip('"').strip() for field in fields]
 
 
+def _spelling(text: str) -> str:
+    """Return what to change in a number that NumPy does not read; empty for all others."""
+    if _THOUSANDS.fullmatch(text):
+        return ": remove the separators of thousands"
+    if _FORTRAN.fullmatch(text):
+        return f": write the exponents of Fortran with E, {re.sub('[dD]', 'E', text)}"
+    return ""
+
+
+def _refuse_point_numbers(rows: list[list[str]], source: str) -> None:
+    """Refuse columns without names of which the first is probably the number of the point.
+
+    That is, whole numbers that grow from row to row, before three columns with decimals.
+    """
+    if len(rows) < 2 or any(len(row) < 4 for row in rows):
+        return
+    numbers = [row[0] for row in rows]
+    whole = all(number.isascii() and number.isdecimal() for number in numbers)
+    if not whole or not all(_DECIMALS.fullmatch(part) for row in rows for part in row[1:4]):
+        return
+    if all(len(number) < 10 for number in numbers) and _grows([int(n) for n in numbers]):
+        raise FileFormatError(
+            f"{source}: the first of its columns without names looks like numbers of points "
+            f"({numbers[0]}, {numbers[1]}, ...): choose x, y and z (--columns), 2,1,3 for "
+            "number, northing, easting, height; 1,2,3 for number, x, y, z; or 0,1,2"
+        )
+
+
+def _grows(numbers: list[int]) -> bool:
+    return all(a < b for a, b in itertools.pairwise(numbers))
+
+
 def _is_comment(line: str) -> bool:
     return line.lstrip().startswith(_COMMENTS)
 
 
 def _is_number(field: str, decimal: str) -> bool:
+    if _spelling(field):
+        return True  # of which reading says what to change
     if decimal != ".":
         field = field.replace(decimal, ".")
     try:
@@ -273,7 +322,7 @@ def _located(message: str, layout: _Layout, before: int, path: Path) -> str:
     if bad:
         text, row, column = literal_eval(bad[1]), int(bad[2]) + before, int(bad[3]) - 1
         name = layout.names[column] if layout.named and column < len(layout.names) else str(column)
-        what = "is empty" if not text else f"is {text!r}, not a number"
+        what = "is empty" if not text else f"is {text!r:.60}, not a number{_spelling(text)}"
         return f"{_place(row, layout, path)}, column {name} {what}"
     short = re.search(r"at row (\d+) with (\d+) columns", message)
     if short:

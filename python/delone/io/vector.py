@@ -11,6 +11,7 @@ import io
 import warnings
 from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,11 +24,11 @@ from delone.io.content import content
 from delone.io.gdal import admitted, check_driver, local_name
 from delone.io.geometryset import GeometrySet
 from delone.io.pointset import PointSet, find_column
+from delone.io.rings import open_ring
 from delone.io.systems import check_system
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
-    from pathlib import Path
 
     from numpy.typing import ArrayLike
 
@@ -187,6 +188,8 @@ def _corrupt_is_an_error(source: str) -> Iterator[None]:
         raise
     except Exception as error:
         reason = str(error).partition("\n")[0].removeprefix(source).lstrip(": ")
+        if "LinearRing" in reason:
+            reason = open_ring(Path(source)) or reason
         raise FileFormatError(f"{source} cannot be read: {reason}") from error
 
 

@@ -59,7 +59,7 @@ def tetrahedralize(
     faces: ArrayLike | None = None,
     *,
     boundary: str = "faces",
-    inside: str = "winding",
+    inside: str | None = None,
     holes: ArrayLike | None = None,
     regions: ArrayLike | None = None,
     face_markers: ArrayLike | None = None,
@@ -87,7 +87,9 @@ def tetrahedralize(
         for parts with plane faces; see Notes.
     inside : {"winding", "parity", "enclosed"}, optional
         What is filled: regions with a winding number other than 0; regions that an odd number of
-        faces separates from the outside, however these are oriented; or everything enclosed.
+        faces separates from the outside, however these are oriented; or everything enclosed. By
+        default ``"winding"``, and ``"enclosed"`` for TetGen's files, whose faces have any
+        orientation.
         For walls between regions and sheets in them, see Notes.
     holes : array_like of float, shape (k, 3), optional
         Seeds: the region around each is left empty.
@@ -186,11 +188,12 @@ def tetrahedralize(
     (6, 0, 12, True)
     """
     as_choice(boundary, _BOUNDARIES, name="boundary")
-    as_choice(inside, RULES, name="inside")
+    if inside is not None:
+        as_choice(inside, RULES, name="inside")
     as_callback(progress, name="progress")
     surface = sources.given(points, faces, face_markers, holes, regions)
     task = arguments.task(surface, extra_points, max_points, workers)
-    stages = _Stages(task, boundary, inside, progress)
+    stages = _Stages(task, boundary, inside or surface.rule, progress)
     return stages.filled()
 
 
@@ -245,7 +248,9 @@ class _Stages(NamedTuple):
             found = self._recovered(parts, self.task.extra)
         self._tell("select", 0.75)
         solid = _Solid.of(found)
-        made = self._mesh(found, solid, self._inside(found.tiling, solid, parts), cut, check)
+        kept = self._inside(found.tiling, solid, parts)
+        self._require_kept(found.tiling, kept)
+        made = self._mesh(found, solid, kept, cut, check)
         self._tell("done", 1.0)
         return made
 
@@ -295,6 +300,16 @@ class _Stages(NamedTuple):
             )
         kept: Bools = inner[solid.cell]
         return kept
+
+    def _require_kept(self, tiling: Tiling, kept: Bools) -> None:
+        """Require that no extra point is in a region that is left empty."""
+        rows = len(self.task.points) + np.arange(len(self.task.extra))
+        lost = np.flatnonzero(~np.isin(rows, tiling.simplices[kept]))
+        if len(lost):
+            raise InputError(
+                f"extra_points: {counted(len(lost), 'point')} in what is left empty, "
+                f"row {listed(lost, 10)}: leave them out, or fill that region"
+            )
 
     def _mesh(
         self, found: _Everything, solid: _Solid, kept: Bools, cut: Recut, check: SurfaceCheck

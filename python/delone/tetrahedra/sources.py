@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -20,6 +21,8 @@ _ACCEPTED = (
     "delone"
 )
 
+# Files of TetGen, which asks for no orientation of faces.
+_UNORIENTED = (".smesh", ".poly", ".face")
 # VTK's number of the type of a triangle.
 _VTK_TRIANGLE = 5
 
@@ -32,6 +35,8 @@ class Given(NamedTuple):
     markers: ArrayLike | None = None
     holes: ArrayLike | None = None
     regions: ArrayLike | None = None
+    # What is inside if the caller does not say: faces of some formats have no orientation.
+    rule: str = "winding"
 
 
 def given(
@@ -72,7 +77,8 @@ def _of_file(path: str | os.PathLike[str]) -> Given:
     if points.shape[1] == 2:
         z = np.zeros(len(points)) if found.z is None else found.z
         points = np.column_stack((points, z))
-    return Given(points, found.simplices, found.markers, found.holes, found.regions)
+    rule = "enclosed" if Path(path).suffix.lower() in _UNORIENTED else "winding"
+    return Given(points, found.simplices, found.markers, found.holes, found.regions, rule)
 
 
 def _of_meshio(mesh: Any) -> Given:
