@@ -416,7 +416,7 @@ class Triangulation(Complex):
         -------
         geopandas.GeoDataFrame
             One row for each triangle: its vertices ``v0``, ``v1`` and ``v2``, values such as
-            ``region``, and its geometry.
+            ``region``, and its geometry, of a surface with heights.
 
         Raises
         ------
@@ -432,7 +432,10 @@ class Triangulation(Complex):
         """
         from delone.exchange.geopandas import to_geopandas
 
-        return to_geopandas(self._parts(), crs)
+        parts, heights = self._parts(), getattr(self, "z", None)
+        if heights is not None:
+            parts = parts._replace(points=np.column_stack((parts.points, heights)))
+        return to_geopandas(parts, crs)
 
     @only(2, "matplotlib has no tetrahedral meshes")
     def to_matplotlib(self) -> Any:

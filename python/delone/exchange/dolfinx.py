@@ -19,8 +19,8 @@ __all__ = ["to_dolfinx_arrays"]
 def to_dolfinx_arrays(mesh: Given) -> dict[str, NDArray[Any]]:
     """Return ``cells`` and ``x`` for ``dolfinx.mesh.create_mesh``, of triangles or tetrahedra.
 
-    Beside them ``facets``, the segments that are edges of triangles, (0, 3) of tetrahedra; and the
-    regions and markers as ``cell_tags`` and ``facet_tags``, zero where there are none.
+    Beside them ``facets``, the segments that are edges of triangles or marked faces of tetrahedra,
+    and regions and markers as ``cell_tags`` and ``facet_tags``, zero where there are none.
     """
     parts = parts_of(mesh)
     kind_of(parts, what="a mesh of DOLFINx", kinds=("triangles", "surface", "tetrahedra"))

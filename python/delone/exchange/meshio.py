@@ -17,21 +17,22 @@ if TYPE_CHECKING:
 __all__ = ["TAGS", "to_meshio"]
 
 _CELLS = {"edges": "line", "triangles": "triangle", "surface": "triangle", "tetrahedra": "tetra"}
+_FACETS = {2: "line", 3: "triangle"}
 # What programs that read MSH files know parts of a mesh by.
 TAGS = ("gmsh:physical", "gmsh:geometrical")
 
 
 def to_meshio(mesh: Given) -> Any:
-    """Return a `meshio.Mesh` in 3-D; segments are a second block of cells, of type ``line``.
+    """Return a `meshio.Mesh` in 3-D; segments, or marked faces, are a second block of cells.
 
-    Where only simplices have a value, segments have -1 (integers) or NaN; where only segments have
+    That has the type ``line``, or ``triangle``. Where only simplices have a value, segments have -1 (integers) or NaN; where only segments have
     one, simplices have 0 or NaN. With a ``marker``, it and regions, from 1 on, are tags of Gmsh.
     """
     meshio = require("meshio", extra="mesh", what="to_meshio")
     parts = parts_of(mesh)
     cells = [(_CELLS[kind_of(parts, what="a mesh of meshio")], parts.simplices)]
     if parts.segments is not None:
-        cells.append(("line", parts.segments))
+        cells.append((_FACETS[parts.segments.shape[1]], parts.segments))
     return meshio.Mesh(
         with_third(parts.points),
         cells,

@@ -51,7 +51,8 @@ class Parts(NamedTuple):
     simplices: Indices  # (m, k): edges, triangles or tetrahedra
     of_points: Values = _NONE  # arrays of length n, as of_simplices are of length m
     of_simplices: Values = _NONE
-    segments: Indices | None = None  # (q, 2): edges of the input; None for a mesh without such
+    # (q, 2): edges of the input, (q, 3) of tetrahedra: faces; None for a mesh without such
+    segments: Indices | None = None
     of_segments: Values = _NONE
     crs: str | None = None
 
@@ -143,8 +144,8 @@ def boundary(simplices: Indices) -> Indices:
 def facet_segments(parts: Parts) -> tuple[Indices, NDArray[np.int64]]:
     """Return the segments that are edges of triangles, (s, k - 1), and their rows among all.
 
-    Segments in a hole are edges of no triangle, and finite elements have no place for them. There
-    are none where simplices are not triangles.
+    Segments in a hole are edges of no triangle, and finite elements have no place for them. Of
+    tetrahedra, they are faces.
     """
     return _segments_among(parts, _facets(parts.simplices))
 
@@ -156,7 +157,7 @@ def boundary_segments(parts: Parts) -> tuple[Indices, NDArray[np.int64]]:
 
 def _segments_among(parts: Parts, sides: Indices) -> tuple[Indices, NDArray[np.int64]]:
     segments, width = parts.segments, sides.shape[1]
-    if segments is None or width != 2:
+    if segments is None or segments.shape[1] != width:
         return np.empty((0, width), dtype=np.int32), np.empty(0, dtype=np.int64)
     both = _keys(np.concatenate((segments, sides)))
     rows = np.flatnonzero(np.isin(both[: len(segments)], both[len(segments) :]))

@@ -21,7 +21,8 @@ def to_skfem(mesh: Given) -> Any:
     """Return a `skfem.MeshTri` of triangles in 2-D or a `skfem.MeshTet`.
 
     Subdomains are ``"region 0"`` and so on where simplices have a ``region``; boundaries are
-    segments, ``"marker 0"`` and so on where these have a ``marker``, else ``"segments"``.
+    segments or marked faces, ``"marker 0"`` and so on where these have a ``marker``, else
+    ``"segments"``.
     """
     skfem = require("skfem", extra="fem", what="to_skfem")
     parts = parts_of(mesh)
@@ -43,7 +44,7 @@ def to_skfem(mesh: Given) -> Any:
 def _boundaries(parts: Parts, facets: NDArray[Any]) -> dict[str, NDArray[np.int64]]:
     """The facets that are segments, by the markers of these."""
     pairs, rows = facet_segments(parts)
-    numbers = _facets(facets, pairs, len(parts.points))
+    numbers = _facets(facets, pairs)
     marker = parts.of_segments.get("marker")
     return {"segments": numbers} if marker is None else _groups(marker[rows], numbers, "marker")
 
@@ -55,10 +56,11 @@ def _groups(
     return {f"{name} {value}": numbers[values == value] for value in np.unique(values).tolist()}
 
 
-def _facets(facets: NDArray[Any], pairs: NDArray[np.int32], npoints: int) -> NDArray[np.int64]:
-    """Return the number of the facet that each pair of points is."""
-    keys = np.min(facets, axis=0).astype(np.int64) * npoints + np.max(facets, axis=0)
-    wanted = pairs.min(axis=1).astype(np.int64) * npoints + pairs.max(axis=1)
+def _facets(facets: NDArray[Any], pairs: NDArray[np.int32]) -> NDArray[np.int64]:
+    """Return the number of the facet that each pair or triple of points is."""
+    both = np.sort(np.concatenate((np.asarray(facets).T, pairs)), axis=1)
+    _, key = np.unique(both, axis=0, return_inverse=True)
+    keys, wanted = key[: facets.shape[1]], key[facets.shape[1] :]
     order = np.argsort(keys)
     found: NDArray[np.int64] = order[np.searchsorted(keys, wanted, sorter=order)]
     return found

@@ -89,7 +89,7 @@ def _edges(parts: Parts, mesh: Any) -> Parts:
     """The edges of a mesh in place of its simplices."""
     edges: NDArray[np.int32] = mesh.edges
     found = Parts(parts.points, edges)
-    if parts.segments is None:
+    if parts.segments is None or parts.segments.shape[1] != edges.shape[1]:
         return found
     n = np.int64(len(parts.points))
     keys, wanted = (p.min(axis=1) * n + p.max(axis=1) for p in (edges, parts.segments))

@@ -64,6 +64,8 @@ def write_mesh(
         return
     made = to_meshio(found.whole())
     families = _families(made) if suffix == ".med" else None
+    if suffix == ".inp":
+        made.cell_sets = _sets(made)
     if suffix in (".inp", ".med"):
         made.point_data, made.cell_data = {}, {}
     for tag in TAGS:
@@ -97,6 +99,20 @@ def _families(mesh: Any) -> tuple[dict[str, list[NDArray[np.int64]]], dict[int, 
                 names[number] = [f"{name} {own}"]
                 tags[block][value == own] = number
     return {"cell_tags": tags}, names
+
+
+def _sets(mesh: Any) -> dict[str, list[NDArray[np.int64]]]:
+    """The sets of elements of an INP file: regions of cells and markers of facets, by name."""
+    nothing = [np.empty(0, dtype=np.int64) for _ in mesh.cells]
+    found = {}
+    for name, block, none in (("region", 0, -1), ("marker", 1, 0)):
+        values = mesh.cell_data.get(name, ())
+        for value in list(values)[block : block + 1]:
+            for own in np.setdiff1d(value, none).tolist():
+                rows = list(nothing)
+                rows[block] = np.flatnonzero(value == own)
+                found[f"{name}_{own}"] = rows
+    return found
 
 
 def _su2(parts: Parts) -> str:

@@ -238,10 +238,27 @@ def _write_tagged(path: Path, mesh: Any, found: Content) -> None:
     """
     if found.of_simplices:
         raise FileFormatError(".msh files of meshes cannot store attributes of triangles; use .vtu")
+    mesh.field_data = _groups(mesh)
     mesh.cell_data = {tag: mesh.cell_data[tag] for tag in TAGS}
     mesh.point_data = dict(found.of_points)
     module = importlib.import_module("meshio.gmsh")
     module.write(path, mesh, "2.2", binary=True)
+
+
+def _groups(mesh: Any) -> dict[str, NDArray[np.int64]]:
+    """Return the names of the physical groups, each with its tag and dimension."""
+    found = {}
+    own = {"region": 0, "marker": 1}
+    for name, block in own.items():
+        values = mesh.cell_data.get(name)
+        if values is None:
+            continue
+        ndim = {"line": 1, "triangle": 2, "tetra": 3}[mesh.cells[block].type]
+        pairs = zip(values[block].tolist(), mesh.cell_data[TAGS[0]][block].tolist(), strict=True)
+        for value, tag in sorted(set(pairs)):
+            if tag:
+                found[f"{name} {value}"] = np.array([tag, ndim])
+    return found
 
 
 def _write(path: Path, suffix: str, mesh: Any) -> None:

@@ -269,7 +269,10 @@ class TetMesh(Triangulation):
         from delone.exchange.parts import Parts
 
         values = {"region": self._region, "smallest_dihedral": self.quality().smallest_dihedral}
-        return Parts(self._points, self._simplices, of_simplices=values)
+        found = Parts(self._points, self._simplices, of_simplices=values)
+        if not len(self.input_faces) or not self.face_markers.any():
+            return found
+        return found._replace(segments=self.input_faces, of_segments={"marker": self.face_markers})
 
     def _described(self) -> str:
         return f"{counted(self.npoints, 'point')}: {counted(self.nsimplex, 'tetrahedron')}"

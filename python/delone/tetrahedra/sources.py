@@ -48,7 +48,7 @@ def given(
 ) -> Given:
     """Return the surface of the arguments; markers, holes and regions replace those of a file."""
     found = Given(points, faces) if faces is not None else _of(points)
-    further = {"markers": markers, "holes": holes, "regions": regions}
+    further: dict[str, Any] = {"markers": markers, "holes": holes, "regions": regions}
     return found._replace(**{name: value for name, value in further.items() if value is not None})
 
 
