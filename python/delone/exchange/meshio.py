@@ -25,8 +25,9 @@ TAGS = ("gmsh:physical", "gmsh:geometrical")
 def to_meshio(mesh: Given) -> Any:
     """Return a `meshio.Mesh` in 3-D; segments, or marked faces, are a second block of cells.
 
-    That has the type ``line``, or ``triangle``. Where only simplices have a value, segments have -1 (integers) or NaN; where only segments have
-    one, simplices have 0 or NaN. With a ``marker``, it and regions, from 1 on, are tags of Gmsh.
+    That has the type ``line``, or ``triangle``. Where only simplices have a value, segments have -1
+    (integers) or NaN; where only segments have one, simplices have 0 or NaN. With a ``marker``, it
+    and regions, from 1 on, are tags of Gmsh.
     """
     meshio = require("meshio", extra="mesh", what="to_meshio")
     parts = parts_of(mesh)
