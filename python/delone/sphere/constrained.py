@@ -404,16 +404,20 @@ def most_added(crossing: str, max_points: int | None) -> int | None:
 
 
 def _between_opposites(error: DirectionError, vectors: Floats, given: Given) -> DirectionError:
-    """Return the error of an arc between opposite directions with its ends, and its geometry."""
+    """Return the error of a side between opposite directions with its geometry and its ends.
+
+    The rows of segments that a caller gave are right as they are.
+    """
     row = int(error.rows[0])
     (a, b), geometry = given.segments[row], int(given.origin.geometries[row])
+    if geometry < 0:
+        return error
     places = [f"({x:.10g}, {y:.10g})" for x, y in lonlat_of(vectors[[a, b]]).tolist()]
-    what = f"segment {row}" if geometry < 0 else f"a side of geometry {geometry}"
     more = "" if error.count == 1 else f" ({error.count} do)"
     return DirectionError(
-        f"{what} joins the opposite directions {places[0]} and {places[1]}{more}, which no single "
-        "shorter arc joins: add a point between them",
-        rows=error.rows if geometry < 0 else np.array([geometry]),
+        f"a side of geometry {geometry} joins the opposite directions {places[0]} and {places[1]}"
+        f"{more}, which no single shorter arc joins: add a point between them",
+        rows=np.array([geometry]),
         count=error.count,
     )
 
