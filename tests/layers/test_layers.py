@@ -29,7 +29,8 @@ CRATES = ROOT / "crates"
 # the import is and whatever it is for.
 PYTHON: tuple[set[str], ...] = (
     {"_core", "errors", "blocks", "counting", "decimals", "duplicates"},
-    {"_masks", "atomic", "bounded", "extras", "georeference"},
+    {"_masks", "atomic", "bounded", "extras"},
+    {"georeference"},
     {"_arrays", "units"},
     {"_values", "immutable", "predicates"},
     # Rooms that take plain arrays and protocols, and no class.
