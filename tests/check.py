@@ -42,6 +42,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "bounded": ("hostile",),
     "complex": ("classes", "delaunay"),
     "counting": ("errors",),
+    "decimals": ("interpolate", "terrain"),
     "dimension": ("measure", "delaunay"),
     "duplicates": ("delaunay",),
     "dynamic": ("live",),

@@ -301,7 +301,7 @@ BAD: dict[str, Any] = {
     "three axes": np.zeros((3, 2, 2)),
     "nan": [(0, 0), (1, 0), (np.nan, 1)],
     "infinity": [(0, 0), (1, 0), (np.inf, 1), (2, 2)],
-    "masked": np.ma.masked_array([(0.0, 0), (1, 0), (0, 1)], mask=False),
+    "masked": np.ma.masked_equal([(0.0, 0), (1, 0), (0, 7)], 7),
     "ragged": np.array([(0, 0), (1,)], dtype=object),
     "words": [("a", "b")] * 4,
 }

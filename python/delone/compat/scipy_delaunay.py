@@ -370,6 +370,8 @@ class Delaunay(Incremental):
         >>> Delaunay([(0, 0), (1, 0), (0, 1)]).find_simplex([(0.25, 0.25), (1, 1)])
         array([ 0, -1], dtype=int32)
         """
+        if isinstance(xi, Delaunay):
+            raise IndexError("points to locate are coordinates, got a triangulation")
         queries = as_queries(xi, self.ndim)
         if tol is None:
             return self._mesh.find_simplex(queries)

@@ -453,8 +453,8 @@ def _require_free(parts: Iterable[tuple[Any, Any]], geometry: _Geometry) -> None
         both = targets & set(part.dims) - set(geometry.dims)
         if both:
             raise InputError(
-                f"{name!r} and the targets have the dimension {min(map(str, both))!r}: drop or "
-                "rename one of them"
+                f"{name!r:.80} and the targets have the dimension {min(map(str, both))!r:.80}: "
+                "drop or rename one of them"
             )
 
 
