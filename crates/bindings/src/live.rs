@@ -25,7 +25,7 @@ pub type Weights = (Table<i64>, Table<f64>, i64, Option<Column<i64>>);
 #[pyclass(frozen, module = "delone._core")]
 pub struct Live2 {
     live: Mutex<Plane>,
-    /// How many edits there have been; read and changed with the lock.
+    /// How many edits are complete; changed with the lock.
     edits: AtomicI64,
 }
 
@@ -90,8 +90,9 @@ impl Live2 {
         work: impl FnOnce(&mut Plane, &Watch) -> delone_core::error::Result<T> + Send,
     ) -> PyResult<T> {
         self.with(py, count, |plane, watch| {
+            let made = work(plane, watch)?;
             self.edits.fetch_add(1, Ordering::Relaxed);
-            work(plane, watch)
+            Ok(made)
         })
     }
 }
@@ -177,6 +178,12 @@ impl Live2 {
                 plane.total(),
             ])
         })
+    }
+
+    /// How many edits are complete.
+    #[getter]
+    fn edits(&self) -> i64 {
+        self.edits.load(Ordering::Relaxed)
     }
 
     /// Inserts points and returns their handles.

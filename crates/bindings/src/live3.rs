@@ -21,7 +21,7 @@ type Handles<'py> = PyReadonlyArray1<'py, i64>;
 #[pyclass(frozen, module = "delone._core")]
 pub struct Live3 {
     live: Mutex<Space>,
-    /// How many edits there have been; read and changed with the lock.
+    /// How many edits are complete; changed with the lock.
     edits: AtomicI64,
 }
 
@@ -69,8 +69,9 @@ impl Live3 {
         work: impl FnOnce(&mut Space, &Watch) -> delone_core::error::Result<T> + Send,
     ) -> PyResult<T> {
         self.with(py, count, |space, watch| {
+            let made = work(space, watch)?;
             self.edits.fetch_add(1, Ordering::Relaxed);
-            work(space, watch)
+            Ok(made)
         })
     }
 }
@@ -108,6 +109,12 @@ impl Live3 {
                 space.total(),
             ])
         })
+    }
+
+    /// How many edits are complete.
+    #[getter]
+    fn edits(&self) -> i64 {
+        self.edits.load(Ordering::Relaxed)
     }
 
     /// Inserts points and returns their handles.

@@ -49,13 +49,17 @@ class Segmented:
 
         A signal may be handled when the core has finished and before anything else happens here,
         so the edit counts as done from the start; it counts again after it, for readers in other
-        threads.
+        threads. Where the core has completed nothing, the arrays are still those of before.
         """
+        before, known = self._live.edits, self._edit
         self._edit = object()
         try:
-            return change(*arguments)
-        finally:
-            self._edit = object()
+            made = change(*arguments)
+        except BaseException:
+            self._edit = known if self._live.edits == before else object()
+            raise
+        self._edit = object()
+        return made
 
     def _arrays(self) -> _core.LiveArrays2 | _core.LiveArrays3:
         raise NotImplementedError

@@ -130,13 +130,11 @@ class TIN(Surveyed, Earthworks):
             Lines that edges follow, such as the edges of roads, dikes and water: geometries of
             shapely, tables of them, a `delone.io.GeometrySet`, or arrays of shape (k, 2) or (k, 3).
             Lines without heights follow the surface of the points; single points of a line without
-            one (NaN) are on it. Both kinds are edges; smoothing does not cut corners of contours at
-            hard ones.
+            one (NaN) are on it. Both kinds are edges; contours are not smoothed at hard ones.
         boundary, holes : optional
-            Polygons or rings: the surface ends at the boundary, and does not cover holes. Where
-            they leave the points, the surface ends there. Each polygon has its own holes, and
-            several are a union. Rings given as arrays or closed lines are together one polygon:
-            inside is what an odd number of them contain.
+            Polygons or rings: the surface ends at the boundary, and where the points end, and does
+            not cover holes. Each polygon has its own holes, and several are a union. Rings given as
+            arrays or closed lines are one polygon: inside is what an odd number of them contain.
         islands : optional
             Polygons or rings in holes or outside of the boundary that belong to the surface.
         max_edge : float, optional
@@ -146,13 +144,11 @@ class TIN(Surveyed, Earthworks):
             The height of points with the same x and y and different heights, or of such a point and
             a line.
         crossing : {"raise", "min", "max", "mean"}, optional
-            The height where lines with different heights cross or touch. Lines without heights have
-            those of what they meet.
+            The height where lines with different heights cross or touch.
         tolerance : float, optional
             Heights at one place that differ by at most this are equal, in units of height; by
-            default only those that differ by no more than rounding can: the slope of a line times
-            the rounding of its coordinates. Of equal heights the most accurate one remains, of
-            several such the lowest.
+            default those that differ by no more than the slope of a line times the rounding of its
+            coordinates. Of equal heights the most accurate remains, of several such the lowest.
         crs : optional
             Coordinate reference system, as ``"EPSG:28992"``, an EPSG code or a pyproj.CRS; by
             default that of the data. Lines that declare another one are transformed (pyproj).
@@ -187,8 +183,8 @@ class TIN(Surveyed, Earthworks):
         Warns
         -----
         GeographicWarning, UnitsWarning, CRSWarning
-            x and y are degrees, or in another unit than the heights; or the reference system of
-            points or lines is unknown, and taken to be that of the others.
+            x and y are degrees, or in another unit than the heights, or one of two reference
+            systems is unknown, and taken to be the other.
 
         Examples
         --------
@@ -535,8 +531,7 @@ class TIN(Surveyed, Earthworks):
             Heights of the contours.
         interval : float, optional
             Distance of levels, instead of `levels`: all multiples of it, from `base` on, that the
-            surface reaches. They are the doubles nearest to the decimal numbers: of 0.1 the third
-            is 0.3.
+            surface reaches, as the doubles nearest to decimal numbers: of 0.1 the third is 0.3.
         base : float, optional
             A level from which `interval` counts.
         index : int, optional
@@ -718,8 +713,7 @@ class TIN(Surveyed, Earthworks):
             A height; a plane (a, b, c) of the heights c + a x + b y; or the surface that is to be
             reached.
         region : optional
-            Polygons or rings, as `boundary` of `from_points`, to which the volume is limited; those
-            that declare another reference system are transformed.
+            Polygons or rings, as `boundary` of `from_points`, to which the volume is limited.
 
         Returns
         -------
@@ -735,7 +729,7 @@ class TIN(Surveyed, Earthworks):
         Warns
         -----
         CRSWarning, UserWarning
-            One reference system is unknown, and the other known; there is no area in common.
+            One reference system is unknown; there is no area in common.
 
         Notes
         -----
@@ -801,7 +795,6 @@ class TIN(Surveyed, Earthworks):
         """
         ends = self._all_simplices[:, [[1, 2], [2, 0], [0, 1]]]
         keys = topology.edge_keys(ends[..., 0], ends[..., 1], self.npoints)
-        a, b = self._breaklines.T
-        lines = topology.edge_keys(a, b, self.npoints)
+        lines = topology.edge_keys(*self._breaklines.T, self.npoints)
         constrained = np.isin(keys, lines) | (self._all_neighbors < 0)
         return validate(self._points, self._all_simplices, self._all_neighbors, constrained)
