@@ -795,6 +795,6 @@ class TIN(Surveyed, Earthworks):
         """
         ends = self._all_simplices[:, [[1, 2], [2, 0], [0, 1]]]
         keys = topology.edge_keys(ends[..., 0], ends[..., 1], self.npoints)
-        lines = topology.edge_keys(*self._breaklines.T, self.npoints)
+        lines = topology.edge_keys(self._breaklines[:, 0], self._breaklines[:, 1], self.npoints)
         constrained = np.isin(keys, lines) | (self._all_neighbors < 0)
         return validate(self._points, self._all_simplices, self._all_neighbors, constrained)
