@@ -62,8 +62,8 @@ ENVIRONMENT ?= $(if $(wildcard $(STAMPS)/docs),docs,test)
 help:
 	@echo 'make demo    triangulate the lidar tile in examples/data: report, picture, mesh file'
 	@echo 'make check   after each change: what it touches, layers, lint; a minute and a half'
-	@echo 'make test    before each commit: Rust, Python, doctests, pages, layers; six minutes'
-	@echo 'make test-deep  before a release, and every night: all seeds, sizes, combinations, examples; 40 minutes'
+	@echo 'make test    before each commit: Rust, Python, doctests, pages, layers; ten minutes'
+	@echo 'make test-deep  before a release, and every night: all seeds, sizes, combinations, examples; an hour'
 	@echo 'make lint    clippy, rustdoc, rustfmt, ruff, mypy, codespell, and the stub against the built module'
 	@echo 'make docs    the documentation, into docs/_build/html'
 	@echo 'make linkcheck  the links of the documentation to other sites (needs a network)'

@@ -33,6 +33,28 @@ _SEVERAL_BYTES = {
 }
 
 
+class _Redeclared:
+    """A file in UTF-8 whose declaration says so, whatever it said before.
+
+    Some versions of libxml2 follow the declaration even where the caller names the encoding.
+    """
+
+    def __init__(self, file: IO[bytes]) -> None:
+        self._file = file
+        self._begun = False
+
+    def read(self, size: int = -1) -> bytes:
+        """Read about as many bytes; the first block contains the declaration."""
+        if self._begun:
+            return self._file.read(size)
+        self._begun = True
+        first = self._file.read(size if size < 0 else max(size, 1 << 10))
+        found = _DECLARED.search(first)
+        return (
+            first if found is None else first[: found.start(1)] + b"UTF-8" + first[found.end(1) :]
+        )
+
+
 class _RootError(Exception):
     """The root element has begun; a document type could only precede it."""
 
@@ -47,8 +69,9 @@ def decoded(path: Path) -> Iterator[tuple[IO[bytes], str | None]]:
             yield file, None
             return
         try:
-            # Whatever it decodes is given out as UTF-8.
-            yield codecs.EncodedFile(file, "utf-8", codec), "utf-8"
+            # Whatever it decodes is given out as UTF-8, and declared as such.
+            recoded: Any = _Redeclared(codecs.EncodedFile(file, "utf-8", codec))
+            yield recoded, "utf-8"
         except UnicodeDecodeError as error:
             raise FileFormatError(
                 f"{path} is not in the encoding that it declares, {codec}: {error.reason} "
