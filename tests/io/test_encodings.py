@@ -50,6 +50,18 @@ def test_surfaces_in_every_encoding(tmp_path, encoding):
     assert read_mesh(path).simplices.tolist() == [[0, 1, 2]]
 
 
+@pytest.mark.parametrize("encoding", ["GBK", "Shift_JIS", "EUC-KR"])
+def test_files_of_many_blocks_are_read_to_their_end(tmp_path, encoding):
+    points = "".join(f'<P id="{k}">{k} {k * k} 5</P>' for k in range(9, 6000))
+    text = SURFACE.format(encoding, NAMES[encoding]).replace("</Pnts>", f"{points}</Pnts>")
+    path = tmp_path / "a.xml"
+    path.write_bytes(text.encode(encoding))
+    assert path.stat().st_size > 1 << 17
+    found = read_surface(path)
+    assert found.name == NAMES[encoding]
+    assert len(found.points) == 5994
+
+
 def test_characters_that_windows_adds(tmp_path):
     # Files that declare GB2312 have characters of GBK, those that declare Shift_JIS of cp932.
     path = tmp_path / "a.xml"

@@ -153,8 +153,7 @@ class SingleLinkage(Immutable):
         n = self.npoints
         parts = self.linkage[:count, :2].astype(np.int64)
         # Of each cluster, any row: that of its first part, found by following first parts.
-        row = np.concatenate((np.arange(n), n + np.arange(count)))
-        row[n:] = parts[:, 0]
+        row = np.concatenate((np.arange(n), parts[:, 0]))
         while (row >= n).any():
             row = row[row]
         return row[parts].astype(np.int32)

@@ -1,6 +1,6 @@
 """The entities of a DXF drawing that are seen, with blocks expanded, as faces, points and lines.
 
-What lies on hidden layers, or is no surface, is counted by its type.
+Entities on hidden layers, and entities that cannot be part of a surface, are counted by type.
 """
 
 from __future__ import annotations

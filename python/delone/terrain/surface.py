@@ -136,4 +136,4 @@ class Surface(Protocol):
         """Triangles and weights at positions."""
 
     def _stretches(self, a: Floats, b: Floats) -> list[Indices]:
-        """The triangles along a segment, in parts between which there is no surface."""
+        """The triangles along a segment: a list for each part of it that is on the surface."""

@@ -65,7 +65,7 @@ class Surveyed(HullTiling):
         return str(self._units) or None
 
     def _stretches(self, a: Floats, b: Floats) -> list[Indices]:
-        """The triangles along a segment, in parts between which there is no surface."""
+        """The triangles along a segment: a list for each part of it that is on the surface."""
         tiling = (self._points, *self._tiling())
         return stretches(self._whole_locator, tiling, self._number, a, b)
 
