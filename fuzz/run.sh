@@ -6,10 +6,13 @@
 # sanitizer is used, as `unsafe` stands in two files alone, for memory and for one call
 # (CONTRIBUTING.md). `cargo fuzz run --sanitizer none` works as well, where it is installed.
 #
+# FUZZ_PROFILE (default release) is a profile of Cargo.toml; with smoke the targets are built on all
+# processors and run at three quarters of the speed.
+#
 # FUZZ_SEED (default 1) makes two runs from the same corpus alike; 0 takes a random one.
 #
 # What the fuzzer learns stays in fuzz/corpus; an input that fails is written to fuzz/artifacts, and
-# runs again as  fuzz/target/<host>/release/<target> fuzz/artifacts/<target>/<file>
+# runs again as  fuzz/target/<host>/<profile>/<target> fuzz/artifacts/<target>/<file>
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -22,19 +25,20 @@ if [ ${#targets[@]} -eq 0 ]; then
     done
 fi
 
+profile=${FUZZ_PROFILE:-release}
 host=$(rustc -vV | sed -n 's/^host: //p')
-coverage="--cfg fuzzing -Cpasses=sancov-module -Ccodegen-units=1"
+coverage="--cfg fuzzing -Cpasses=sancov-module"
 for option in level=4 inline-8bit-counters pc-table trace-compares; do
     coverage+=" -Cllvm-args=-sanitizer-coverage-$option"
 done
 # With --target the flags stay away from build scripts, which have no fuzzer to link with.
-RUSTFLAGS=$coverage cargo build --quiet --release --target "$host" --target-dir target
+RUSTFLAGS=$coverage cargo build --quiet --profile "$profile" --target "$host" --target-dir target
 
 for target in "${targets[@]}"; do
     mkdir -p "corpus/$target" "artifacts/$target"
     echo "fuzz: $target for $seconds s"
     log=$(mktemp)
-    if "target/$host/release/$target" "corpus/$target" -artifact_prefix="artifacts/$target/" \
+    if "target/$host/$profile/$target" "corpus/$target" -artifact_prefix="artifacts/$target/" \
         -seed="${FUZZ_SEED:-1}" \
         -max_total_time="$seconds" -max_len=1024 -timeout=20 -rss_limit_mb=2048 \
         -print_final_stats=1 >"$log" 2>&1; then

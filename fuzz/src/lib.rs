@@ -1,6 +1,6 @@
 //! Shared code of the fuzz targets: coordinates from bytes, and the oracle of the predicates.
 
-#[path = "../../crates/predicates/tests/oracle/mod.rs"]
+#[path = "../../crates/predicates/tests/suite/oracle/mod.rs"]
 pub mod oracle;
 
 use libfuzzer_sys::arbitrary::{Result, Unstructured};

@@ -36,7 +36,7 @@ CONVERTED = (
     "crates/bindings/src/*.rs",
     "crates/core/src/**/*.rs",
     "crates/core/examples/*.rs",
-    "crates/core/tests/*.rs",
+    "crates/core/tests/suite/*.rs",
     "crates/delone/src/**/*.rs",
     "crates/predicates/src/*.rs",
     "fuzz/fuzz_targets/*.rs",

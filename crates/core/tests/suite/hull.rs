@@ -1,15 +1,13 @@
 //! 3-D hulls: around all points, with extreme points only, the same for every order of the rows.
 
-mod tier;
-
 use std::collections::BTreeSet;
 
+use crate::tier::cases;
 use delone_core::Point3;
 use delone_core::hull::{Hull3, hull2, hull3};
 use delone_core::watch::Watch;
 use delone_predicates::{Point2, Sign, orient2d, orient3d};
 use proptest::prelude::*;
-use tier::cases;
 
 fn made(points: &[Point3]) -> Option<Hull3> {
     hull3(points, &Watch::idle()).expect("a hull")

@@ -1,9 +1,9 @@
 //! The predicates of directions against square roots of integers.
 
-mod oracle;
-
 use std::cmp::Ordering;
 
+use crate::oracle::directions::{sign_of_roots, square, true_incircle, true_orient, whole};
+use crate::oracle::points::{Random, power_of_two, shaken, ulps};
 use delone_predicates::sphere::{
     Unit, compare, incircle, incircle_canonical, incircle_exact, nearer, orient, orient_exact,
     same, stages,
@@ -11,8 +11,6 @@ use delone_predicates::sphere::{
 use delone_predicates::{Point3, Sign};
 use num_bigint::BigInt;
 use num_traits::Signed;
-use oracle::directions::{sign_of_roots, square, true_incircle, true_orient, whole};
-use oracle::points::{Random, power_of_two, shaken, ulps};
 
 /// Compares all stages with the oracle; counts how many decided.
 fn check(points: [Point3; 4], counts: &mut [usize; 3]) -> Sign {
@@ -310,7 +308,8 @@ fn units_are_right_to_a_hundred_bits() {
         for (k, x) in rows.iter().enumerate() {
             let exact = x * &root / &n;
             // The doubles are multiples of 2^-1074.
-            let sum = (oracle::units(unit.hi[k]) + oracle::units(unit.lo[k])) << (1400 - 1074);
+            let sum = (crate::oracle::units(unit.hi[k]) + crate::oracle::units(unit.lo[k]))
+                << (1400 - 1074);
             let error: BigInt = sum - &exact;
             let error = error.abs();
             if exact.bits() > 700 {

@@ -1,16 +1,14 @@
 //! Live 3-D triangulations against a fresh build after each edit.
 
-mod tier;
-
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use crate::tier::cases;
 use delone_core::Point3;
 use delone_core::delaunay3::triangulate;
 use delone_core::live::space::Space;
 use delone_core::watch::Watch;
 use proptest::prelude::*;
-use tier::cases;
 
 fn idle() -> Watch<'static> {
     Watch::idle()

@@ -3,10 +3,8 @@
 //! of `orient2d`, 6 u of the 8 u of `orient3d`, and 3 u of the 16 u of `insphere`; `filter.rs` finds
 //! that of `incircle` out below 3 u.
 
-mod oracle;
-
-use oracle::points::{Random, power_of_two, ulps};
-use oracle::{Answers, INCIRCLE, INSPHERE, ORIENT2D, ORIENT3D, Predicate};
+use crate::oracle::points::{Random, power_of_two, ulps};
+use crate::oracle::{Answers, INCIRCLE, INSPHERE, ORIENT2D, ORIENT3D, Predicate};
 
 /// Half the distance from 1.0 to the next double.
 const U: f64 = f64::EPSILON / 2.0;

@@ -1,17 +1,12 @@
 //! Properties that hold for all finite doubles: an exchange of two points changes the sign, equal
 //! points give zero, a reflection changes the sign.
 
-#[path = "../../core/tests/tier/mod.rs"]
-mod tier;
-
-mod oracle;
-
+use crate::oracle::{INCIRCLE, INSPHERE, ORIENT2D, ORIENT3D, Predicate};
+use crate::tier::cases;
 use delone_predicates::Sign;
-use oracle::{INCIRCLE, INSPHERE, ORIENT2D, ORIENT3D, Predicate};
 use proptest::array::uniform;
 use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
 use proptest::prelude::*;
-use tier::cases;
 
 /// Any finite double, or a small integer times a power of two, so that ties happen.
 fn coordinate() -> impl Strategy<Value = f64> {

@@ -1,14 +1,9 @@
 //! The angle against integers without limit.
 
-#[path = "../../core/tests/tier/mod.rs"]
-mod tier;
-
-mod oracle;
-
+use crate::oracle::{integers, sign_of};
+use crate::tier::cases;
 use delone_predicates::{Point2, Sign, angle};
-use oracle::{integers, sign_of};
 use proptest::prelude::*;
-use tier::cases;
 
 fn right(a: Point2, p: Point2, b: Point2) -> Sign {
     let v = integers(&[a, p, b]);

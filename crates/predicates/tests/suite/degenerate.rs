@@ -1,11 +1,9 @@
 //! Sets that are degenerate exactly: on one line, circle, plane or sphere of integers, also scaled and
 //! translated without rounding.
 
-mod oracle;
-
+use crate::oracle::points::{Random, circle_of_integers, power_of_two, shaken, sphere_of_integers};
+use crate::oracle::{Answers, INCIRCLE, INSPHERE, ORIENT2D, ORIENT3D, Predicate};
 use delone_predicates::Sign;
-use oracle::points::{Random, circle_of_integers, power_of_two, shaken, sphere_of_integers};
-use oracle::{Answers, INCIRCLE, INSPHERE, ORIENT2D, ORIENT3D, Predicate};
 
 /// Checks the points as they are, scaled, translated and shaken.
 fn variants<const D: usize, const N: usize>(

@@ -1,7 +1,6 @@
 //! Crossings of segments compared with rational numbers: the rounded point, and the pairs.
 
-mod tier;
-
+use crate::tier::cases;
 use delone_core::Point2;
 use delone_core::constrained::intersection::{crosses, intersection};
 use delone_core::constrained::pairs::{crossing_pairs, crossing_pairs_above};
@@ -10,7 +9,6 @@ use delone_core::watch::Watch;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 use proptest::prelude::*;
-use tier::cases;
 
 type Quad = [Point2; 4];
 

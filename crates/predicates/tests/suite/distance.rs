@@ -1,9 +1,7 @@
 //! Which of two points is nearer, against integers without limit.
 
-mod oracle;
-
+use crate::oracle::{integers, sign_of};
 use delone_predicates::{Point2, Point3, Sign, nearer, nearer3};
-use oracle::{integers, sign_of};
 use proptest::array::{uniform2, uniform3};
 use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
 use proptest::prelude::*;
@@ -57,7 +55,7 @@ proptest! {
         let at = |p: Point3| [0, 1, 2].map(|k| centre[k] + p[k]);
         let a = at([2.0, 3.0, 6.0]);
         let b = at([[3.0, -6.0, 2.0], [-2.0, -3.0, -6.0], [6.0, 2.0, 3.0], [0.0, 7.0, 0.0]][turn]);
-        let b = [0, 1, 2].map(|k| oracle::points::ulps(b[k], shift[k]));
+        let b = [0, 1, 2].map(|k| crate::oracle::points::ulps(b[k], shift[k]));
         prop_assert_eq!(nearer3(centre, a, b), expected3(centre, a, b));
     }
 
@@ -83,7 +81,7 @@ proptest! {
         let a = at(3.0, 4.0);
         let [x, y] = [[4.0, -3.0], [-3.0, -4.0], [-4.0, 3.0], [0.0, 5.0]][turn];
         let b = at(x, y);
-        let b = [oracle::points::ulps(b[0], shift[0]), oracle::points::ulps(b[1], shift[1])];
+        let b = [crate::oracle::points::ulps(b[0], shift[0]), crate::oracle::points::ulps(b[1], shift[1])];
         prop_assert_eq!(nearer(centre, a, b), expected(centre, a, b));
     }
 }

@@ -2,10 +2,8 @@
 //! products, minors and lengths underflow, one by one. The integer stage, which other tests hold
 //! against the oracle, judges here, as it is fast enough for many cases.
 
-mod oracle;
-
-use oracle::points::{Random, power_of_two, ulps};
-use oracle::{INCIRCLE, INSPHERE, ORIENT2D, ORIENT3D, Predicate};
+use crate::oracle::points::{Random, power_of_two, ulps};
+use crate::oracle::{INCIRCLE, INSPHERE, ORIENT2D, ORIENT3D, Predicate};
 
 /// Exponents around which products of two to five factors cross the smallest double.
 const EDGES: [i64; 14] = [

@@ -1,16 +1,14 @@
 //! Live triangulations against a fresh build after each edit.
 
-mod tier;
-
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use crate::tier::cases;
 use delone_core::Point2;
 use delone_core::delaunay2::{Method, triangulate};
 use delone_core::live::plane::Plane;
 use delone_core::watch::Watch;
 use proptest::prelude::*;
-use tier::cases;
 
 fn idle() -> Watch<'static> {
     Watch::idle()

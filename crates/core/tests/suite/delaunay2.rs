@@ -1,9 +1,8 @@
 //! Whole triangulations: valid, canonical, the same for every method, order and number of workers.
 
-mod tier;
-
 use std::collections::BTreeSet;
 
+use crate::tier::cases;
 use delone_core::Point2;
 use delone_core::arrays::Given;
 use delone_core::delaunay2::validate::{Findings, validate};
@@ -11,7 +10,6 @@ use delone_core::delaunay2::{Method, Triangulation, triangulate};
 use delone_core::error::Error;
 use delone_core::watch::Watch;
 use proptest::prelude::*;
-use tier::cases;
 
 fn made(points: &[Point2], method: Method, workers: usize) -> Triangulation {
     triangulate(points, method, workers, &Watch::idle()).expect("a triangulation")

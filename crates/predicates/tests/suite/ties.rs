@@ -1,10 +1,9 @@
 //! Canonical ties: against an explicit perturbation by small rational numbers, under permutations, and
 //! by what they are for: one triangulation of cocircular and cospherical points.
 
-mod oracle;
-
 use std::cmp::Ordering;
 
+use crate::oracle::points::{Random, circle_of_integers, shaken, sphere_of_integers};
 use delone_predicates::{
     Point2, Point3, Sign, incircle, incircle_canonical, insphere_canonical, lexicographic,
     orient2d, orient3d, tie_flips,
@@ -12,7 +11,6 @@ use delone_predicates::{
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Signed};
-use oracle::points::{Random, circle_of_integers, shaken, sphere_of_integers};
 
 fn sorted<const D: usize>(points: &[[f64; D]]) -> Vec<[f64; D]> {
     let mut points = points.to_vec();
@@ -158,7 +156,7 @@ fn spatial_grids_agree_with_small_rationals() {
             coplanar || sorted(&points).len() < 5,
             "{points:?}"
         );
-        ties += usize::from(!sign.is_zero() && oracle::sphere(&points).is_zero());
+        ties += usize::from(!sign.is_zero() && crate::oracle::sphere(&points).is_zero());
     }
     assert!(ties > 50);
 }
@@ -170,10 +168,10 @@ fn near_ties_follow_the_determinant() {
     let mut random = Random(53);
     for _ in 0..2000 {
         let points = [(); 4].map(|()| shaken(random.pick(&circle), 1, &mut random));
-        let sign = oracle::sphere(&points);
+        let sign = crate::oracle::sphere(&points);
         assert!(sign.is_zero() || in_plane(points) == sign);
         let points = [(); 5].map(|()| shaken(random.pick(&sphere), 1, &mut random));
-        let sign = oracle::sphere(&points);
+        let sign = crate::oracle::sphere(&points);
         assert!(sign.is_zero() || in_space(points) == sign);
     }
 }

@@ -1,14 +1,12 @@
 //! 3-D point location against its definition, on triangulations and on parts of them.
 
-mod tier;
-
+use crate::tier::cases;
 use delone_core::Point3;
 use delone_core::delaunay3::triangulate;
 use delone_core::locate3::{Batch, Kept, Located, Locator, Tetrahedra, coordinates, find, nearest};
 use delone_core::watch::{IDLE, Watch};
 use delone_predicates::{Sign, nearer3, orient3d};
 use proptest::prelude::*;
-use tier::cases;
 
 type Rows = Vec<[i32; 4]>;
 

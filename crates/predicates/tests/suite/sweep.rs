@@ -1,20 +1,15 @@
 //! The comparisons of the sweep against integers without limit.
 
-#[path = "../../core/tests/tier/mod.rs"]
-mod tier;
-
-mod oracle;
-
+use crate::oracle::points::power_of_two;
+use crate::oracle::{integers, sign_of};
+use crate::tier::cases;
 use delone_predicates::sweep::{
     CircleEnd, circle_end_abscissa, circle_ends, front, integer_ends, lattice_ends,
 };
 use delone_predicates::{Point2, Sign, orient2d};
 use num_bigint::BigInt;
 use num_traits::{Signed, Zero};
-use oracle::points::power_of_two;
-use oracle::{integers, sign_of};
 use proptest::prelude::*;
-use tier::cases;
 
 /// Any finite double.
 fn double() -> impl Strategy<Value = f64> {

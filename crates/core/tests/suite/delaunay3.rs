@@ -1,9 +1,8 @@
 //! 3-D triangulations: valid, canonical, the same for every order and number of workers.
 
-mod tier;
-
 use std::collections::BTreeSet;
 
+use crate::tier::cases;
 use delone_core::Point3;
 use delone_core::arrays::Given;
 use delone_core::delaunay3::validate::{Findings3, validate};
@@ -11,7 +10,6 @@ use delone_core::delaunay3::{Triangulation3, triangulate};
 use delone_core::error::Error;
 use delone_core::watch::Watch;
 use proptest::prelude::*;
-use tier::cases;
 
 fn made(points: &[Point3], workers: usize) -> Triangulation3 {
     triangulate(points, workers, &Watch::idle()).expect("a triangulation")

@@ -1,9 +1,7 @@
 //! The whole range of doubles: subnormals, `f64::MAX`, mixtures, and the edges of each size class.
 
-mod oracle;
-
-use oracle::points::{Random, power_of_two, ulps};
-use oracle::{Answers, INCIRCLE, INSPHERE, ORIENT2D, ORIENT3D, Predicate};
+use crate::oracle::points::{Random, power_of_two, ulps};
+use crate::oracle::{Answers, INCIRCLE, INSPHERE, ORIENT2D, ORIENT3D, Predicate};
 
 /// Runs `test` for each predicate with a number of cases in proportion to its cost.
 macro_rules! for_each_predicate {

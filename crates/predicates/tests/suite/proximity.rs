@@ -1,11 +1,9 @@
 //! The predicates of proximity graphs, against integers without limit.
 
-mod oracle;
-
+use crate::oracle::{integers, sign_of};
 use delone_predicates::Sign;
 use delone_predicates::proximity::{angle, arcs, lune, shorter, spheres};
 use num_bigint::BigInt;
-use oracle::{integers, sign_of};
 use proptest::array::uniform3;
 use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
 use proptest::prelude::*;

@@ -1,9 +1,8 @@
 //! Constrained triangulations of points with many ties and touching segments, checked exactly.
 
-mod tier;
-
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::tier::cases;
 use delone_core::Point2;
 use delone_core::constrained::{Constrained, Options, Rule, constrain, polygon};
 use delone_core::delaunay2::Method;
@@ -11,7 +10,6 @@ use delone_core::error::{Error, Result};
 use delone_core::watch::Watch;
 use delone_predicates::{Sign, angle, incircle_canonical, lexicographic, orient2d};
 use proptest::prelude::*;
-use tier::cases;
 
 fn options(split: bool) -> Options {
     Options {

@@ -1,9 +1,7 @@
 //! Points moved by single doubles around degenerate positions, where floating point is at its worst.
 
-mod oracle;
-
-use oracle::points::{Random, shaken, ulps};
-use oracle::{Answers, INCIRCLE, INSPHERE, ORIENT2D, ORIENT3D, Predicate};
+use crate::oracle::points::{Random, shaken, ulps};
+use crate::oracle::{Answers, INCIRCLE, INSPHERE, ORIENT2D, ORIENT3D, Predicate};
 
 /// Moves one coordinate pair of point `which` over 16 x 16 neighbours.
 fn sweep<const D: usize, const N: usize>(
