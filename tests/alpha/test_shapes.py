@@ -237,3 +237,10 @@ def test_a_strip_and_its_files(tmp_path):
         delone.AlphaComplex([(0, 0), (0.5, 0)], periodic=(1, None))
     with pytest.raises(delone.DegenerateInputError):
         delone.AlphaComplex(np.empty((0, 2)), periodic=(1, 1))
+
+
+def test_without_an_outside_the_last_hole_is_filled_by_the_last_triangle():
+    points = np.random.default_rng(5).random((60, 2))
+    complex = delone.AlphaComplex(points, periodic=(1, 1))
+    assert complex.optimal() == complex.values(2).max()
+    assert complex.optimal(holes=True) < complex.optimal()

@@ -16,6 +16,7 @@ from delone import (
     ConstrainedDelaunay,
     CrossingSegmentsError,
     DegenerateInputError,
+    DtypeError,
     Dynamic,
     HandleError,
     InputError,
@@ -370,3 +371,11 @@ def test_changes_follow_segments() -> None:
         seen -= {tuple(t) for t in changes.gone.tolist()}
         seen |= {tuple(t) for t in changes.new.tolist()}
         assert seen == triangles(live.handles[live.simplices])
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint64, np.int16])
+def test_handles_have_any_dtype_of_integers(dtype: Any) -> None:
+    live = Dynamic([(0, 0), (4, 0), (4, 4), (0, 4)])
+    assert len(live.insert_segments(np.array([(0, 2)], dtype=dtype)))
+    with pytest.raises(DtypeError, match="below 2"):
+        live.insert_segments(np.array([(0, 2**63)], dtype=np.uint64))

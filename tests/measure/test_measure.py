@@ -212,3 +212,11 @@ def distinct(simplices: NDArray[np.int32], size: int) -> NDArray[np.int32]:
     rows = np.concatenate([np.sort(simplices[:, chosen], axis=1) for chosen in columns])
     found: NDArray[np.int32] = np.unique(rows, axis=0)
     return found
+
+
+def test_percentiles_are_those_of_their_names() -> None:
+    quality = Delaunay(datasets.uniform(300, seed=3)).quality()
+    for name, found in quality.summary().items():
+        values = getattr(quality, name)
+        for percent in (1, 10, 50, 90, 99):
+            assert found[f"p{percent}"] == np.percentile(values, percent), (name, percent)

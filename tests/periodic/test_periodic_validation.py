@@ -343,3 +343,17 @@ def test_a_row_for_which_another_one_stands_is_found(periods: Periods) -> None:
     heavier = PeriodicDelaunay(points, periods, weights=weights)
     assert faults(heavier) == set()
     assert damaged(twin, weights=weights).validate().repeats.tolist() == [1]
+
+
+@pytest.mark.parametrize("most", [None, 0.002, 0.02])
+def test_hidden_rows_are_those_without_a_triangle(most: float | None) -> None:
+    rng = np.random.default_rng(8)
+    points = rng.random((60, 2))
+    points = np.concatenate((points, points[:15]))
+    weights = None if most is None else rng.random(75) * most
+    mesh = PeriodicDelaunay(points, (1, 1), weights=weights)
+    corners = set(mesh.simplices.ravel().tolist())
+    first = mesh.duplicate_of.tolist()
+    wanted = [row for row in range(75) if first[row] not in corners]
+    assert mesh.hidden.tolist() == wanted
+    assert bool(wanted) == (most is not None)

@@ -183,3 +183,17 @@ def test_no_triangle_at_all(tmp_path):
     assert mesh.nsimplex == 0
     save_picture(tmp_path / "a.png", mesh, size=4, dpi=60)
     save_picture(tmp_path / "b.png", mesh, z=np.arange(4), size=4, dpi=60)
+
+
+def test_each_triangle_has_its_pixels():
+    mesh = ConstrainedDelaunay(OUTER + INNER, RINGS)
+    values = 1.0 + np.arange(mesh.npoints)
+    raster = rasterize(mesh, values, 60)
+    rows, columns = np.indices(raster.values.shape)
+    x = raster.extent[0] + (columns + 0.5) * raster.cell
+    y = raster.extent[2] + (rows + 0.5) * raster.cell
+    at = mesh.find_simplex(np.column_stack((x.ravel(), y.ravel()))).reshape(rows.shape)
+    for triangle in range(mesh.nsimplex):
+        assert (at == triangle).any()
+        assert np.isfinite(raster.values[at == triangle]).all(), triangle
+    assert np.isnan(raster.values[at < 0]).all()

@@ -183,3 +183,17 @@ def test_the_result_never_changes() -> None:
         check.component[0] = 1
     again = pickle.loads(pickle.dumps(check))
     assert str(again) == str(check) and not again.component.flags.writeable
+
+
+@pytest.mark.parametrize(
+    ("faces", "flat"),
+    [
+        ([(0, 1, 2), (0, 1, 2)], True),
+        ([(0, 1, 3)], True),
+        ([(0, 1, 3), (0, 1, 2)], True),
+        ([(0, 1, 3), (0, 1, 2), (0, 1, 4)], False),
+    ],
+)
+def test_faces_that_repeat_or_have_no_area_are_flat(faces: Any, flat: bool) -> None:
+    points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (2, 0, 0), (0, 0, 1)]
+    assert delone.check_surface(points, faces).flat is flat

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections import defaultdict
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -261,3 +262,12 @@ def test_volume_differs_if_a_tetrahedron_is_missing() -> None:
     assert whole == 1
     assert solids.filled(mesh.points, mesh.simplices[1:]) < whole
     assert isinstance(whole, Fraction)
+
+
+@pytest.mark.parametrize(
+    ("edges", "faces", "said"), [(2, 0, "2 edges and 0 faces"), (0, 1, "0 edges and 1 face")]
+)
+def test_the_report_says_what_was_missing(edges: int, faces: int, said: str) -> None:
+    report = delone.tetrahedralize(*solids.torus()).report
+    changed = dataclasses.replace(report, missing_edges=edges, missing_faces=faces)
+    assert f"the Delaunay triangulation lacks {said}" in str(changed)

@@ -22,7 +22,7 @@ class Cells(NamedTuple):
     data: NDArray[Any]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class ReadMesh:
     """Points, cells in the order of the file, and values of points by name."""
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["Cells", "around_circle", "cells_of", "lunes"]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Cells:
     """Vertices, ridges and cells; cells are in the order of the rows of their sites."""
 
