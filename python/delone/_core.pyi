@@ -268,23 +268,23 @@ class RegularTriangulation:
 
 @final
 class PeriodicTriangulation:
-    """The triangulation of points and their copies."""
+    """A triangulation of periodic points: one triangle of each class of translates."""
 
     @property
     def simplices(self) -> NDArray[np.int32]:
-        """Vertices of the triangles, as numbers of copies, (m, 3)."""
+        """Vertices of the triangles, (m, 3)."""
+    @property
+    def offsets(self) -> NDArray[np.int32]:
+        """The number of periods by which each corner is shifted, x and y by turns, (m, 6)."""
     @property
     def neighbors(self) -> NDArray[np.int32]:
         """The triangle opposite each vertex, -1 outside, (m, 3)."""
     @property
+    def partners(self) -> NDArray[np.int32]:
+        """The same with its corner, 3 t + k, (m, 3)."""
+    @property
     def chain(self) -> NDArray[np.int32]:
-        """The copies, in order along the line, if all are collinear, (k,)."""
-    @property
-    def rows(self) -> NDArray[np.int32]:
-        """The row of each copy, (c,)."""
-    @property
-    def moved(self) -> NDArray[np.int32]:
-        """The number of periods by which each copy is shifted, (c, 2)."""
+        """Rows that are not hidden, in order along the line, if there is no triangle, (k,)."""
 
 @final
 class RegularFaults2:
@@ -1892,7 +1892,7 @@ def periodic2(
     points: NDArray[np.float64],
     weights: NDArray[np.float64] | None,
     periods: tuple[float, float],
-    taken: NDArray[np.int32],
+    workers: int,
 ) -> PeriodicTriangulation: ...
 def periodic_centers2(
     points: NDArray[np.float64],

@@ -1,8 +1,8 @@
 """Periodic Delaunay triangulations, with a period in x, in y, or both.
 
-The core triangulates the points and copies of them around, with predicates that are exact on the
-sums of coordinates and periods; here one triangle of each class of translates is kept, and
-neighbors are found among them by their common edges.
+The core triangulates the points, and copies of those near the ends of a period, with predicates
+that are exact on the sums of coordinates and periods; of each class of translates it returns one
+triangle.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from delone._arrays import as_number, as_workers, require_finite
 from delone.complex import Complex
 from delone.counting import counted
 from delone.duplicates import first_rows
-from delone.errors import DegenerateInputError, InputError, InternalError, ShapeError
+from delone.errors import DegenerateInputError, InputError, InternalError
 from delone.immutable import kept, own_copy, sealed
 from delone.plane.dimension import PLANE
 from delone.regular import as_weights
@@ -38,10 +38,6 @@ if TYPE_CHECKING:
 __all__ = ["PeriodicDelaunay"]
 
 _LARGEST = sys.float_info.max
-# Copies nearer than this many mean distances to the box of the points are tried first.
-_HALO = 8.0
-# Sets with fewer points than this take all copies at once.
-_FEW = 64
 
 
 class PeriodicDelaunay(Complex):
@@ -59,8 +55,7 @@ class PeriodicDelaunay(Complex):
         Weights, in the square of the unit of the points, as for `RegularTriangulation`. All copies
         of a point have its weight.
     workers : int, optional
-        Maximum number of threads for measures; by default one per core. The triangulation itself
-        uses one thread.
+        Maximum number of threads; by default one per core. The result does not depend on it.
 
     Attributes
     ----------
@@ -98,9 +93,9 @@ class PeriodicDelaunay(Complex):
     that the set of triangles is unique, and the same in all periods. With two periods there are 2 n
     triangles and 3 n edges for n distinct points (with weights, for n that are not hidden).
 
-    Copies one period away on all sides are sufficient for any points. If there are many points,
-    only nearby copies are used at first; the circumcircles show whether these were too few. Time is
-    that of inserting all of them, O(n log n) on typical inputs.
+    The points are triangulated without copies first; triangles whose circumcircles stay clear of
+    all copies are final. Only the points at other triangles are triangulated with all their copies
+    one period away, which are sufficient for any points. O(n log n) on typical inputs.
 
     References
     ----------
@@ -139,11 +134,10 @@ class PeriodicDelaunay(Complex):
         own = own_copy(points)
         require_finite(own)
         own_weights = None if weights is None else as_weights(weights, len(own))
-        if workers is not None:
-            as_workers(workers)
+        threads = as_workers(workers)
         lengths = as_periods(periods)
         _require_one_period(own, lengths)
-        self._fill(_triangulated(own, own_weights, lengths), {}, workers)
+        self._fill(_triangulated(own, own_weights, lengths, threads), {}, workers)
 
     def _saved(self) -> dict[str, NDArray[Any]]:
         return {"points": self._points, "weights": self._weights, "periods": self._lengths}
@@ -356,131 +350,42 @@ def _standing(points: Floats, weights: Floats | None) -> NDArray[np.int64]:
 
 
 def _triangulated(
-    points: Floats, weights: Floats | None, periods: tuple[float | None, float | None]
+    points: Floats,
+    weights: Floats | None,
+    periods: tuple[float | None, float | None],
+    workers: int,
 ) -> dict[str, NDArray[Any]]:
     """One triangle of each class."""
-    rows = np.unique(_standing(points, weights)).astype(np.int32)
-    lengths = _lengths(periods)
-    if not len(rows):
+    if not len(points):
         raise DegenerateInputError(
             "there are no points; at least one is needed", reason="too few points"
         )
-    found = None
-    if None not in periods and len(rows) > _FEW:
-        found = _with_halo(points, weights, rows, lengths)
-    if found is None:
-        found = _copied(points, weights, lengths, _copies(rows, periods))
-    simplices, offsets, chain = found
-    if not len(simplices):
+    x, y = _lengths(periods).tolist()
+    try:
+        made = _core.periodic2(points, weights, (x, y), workers)
+    except InternalError as error:
+        error.points = points
+        raise
+    if not len(made.simplices):
         raise DegenerateInputError(
             "all points lie on one line along the period, so there is no triangle; `error.chain` "
             "has the rows of those that are not hidden, in order",
             reason="collinear",
-            chain=chain,
+            chain=made.chain,
         )
-    partners = _partners(simplices, offsets, len(points), whole=None not in periods)
     return {
         "points": points,
-        "simplices": simplices,
-        "neighbors": np.where(partners < 0, -1, partners // 3).astype(np.int32),
-        "offsets": offsets,
-        "partners": partners,
+        "simplices": made.simplices,
+        "neighbors": made.neighbors,
+        "offsets": made.offsets.reshape(-1, 3, 2),
+        "partners": made.partners,
         "weights": np.empty(0) if weights is None else weights,
         "lengths": np.array([np.nan if length is None else length for length in periods]),
     }
 
 
-def _copies(rows: Indices, periods: tuple[float | None, float | None]) -> Indices:
-    """The points and all their copies one period away."""
-    steps = [[0] if length is None else [-1, 0, 1] for length in periods]
-    moves = np.array([(x, y) for x in steps[0] for y in steps[1]], dtype=np.int32)
-    return np.column_stack((np.repeat(rows, len(moves)), np.tile(moves, (len(rows), 1))))
-
-
-def _with_halo(
-    points: Floats, weights: Floats | None, rows: Indices, lengths: Floats
-) -> tuple[Indices, Indices, Indices] | None:
-    """The triangles by way of those copies that lie near, or None where these are too few."""
-    low = points[rows].min(axis=0)
-    width = _HALO * float(np.sqrt(lengths[0] / len(rows)) * np.sqrt(lengths[1]))
-    if not 0 < width < lengths.min() / 2:
-        return None
-    copies = _copies(rows, (1.0, 1.0))
-    with np.errstate(over="ignore"):
-        at = points[copies[:, 0]] + copies[:, 1:] * lengths
-        near = ((at >= low - width) & (at <= low + lengths + width)).all(axis=1)
-    if not np.isfinite(at).all():
-        return None
-    found = _copied(points, weights, lengths, np.ascontiguousarray(copies[near]))
-    simplices, offsets, _ = found
-    if len(simplices) != 2 * len(rows if weights is None else np.unique(simplices)):
-        return None
-    # A circle within the box of the copies that were taken has been tested against all others.
-    circles = _circles(points, weights, lengths, simplices, offsets)
-    if circles is None:
-        return None
-    center, radius = circles
-    # The triangle may stand for a translate whose circle is the one that was tested.
-    reach = radius[:, None] + np.abs(offsets).max(axis=1) * lengths * 2.0**-40
-    inside = (center - reach > low - width) & (center + reach < low + lengths + width)
-    return found if inside.all() else None
-
-
-def _circles(
-    points: Floats, weights: Floats | None, lengths: Floats, simplices: Indices, offsets: Indices
-) -> tuple[Floats, Floats] | None:
-    """Circles, a little larger, outside of which no site has to do with a triangle.
-
-    None where a center lies beyond the range of doubles.
-    """
-    corners = points[simplices] + offsets * lengths
-    if weights is None:
-        from delone.plane import geometry
-
-        center = geometry.circumcenters(corners.reshape(-1, 2), _numbered(len(simplices)))
-        return center, np.hypot(*(center - corners[:, 0]).T) * (1 + 2.0**-40)
-    copies = np.ascontiguousarray(np.dstack((simplices, offsets)).reshape(-1, 3), dtype=np.int32)
-    x, y = lengths.tolist()
-    try:
-        center, _ = _core.periodic_centers2(points, weights, (x, y), copies, copies, 1)
-    except ShapeError:
-        return None
-    # The heaviest of all sites comes below a plane from furthest away.
-    heavier = weights.max() - weights[simplices[:, 0]]
-    away = np.hypot(*(center - corners[:, 0]).T) * (1 + 2.0**-40)
-    return center, np.hypot(away, np.sqrt(heavier)) * (1 + 2.0**-40)
-
-
 def _numbered(count: int) -> Indices:
     return np.arange(3 * count, dtype=np.int32).reshape(-1, 3)
-
-
-def _copied(
-    points: Floats, weights: Floats | None, lengths: Floats, copies: Indices
-) -> tuple[Indices, Indices, Indices]:
-    """The triangles of copies, one of each class that has a corner among the points.
-
-    And the rows that are not hidden in their order, where all copies lie on one line.
-    """
-    x, y = lengths.tolist()
-    try:
-        made = _core.periodic2(points, weights, (x, y), copies)
-    except InternalError as error:
-        error.points = points
-        raise
-    row, moved, chain = made.rows, made.moved, made.chain
-    simplices, offsets = row[made.simplices], moved[made.simplices]
-    # Of each triangle the corner with the smallest row stands first; where a row comes more than
-    # once, the one moved least in lexicographic order.
-    keys = (simplices.astype(np.int64) * 3 + (offsets[..., 0] + 1)) * 3 + (offsets[..., 1] + 1)
-    first = keys.argmin(axis=1)
-    order = (first[:, None] + np.arange(3)) % 3
-    simplices = np.take_along_axis(simplices, order, axis=1)
-    offsets = np.take_along_axis(offsets, order[..., None], axis=1)
-    # That corner is not moved in exactly one of the translates.
-    kept = (offsets[:, 0] == 0).all(axis=1)
-    own = chain[(moved[chain] == 0).all(axis=1)]
-    return np.ascontiguousarray(simplices[kept]), np.ascontiguousarray(offsets[kept]), row[own]
 
 
 def _directed(
@@ -490,22 +395,3 @@ def _directed(
     a, b = simplices[:, [1, 2, 0]], simplices[:, [2, 0, 1]]
     moved = offsets[:, [2, 0, 1]].astype(np.int64) - offsets[:, [1, 2, 0]]
     return a.reshape(-1).astype(np.int64), b.reshape(-1).astype(np.int64), moved.reshape(-1, 2)
-
-
-def _partners(simplices: Indices, offsets: Indices, npoints: int, *, whole: bool) -> Indices:
-    """For the edge opposite corner k of each triangle t the one that is its reverse, as 3 t + k."""
-    a, b, moved = _directed(simplices, offsets)
-
-    def keys(a: Any, b: Any, moved: Any) -> NDArray[np.int64]:
-        # Corners are moved by -2 to 2 against each other.
-        found: NDArray[np.int64] = ((a * npoints + b) * 5 + moved[:, 0] + 2) * 5 + moved[:, 1] + 2
-        return found
-
-    here, there = keys(a, b, moved), keys(b, a, -moved)
-    order = np.argsort(here)
-    place = np.minimum(np.searchsorted(here, there, sorter=order), len(here) - 1)
-    partner = order[place]
-    met = here[partner] == there
-    if (np.diff(here[order]) == 0).any() or (whole and not met.all()):
-        raise InternalError("edges of a periodic triangulation do not pair up")
-    return np.where(met, partner, -1).astype(np.int32).reshape(-1, 3)

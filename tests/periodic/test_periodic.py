@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from delone import Delaunay, periodic
+from delone import Delaunay, RegularTriangulation
 from delone.errors import DegenerateInputError, DtypeError, InputError, NonFiniteError
 from delone.periodic import PeriodicDelaunay
 from tiers import examples
@@ -111,25 +111,81 @@ def test_no_copy_is_in_a_circle_where_copies_are_no_doubles() -> None:
     assert area == lengths[0] * lengths[1]
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_near_copies_are_enough_where_points_are_many(
-    seed: int, monkeypatch: pytest.MonkeyPatch
+def dyadic(points: Any) -> Any:
+    """Points whose copies are doubles, and so are their differences."""
+    return np.floor(np.asarray(points) * 2**20) / 2**20
+
+
+def circle(n: int) -> Any:
+    angles = np.linspace(0, 2 * np.pi, n, endpoint=False)
+    return 0.5 + 0.25 * np.column_stack((np.cos(angles), np.sin(angles)))
+
+
+RNG = np.random.default_rng(5)
+SETS = {
+    "scattered": RNG.random((300, 2)),
+    "grid": np.stack(np.meshgrid(np.arange(16), np.arange(16)), axis=-1).reshape(-1, 2) / 16,
+    "ties": np.unique(RNG.integers(0, 32, (250, 2)), axis=0) / 32,
+    "in one corner": RNG.random((200, 2)) / 16,
+    "a hole": [p for p in RNG.random((400, 2)) if np.hypot(*(p - 0.5)) > 0.3],
+    "clusters": (RNG.random((5, 1, 2)) * 0.9 + RNG.random((5, 50, 2)) / 64).reshape(-1, 2),
+    "a circle": circle(200),
+    "a steep line": np.column_stack((np.arange(100) / 128, np.arange(100) / 1024)),
+    "a cross": np.concatenate([[(k / 64, 0.5), (0.5, k / 64)] for k in range(64)]),
+    "repeated": np.tile(RNG.random((90, 2)), (3, 1)),
+}
+
+
+@pytest.mark.parametrize("periods", [(1.0, 1.0), (1.0, None), (None, 1.0), (1.0, 4.0)])
+@pytest.mark.parametrize("kind", SETS)
+def test_many_points_have_the_triangles_of_copies(
+    kind: str, periods: tuple[float | None, float | None]
 ) -> None:
-    rng = np.random.default_rng(seed)
-    points = rng.random((700, 2)) if seed else rng.integers(0, 64, (700, 2)) / 64
-    near = PeriodicDelaunay(points, (1, 1))
-    monkeypatch.setattr(periodic, "_FEW", 10**9)
-    assert classes(PeriodicDelaunay(points, (1, 1))) == classes(near)
+    points = dyadic(SETS[kind])
+    mesh = PeriodicDelaunay(points, periods)
+    distinct = np.unique(points, axis=0)
+    first = np.array([np.flatnonzero((points == p).all(axis=1))[0] for p in distinct])
+    expected = of_copies(points[first], periods)
+    assert classes(mesh) == {normal([(int(first[r]), i, j) for r, i, j in t]) for t in expected}
+    assert len(classes(mesh)) == mesh.nsimplex
+    assert mesh.validate()
+    assert mesh.offsets[:, 0].any() == 0
+    assert (mesh.simplices[:, 0] == mesh.simplices.min(axis=1)).all()
+    plain = PeriodicDelaunay(points, periods, workers=1)
+    assert np.array_equal(plain.simplices, mesh.simplices)
 
 
-def test_a_hole_larger_than_the_halo_falls_back_to_all_copies() -> None:
-    points = np.random.default_rng(4).random((800, 2)) * 0.05
+def test_triangles_do_not_depend_on_the_order_of_rows_or_the_unit() -> None:
+    rng = np.random.default_rng(8)
+    points = rng.random((500, 2))
+    order = rng.permutation(len(points))
     mesh = PeriodicDelaunay(points, (1, 1))
-    assert mesh.nsimplex == 1600
-    assert mesh.corners.shape == (1600, 3, 2)
-    a, b, c = mesh.corners.swapaxes(0, 1)
-    twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-    assert twice.sum() / 2 == pytest.approx(1)
+    mixed = PeriodicDelaunay(points[order], (1, 1))
+    assert classes(mesh) == {
+        normal([(int(order[r]), i, j) for r, i, j in t]) for t in classes(mixed)
+    }
+    for unit in (2.0**-900, 2.0**900):
+        scaled = PeriodicDelaunay(points * unit, (unit, unit))
+        assert classes(scaled) == classes(mesh)
+
+
+@pytest.mark.parametrize("heavy", [0.001, 0.02, 0.5])
+@pytest.mark.parametrize("periods", [(1.0, 1.0), (1.0, None)])
+def test_many_weighted_points_have_the_triangles_of_copies(
+    heavy: float, periods: tuple[float | None, float | None]
+) -> None:
+    rng = np.random.default_rng(9)
+    points = dyadic(rng.random((300, 2)))
+    weights = dyadic(rng.random(300) ** 8) * heavy
+    steps = [[0] if length is None else [-2, -1, 0, 1, 2] for length in periods]
+    copies = [(r, i, j) for i in steps[0] for j in steps[1] for r in range(len(points))]
+    at = np.array([points[r] + (i, j) for r, i, j in copies])
+    whole = RegularTriangulation(at, weights[[r for r, _, _ in copies]])
+    corners = [[copies[v] for v in row] for row in whole.simplices.tolist()]
+    expected = {normal(c) for c in corners if any((i, j) == (0, 0) for _, i, j in c)}
+    mesh = PeriodicDelaunay(points, periods, weights=weights)
+    assert classes(mesh) == expected
+    assert mesh.validate()
 
 
 @pytest.mark.parametrize("shift", [(0.25, 0.0), (-3.0, 5.5)])

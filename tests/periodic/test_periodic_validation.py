@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
-from delone import periodic
 from delone.errors import DegenerateInputError
 from delone.periodic import PeriodicDelaunay
 from lifted import regular, standing
@@ -26,10 +26,30 @@ def damaged(mesh: PeriodicDelaunay, **arrays: Any) -> PeriodicDelaunay:
     return PeriodicDelaunay._from_arrays({**mesh._arrays(), **arrays})
 
 
+def facing(simplices: Any, offsets: Any) -> NDArray[np.int32]:
+    """For the edge opposite corner k of each triangle t its reverse, as 3 t + k; -1 without one."""
+
+    def edge(t: int, i: int, j: int) -> tuple[int, ...]:
+        moved = (offsets[t, j] - offsets[t, i]).tolist()
+        return int(simplices[t, i]), int(simplices[t, j]), *moved
+
+    at = {
+        edge(t, (k + 1) % 3, (k + 2) % 3): 3 * t + k
+        for t in range(len(simplices))
+        for k in range(3)
+    }
+    found = [
+        at.get(edge(t, (k + 2) % 3, (k + 1) % 3), -1)
+        for t in range(len(simplices))
+        for k in range(3)
+    ]
+    return np.array(found, dtype=np.int32).reshape(-1, 3)
+
+
 def with_triangles(mesh: PeriodicDelaunay, simplices: Any, offsets: Any) -> PeriodicDelaunay:
     """Other triangles of the same points; neighbors follow from them."""
     simplices, offsets = simplices.astype(np.int32), offsets - offsets[:, :1]
-    partners = periodic._partners(simplices, offsets, mesh.npoints, whole=False)
+    partners = facing(simplices, offsets)
     return damaged(
         mesh,
         simplices=simplices,

@@ -67,55 +67,49 @@ pub fn regular3(
     })
 }
 
-/// The triangulation of points and their copies.
+/// A triangulation of periodic points: one triangle of each class of translates.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct PeriodicTriangulation {
-    /// Vertices of the triangles, as numbers of copies, (m, 3).
+    /// Vertices of the triangles, (m, 3).
     pub simplices: Table<i32>,
+    /// The number of periods by which each corner is shifted, x and y by turns, (m, 6).
+    pub offsets: Table<i32>,
     /// The triangle opposite each vertex, -1 outside, (m, 3).
     pub neighbors: Table<i32>,
-    /// The copies, in order along the line, if all are collinear, (k,).
+    /// The same with its corner, 3 t + k, (m, 3).
+    pub partners: Table<i32>,
+    /// Rows that are not hidden, in order along the line, if there is no triangle, (k,).
     pub chain: Column<i32>,
-    /// The row of each copy, (c,).
-    pub rows: Column<i32>,
-    /// The number of periods by which each copy is shifted, (c, 2).
-    pub moved: Table<i32>,
 }
 
-/// The Delaunay triangulation (with weights the regular one) of points and their copies one period
-/// away: `taken` has the rows and shifts of the copies; vertices are numbers of copies.
+/// The Delaunay triangulation (with weights the regular one) of points that repeat after `periods`,
+/// 0 for none; points must lie within one period.
 #[pyfunction]
 pub fn periodic2(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     weights: Option<PyReadonlyArray1<'_, f64>>,
     periods: [f64; 2],
-    taken: PyReadonlyArray2<'_, i32>,
+    workers: usize,
 ) -> PyResult<PeriodicTriangulation> {
-    let (points, point_weights, taken) = attached(py, || {
-        let (points, taken) = (rows(&points, "points")?, rows::<i32, 3>(&taken, "taken")?);
-        let point_weights = finite_weights(weights.as_ref(), points.len())?;
-        let right = |t: &[i32; 3]| {
-            t[0] >= 0
-                && (t[0] as usize) < points.len()
-                && t[1..].iter().all(|k| (-1..=1).contains(k))
-        };
-        if taken.iter().all(right) {
-            return Ok((points, point_weights, taken));
-        }
-        Err(Error::Shape(
-            "copies must be rows and shifts of -1, 0 or 1 periods".into(),
-        ))
+    let (points, point_weights) = attached(py, || {
+        let points = rows(&points, "points")?;
+        Ok((points, finite_weights(weights.as_ref(), points.len())?))
     })?;
     let made = watched(py, |watch| {
-        regular::periodic(points, point_weights, periods, taken, watch)
+        regular::periodic(points, point_weights, periods, workers, watch)
     })?;
+    let neighbors: Vec<[i32; 3]> = made
+        .partners
+        .iter()
+        .map(|codes| codes.map(|code| code.div_euclid(3)))
+        .collect();
     Ok(PeriodicTriangulation {
-        simplices: table(py, made.triangles.simplices)?,
-        neighbors: table(py, made.triangles.neighbors)?,
-        chain: numbers(py, made.chain),
-        rows: column(py, made.rows),
-        moved: table(py, made.moved)?,
+        simplices: table(py, made.simplices)?,
+        offsets: table(py, made.offsets)?,
+        neighbors: table(py, neighbors)?,
+        partners: table(py, made.partners)?,
+        chain: column(py, made.chain),
     })
 }
 

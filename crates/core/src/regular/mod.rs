@@ -4,6 +4,7 @@
 //! are built by the same insertion. `records`, `heaviest` and `blocks` also serve 3-D.
 
 mod blocks;
+mod classes;
 mod heaviest;
 mod insertion;
 mod periodic;
@@ -21,9 +22,10 @@ use crate::points;
 use crate::watch::Watch;
 
 pub use blocks::{Found, in_blocks};
+pub use classes::{Periodic, periodic};
 pub use heaviest::{Heaviest, heaviest};
 pub use insertion::Sites;
-pub use periodic::{Copies, Images, periodic};
+pub use periodic::Images;
 pub use power::{Weighted, power_sign};
 pub use records::{GHOST, NONE, Records};
 pub use validate::{Checked, others, unused, validate};

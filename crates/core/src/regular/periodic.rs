@@ -73,7 +73,7 @@ pub struct Copies {
 /// Triangulates distinct points and the copies of them listed in `taken`: row, and periods in x and
 /// y of -1, 0 or 1. A period of 0 means not periodic. With weights, one for each point, the
 /// triangulation is the regular one.
-pub fn periodic(
+pub fn of_copies(
     points: &[Point2],
     weights: &[f64],
     periods: Point2,
