@@ -122,6 +122,7 @@ __all__ = [
     "neighbors2",
     "not_longer2",
     "not_longer3",
+    "numbered_components",
     "of_triangles2",
     "orient2d",
     "orient3d",
@@ -551,6 +552,7 @@ class Refinement2:
             NDArray[np.int32],
             NDArray[np.int32],
             NDArray[np.int32],
+            NDArray[np.int32],
             NDArray[np.bool_],
         ],
         lines: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
@@ -559,7 +561,7 @@ class Refinement2:
         circles: bool,
         sizes_yield: bool,
     ) -> Refinement2:
-        """A domain (points, simplices, labels, segments, frozen), lines, and areas at positions."""
+        """A domain (points, simplices, neighbors, labels, segments, frozen), lines, and samples."""
     def fresh(self, workers: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
         """The centers, (k, 2), and labels, (k,), of triangles that are new since the last call."""
     def comply(self, wanted: NDArray[np.float64]) -> bool:
@@ -1371,6 +1373,9 @@ def constrained2(
 def components2(
     neighbors: NDArray[np.int32], constrained: NDArray[np.bool_]
 ) -> NDArray[np.int32]: ...
+def numbered_components(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], component: NDArray[np.int32]
+) -> NDArray[np.int32]: ...
 def polygon2(
     points: NDArray[np.float64], starts: NDArray[np.int32], nonzero: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]: ...
@@ -1671,6 +1676,7 @@ def sphere_spans(
 def refine2(
     points: NDArray[np.float64],
     simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
     labels: NDArray[np.int32],
     areas: NDArray[np.float64],
     segments: NDArray[np.int32],

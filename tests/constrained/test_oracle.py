@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from delone import datasets
+from delone import ConstrainedDelaunay, datasets
 from delone.errors import InputError
 from delone.reference import constrained_delaunay
 from delone.reference.constrained import meeting
@@ -344,3 +344,29 @@ def test_regions_of_seeds() -> None:
         assert_regions(mesh, np.where(inside, 4, np.where(beyond, 6, 5)), seeds=seeds)
     with pytest.raises(AssertionError, match="labels must have shape"):
         assert_regions(mesh, wanted[:-1])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_regions_are_numbered_by_their_smallest_triangles(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    points = np.unique(rng.integers(-4, 5, (40, 2)), axis=0).astype(float)
+    points = points[rng.permutation(len(points))]
+    chosen = rng.permutation(len(points) - 1)[: 2 * seed + 3]
+    segments = np.column_stack((chosen, chosen + 1))
+    whole = ConstrainedDelaunay(points, segments, crossing="split")
+    holed = ConstrainedDelaunay(
+        points,
+        segments,
+        crossing="split",
+        holes=whole.points[whole.simplices[0]].mean(axis=0)[None],
+    )
+    for mesh in (whole, holed):
+        corners = [sorted(mesh.points[t].tolist()) for t in mesh.simplices]
+        seen: list[int] = []
+        for t in sorted(range(len(corners)), key=corners.__getitem__):
+            if mesh.region[t] not in seen:
+                seen.append(int(mesh.region[t]))
+        assert seen == list(range(len(seen)))
+        other = mesh.neighbors
+        same = mesh.region[:, None] == mesh.region[other]
+        assert same[(other >= 0) & ~mesh.constrained].all()

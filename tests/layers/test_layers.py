@@ -182,6 +182,7 @@ BINDINGS = {
     "cluster",
     "consistency",
     "constrained::components",
+    "constrained::numbered_by_smallest",
     "constrained::simple_ring",
     "contour",
     "delaunay2::lawson",

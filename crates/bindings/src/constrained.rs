@@ -2,15 +2,15 @@
 
 use delone::arrays::Rule;
 use delone::{Constrained, Error, Options, Point2, Result};
-use delone_core::constrained::{components, simple_ring};
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use delone_core::constrained::{components, numbered_by_smallest, simple_ring};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::arrays::{
     Column, Table, column, flat, frozen, in_range, number_rows, numbers, rows, table,
 };
-use crate::errors::raise;
+use crate::errors::{attached, raise};
 use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
 use crate::signals::{optioned, watched};
 use crate::triangulation::{method_of, seconds};
@@ -146,6 +146,37 @@ pub fn components2(
     let (sides, walls) = given().map_err(|e| raise(py, &e))?;
     let labels = watched(py, |watch| components(sides, walls, watch))?;
     Ok(column(py, labels))
+}
+
+/// Components of triangles in 2-D or 3-D, numbered in the order of their smallest triangles, which
+/// depends on coordinates only.
+#[pyfunction]
+pub fn numbered_components(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    component: PyReadonlyArray1<'_, i32>,
+) -> PyResult<Column<i32>> {
+    let (corners, of) = attached(py, || {
+        let corners: &[[i32; 3]] = rows(&simplices, "simplices")?;
+        let of = flat(&component, "component")?;
+        in_range(corners, 0, points.shape()[0], "simplices")?;
+        in_range(of.as_chunks::<1>().0, 0, i32::MAX as usize, "component")?;
+        if of.len() != corners.len() {
+            return Err(Error::Shape(
+                "component and simplices differ in length".into(),
+            ));
+        }
+        Ok((corners, of))
+    })?;
+    let found = if points.shape()[1] == 2 {
+        let points = attached(py, || rows::<f64, 2>(&points, "points"))?;
+        watched(py, |watch| numbered_by_smallest(points, corners, of, watch))?
+    } else {
+        let points = attached(py, || rows::<f64, 3>(&points, "points"))?;
+        watched(py, |watch| numbered_by_smallest(points, corners, of, watch))?
+    };
+    Ok(column(py, found))
 }
 
 /// The triangles inside rings, and the vertices added where they cross.

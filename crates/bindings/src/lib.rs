@@ -119,6 +119,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(locate::find_simplex2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::constrained2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::components2, m)?)?;
+    m.add_function(wrap_pyfunction!(constrained::numbered_components, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::polygon2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::ring2, m)?)?;
     m.add_function(wrap_pyfunction!(distributed::disks2, m)?)?;

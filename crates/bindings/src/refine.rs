@@ -23,9 +23,10 @@ type OfLines<'py> = (
     PyReadonlyArray1<'py, i32>,
 );
 
-/// `(points, simplices, labels, segments, frozen)`.
+/// `(points, simplices, neighbors, labels, segments, frozen)`.
 type OfDomain<'py> = (
     PyReadonlyArray2<'py, f64>,
+    PyReadonlyArray2<'py, i32>,
     PyReadonlyArray2<'py, i32>,
     PyReadonlyArray1<'py, i32>,
     PyReadonlyArray2<'py, i32>,
@@ -36,6 +37,7 @@ type OfDomain<'py> = (
 struct Given<'py> {
     points: PyReadonlyArray2<'py, f64>,
     simplices: PyReadonlyArray2<'py, i32>,
+    neighbors: PyReadonlyArray2<'py, i32>,
     labels: PyReadonlyArray1<'py, i32>,
     segments: PyReadonlyArray2<'py, i32>,
     frozen: PyReadonlyArray1<'py, bool>,
@@ -67,6 +69,7 @@ impl Given<'_> {
         Ok(Domain {
             points: rows(&self.points, "points")?,
             simplices: rows(&self.simplices, "simplices")?,
+            neighbors: Some(rows(&self.neighbors, "neighbors")?),
             labels: flat(&self.labels, "labels")?,
             segments,
             lines,
@@ -109,13 +112,14 @@ pub struct RefinedMesh {
 /// Refines a triangulation. `progress` is called with the number of added vertices and the current
 /// smallest angle.
 #[pyfunction]
-#[pyo3(signature = (points, simplices, labels, areas, segments, frozen, min_angle, max_vertices,
+#[pyo3(signature = (points, simplices, neighbors, labels, areas, segments, frozen, min_angle, max_vertices,
                     lines=None, circles=false, sizes_yield=false, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "one array each")]
 pub fn refine2<'py>(
     py: Python<'py>,
     points: PyReadonlyArray2<'py, f64>,
     simplices: PyReadonlyArray2<'py, i32>,
+    neighbors: PyReadonlyArray2<'py, i32>,
     labels: PyReadonlyArray1<'py, i32>,
     areas: PyReadonlyArray1<'py, f64>,
     segments: PyReadonlyArray2<'py, i32>,
@@ -130,6 +134,7 @@ pub fn refine2<'py>(
     let given = Given {
         points,
         simplices,
+        neighbors,
         labels,
         segments,
         frozen,
@@ -168,7 +173,7 @@ pub struct Refinement2(Mutex<Rounds>);
 
 #[pymethods]
 impl Refinement2 {
-    /// A domain `(points, simplices, labels, segments, frozen)` with lines; `samples` are positions
+    /// A domain `(points, simplices, neighbors, labels, segments, frozen)` with lines; `samples` are positions
     /// in it and the largest areas of triangles there.
     #[new]
     #[pyo3(signature = (domain, lines, samples, min_angle, circles, sizes_yield))]
@@ -181,10 +186,11 @@ impl Refinement2 {
         circles: bool,
         sizes_yield: bool,
     ) -> PyResult<Self> {
-        let (points, simplices, labels, segments, frozen) = domain;
+        let (points, simplices, neighbors, labels, segments, frozen) = domain;
         let given = Given {
             points,
             simplices,
+            neighbors,
             labels,
             segments,
             frozen,

@@ -64,6 +64,7 @@ fn main() {
         let task = Task {
             points: &points,
             simplices: &base.arrays.simplices,
+            neighbors: None,
             labels: &labels,
             areas: &vec![area; labels.len()],
             segments: &segments,

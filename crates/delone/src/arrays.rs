@@ -53,6 +53,8 @@ pub struct Domain<'a> {
     pub points: &'a [Point2],
     /// Triangles that tile the convex hull, as rows of the points.
     pub simplices: &'a [[i32; 3]],
+    /// The triangle opposite each corner, -1 outside; found if not given.
+    pub neighbors: Option<&'a [[i32; 3]]>,
     /// For each triangle, the label of its region, which is the same on both sides of each edge that
     /// is not a segment; negative outside of the domain.
     pub labels: &'a [i32],
@@ -76,6 +78,10 @@ impl Domain<'_> {
     pub(crate) fn check(&self) -> Result<()> {
         let (points, triangles) = (self.points.len(), self.simplices.len());
         in_range(self.simplices, 0, points, "simplices")?;
+        if let Some(neighbors) = self.neighbors {
+            has_length(neighbors, triangles, "neighbors")?;
+            in_range(neighbors, -1, triangles, "neighbors")?;
+        }
         has_length(self.labels, triangles, "labels")?;
         in_range(self.segments, 0, points, "segments")?;
         let Some(lines) = self.lines else {
@@ -93,6 +99,7 @@ impl Domain<'_> {
         Task {
             points: self.points,
             simplices: self.simplices,
+            neighbors: self.neighbors,
             labels: self.labels,
             areas: self.areas,
             segments: self.segments,

@@ -112,6 +112,7 @@ fn refined(domain: &Constrained, options: &Options, watch: &Watch) -> CoreResult
     let domain = Domain {
         points: hull.points,
         simplices: hull.simplices,
+        neighbors: Some(hull.neighbors),
         labels: &labels,
         areas: &filled(labels.len(), options.max_area)?,
         segments: &segments,

@@ -26,7 +26,6 @@ __all__ = [
     "crossed",
     "labels",
     "located",
-    "numbered",
     "on_edges",
     "outside",
 ]
@@ -82,27 +81,6 @@ def corners(on_edge: Bools) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return the rows that lie on two edges, and the common corner of these."""
     rows = np.flatnonzero(on_edge.sum(axis=1) == 2)
     return rows, np.argmin(on_edge[rows], axis=1)
-
-
-def numbered(points: Floats, simplices: Indices, component: Indices) -> Indices:
-    """Number components, so far numbered in any way, by their smallest triangles, in O(n log n).
-
-    Triangles are compared by their smallest corners, then their middle ones, then their largest;
-    corners by x, then y (then z). So the order depends on coordinates only.
-    """
-    count = int(component.max(initial=-1)) + 1
-    rank = np.empty(len(points), dtype=np.int64)
-    rank[np.lexsort(points.T[::-1])] = np.arange(len(points))
-    ranks = np.sort(rank[simplices], axis=1)
-    least = np.full(count, len(points), dtype=np.int64)
-    np.minimum.at(least, component, ranks[:, 0])
-    # Only triangles at the smallest vertex of their component can be its smallest.
-    rows = np.flatnonzero(ranks[:, 0] == least[component])
-    rows = rows[np.lexsort(ranks[rows].T[::-1])]
-    present, where = np.unique(component[rows], return_index=True)
-    new = np.full(count, -1, dtype=np.int32)
-    new[present[np.argsort(where)]] = np.arange(len(present), dtype=np.int32)
-    return new[component]
 
 
 def labels(component: Indices, of_seed: Indices, given: Indices) -> tuple[Indices, Indices]:

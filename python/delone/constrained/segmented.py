@@ -248,7 +248,9 @@ class Segmented(PointTriangulation):
         if self._options.labeled:
             label, _ = self._labeled(component)
             return sealed(self._only_kept(label))
-        return sealed(regions.numbered(self._points, self._simplices, self._only_kept(component)))
+        return sealed(
+            _core.numbered_components(self._points, self._simplices, self._only_kept(component))
+        )
 
     def _only_kept(self, values: Indices) -> Indices:
         return values if self._number is None else values[self._number[:-1] >= 0]

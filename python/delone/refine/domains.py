@@ -202,7 +202,7 @@ def started(
     lines = domain.lines
     segments, line = sides_of(domain.simplices, domain.neighbors, domain.sides)
     return _core.Refinement2(
-        (domain.points, domain.simplices, domain.labels, segments, lines.frozen),
+        (domain.points, domain.simplices, domain.neighbors, domain.labels, segments, lines.frozen),
         (line, lines.ends, domain.on),
         samples,
         min_angle,
@@ -250,6 +250,7 @@ def _made(
     return _core.refine2(
         domain.points,
         domain.simplices,
+        domain.neighbors,
         domain.labels,
         np.ascontiguousarray(caps, dtype=np.float64),
         segments,

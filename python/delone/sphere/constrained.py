@@ -8,7 +8,7 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_choice, as_flag, as_limit, as_segments, as_workers
-from delone.constrained import regions, segments
+from delone.constrained import segments
 from delone.counting import counted
 from delone.errors import CrossingSegmentsError, DirectionError, InternalError
 from delone.immutable import kept, sealed
@@ -343,7 +343,7 @@ class ConstrainedDelaunay(Delaunay):
         by their smallest corners, then their middle ones, then their largest; corners by the
         coordinates of `points`, x first.
         """
-        return sealed(regions.numbered(self.points, self._simplices, self._component))
+        return sealed(_core.numbered_components(self.points, self._simplices, self._component))
 
     @property
     @kept

@@ -26,7 +26,7 @@ mod subsegments;
 
 use delone_predicates::{Point2, lexicographic, orient2d};
 
-pub use self::components::components;
+pub use self::components::{components, numbered_by_smallest};
 pub(crate) use self::near::{Band, is_near, passes};
 pub use self::polygon::{Filled, Rule, polygon};
 pub use self::ring::simple_ring;

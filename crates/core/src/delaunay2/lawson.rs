@@ -81,7 +81,7 @@ pub fn lawson(
     let (rows, own) = compact(points, simplices, watch)?;
     let mut at = with_room(rows.len())?;
     at.extend(rows.iter().map(|&row| points[row as usize]));
-    let (mut mesh, ghost) = import::mesh(&own, rows.len(), watch)?;
+    let (mut mesh, ghost) = import::mesh(&own, None, rows.len(), watch)?;
     let mut flips = Flips::over(&at, mesh.patch(), own.len(), record, watch)?;
     flips.run(watch)?;
     let (flips, mut sequence) = (flips.count, flips.sequence);

@@ -25,11 +25,20 @@ pub fn adjacency(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Resu
 }
 
 /// The mesh of triangles that tile the hull of `vertices` vertices, all of which they use, and one
-/// of its ghosts. Triangle t becomes record t.
-pub fn mesh(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Result<(Mesh2, Code)> {
+/// of its ghosts. Triangle t becomes record t. `neighbors`, the triangle opposite each corner or -1,
+/// are found if they are not given.
+pub fn mesh(
+    simplices: &[[i32; 3]],
+    neighbors: Option<&[[i32; 3]]>,
+    vertices: usize,
+    watch: &Watch,
+) -> Result<(Mesh2, Code)> {
     let mut pace = Pace::new(watch, LOT);
     let broken = || Error::Internal("the triangles do not tile a hull".into());
-    let opposites = opposites(simplices, vertices, watch)?;
+    let opposites = match neighbors {
+        Some(neighbors) => opposites_of(simplices, neighbors, watch)?,
+        None => opposites(simplices, vertices, watch)?,
+    };
     let mut mesh = Mesh2::with_vertices(vertices)?;
     let outside = opposites.iter().flatten().filter(|&&e| e == OUTSIDE);
     if simplices.len() + outside.count() + 2 != 2 * vertices {
@@ -71,6 +80,37 @@ pub fn mesh(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Result<(M
     }
     let ghost = hull.first().copied().ok_or_else(broken)?;
     Ok((mesh, ghost))
+}
+
+/// The code on the other side of each edge, from neighbors that must be triangles or -1. Two sides
+/// are linked if they name each other and have the same ends.
+fn opposites_of(
+    simplices: &[[i32; 3]],
+    neighbors: &[[i32; 3]],
+    watch: &Watch,
+) -> Result<Vec<[Code; 3]>> {
+    let mut pace = Pace::new(watch, LOT);
+    let mut found = with_room(simplices.len())?;
+    for (t, (corners, sides)) in simplices.iter().zip(neighbors).enumerate() {
+        pace.spend(1)?;
+        let mut codes = [OUTSIDE; 3];
+        for k in (0..3).filter(|&k| sides[k] >= 0) {
+            let (n, [u, v]) = (sides[k] as usize, edge(*corners, k));
+            let back =
+                (0..3).find(|&j| neighbors[n][j] == t as i32 && edge(simplices[n], j) == [v, u]);
+            codes[k] = match back {
+                Some(j) => (8 * n + j) as Code,
+                None => {
+                    return Err(Error::Shape(format!(
+                        "neighbors[{t}] = {sides:?}: simplices[{n}] does not meet simplices[{t}] at \
+                         the edge {u} -> {v}"
+                    )));
+                }
+            };
+        }
+        found.push(codes);
+    }
+    Ok(found)
 }
 
 /// The code on the other side of each edge: a counting sort puts edges at their smaller end, and a
@@ -180,7 +220,7 @@ mod tests {
 
     #[test]
     fn a_mesh_has_ghosts_all_around() {
-        let (mut mesh, ghost) = mesh(&SQUARE, 4, &Watch::idle()).unwrap();
+        let (mut mesh, ghost) = mesh(&SQUARE, None, 4, &Watch::idle()).unwrap();
         let patch = mesh.patch();
         patch.check(6).unwrap();
         let ring: Vec<_> = (0..4)
@@ -193,7 +233,21 @@ mod tests {
     }
 
     #[test]
+    fn given_neighbors_make_the_same_mesh_if_they_are_right() {
+        let right = [[1, -1, -1], [-1, 0, -1]];
+        let (mut given, _) = mesh(&SQUARE, Some(&right), 4, &Watch::idle()).unwrap();
+        let (mut found, _) = mesh(&SQUARE, None, 4, &Watch::idle()).unwrap();
+        let (given, found) = (given.patch(), found.patch());
+        for code in (0..6).flat_map(|t| [8 * t, 8 * t + 1, 8 * t + 2]) {
+            assert_eq!(given.opposite(code), found.opposite(code));
+        }
+        for wrong in [[[-1, 1, -1], [-1, 0, -1]], [[1, -1, -1], [0, -1, -1]]] {
+            assert!(mesh(&SQUARE, Some(&wrong), 4, &Watch::idle()).is_err());
+        }
+    }
+
+    #[test]
     fn triangles_that_do_not_tile_a_hull_are_rejected() {
-        assert!(mesh(&[[0, 1, 2], [2, 3, 4]], 5, &Watch::idle()).is_err());
+        assert!(mesh(&[[0, 1, 2], [2, 3, 4]], None, 5, &Watch::idle()).is_err());
     }
 }

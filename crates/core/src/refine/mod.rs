@@ -112,7 +112,7 @@ fn begin(task: Task, watch: &Watch) -> Result<(Work, Vec<u32>)> {
     let mut points = with_room(rows.len() + 1)?;
     points.extend(rows.iter().map(|&row| task.points[row as usize]));
     points.push([f64::NAN; 2]);
-    let (mesh, _) = import::mesh(&own, rows.len(), watch)?;
+    let (mesh, _) = import::mesh(&own, task.neighbors, rows.len(), watch)?;
     let mut marked = Marked::new(mesh, points, watch)?;
     let mut place = filled(task.points.len(), u32::MAX)?;
     for (v, &row) in (0..).zip(&rows) {

@@ -26,6 +26,8 @@ pub struct Task<'a> {
     pub points: &'a [Point2],
     /// Triangles that tile the hull of the points.
     pub simplices: &'a [[i32; 3]],
+    /// The triangle opposite each corner, -1 outside; found if not given.
+    pub neighbors: Option<&'a [[i32; 3]]>,
     /// For each triangle, the label of its region, which is the same on both sides of each edge
     /// that is not a segment; negative outside.
     pub labels: &'a [i32],

@@ -24,6 +24,7 @@ impl Domain {
         Task {
             points: &self.points,
             simplices: &self.simplices,
+            neighbors: None,
             labels: &self.labels,
             areas,
             segments: &self.segments,
