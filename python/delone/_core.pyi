@@ -49,6 +49,7 @@ __all__ = [
     "RegularFaults2",
     "RegularFaults3",
     "RegularTriangulation",
+    "SmoothedMesh",
     "SphereDual",
     "SphereLocator",
     "SphereTriangulation",
@@ -140,6 +141,7 @@ __all__ = [
     "regular3",
     "resolve_touches3",
     "ring2",
+    "smooth2",
     "spanning2",
     "spanning3",
     "spanning_triangles2",
@@ -540,6 +542,23 @@ class RefinedMesh:
     @property
     def exhausted(self) -> bool:
         """Whether the limit on vertices was reached."""
+
+@final
+class SmoothedMesh:
+    """A mesh whose free vertices have moved."""
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The coordinates, (n, 2)."""
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the triangles, each in the region that it was in before, (m, 3)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The triangle opposite each vertex, -1 outside, (m, 3)."""
+    @property
+    def sides(self) -> NDArray[np.int32]:
+        """The line under the edge opposite each vertex, or -1, (m, 3)."""
 
 @final
 class Refinement2:
@@ -1688,6 +1707,17 @@ def refine2(
     sizes_yield: bool = False,
     progress: Callable[[int, float], object] | None = None,
 ) -> RefinedMesh: ...
+def smooth2(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    sides: NDArray[np.int32],
+    free: NDArray[np.bool_],
+    cos2: float,
+    target: str,
+    rounds: int,
+    workers: int,
+) -> SmoothedMesh: ...
 def judge2(
     points: NDArray[np.float64], simplices: NDArray[np.int32], cos2: float
 ) -> JudgedTriangles: ...

@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import delone
 from delone import DtypeError, InputError
+from delone.refine.smoothing import rebuilt
 from delone.testing import assert_mesh
+from tiers import seeds
 
 THIRTY = Fraction(3, 4)
 POINTS = np.array([(0.0, 0), (4, 0), (4, 3), (0, 3), (1, 1), (2, 1), (2, 2), (1, 2)])
@@ -122,6 +125,77 @@ def test_smoothing_keeps_what_is_promised(mesh: delone.Mesh, method: str) -> Non
     before, after = mesh.quality(), better.quality()
     assert after.radius_ratio.mean() > before.radius_ratio.mean()
     assert after.smallest_angle.min() >= 30 - 1e-9
+
+
+def winding(seed: int) -> Any:
+    """A wavy ring with a hole, and lines that cross it."""
+    rng = np.random.default_rng(seed)
+    angle = np.linspace(0, 2 * np.pi, 80, endpoint=False)
+    circle = np.column_stack((np.cos(angle), np.sin(angle)))
+    outer = circle * (2 + 0.4 * np.sin(7 * angle))[:, None]
+    rings = [[*ring.tolist(), ring[0].tolist()] for ring in (outer, circle[::-4] * 0.3)]
+    lines = [rng.uniform(-1, 1, (2, 2)).tolist() for _ in range(4)]
+    shapes = [{"type": "LineString", "coordinates": line} for line in lines]
+    return [{"type": "Polygon", "coordinates": rings}, *shapes]
+
+
+@pytest.mark.parametrize("min_angle", [25, 0])
+@pytest.mark.parametrize("method", ["lloyd", "odt", "laplace"])
+@pytest.mark.parametrize("seed", seeds(3, deep=40))
+def test_smoothed_meshes_are_canonical(seed: int, method: str, min_angle: float) -> None:
+    def size(xy: Any) -> Any:
+        return 0.02 + 0.3 * np.hypot(*xy.T)
+
+    mesh = delone.mesh(winding(seed), size=size, min_angle=min_angle)
+    better = mesh.smooth(3, method)
+    assert better.validate()
+    assert len(better.report.below) <= len(mesh.report.below)
+    moved = (better.points != mesh.points).any(axis=1)
+    assert moved.mean() > 0.3 and not moved[~mesh._inner].any()
+    # The triangles, lines and regions are those of a fresh triangulation of the moved points.
+    again, lost = rebuilt(mesh, better.points, np.arange(mesh.npoints, dtype=np.int32))
+    assert again is not None and not len(lost)
+
+    def table(simplices: Any, sides: Any, labels: Any) -> set[tuple[Any, ...]]:
+        first = simplices.argmin(axis=1)
+        order = (first[:, None] + np.arange(3)) % 3
+        corners = np.take_along_axis(simplices, order, axis=1)
+        lines = np.take_along_axis(sides, order, axis=1)
+        return set(map(tuple, np.column_stack((corners, lines, labels)).tolist()))
+
+    inside = again.labels >= 0
+    expected = again.simplices[inside], again.sides[inside], again.regions[again.labels[inside]]
+    assert table(better.simplices, better._sides, better.region) == table(*expected)
+    beyond = better.neighbors
+    for k in range(3):
+        t = np.flatnonzero(beyond[:, k] >= 0)
+        back = beyond[beyond[t, k]] == t[:, None]
+        assert (back.sum(axis=1) == 1).all()
+    one = delone.mesh(winding(seed), size=size, min_angle=min_angle, workers=1)
+    assert np.array_equal(one.smooth(3, method).points, better.points)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_no_triangle_is_turned_over(seed: int) -> None:
+    """Needles between near lines: the mean of the neighbors is often beyond a triangle."""
+    rng = np.random.default_rng(seed)
+    x = np.sort(rng.random(12))
+    saw = np.column_stack((np.repeat(x, 2), np.tile([0.02, 0.98], 12)))
+    lines = [{"type": "LineString", "coordinates": pair} for pair in saw.reshape(-1, 2, 2).tolist()]
+    square = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)]]}
+    mesh = delone.mesh([square, *lines], max_area=0.002, min_angle=0)
+    for method in ("lloyd", "odt", "laplace"):
+        better = mesh.smooth(6, method)
+        assert better.validate() and better.areas.sum() == pytest.approx(1)
+
+
+def test_a_point_that_would_turn_a_triangle_over_goes_part_of_the_way() -> None:
+    """The mean of the neighbors of a point in a narrow bay lies beyond the opposite side."""
+    bay = [(0, 0), (10, 0), (10, 10), (9, 10), (9, 1), (1, 1), (1, 10), (0, 10)]
+    mesh = delone.mesh({"type": "Polygon", "coordinates": [[*bay, bay[0]]]}, max_area=2)
+    for rounds in range(1, 12):
+        better = mesh.smooth(rounds, "laplace")
+        assert better.validate() and better.areas.sum() == pytest.approx(28)
 
 
 def test_smoothing_beside_sharp_corners() -> None:

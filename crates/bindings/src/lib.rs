@@ -67,6 +67,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<live3::LiveState3>()?;
     m.add_class::<live3::LiveArrays3>()?;
     m.add_class::<constrained::ConstrainedTriangulation>()?;
+    m.add_class::<refine::SmoothedMesh>()?;
     m.add_class::<refine::RefinedMesh>()?;
     m.add_class::<refine::Refinement2>()?;
     m.add_class::<refine::JudgedTriangles>()?;
@@ -131,6 +132,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(interpolate::gradients_global2, m)?)?;
     m.add_function(wrap_pyfunction!(interpolate::gradients_local2, m)?)?;
     m.add_function(wrap_pyfunction!(interpolate::gradients_local3, m)?)?;
+    m.add_function(wrap_pyfunction!(refine::smooth2, m)?)?;
     m.add_function(wrap_pyfunction!(refine::refine2, m)?)?;
     m.add_function(wrap_pyfunction!(refine::judge2, m)?)?;
     m.add_function(wrap_pyfunction!(improve::improve3, m)?)?;

@@ -4,8 +4,10 @@ use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
 use delone::arrays::{Domain, Lines, Refined, Rounds, Samples};
-use delone::{Options, Result};
+use delone::{Error, Options, Result};
+use delone_core::memory::copied;
 use delone_core::refine::judge;
+use delone_core::refine::smooth::{self, Target};
 use delone_core::watch::Watch;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -355,5 +357,68 @@ pub fn judge2<'py>(
         below: numbers(py, found.below),
         extremes: numbers(py, found.extremes),
         beyond: numbers(py, found.beyond),
+    })
+}
+
+/// A mesh whose free vertices have moved.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct SmoothedMesh {
+    /// The coordinates, (n, 2).
+    pub points: Table<f64>,
+    /// Vertices of the triangles, each in the region that it was in before, (m, 3).
+    pub simplices: Table<i32>,
+    /// The triangle opposite each vertex, -1 outside, (m, 3).
+    pub neighbors: Table<i32>,
+    /// The line under the edge opposite each vertex, or -1, (m, 3).
+    pub sides: Table<i32>,
+}
+
+/// Moves free vertices of a mesh toward better positions; `cos2` is the squared cosine of the bound.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "one array each")]
+pub fn smooth2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    sides: PyReadonlyArray2<'_, i32>,
+    free: PyReadonlyArray1<'_, bool>,
+    cos2: f64,
+    target: &str,
+    rounds: usize,
+    workers: usize,
+) -> PyResult<SmoothedMesh> {
+    let (mesh, free, target) = attached(py, || {
+        let mesh = smooth::Domain {
+            points: copied(rows(&points, "points")?)?,
+            simplices: copied(rows(&simplices, "simplices")?)?,
+            neighbors: copied(rows(&neighbors, "neighbors")?)?,
+            sides: copied(rows(&sides, "sides")?)?,
+        };
+        let (count, free) = (mesh.simplices.len(), flat(&free, "free")?);
+        in_range(&mesh.simplices, 0, mesh.points.len(), "simplices")?;
+        in_range(&mesh.neighbors, -1, count, "neighbors")?;
+        let whole = mesh.neighbors.len() == count
+            && mesh.sides.len() == count
+            && free.len() == mesh.points.len();
+        let target = Target::named(target);
+        match target.filter(|_| whole) {
+            Some(target) => Ok((mesh, free, target)),
+            None => Err(Error::Shape("the arrays of a mesh differ in length".into())),
+        }
+    })?;
+    let rules = smooth::Rules {
+        free,
+        cos2,
+        target,
+        rounds,
+        workers,
+    };
+    let made = watched(py, |watch| smooth::smooth(mesh, &rules, watch))?;
+    Ok(SmoothedMesh {
+        points: table(py, made.points)?,
+        simplices: table(py, made.simplices)?,
+        neighbors: table(py, made.neighbors)?,
+        sides: table(py, made.sides)?,
     })
 }

@@ -188,8 +188,9 @@ class Mesh(MeshState):
 
         Notes
         -----
-        Each iteration triangulates the points again, so the mesh stays Delaunay. Where an angle
-        would fall below the bound, points move back. Bounds on areas are not enforced.
+        All points move at once, and edges are flipped until the mesh is Delaunay again. Where a
+        triangle would turn over, or an angle fall below the bound, points move part of the way.
+        Bounds on areas are not enforced.
 
         Examples
         --------

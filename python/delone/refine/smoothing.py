@@ -1,25 +1,20 @@
 """Smoothing: free points of a mesh move by Lloyd's method, its Delaunay dual, or to the mean.
 
-After each round the moved points are triangulated again with the same subsegments, so the mesh
-stays Delaunay. The points of triangles that became worse move back, first by half of the step,
-finally all the way, until there are no new angles below the bound, each point is in its region, and
-no point coincides with another point or lies on a segment. This terminates, because in the end all
-points would be back.
-
-S. P. Lloyd (1982), "Least squares quantization in PCM"; L. Chen and M. Holst (2011), "Efficient
-mesh optimization schemes based on optimal Delaunay triangulations".
+The core moves them and flips edges, so the mesh stays constrained Delaunay; see `refine/smooth`
+there. `rebuilt` and `worse` serve changes that remove or add points: the remaining ones are
+triangulated again, and the triangles that became worse are found.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from delone._arrays import as_choice, as_limit
-from delone.plane import geometry, quality
+from delone import _core
+from delone._arrays import as_choice, as_limit, as_workers
+from delone.plane import quality
 from delone.refine import domains
-from delone.refine.domains import Counts
 from delone.refine.state import MeshState
 
 if TYPE_CHECKING:
@@ -36,100 +31,41 @@ __all__ = ["METHODS", "rebuilt", "smoothed", "worse"]
 M = TypeVar("M", bound=MeshState)
 
 METHODS = ("lloyd", "odt", "laplace")
-# How often a step is halved before the point does not move at all.
-_HALVINGS = 3
 
 
 def smoothed(mesh: M, max_iter: int, method: str) -> M:
     """Return a mesh whose free points have moved; see ``Mesh.smooth``."""
     as_choice(method, METHODS, name="method")
-    for _ in range(as_limit(max_iter, name="max_iter")):
-        free = _free(mesh)
-        if not free.any():
-            break
-        changed = _moved(mesh, free, method)
-        if changed is None:
-            break
-        mesh = changed
-    return mesh
-
-
-def _free(mesh: MeshState) -> Bools:
-    """Return the added points that lie on no segment and belong to no triangle below the bound."""
-    free = mesh._inner.copy()
-    free[mesh.simplices[mesh._below]] = False
-    return free
-
-
-def _targets(mesh: MeshState, points: Floats, method: str) -> Floats:
-    """Return the target position of each point, for the current triangles."""
-    simplices, n = mesh.simplices, mesh.npoints
-    if method == "laplace":
-        pairs = mesh.edges
-        ends = np.concatenate((pairs, pairs[:, ::-1]))
-        return _means(ends[:, 0], points[ends[:, 1]], np.ones(len(ends)), n)
-    corners = points[simplices]
-    weight = geometry.areas(points, simplices)
-    if method == "odt":
-        at = geometry.circumcenters(points, simplices)
-        return _means(simplices.ravel(), np.repeat(at, 3, axis=0), np.repeat(weight, 3), n)
-    # The part of a triangle in the Voronoi cell of a corner is a signed quadrilateral: the corner,
-    # two edge midpoints and the circumcenter. It is the sum of two triangles with signed areas and
-    # centroids.
-    center = geometry.circumcenters(points, simplices)
-    owners, places, weights = [], [], []
-    for k in range(3):
-        a = corners[:, k]
-        for other, sign in ((corners[:, k - 2], 1.0), (corners[:, k - 1], -1.0)):
-            middle = (a + other) / 2
-            u, v = middle - a, center - a
-            # The circumcenter of a needle may overflow; then its corners stay.
-            with np.errstate(all="ignore"):
-                weights.append(sign * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
-            places.append((a + middle + center) / 3)
-            owners.append(simplices[:, k])
-    return _means(np.concatenate(owners), np.concatenate(places), np.concatenate(weights), n)
-
-
-def _means(owner: Indices, places: Floats, weight: Floats, count: int) -> Floats:
-    total = np.bincount(owner, weights=weight, minlength=count)
-    with np.errstate(all="ignore"):
-        sums = [np.bincount(owner, weights=weight * p, minlength=count) for p in places.T]
-        mean: Floats = np.column_stack(sums) / total[:, None]
-    return mean
-
-
-def _moved(mesh: M, free: Bools, method: str) -> M | None:
-    """Move free points as far as no triangle becomes worse; None if no point moves."""
-    # In this unit, areas and squared lengths are doubles.
+    rounds = as_limit(max_iter, name="max_iter")
+    # In this unit, areas and squared lengths are doubles. Where it rounds new places among
+    # subnormal doubles, the mesh is smoothed as it is.
     unit = domains.unit_of(mesh.points)
-    points = mesh.points / unit
-    target = _targets(mesh, points, method)
-    target = np.where(free[:, None] & np.isfinite(target), target, points)
-    step = np.ones(mesh.npoints)
-    while True:
-        places = (points + step[:, None] * (target - points)) * unit
-        moves = (places != mesh.points).any(axis=1)
-        if not moves.any():
-            return None
-        domain, lost = rebuilt(mesh, places, np.arange(mesh.npoints, dtype=np.int32))
-        if domain is not None:
-            lost = worse(mesh, domain, np.arange(mesh.npoints))
-        if not len(lost):
-            assert domain is not None
-            segment, angle, size, exhausted = mesh._counts.tolist()
-            counts = Counts(segment, angle, size, exhausted=bool(exhausted))
-            return type(mesh)._of(domain, counts, float(mesh._bound[0]), mesh.stages, mesh._workers)
-        back = np.zeros(mesh.npoints, dtype=bool)
-        back[lost] = True
-        if not (back & moves).any():
-            # No vertex of a worse triangle moved, but some of their neighbors did.
-            ends = mesh.edges
-            back[ends[back[ends].any(axis=1)]] = True
-        if not (back & moves).any():
-            return None
-        halved = step / 2
-        step[back] = np.where(halved < 0.5**_HALVINGS, 0.0, halved)[back]
+    made = _smoothed(mesh, mesh.points / unit, rounds, method)
+    points = made.points * unit
+    if not np.array_equal(points / unit, made.points):
+        made = _smoothed(mesh, mesh.points, rounds, method)
+        points = made.points
+    changed: dict[str, NDArray[Any]] = {
+        "points": points,
+        "simplices": made.simplices,
+        "neighbors": made.neighbors,
+        "sides": made.sides,
+    }
+    return mesh._from_arrays(mesh._arrays() | changed, mesh.stages, mesh._workers)
+
+
+def _smoothed(mesh: MeshState, points: Floats, rounds: int, method: str) -> _core.SmoothedMesh:
+    return _core.smooth2(
+        np.ascontiguousarray(points),
+        mesh.simplices,
+        mesh.neighbors,
+        mesh._sides,
+        mesh._inner,
+        quality.squared_cosine(float(mesh._bound[0])),
+        method,
+        rounds,
+        as_workers(mesh._workers),
+    )
 
 
 def rebuilt(

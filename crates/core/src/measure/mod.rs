@@ -25,4 +25,4 @@ pub use size::{areas, face_areas, face_normals, volumes};
 pub(crate) use skeleton::{Buckets, distinct};
 pub use skeleton::{around, edges2, edges3, faces3};
 pub use tetrahedron::{dihedral_angles, qualities3};
-pub use triangle::{below, qualities2};
+pub use triangle::{below, is_below, qualities2};

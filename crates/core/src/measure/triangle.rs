@@ -87,12 +87,18 @@ pub fn below(
     workers: usize,
     watch: &Watch,
 ) -> Result<Vec<i32>> {
-    let below = Below { squared_cosine };
     each(points, simplices, workers, watch, |corners| {
-        let corners = Corners::new(corners);
-        let found = corners.measure(&below);
-        i32::from(found.unwrap_or_else(|| below.decided(&corners.integers())))
+        i32::from(is_below(corners, squared_cosine))
     })
+}
+
+/// Whether one triangle has such an angle.
+#[inline]
+pub fn is_below(corners: [[f64; 2]; 3], squared_cosine: f64) -> bool {
+    let below = Below { squared_cosine };
+    let corners = Corners::new(corners);
+    let found = corners.measure(&below);
+    found.unwrap_or_else(|| below.decided(&corners.integers()))
 }
 
 /// Whether the smallest angle is below a bound; `None` if that is uncertain.

@@ -21,6 +21,7 @@ mod place;
 mod queue;
 mod rounds;
 mod shape;
+pub mod smooth;
 mod task;
 mod work;
 
