@@ -1064,6 +1064,9 @@ class ContourLines:
     @property
     def levels(self) -> NDArray[np.int32]:
         """The number of the level of each line, ascending, (k,)."""
+    @property
+    def tangled(self) -> NDArray[np.int32]:
+        """Triangles in which lines would cross; if there are any, there are no lines, (t,)."""
 
 @final
 class ContourBands:
@@ -1081,6 +1084,9 @@ class ContourBands:
     @property
     def bands(self) -> NDArray[np.int32]:
         """The band of each polygon, ascending, (k,)."""
+    @property
+    def tangled(self) -> NDArray[np.int32]:
+        """Triangles in which bands would overlap; if there are any, there are no bands, (t,)."""
 
 class _Sheet(Protocol):
     """A triangulation and the heights of its points."""
@@ -1094,8 +1100,20 @@ class _Sheet(Protocol):
     @property
     def heights(self) -> NDArray[np.float64]: ...
 
-def contour_lines2(surface: _Sheet, levels: NDArray[np.float64], limit: int) -> ContourLines: ...
-def contour_bands2(surface: _Sheet, levels: NDArray[np.float64], limit: int) -> ContourBands: ...
+def contour_lines2(
+    surface: _Sheet,
+    levels: NDArray[np.float64],
+    limit: int,
+    collapsed: NDArray[np.bool_],
+    far: bool,
+) -> ContourLines: ...
+def contour_bands2(
+    surface: _Sheet,
+    levels: NDArray[np.float64],
+    limit: int,
+    collapsed: NDArray[np.bool_],
+    far: bool,
+) -> ContourBands: ...
 def volumes2(
     surface: _Sheet,
     other: _Sheet | None,

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from delone import BudgetExceededError, InputError
+from delone import BudgetExceededError, InputError, _core
 from delone.interpolate import Grid
 from delone.terrain import TIN
 
@@ -212,6 +212,90 @@ def test_too_many_levels_are_refused_before_the_work():
         tin.contours()
     with pytest.raises(InputError, match="finite"):
         tin.contours([0.0, np.nan])
+
+
+def rotated(side: int, degrees: float, kind: str, shift=(0.0, 0.0)) -> TIN:
+    """A raster whose straight sides are no longer parallel to an axis, with a plane or hills."""
+    x, y = np.arange(float(side)), np.arange(float(side))
+    if kind == "dense":
+        x = np.unique(np.concatenate((x, x[:-1] + 0.125)))
+    x, y = (each.ravel() for each in np.meshgrid(x, y))
+    z = x + 2 * y + (np.sin(3 * x) + np.cos(2 * y) if kind == "hills" else 0)
+    if kind == "sheared":
+        x = x + 0.3 * y
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    return TIN.from_points(np.column_stack((x * c - y * s + shift[0], x * s + y * c + shift[1], z)))
+
+
+@pytest.mark.parametrize("kind", ["plane", "hills", "dense", "sheared"])
+@pytest.mark.parametrize("degrees", [5, 25, 45, 60, 85])
+@pytest.mark.sampled(8)
+def test_rotated_rasters_have_contours(kind, degrees):
+    tin = rotated(25, degrees, kind, (500_000.0, 5_400_000.0))
+    levels = np.linspace(tin.z.min(), tin.z.max(), 23)
+    found = tin.contours(levels)
+    assert_nothing_crosses(segments_of(found.points, found.starts))
+    assert np.count_nonzero(found.level == levels[11]) >= 1
+    # Each point lies where the surface has this height, within the rounding of coordinates. At the
+    # sides a hill is as steep as a cliff, in triangles that are a few roundings high.
+    every = np.repeat(found.level, np.diff(found.starts))
+    outline = shapely.multilinestrings(tin.points[tin.boundary])
+    inside = shapely.distance(shapely.points(found.points), outline) > 1e-6
+    assert inside.mean() > 0.8
+    assert np.abs(tin.heights(found.points) - every)[inside].max() < 1e-6
+    if kind != "hills":
+        c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+        x, y = ((found.points - (500_000.0, 5_400_000.0)) @ [[c, -s], [s, c]]).T
+        x = x - 0.3 * y if kind == "sheared" else x
+        assert np.abs(x + 2 * y - every).max() < 1e-6
+    bands = tin.bands(levels)
+    assert shapely.is_valid(bands.to_shapely()).all()
+    sides = Counter(segments_of(bands.points, bands.rings))
+    assert set(sides.values()) == {1}
+    assert shapely.area(bands.to_shapely()).sum() == pytest.approx(tin.areas.sum(), rel=1e-9)
+    assert 0 <= bands.left_out <= 4 * 49
+
+
+def test_six_points_along_a_line_have_contours():
+    a, b = np.array([0.9715348278780412, -0.23689676701041085]), np.array([2.2, 0.75])
+    xy = [0 * a, a, 2 * a, 3 * a, b, 1.42 * b]
+    tin = TIN.from_points(np.column_stack((xy, [3.0, 4.0, 4.0, 3.0, 2.0, 0.0])))
+    for level in np.linspace(0.1, 3.95, 40):
+        found = tin.contours([level])
+        assert_nothing_crosses(segments_of(found.points, found.starts))
+        assert len(found)
+
+
+@pytest.mark.parametrize("kind", ["plane", "hills"])
+def test_contours_do_not_cross_where_triangles_are_collapsed(kind):
+    """The last resort, in some triangles and in all."""
+    tin = rotated(12, 25, kind)
+    sheet, levels = tin._sheet(), np.linspace(tin.z.min(), tin.z.max(), 9)
+    for share in (0.1, 0.5, 1.0):
+        collapsed = np.random.default_rng(3).random(len(tin.simplices)) < share
+        made = _core.contour_lines2(sheet, levels, 10**6, collapsed, True)
+        while len(made.tangled):
+            assert not collapsed[made.tangled].any()
+            collapsed[made.tangled] = True
+            made = _core.contour_lines2(sheet, levels, 10**6, collapsed, True)
+        # Lines of several levels may pass along the same edge.
+        assert_nothing_crosses({tuple(sorted(s)) for s in segments_of(made.points, made.starts)})
+        assert len(made.starts) > 1
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_thin_triangles_inside_have_contours(seed):
+    """Along a breakline that is straight up to rounding, with cliffs between its points."""
+    rng = np.random.default_rng(seed)
+    along = np.sort(rng.random(14))[:, None] * [0.9, 0.31] + [0.01, 0.3]
+    line = np.column_stack((along, rng.integers(0, 9, 14)))
+    frame = [(0, 0, 1), (1, 0, 7), (1, 1, 2), (0, 1, 5)]
+    tin = TIN.from_points(
+        np.concatenate((frame, line)), breaklines=[line[[0, -1]]], crossing="mean"
+    )
+    found = tin.contours(interval=0.37)
+    assert_nothing_crosses({tuple(sorted(s)) for s in segments_of(found.points, found.starts)})
+    assert shapely.is_valid(tin.bands(found.levels).to_shapely()).all()
 
 
 @pytest.mark.parametrize("rounds", [1, 2, 3, 5])

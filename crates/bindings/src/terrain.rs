@@ -21,6 +21,8 @@ pub struct ContourLines {
     pub starts: Column<i64>,
     /// The number of the level of each line, ascending, (k,).
     pub levels: Column<i32>,
+    /// Triangles in which lines would cross; if there are any, there are no lines, (t,).
+    pub tangled: Column<i32>,
 }
 
 /// Bands between levels as polygons: runs of rings, which are runs of coordinates.
@@ -34,6 +36,8 @@ pub struct ContourBands {
     pub polygons: Column<i64>,
     /// The band of each polygon, ascending, (k,).
     pub bands: Column<i32>,
+    /// Triangles in which bands would overlap; if there are any, there are no bands, (t,).
+    pub tangled: Column<i32>,
 }
 
 /// Finite numbers, one for each point.
@@ -57,42 +61,60 @@ fn levels_of<'a>(levels: &'a PyReadonlyArray1<'_, f64>) -> Result<&'a [f64]> {
     Err(Error::Shape("levels must be finite and ascending".into()))
 }
 
-/// The contour lines of a surface, with higher ground to their left.
+/// The contour lines of a surface, with higher ground to their left. Those in triangles of
+/// `collapsed`, which may be empty, pass through vertices; `far` allows to unite points of lines that
+/// are far apart.
 #[pyfunction]
 pub fn contour_lines2(
     py: Python<'_>,
     surface: Sheet<'_>,
     levels: PyReadonlyArray1<'_, f64>,
     limit: usize,
+    collapsed: PyReadonlyArray1<'_, bool>,
+    far: bool,
 ) -> PyResult<ContourLines> {
-    let (surface, levels) = attached(py, || Ok((surface.surface()?, levels_of(&levels)?)))?;
+    let (surface, levels) = attached(py, || {
+        Ok((
+            surface.surface()?,
+            (levels_of(&levels)?, flat(&collapsed, "collapsed")?),
+        ))
+    })?;
     let found = watched(py, |watch| {
-        contour::lines(surface.given, surface.heights, levels, limit, watch)
+        contour::lines(surface.given, surface.heights, levels, far, limit, watch)
     })?;
     Ok(ContourLines {
         points: table(py, found.points)?,
         starts: column(py, found.starts),
         levels: column(py, found.levels),
+        tangled: column(py, found.tangled),
     })
 }
 
-/// The bands of a surface between levels, below the first and above the last.
+/// The bands of a surface between levels, below the first and above the last; see `contour_lines2`.
 #[pyfunction]
 pub fn contour_bands2(
     py: Python<'_>,
     surface: Sheet<'_>,
     levels: PyReadonlyArray1<'_, f64>,
     limit: usize,
+    collapsed: PyReadonlyArray1<'_, bool>,
+    far: bool,
 ) -> PyResult<ContourBands> {
-    let (surface, levels) = attached(py, || Ok((surface.surface()?, levels_of(&levels)?)))?;
+    let (surface, levels) = attached(py, || {
+        Ok((
+            surface.surface()?,
+            (levels_of(&levels)?, flat(&collapsed, "collapsed")?),
+        ))
+    })?;
     let found = watched(py, |watch| {
-        contour::bands(surface.given, surface.heights, levels, limit, watch)
+        contour::bands(surface.given, surface.heights, levels, far, limit, watch)
     })?;
     Ok(ContourBands {
         points: table(py, found.points)?,
         rings: column(py, found.rings),
         polygons: column(py, found.polygons),
         bands: column(py, found.bands),
+        tangled: column(py, found.tangled),
     })
 }
 

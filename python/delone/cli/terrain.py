@@ -121,6 +121,7 @@ def contours(
         what: len(found),
         "levels": len(np.unique(found.low if bands else found.level)),
         "coordinates": len(found.points),
+        "triangles_left_out": found.left_out or None,
         "stages": watch.rows(tin.npoints),
     }
     print_figures(source, figures, as_json=as_json, quiet=quiet)

@@ -16,6 +16,7 @@ from delone.decimals import exact, multiples
 from delone.errors import BudgetExceededError, DtypeError, InputError
 from delone.extras import require
 from delone.immutable import ReadOnly, sealed
+from delone.terrain.slivers import drawn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -52,6 +53,9 @@ class Contours(ReadOnly):
         Whether the line is an index contour.
     levels : ndarray of float64
         All levels, also those without lines.
+    left_out : int, optional
+        The number of triangles at the outline that are left out because they are thinner than the
+        resolution of the coordinates, so that lines in them would cross. Usually 0.
     crs : str, optional
         Coordinate reference system.
     units : str, optional
@@ -71,6 +75,7 @@ class Contours(ReadOnly):
     level: Floats
     index: Bools
     levels: Floats
+    left_out: int = 0
     crs: str | None = None
     units: str | None = None
 
@@ -212,6 +217,9 @@ class Bands(ReadOnly):
     low, high : ndarray of float64, shape (k,)
         The heights between which the surface is there; those of the whole surface below the first
         level and above the last.
+    left_out : int, optional
+        The number of triangles at the outline that are left out because they are thinner than the
+        resolution of the coordinates, so that lines in them would cross. Usually 0.
     crs : str, optional
         Coordinate reference system.
     units : str, optional
@@ -231,6 +239,7 @@ class Bands(ReadOnly):
     polygons: Rows
     low: Floats
     high: Floats
+    left_out: int = 0
     crs: str | None = None
     units: str | None = None
 
@@ -352,7 +361,8 @@ def lines(tin: Surface, levels: Floats, marked: Bools, smooth: int, max_points: 
 
     rounds = as_count(smooth, name="smooth")
     # Each round doubles the points at most.
-    made = _within(_core.contour_lines2, tin, levels, max_points, 1 << min(rounds, _MOST_ROUNDS))
+    factor = 1 << min(rounds, _MOST_ROUNDS)
+    made, left_out = _within(_core.contour_lines2, tin, levels, max_points, factor)
     points, starts = made.points, made.starts
     if rounds:
         points, starts = smoothed(points, starts, tin, rounds)
@@ -362,19 +372,26 @@ def lines(tin: Surface, levels: Floats, marked: Bools, smooth: int, max_points: 
         level=levels[made.levels],
         index=marked[made.levels],
         levels=levels,
+        left_out=left_out,
         crs=tin.crs,
         units=tin.units,
     )
 
 
-def _within(compute: Any, tin: Surface, levels: Floats, max_points: int, factor: int) -> Any:
+def _within(
+    compute: Any, tin: Surface, levels: Floats, max_points: int, factor: int
+) -> tuple[Any, int]:
     """Compute contours that have at most so many points once each is replaced by `factor`.
 
-    The core counts them before it computes them.
+    The core counts them before it computes them. The second result is the number of triangles that
+    were left out.
     """
     limit = as_count(max_points, name="max_points")
     try:
-        return compute(tin._sheet(), levels, limit // factor)
+        return drawn(
+            lambda sheet, *how: compute(sheet, levels, limit // factor, *how),
+            tin._sheet(),
+        )
     except BudgetExceededError as error:
         found = error.found * factor
         most = "" if factor == 1 else "at most "
@@ -388,7 +405,7 @@ def _within(compute: Any, tin: Surface, levels: Floats, max_points: int, factor:
 
 def bands(tin: Surface, levels: Floats, max_points: int) -> Bands:
     """Return the polygons between contours of a surface."""
-    made = _within(_core.contour_bands2, tin, levels, max_points, 1)
+    made, left_out = _within(_core.contour_bands2, tin, levels, max_points, 1)
     used = tin.z[np.unique(tin.simplices)]
     ends = np.concatenate(([used.min()], levels, [used.max()]))
     return Bands(
@@ -397,6 +414,7 @@ def bands(tin: Surface, levels: Floats, max_points: int) -> Bands:
         polygons=made.polygons,
         low=ends[made.bands],
         high=ends[made.bands + 1],
+        left_out=left_out,
         crs=tin.crs,
         units=tin.units,
     )

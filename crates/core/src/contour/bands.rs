@@ -24,6 +24,8 @@ const WATCH_EVERY: usize = 1 << 14;
 /// Polygons as runs of rings, which are runs of coordinates.
 #[derive(Debug, Default)]
 pub struct Bands {
+    /// Triangles in which contours would cross; if there are any, there is nothing else.
+    pub tangled: Vec<i32>,
     /// Coordinates of all rings. Each ends with its first point.
     pub points: Vec<Point2>,
     /// The start of each ring in `points`, and the end of the last.
@@ -42,16 +44,24 @@ struct Ring {
     end: usize,
 }
 
-/// The bands of ascending `levels`.
+/// The bands of ascending `levels`. For `collapsed` see [`Nodes::new`], for `far`
+/// [`untangle`].
 pub fn bands(
     given: Triangles,
     heights: &[f64],
-    levels: &[f64],
+    (levels, collapsed): (&[f64], &[bool]),
+    far: bool,
     limit: usize,
     watch: &Watch,
 ) -> Result<Bands> {
-    let mut nodes = Nodes::new(given, heights, levels, limit, watch)?;
-    untangle(&mut nodes, watch)?;
+    let mut nodes = Nodes::new(given, heights, (levels, collapsed), limit, watch)?;
+    let tangled = untangle(&mut nodes, far, watch)?;
+    if !tangled.is_empty() {
+        return Ok(Bands {
+            tangled,
+            ..Bands::default()
+        });
+    }
     let mut pieces = Pieces::new(&nodes, watch)?;
     let (starts, edges) = boundaries(&nodes, &pieces, watch)?;
     let mut linker = Linker::new(nodes.len())?;

@@ -17,6 +17,8 @@ const WATCH_EVERY: usize = 1 << 14;
 /// Lines as runs of coordinates.
 #[derive(Debug, Default)]
 pub struct Lines {
+    /// Triangles in which contours would cross; if there are any, there is nothing else.
+    pub tangled: Vec<i32>,
     /// Coordinates of all lines. A ring ends with its first point.
     pub points: Vec<Point2>,
     /// The start of each line in `points`, and the end of the last.
@@ -27,16 +29,24 @@ pub struct Lines {
 
 /// The contour lines of ascending `levels`, with higher ground to their left, in a canonical order:
 /// rings start at their first point in lexicographic order, and the lines of a level are in the
-/// order of their starts.
+/// order of their starts. For `collapsed` see [`Nodes::new`], for `far`
+/// [`untangle`].
 pub fn lines(
     given: Triangles,
     heights: &[f64],
-    levels: &[f64],
+    (levels, collapsed): (&[f64], &[bool]),
+    far: bool,
     limit: usize,
     watch: &Watch,
 ) -> Result<Lines> {
-    let mut nodes = Nodes::new(given, heights, levels, limit, watch)?;
-    untangle(&mut nodes, watch)?;
+    let mut nodes = Nodes::new(given, heights, (levels, collapsed), limit, watch)?;
+    let tangled = untangle(&mut nodes, far, watch)?;
+    if !tangled.is_empty() {
+        return Ok(Lines {
+            tangled,
+            ..Lines::default()
+        });
+    }
     let (starts, edges) = chords(&nodes, watch)?;
     let mut linker = Linker::new(nodes.len())?;
     let mut found = Lines::default();

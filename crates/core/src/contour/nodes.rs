@@ -39,11 +39,13 @@ pub struct Nodes<'a> {
 }
 
 impl<'a> Nodes<'a> {
-    /// Numbers the nodes of ascending `levels` and computes their positions.
+    /// Numbers the nodes of ascending `levels` and computes their positions. On the edges of triangles
+    /// in `collapsed`, which may be empty, nodes lie at the lower ends: contours pass such a triangle
+    /// at its corners, whatever its shape.
     pub fn new(
         given: Triangles<'a>,
         heights: &[f64],
-        levels: &[f64],
+        (levels, collapsed): (&[f64], &[bool]),
         limit: usize,
         watch: &Watch,
     ) -> Result<Self> {
@@ -70,7 +72,7 @@ impl<'a> Nodes<'a> {
                 crowd: Crowd::default(),
             });
         }
-        nodes.place(heights, levels, count, watch)?;
+        nodes.place(heights, (levels, collapsed), count, watch)?;
         Ok(nodes)
     }
 
@@ -109,7 +111,7 @@ impl<'a> Nodes<'a> {
     fn place(
         &mut self,
         heights: &[f64],
-        levels: &[f64],
+        (levels, collapsed): (&[f64], &[bool]),
         count: usize,
         watch: &Watch,
     ) -> Result<()> {
@@ -124,9 +126,12 @@ impl<'a> Nodes<'a> {
                 watch.check()?;
             }
             for k in 0..3 {
-                if self.twin(t, k).is_some_and(|(u, _)| u < t) {
+                let twin = self.twin(t, k);
+                if twin.is_some_and(|(u, _)| u < t) {
                     continue;
                 }
+                let is_collapsed = |t: usize| collapsed.get(t).copied().unwrap_or(false);
+                let collapses = is_collapsed(t) || twin.is_some_and(|(u, _)| is_collapsed(u));
                 let [low, high] = self.rising(t, k);
                 let from = self.ranks[low as usize];
                 for rank in from..self.ranks[high as usize] {
@@ -135,6 +140,9 @@ impl<'a> Nodes<'a> {
                     if level == heights[high as usize] {
                         self.parents[node as usize] = high;
                         self.places[node as usize] = self.given.points[high as usize];
+                    } else if collapses {
+                        self.parents[node as usize] = low;
+                        self.places[node as usize] = self.given.points[low as usize];
                     } else {
                         let [a, b] = [low, high].map(|v| v as usize);
                         let share = share(level, heights[a], heights[b]);

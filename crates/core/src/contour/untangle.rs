@@ -9,49 +9,70 @@
 //! A cell for which no fan is like that loses its two nearest places that can be united: one takes
 //! the position of the other, and vertices stay. Positions become fewer with each union, so the
 //! passes end. Unions happen where nodes are a few units in the last place apart.
+//!
+//! In a triangle that is thinner than the resolution of the coordinates, a cell may be left with
+//! vertices alone and still be tangled: a node of a longer edge was united with the vertex beside it,
+//! which lies on the other side of that edge. Or it has only places far apart, and uniting these would
+//! displace contours. Such triangles are returned. The caller leaves them out, if they lie at the
+//! outline, allows unions far apart, or has the nodes on their edges collapsed (see [`Nodes::new`]).
 
 use delone_predicates::{Sign, orient2d};
 
 use super::nodes::{Crossed, Nodes};
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::memory::push;
 use crate::watch::Watch;
+
+/// Places are near if they are this share of their coordinates apart, 1,024 units in the last place.
+const NEAR: f64 = 1.0 / (1_u64 << 42) as f64;
 
 /// Triangles between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 12;
 
-/// Unites places until no contours cross, and lets each place refer to its representative.
-pub fn untangle(nodes: &mut Nodes, watch: &Watch) -> Result<()> {
+/// Unites places until no contours cross, and lets each place refer to its representative. Returns
+/// the triangles in which this is not possible, ascending; unless `far`, places that are further
+/// apart than a few units in the last place are not united.
+pub fn untangle(nodes: &mut Nodes, far: bool, watch: &Watch) -> Result<Vec<i32>> {
+    let mut tangled = Vec::new();
     loop {
         let mut changed = false;
+        tangled.clear();
         for t in 0..nodes.triangles() {
             if t.is_multiple_of(WATCH_EVERY) {
                 watch.check()?;
             }
             let crossed = nodes.crossed(t);
             if crossed.ranks[0] < crossed.ranks[2] {
-                changed |= untangle_triangle(nodes, t, &crossed)?;
+                let (united, possible) = untangle_triangle(nodes, t, &crossed, far);
+                changed |= united;
+                if !possible {
+                    push(&mut tangled, t as i32)?;
+                }
             }
         }
         if !changed {
             nodes.flatten();
-            return Ok(());
+            return Ok(tangled);
         }
     }
 }
 
 /// Unites equal positions in the cells of a triangle, and places of cells that are tangled; returns
-/// whether the latter happened.
-fn untangle_triangle(nodes: &mut Nodes, t: usize, crossed: &Crossed) -> Result<bool> {
-    let mut changed = false;
+/// whether the latter happened, and whether all cells are right then.
+fn untangle_triangle(nodes: &mut Nodes, t: usize, crossed: &Crossed, far: bool) -> (bool, bool) {
+    let (mut changed, mut possible) = (false, true);
     for level in crossed.ranks[0]..=crossed.ranks[2] {
         let cell = cell(nodes, t, crossed, level);
         unite_equal(nodes, cell.places());
         while !untangled(nodes, cell.places(), crossed.even) {
-            unite_nearest(nodes, cell.places())?;
+            if !unite_nearest(nodes, cell.places(), far) {
+                possible = false;
+                break;
+            }
             changed = true;
         }
     }
-    Ok(changed)
+    (changed, possible)
 }
 
 /// The places around a cell, in the order of the corners from low to high along the right side.
@@ -136,8 +157,9 @@ fn right_way_round(nodes: &Nodes, [a, b, c]: [u32; 3], even: bool) -> bool {
         || orient2d(nodes.at(a), nodes.at(b), nodes.at(c)).flip_if(!even) == Sign::Positive
 }
 
-/// Unites the two nearest places of a cell of which one may move.
-fn unite_nearest(nodes: &mut Nodes, cell: &[u32]) -> Result<()> {
+/// Unites the two nearest places of a cell of which one may move; false if there are none, or none
+/// that are near.
+fn unite_nearest(nodes: &mut Nodes, cell: &[u32], far: bool) -> bool {
     let mut nearest = None;
     for i in 1..cell.len() {
         for j in 0..i {
@@ -147,18 +169,17 @@ fn unite_nearest(nodes: &mut Nodes, cell: &[u32]) -> Result<()> {
             }
             let ([x, y], [u, v]) = (nodes.at(a), nodes.at(b));
             let distance = (x - u).abs().max((y - v).abs());
+            let size = x.abs().max(y.abs()).max(u.abs()).max(v.abs());
+            if !far && distance > NEAR * size {
+                continue;
+            }
             if nearest.is_none_or(|(least, _, _)| distance < least) {
                 nearest = Some((distance, a, b));
             }
         }
     }
-    let Some((_, a, b)) = nearest else {
-        let [x, y] = nodes.at(nodes.find(cell[0]));
-        return Err(Error::Shape(format!(
-            "the contours near ({x}, {y}) cannot be drawn without crossings: its triangles are \
-             too thin for the resolution of the coordinates"
-        )));
-    };
-    nodes.unite(a, b);
-    Ok(())
+    if let Some((_, a, b)) = nearest {
+        nodes.unite(a, b);
+    }
+    nearest.is_some()
 }
