@@ -3,6 +3,7 @@
 use delone_predicates::Point3;
 use delone_predicates::arithmetic::Pair;
 use delone_predicates::sphere::{Unit, leveled};
+use num_bigint::BigInt;
 
 use super::directions::units;
 use crate::error::Result;
@@ -94,9 +95,11 @@ fn dot(a: Point3, b: Point3) -> f64 {
 
 /// A. Van Oosterom and J. Strackee, "The solid angle of a plane triangle" (1983): the tangent of half
 /// of it is [a, b, c] / (1 + a b + b c + c a). The determinant is right to nearly all bits, so slivers
-/// are, too; the sum has no need to be, as the angle is near a right angle where terms cancel.
+/// are, too. The sum has no need to be, as long as one of the two is large: its error counts by the
+/// share of the determinant in both. Both are small if two corners are nearly opposite.
 fn area(corners: [Point3; 3], directions: &[Unit; 3]) -> f64 {
-    let [a, b, c] = directions.each_ref().map(pairs);
+    let units = directions.each_ref().map(pairs);
+    let [a, b, c] = units;
     let (p, q) = (minus(a, c), minus(b, c));
     let normal = cross(p, q);
     let det = (normal[0] * c[0] + normal[1] * c[1] + normal[2] * c[2]).hi;
@@ -107,21 +110,60 @@ fn area(corners: [Point3; 3], directions: &[Unit; 3]) -> f64 {
         exact_determinant(corners)
     };
     let [a, b, c] = directions.each_ref().map(|unit| unit.hi);
-    2.0 * det.atan2(1.0 + dot(a, b) + dot(b, c) + dot(c, a))
+    let sum = 1.0 + dot(a, b) + dot(b, c) + dot(c, a);
+    // An error of 2^-50 in the sum is one of less than 2^-47 in the angle if the sum is above 1/8.
+    if sum.abs() > 0.125 {
+        return 2.0 * det.atan2(sum);
+    }
+    let sum = sum_of_products(units);
+    // The error of pairs is below 2^-95.
+    if sum.abs().max(det.abs()) > 1.0 / (1_u64 << 40) as f64 {
+        return 2.0 * det.atan2(sum);
+    }
+    exact_area(corners)
+}
+
+/// 1 + a b + b c + c a in pairs.
+fn sum_of_products([a, b, c]: [[Pair; 3]; 3]) -> f64 {
+    let one = Pair { hi: 1.0, lo: 0.0 };
+    let product = |p: [Pair; 3], q: [Pair; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+    (one + product(a, b) + product(b, c) + product(c, a)).hi
+}
+
+/// The solid angle by integers, and roots with 256 bits after the point.
+#[cold]
+fn exact_area(corners: [Point3; 3]) -> f64 {
+    const BITS: u32 = 256;
+    let [a, b, c] = integers(corners);
+    let product =
+        |p: &[BigInt; 3], q: &[BigInt; 3]| -> BigInt { p.iter().zip(q).map(|(x, y)| x * y).sum() };
+    // Lengths in units of 2^-256; `root` has 64 of these bits.
+    let length = |p: &[BigInt; 3]| root(&(product(p, p) << (2 * (BITS - 64))));
+    let [k, l, m] = [&a, &b, &c].map(length);
+    let whole: BigInt = (&k * &l * &m) >> (2 * BITS);
+    let sum = whole + product(&a, &b) * &m + product(&b, &c) * &k + product(&c, &a) * &l;
+    let det = determinant([&a, &b, &c]) << BITS;
+    // Both over the larger one: neither quotient is out of range.
+    let most = det.magnitude().max(sum.magnitude()).clone().into();
+    let share = |x: &BigInt| ratio(x, &most, 0).unwrap_or_default();
+    2.0 * share(&det).atan2(share(&sum))
+}
+
+/// Each vector as integers, in a unit of its own.
+fn integers(corners: [Point3; 3]) -> [[BigInt; 3]; 3] {
+    corners.map(|v| {
+        let v = leveled(v);
+        let low = lowest(&[v], &[]);
+        v.map(|x| scaled(x, low))
+    })
 }
 
 /// The determinant of three directions, by integers and one root.
 #[cold]
 fn exact_determinant(corners: [Point3; 3]) -> f64 {
-    let rows = corners.map(|v| {
-        let v = leveled(v);
-        let low = lowest(&[v], &[]);
-        v.map(|x| scaled(x, low))
-    });
+    let rows = integers(corners);
     let [a, b, c] = rows.each_ref();
-    let squares = rows
-        .iter()
-        .map(|v| v.iter().map(|x| x * x).sum::<num_bigint::BigInt>());
+    let squares = rows.iter().map(|v| v.iter().map(|x| x * x).sum::<BigInt>());
     let lengths = root(&squares.product());
     ratio(&(determinant([a, b, c]) << 64_u32), &lengths, 0).unwrap_or_default()
 }
