@@ -111,6 +111,7 @@ fn meshed(input: &Input, points: &[Point2], base: &Constrained, lines: &[[u32; 2
     let task = Task {
         points,
         simplices: &arrays.simplices,
+        neighbors: Some(&arrays.neighbors),
         labels: &labels,
         areas: &vec![input.cap; labels.len()],
         segments: lines,

@@ -44,8 +44,7 @@ struct Ring {
     end: usize,
 }
 
-/// The bands of ascending `levels`. For `collapsed` see [`Nodes::new`], for `far`
-/// [`untangle`].
+/// The bands of ascending `levels`. For `collapsed` see `Nodes::new`, for `far` see `untangle`.
 pub fn bands(
     given: Triangles,
     heights: &[f64],

@@ -29,8 +29,8 @@ pub struct Lines {
 
 /// The contour lines of ascending `levels`, with higher ground to their left, in a canonical order:
 /// rings start at their first point in lexicographic order, and the lines of a level are in the
-/// order of their starts. For `collapsed` see [`Nodes::new`], for `far`
-/// [`untangle`].
+/// order of their starts. For `collapsed` see `Nodes::new`, for `far` see
+/// `untangle`.
 pub fn lines(
     given: Triangles,
     heights: &[f64],
