@@ -198,6 +198,10 @@ def commands(change: Change, rooms: list[str]) -> list[list[str]]:
     if change.rust:
         found += [["cargo", "fmt", "--all", "--check"]]
         found += [["cargo", "clippy", "-q", "--workspace", "--all-targets", "--", "-D", "warnings"]]
+        found += [["cargo", "rustdoc", "-q", "-p", "delone-core", "--", "-D", "warnings"]]
+        # The fuzz targets are a workspace of their own, which clippy does not see.
+        fuzz = ["--manifest-path", "fuzz/Cargo.toml", "--target-dir", "target"]
+        found += [["cargo", "check", "-q", *fuzz]]
         for part in sorted(set(change.core)):
             found += [["cargo", "test", "-q", "-p", "delone-core", "--lib", f"{part}::"]]
     if any(f.startswith("python/") for f in sources):

@@ -136,6 +136,33 @@ class TestHolesAndOutline:
         assert mesh.triangles_along((0, 1), (6, 2)).size == 0
         assert repr(mesh) == "<ConstrainedDelaunay of 4 points and 2 segments: 0 triangles>"
 
+    def test_open_ends_of_an_outline_are_reported(self) -> None:
+        points = [(0, 0), (100, 0), (100, 100), (50, 50), (0, 100)]
+        sides = [(0, 4), (0, 1), (1, 2), (3, 4)]
+        mesh = ConstrainedDelaunay(points, sides, boundary="outline")
+        assert mesh.nsimplex == 0
+        assert mesh.report.open_ends.tolist() == [2, 3]
+        assert not mesh.report
+        assert "2 ends of outlines are open, at vertices: 2, 3" in str(mesh.report)
+        closed = ConstrainedDelaunay(points, [*sides, (2, 3)], boundary="outline")
+        assert closed.report
+        assert closed.report.open_ends.size == 0
+        # On the hull, an open line is a breakline and leaves out nothing.
+        assert ConstrainedDelaunay(points, sides).report
+
+    def test_one_open_outline_beside_a_closed_one_is_reported(self) -> None:
+        points = [(0, 0), (4, 0), (0, 4), (10, 0), (14, 0), (10, 4)]
+        rings = [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5)]
+        report = ConstrainedDelaunay(points, rings, boundary="outline").report
+        assert report.open_ends.tolist() == [3, 5]
+
+    def test_a_breakline_that_ends_inside_the_outline_is_no_open_end(self) -> None:
+        points = [*OUTER, (1, 1), (2, 2)]
+        ring = [(i, (i + 1) % 4) for i in range(4)]
+        mesh = ConstrainedDelaunay(points, [*ring, (4, 5)], boundary="outline")
+        assert mesh.report
+        assert mesh.report.open_ends.size == 0
+
     def test_an_island_in_a_lake_stays(self) -> None:
         island = [(2.5, 2.5), (3.5, 2.5), (3, 3.5)]
         shore = [(8, 9), (9, 10), (10, 8)]

@@ -292,10 +292,17 @@ class Segmented(PointTriangulation):
             holes_on_segment=_rows(hole_on_segment),
             regions_outside=_rows(outside),
             regions_on_segment=_rows(on_segment),
+            open_ends=self._open_ends(),
         )
         if not len(self._given.regions):
             return report
         return replace(report, regions_repeated=self._labeled(self._component())[1])
+
+    def _open_ends(self) -> Indices:
+        """Return vertices outside at which the outline is open."""
+        if self._options.boundary != "outline":
+            return np.empty(0, dtype=np.int32)
+        return segments.open_ends(self._made.segments, self._simplices, len(self._points))
 
     def _arguments(self) -> dict[str, Any]:
         """Return the arguments of the constructor other than points and segments."""

@@ -72,6 +72,9 @@ class SegmentReport(ReadOnly):
         Rows of seeds that lie on a segment, and therefore in no region. They have no effect.
     regions_repeated : ndarray of int32, shape (k, 2)
         Rows of seeds, and the earlier row that has labeled their region.
+    open_ends : ndarray of int32, shape (k,)
+        With ``boundary="outline"``, vertices outside at which only one segment ends: there the
+        outline is open, and what it was to enclose is outside.
 
     Attributes
     ----------
@@ -104,6 +107,7 @@ class SegmentReport(ReadOnly):
     regions_outside: Indices = field(default_factory=_none)
     regions_on_segment: Indices = field(default_factory=_none)
     regions_repeated: Indices = field(default_factory=_no_pairs)
+    open_ends: Indices = field(default_factory=_none)
 
     def __post_init__(self) -> None:
         for each in fields(self):
@@ -157,6 +161,7 @@ _SENTENCES = {
         "region seed lies in a region that already has a label",
         "region seeds lie in regions that already have labels",
     ),
+    "open_ends": ("end of an outline is open, at vertex", "ends of outlines are open, at vertices"),
 }
 
 
@@ -166,6 +171,13 @@ def _list(found: Indices) -> str:
         for each in found[:_SHOWN].tolist()
     ]
     return ", ".join(shown) + (", ..." if len(found) > _SHOWN else "")
+
+
+def open_ends(segments: Indices, simplices: Indices, npoints: int) -> Indices:
+    """Return vertices of no triangle at which only one segment ends, ascending."""
+    degree = np.bincount(segments.ravel(), minlength=npoints)
+    degree[simplices] = 0
+    return np.flatnonzero(degree == 1).astype(np.int32)
 
 
 def repeated_rows(ends: Indices) -> Indices:

@@ -15,6 +15,7 @@ from delone._arrays import as_callback, as_count, as_flag, as_limit, as_plain_ar
 from delone._masks import refuse_masks
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.polygons import from_geometry
+from delone.constrained.segments import open_ends
 from delone.counting import listed
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.refine import domains
@@ -335,8 +336,7 @@ def _why_empty(base: ConstrainedDelaunay) -> str:
     """Return why no triangle is left; for an open outline, with its loose ends."""
     if base._options.boundary == "hull":
         return "the holes removed all triangles"
-    degree = np.bincount(base.segments.ravel(), minlength=base.npoints)
-    loose = np.flatnonzero(degree == 1)
+    loose = open_ends(base.segments, base.simplices, base.npoints)
     if not loose.size:
         return "the segments form no closed ring, or only rings around holes"
     positions = ", ".join(f"({x!r}, {y!r})" for x, y in base.points[loose[:3]].tolist())
