@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from delone import Delaunay, _core
-from delone.errors import ShapeError
+from delone import Delaunay, Dynamic, _core
+from delone.errors import DegenerateInputError, ShapeError
+from delone.interpolate import Linear
 from delone.predicates import orient2d
+from tiers import seeds
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -284,3 +286,52 @@ def test_order_and_workers_do_not_show(order: str) -> None:
     assert np.array_equal(index.find(queries, 3), found)
     some = rng.permutation(len(queries))[:500]
     assert [index.find(queries[i : i + 1], 1)[0] for i in some] == found[some].tolist()
+
+
+class TestWeightsOnEdges:
+    """Weights where one axis is larger than the other by up to all powers of two that exist."""
+
+    EXPONENTS = (-1074, -1050, -1022, -600, -300, 0, 300, 600, 900, 1015)
+
+    def test_an_edge_that_is_tiny_beside_its_coordinates(self) -> None:
+        points = [(1.7e308, 5e-324), (1e300, 2.2250738585072014e-308), (1.7e308, -5e-324)]
+        middle = [(1.7e308, -0.0)]
+        mesh = Delaunay(points)
+        found = mesh.locate(middle)
+        weights = dict(zip(mesh.simplices[found.simplex[0]], found.barycentric[0], strict=True))
+        assert weights == {0: 0.5, 1: 0.0, 2: 0.5}
+        assert Linear(points, [1.0, 5.0, 3.0])(middle) == 2.0
+        assert Dynamic(points).interpolate([1.0, 5.0, 3.0], middle) == 2.0
+
+    @pytest.mark.parametrize("dimension", [2, 3])
+    @pytest.mark.parametrize("seed", seeds(2, deep=8))
+    def test_shares_of_an_edge(self, dimension: int, seed: int) -> None:
+        rng = np.random.default_rng(seed)
+
+        def number(most: int) -> Fraction:
+            exponent = int(rng.choice(self.EXPONENTS))
+            return int(rng.integers(-most, most + 1)) * Fraction(2) ** exponent
+
+        judged = 0
+        for _ in range(1500):
+            place, step = ([number(most) for _ in range(dimension)] for most in (15, 3))
+            before, after = (int(n) for n in rng.integers(1, 8, 2))
+            ends = [
+                [x - before * s for x, s in zip(place, step, strict=True)],
+                [x + after * s for x, s in zip(place, step, strict=True)],
+            ]
+            rest = [[number(15) for _ in range(dimension)] for _ in range(dimension - 1)]
+            rows = [[float(x) for x in row] for row in (*ends, *rest, place)]
+            if [[Fraction(x) for x in row] for row in rows[:2]] != ends or not any(step):
+                continue
+            try:
+                mesh = Delaunay(rows[:-1])
+            except DegenerateInputError:
+                continue
+            found = mesh.locate(rows[-1:])
+            right = {0: Fraction(after, before + after), 1: Fraction(before, before + after)}
+            corners = mesh.simplices[found.simplex[0]].tolist()
+            for vertex, weight in zip(corners, found.barycentric[0].tolist(), strict=True):
+                assert abs(Fraction(weight) - right.get(vertex, 0)) <= Fraction(2) ** -51
+            judged += 1
+        assert judged > 20

@@ -134,6 +134,34 @@ def test_hillshade_is_that_of_gdal(azimuth, altitude, z_factor):
     assert found == pytest.approx(np.clip(shade, 0, 1))
 
 
+def test_slivers_of_a_rotated_grid_are_shaded():
+    x, y = map(np.ravel, np.meshgrid(np.arange(31.0), np.arange(31.0)))
+    c, s = np.cos(np.radians(25)), np.sin(np.radians(25))
+    z = 5 * np.sin(x / 3) + 4 * np.cos(y / 4)
+    tin = TIN.from_points(np.column_stack((x * c - y * s, x * s + y * c, z)))
+    steep = np.abs(tin.gradient).max(axis=1) > 1e12
+    assert 20 < steep.sum() < 200
+    assert np.isfinite(tin.gradient).all()
+    for factor in (1.0, 1e300):
+        shade = tin.hillshade(z_factor=factor)
+        assert (shade >= 0).all() and (shade <= 1).all()
+    assert np.linalg.norm(tin.normals, axis=1) == pytest.approx(1)
+    # The light lies in the plane of the gradient, and both directions are horizontal.
+    downhill = np.radians(tin.aspect[steep])
+    expected = np.cos(np.radians(45)) * np.cos(downhill - np.radians(315))
+    assert tin.hillshade()[steep] == pytest.approx(np.clip(expected, 0, 1), abs=1e-9)
+    assert tin.hillshade(z_factor=0) == pytest.approx(np.sin(np.radians(45)))
+
+
+@pytest.mark.parametrize("unit", [1e-200, 2.0**-700, 1.0, 1e200])
+def test_gradients_of_any_size_have_normals(unit):
+    tin = TIN.from_points([(0, 0, 0), (unit, 0, 1), (0, unit, 2)])
+    assert tin.gradient * unit == pytest.approx(np.array([(1.0, 2.0)]))
+    length = np.hypot(np.sqrt(5.0), unit) if unit < 1e100 else unit
+    expected = np.array([(-1.0, -2.0, unit)]) / length
+    assert tin.normals == pytest.approx(expected, rel=1e-12, abs=0)
+
+
 def test_rasters_sample_the_surface():
     tin = random_tin()
     for what in ("height", "slope", "aspect", "hillshade"):

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import copy
 import functools
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -36,6 +36,7 @@ from delone.interpolate.values import (
 )
 from delone.interpolate.weights import joined
 from delone.periodic import PeriodicDelaunay
+from delone.plane import slivers, topology
 from delone.triangulation import Triangulation
 
 if TYPE_CHECKING:
@@ -46,14 +47,33 @@ if TYPE_CHECKING:
     from delone.interpolate.weights import Table, Weights
     from delone.location import Location
 
+    Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
     Rows = NDArray[np.int64]
     # A field, and interpolators of parts of its values.
     Parts = tuple[Field, list[tuple[Rows, Any]]]
 
-__all__ = ["Interpolator", "as_max_distance", "shaped_derivatives"]
+__all__ = ["Interpolator", "Sheet", "as_max_distance", "shaped_derivatives"]
 
 _NAMED = 5
+# The share of the way to the middle of a triangle at which derivatives at its side are taken, and
+# how many units in the last place away it must be.
+_BEHIND = 2.0**-30
+_CLEAR = 64
+
+
+class Sheet(NamedTuple):
+    """Simplices as they are evaluated: without slivers, and cut along constraints if respected."""
+
+    points: Floats
+    simplices: Indices
+    neighbors: Indices
+    locator: Any
+    # The edges that nothing crosses, (m, 3).
+    barrier: Bools | None = None
+    # The row of the mesh for each row; None if they are the same.
+    source: Indices | None = None
 
 
 class Interpolator:
@@ -452,9 +472,7 @@ class Interpolator:
 
     def _interpolated(self, queries: Floats, columns: Floats) -> Floats:
         found = self._derived(queries, columns, 0)
-        if self._extrapolate == "nan":
-            return found
-        rows, place = self._outside(queries, found)
+        rows, place, _ = self._left(queries, found)
         if rows.size:
             terms = self._terms_beyond(queries[rows], place)
             found[rows] = summed(terms, columns, self.gradients(columns))
@@ -462,38 +480,67 @@ class Interpolator:
 
     def _sloped(self, queries: Floats, columns: Floats) -> Floats:
         found = self._derived(queries, columns, 1)
-        if self._extrapolate in ("linear", "raise"):
-            rows, place = self._outside(queries, found[..., 0])
-            for axis, step in enumerate(np.eye(self._ndim)) if rows.size else ():
-                terms = self._terms(place, np.tile(step, (len(rows), 1)), False)
-                found[rows, :, axis] = summed(terms, columns, self.gradients(columns))
+        rows, place, within = self._left(queries, found[..., 0])
+        if self._extrapolate != "linear":
+            inside = np.flatnonzero(within)
+            self._fill_beside(found, columns, 1, rows[inside], place.at(inside))
+            return found
+        for axis, step in enumerate(np.eye(self._ndim)) if rows.size else ():
+            terms = self._terms(place, np.tile(step, (len(rows), 1)), False)
+            found[rows, :, axis] = summed(terms, columns, self.gradients(columns))
         return found
 
+    def _fill_beside(
+        self, found: Floats, columns: Floats, order: int, rows: Rows, place: Location
+    ) -> None:
+        """Set derivatives in slivers at the hull to those just behind, in the triangle beside."""
+        if rows.size:
+            sheet = self._sheet
+            middle = (sheet.points[sheet.simplices[place.beside]] / 3).sum(axis=1)
+            way = middle - place.nearest
+            # Far enough that rounding does not bring it back.
+            unit = np.spacing(np.abs(middle).max(axis=1)) / np.abs(way).max(axis=1)
+            share = np.clip(_CLEAR * unit, _BEHIND, 0.5)
+            behind = place.nearest + share[:, None] * way
+            found[rows] = self._derived(behind, columns, order)
+
     def _completed(self, table: Table, queries: Floats, known: Floats) -> Table:
-        """The table of queries inside, extended by the terms of those outside if asked for."""
-        if self._extrapolate == "nan":
-            return table
-        rows, place = self._outside(queries, known)
-        return joined(table, rows, self._terms_beyond(queries[rows], place))
+        """The table of queries inside, extended by the terms of the others that have some."""
+        rows, place, _ = self._left(queries, known)
+        return joined(table, rows, self._terms_beyond(queries[rows], place)) if rows.size else table
 
     def _terms_beyond(self, queries: Floats, place: Any) -> Terms:
         step = queries - place.nearest
-        if self._extrapolate == "nearest":
+        if self._extrapolate != "linear":
             step = np.zeros_like(step)
         return self._terms(place, step, True)
 
-    def _outside(self, queries: Floats, found: Floats | None) -> tuple[Rows, Any]:
-        """The finite queries outside the hull; raises if that is the policy."""
+    def _left(
+        self, queries: Floats, found: Floats | None, *, refuses: bool = True
+    ) -> tuple[Rows, Location, Bools]:
+        """The finite queries in no triangle of the sheet that have values, with their places.
+
+        Those inside the hull, in slivers, are marked; those outside are left out if they have no
+        value, and raise if that is the policy and `refuses`.
+        """
         suspects = np.arange(len(queries))
         if found is not None and found.shape[1]:
             suspects = np.flatnonzero(np.isnan(found[:, 0]))
+        if self._extrapolate == "nan" and not self._skipped().any():
+            suspects = suspects[:0]
         place = self._located(queries[suspects])
-        if self._extrapolate == "raise":
+        within = np.zeros(len(suspects), dtype=bool)
+        if self._skipped().any():
+            within = (place.simplex < 0) & (self._mesh.find_simplex(queries[suspects]) >= 0)
+        if self._extrapolate == "raise" and refuses:
             # Not by `beside`, which is -1 for infinite queries and for meshes without triangles.
-            missed = (place.simplex < 0) & ~np.isnan(queries[suspects]).any(axis=1)
+            missed = (place.simplex < 0) & ~within & ~np.isnan(queries[suspects]).any(axis=1)
             self._refuse(suspects[missed], len(queries))
-        outside = np.flatnonzero(place.beside >= 0)
-        return suspects[outside], place.at(outside)
+        taken = place.beside >= 0
+        if self._extrapolate == "nan":
+            taken &= within
+        rows = np.flatnonzero(taken)
+        return suspects[rows], place.at(rows), within[rows]
 
     def _refuse(self, rows: Rows, count: int) -> None:
         if not rows.size:
@@ -509,10 +556,53 @@ class Interpolator:
         )
 
     def _located(self, queries: Floats) -> Location:
-        """Locate queries."""
-        mesh = self._mesh
-        index = mesh._locator
-        return location.locate(mesh._dimension, index, mesh.points, queries, self._workers)
+        """Locate queries in the triangles that are evaluated."""
+        sheet, dimension = self._sheet, self._mesh._dimension
+        return location.locate(dimension, sheet.locator, sheet.points, queries, self._workers)
+
+    @property
+    def _sheet(self) -> Sheet:
+        if "sheet" not in self._cache:
+            self._cache["sheet"] = self._laid_out()
+        sheet: Sheet = self._cache["sheet"]
+        return sheet
+
+    def _laid_out(self) -> Sheet:
+        mesh, skipped = self._mesh, self._skipped()
+        if not skipped.any():
+            return Sheet(mesh.points, mesh.simplices, mesh.neighbors, mesh._locator)
+        left = slivers.without(mesh.simplices, mesh.neighbors, skipped)
+        return Sheet(mesh.points, *left, mesh._dimension.locator(mesh.points, *left))
+
+    def _skipped(self) -> Bools:
+        """The slivers at the hull, which are not evaluated, or an empty mask.
+
+        Their sides skip sites that lie on a straight side of the hull up to rounding.
+        """
+        if "skipped" not in self._cache:
+            mesh = self._mesh
+            self._cache["skipped"] = (
+                slivers.at_outline(mesh.points, mesh.simplices, mesh.neighbors)
+                if self._ndim == len("xy")
+                else np.zeros(0, dtype=bool)
+            )
+        skipped: Bools = self._cache["skipped"]
+        return skipped
+
+    def _around(self) -> tuple[Indices, Indices]:
+        """Return neighbors of the rows of the sheet, as compressed rows (indptr, indices)."""
+        mesh, sheet = self._mesh, self._sheet
+        if sheet.simplices is mesh.simplices:
+            return mesh.vertex_neighbor_vertices
+        if "around" not in self._cache:
+            edges = (
+                topology.edges(sheet.simplices, sheet.neighbors, mesh.npoints, self._workers)
+                if sheet.source is None
+                else _sides(sheet.simplices)
+            )
+            self._cache["around"] = topology.vertex_neighbor_vertices(edges, len(sheet.points))
+        around: tuple[Indices, Indices] = self._cache["around"]
+        return around
 
     def field_of(self, values: ArrayLike | None) -> Field:
         """Return the values as a field, by default those of the constructor.
@@ -682,3 +772,10 @@ def shaped_derivatives(derivatives: Floats, field: Field, leading: tuple[int, ..
     if field.is_complex:
         found = found[:, 0::2] + 1j * found[:, 1::2]
     return found.reshape(leading + field.trailing + derivatives.shape[2:])
+
+
+def _sides(simplices: Indices) -> Indices:
+    """Each side of triangles that are cut along constraints, ascending, from the smaller vertex."""
+    pairs = np.sort(simplices[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    sides: Indices = np.unique(pairs, axis=0)
+    return sides

@@ -93,7 +93,7 @@ class Linear(Interpolator):
     def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
         if self._ndim == SPACE:
             return self._in_space(queries, columns, order)
-        found: Floats = self._mesh._locator.linear(
+        found: Floats = self._sheet.locator.linear(
             columns, queries, order, as_workers(self._workers)
         )
         return found
@@ -125,12 +125,11 @@ class Linear(Interpolator):
         mesh = self._mesh
         if self._ndim == SPACE:
             return hull_gradients(mesh, columns, as_workers(self._workers))
-        around = mesh.vertex_neighbor_vertices
-        return plane_gradients(mesh.points, around, columns, as_workers(self._workers))
+        return plane_gradients(mesh.points, self._around(), columns, as_workers(self._workers))
 
     def _table(self, queries: Floats, shape: tuple[int, ...]) -> Weights:
         place = self._located(queries)
-        weights, simplices = place.barycentric, self._mesh.simplices
+        weights, simplices = place.barycentric, self._sheet.simplices
         # Without triangles there is no row to use for queries outside.
         corners = (
             simplices[place.simplex] if len(simplices) else np.full(weights.shape, -1, np.int32)

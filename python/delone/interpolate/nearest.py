@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from delone.periodic import PeriodicDelaunay
     from delone.triangulation import Triangulation
 
+    Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
@@ -91,6 +92,9 @@ class Nearest(Interpolator):
             planar=planar,
         )
 
+    def _skipped(self) -> Bools:
+        return np.zeros(0, dtype=bool)  # no value depends on a triangle
+
     def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
         rows = self._rows(queries)
         known = rows >= 0
@@ -121,7 +125,7 @@ class Nearest(Interpolator):
             return rows
         place = self._located(queries)
         if self._extrapolate == "raise":
-            self._outside(queries, None)
+            self._left(queries, None)
         return np.where(place.simplex >= 0, rows, np.int32(-1))
 
     def _seen(self, queries: Floats) -> Indices:
@@ -139,7 +143,7 @@ class Nearest(Interpolator):
             order = np.lexsort((rows, distance, owner))
             found[some] = rows[order[indptr[some]]]
         if self._extrapolate != "nan":
-            outside, place = self._outside(queries, None)
+            outside, place, _ = self._left(queries, None)
             end = np.where(place.weights[:, 1] <= 0.5, *place.facet.T)
             found[outside] = end
         return found

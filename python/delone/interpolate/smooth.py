@@ -8,24 +8,22 @@ that sector. Only the values on a constraint then affect both of its sides.
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import _core, location
+from delone import _core
 from delone._arrays import as_limit, as_number, as_workers
 from delone.errors import InputError
-from delone.interpolate.base import Interpolator, shaped_derivatives
+from delone.interpolate.base import Interpolator, Sheet, shaped_derivatives
 from delone.interpolate.hull import Terms, edge_terms
 from delone.interpolate.space import SPACE, refuse
 from delone.interpolate.values import chosen
-from delone.plane import topology
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone.interpolate.values import Field
-    from delone.location import Location
     from delone.periodic import PeriodicDelaunay
     from delone.triangulation import Triangulation
 
@@ -42,18 +40,6 @@ _DEGREES = {"local": 2, "plane": 1}
 
 class GradientWarning(UserWarning):
     """The estimation of gradients stopped before it converged: `max_iter` was reached."""
-
-
-class Sheet(NamedTuple):
-    """Triangles as they are evaluated: cut along constraints if these are respected."""
-
-    points: Floats
-    simplices: Indices
-    locator: Any
-    # The edges that nothing crosses, (m, 3).
-    barrier: Bools | None
-    # The row of the mesh for each row; None if they are the same.
-    source: Indices | None
 
 
 class Smooth(Interpolator):
@@ -111,6 +97,10 @@ class Smooth(Interpolator):
         interpolator, field, columns = self._with(values)
         queries, shape = interpolator._queries(xi)
         found = interpolator._derived(queries, columns, 2)
+        if interpolator._skipped().any():
+            rows, place, within = interpolator._left(queries, found[..., 0], refuses=False)
+            inside = np.flatnonzero(within)
+            interpolator._fill_beside(found, columns, 2, rows[inside], place.at(inside))
         full = shaped_derivatives(found[..., [0, 1, 1, 2]], field, shape)
         return full.reshape((*full.shape[:-1], 2, 2))
 
@@ -196,40 +186,18 @@ class Smooth(Interpolator):
         source = self._sheet.source
         return super()._spoken_of() if source is None else source
 
-    @property
-    def _sheet(self) -> Sheet:
-        if "sheet" not in self._cache:
-            self._cache["sheet"] = self._laid_out()
-        sheet: Sheet = self._cache["sheet"]
-        return sheet
-
     def _laid_out(self) -> Sheet:
-        mesh = self._mesh
+        sheet, mesh = super()._laid_out(), self._mesh
         if not (self._respect_constraints and self._constrained):
-            return Sheet(mesh.points, mesh.simplices, mesh._locator, None, None)
-        barrier: Bools = np.ascontiguousarray(mesh.constrained)  # type: ignore[attr-defined]
-        simplices, source = cut(mesh.simplices, mesh.neighbors, barrier, mesh.npoints)
+            return sheet
+        barrier: Bools = mesh.constrained  # type: ignore[attr-defined]
+        if len(sheet.simplices) < mesh.nsimplex:
+            barrier = barrier[~self._skipped()]
+        barrier = np.ascontiguousarray(barrier)
+        simplices, source = cut(sheet.simplices, sheet.neighbors, barrier, mesh.npoints)
         points = mesh.points[source]
-        index = mesh._dimension.locator(points, simplices, mesh.neighbors)
-        return Sheet(points, simplices, index, barrier, source)
-
-    def _around(self) -> tuple[Indices, Indices]:
-        """Neighbors of the rows of the sheet, as compressed rows (indptr, indices)."""
-        sheet = self._sheet
-        if sheet.source is None:
-            return self._mesh.vertex_neighbor_vertices
-        if "around" not in self._cache:
-            self._cache["around"] = topology.vertex_neighbor_vertices(
-                _sides(sheet.simplices), len(sheet.points)
-            )
-        around: tuple[Indices, Indices] = self._cache["around"]
-        return around
-
-    def _located(self, queries: Floats) -> Location:
-        if self._ndim == SPACE:
-            return super()._located(queries)
-        sheet, dimension = self._sheet, self._mesh._dimension
-        return location.locate(dimension, sheet.locator, sheet.points, queries, self._workers)
+        index = mesh._dimension.locator(points, simplices, sheet.neighbors)
+        return Sheet(points, simplices, sheet.neighbors, index, barrier, source)
 
     def _terms(self, place: Any, step: Floats, base: bool) -> Terms:
         return edge_terms(self._sheet.points, place, step, cubic=True, base=base)
@@ -278,10 +246,3 @@ def _joined(pairs: NDArray[np.int64], count: int) -> NDArray[np.int64]:
         label = label[label]
         if np.array_equal(label, before):
             return label
-
-
-def _sides(simplices: Indices) -> Indices:
-    """Each side of the triangles once, the smaller vertex first, rows ascending."""
-    pairs = np.sort(simplices[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    sides: Indices = np.unique(pairs, axis=0)
-    return sides

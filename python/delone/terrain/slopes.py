@@ -9,6 +9,7 @@ import numpy as np
 from delone._arrays import as_callback, as_choice, as_number
 from delone.errors import InputError
 from delone.interpolate.raster import Grid, raster_nodes, require_memory
+from delone.plane import geometry
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,14 +28,21 @@ _BLOCK = 1 << 18
 
 
 def gradient(points: Floats, z: Floats, simplices: Indices) -> Floats:
-    """Return the gradients of the planes of triangles, (m, 2)."""
+    """Return the gradients of the planes of triangles, (m, 2).
+
+    Areas are those of the corners as they are, also in triangles that are thinner than rounding.
+    """
+    # Units of the largest coordinate, without rounding: no product leaves the range of doubles.
+    exponent = int(np.frexp(np.abs(points).max(initial=0.0))[1])
+    points = np.ldexp(points, -exponent)
     a, b, c = (points[corner] for corner in simplices.T)
     low, mid, high = (z[corner] for corner in simplices.T)
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
     du, dv = mid - low, high - low
-    twice = ux * vy - uy * vx
-    with np.errstate(divide="ignore", invalid="ignore"):
+    twice = 2 * geometry.areas(points, simplices)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         found: Floats = np.column_stack((du * vy - dv * uy, dv * ux - du * vx)) / twice[:, None]
+        found = np.ldexp(found, -exponent)
     # Level triangles stay level, however thin.
     found[(du == 0) & (dv == 0)] = 0.0
     return found
@@ -43,6 +51,11 @@ def gradient(points: Floats, z: Floats, simplices: Indices) -> Floats:
 def normals(slopes: Floats) -> Floats:
     """Return the upward unit normals of planes with these gradients."""
     found = np.column_stack((-slopes, np.ones(len(slopes))))
+    # An infinite slope is upright; squares of others must not overflow.
+    upright = np.isinf(found).any(axis=1)
+    found[upright] = np.where(np.isinf(found[upright]), np.sign(found[upright]), 0.0)
+    largest = np.abs(found).max(axis=1, initial=0.0, keepdims=True)
+    found = np.ldexp(found, -np.frexp(largest)[1])
     shares: Floats = found / np.linalg.norm(found, axis=1, keepdims=True)
     return shares
 
@@ -75,7 +88,10 @@ def hillshade(slopes: Floats, azimuth: float, altitude: float, z_factor: float) 
     light = np.array(
         (np.cos(above) * np.sin(around), np.cos(above) * np.cos(around), np.sin(above))
     )
-    found: Floats = np.clip(normals(slopes * numbers["z_factor"]) @ light, 0.0, 1.0)
+    factor = numbers["z_factor"]
+    with np.errstate(over="ignore"):
+        steeper = slopes * factor if factor else np.zeros_like(slopes)
+    found: Floats = np.clip(normals(steeper) @ light, 0.0, 1.0)
     return found
 
 

@@ -92,26 +92,33 @@ fn exact(corners: [Point2; 3], on: [bool; 3], q: Point2) -> [f64; 3] {
 /// The weights on the edge that contains the point; in a degenerate triangle, on the longest edge.
 #[cold]
 fn along_edge(corners: [Point2; 3], on: [bool; 3], q: Point2) -> [f64; 3] {
-    let (mut relative, _) = seen_from(q, corners);
-    let length = |k: usize| {
-        let (u, v) = (relative[next(k)], relative[prev(k)]);
-        (v[0] - u[0]).hypot(v[1] - u[1])
-    };
-    let mut k = 0;
-    for i in 1..3 {
-        if length(i) > length(k) {
-            k = i;
-        }
-    }
-    // The edge may be so short that it needs a unit of its own.
-    if let Some(edge) = (0..3).find(|&i| on[i]) {
-        k = edge;
-        let (ends, _) = seen_from(q, [corners[next(k)], corners[prev(k)]]);
-        [relative[next(k)], relative[prev(k)]] = ends;
-    }
-    let [du, dv] = [next(k), prev(k)].map(|i| relative[i][0].hypot(relative[i][1]));
+    let k = (0..3)
+        .find(|&i| on[i])
+        .unwrap_or_else(|| opposite_longest(corners, q));
+    let [du, dv] = distances(corners[next(k)], corners[prev(k)], q);
     let mut weights = [0.0; 3];
     weights[next(k)] = if du + dv > 0.0 { dv / (du + dv) } else { 1.0 };
     weights[prev(k)] = 1.0 - weights[next(k)];
     weights
+}
+
+fn opposite_longest(corners: [Point2; 3], q: Point2) -> usize {
+    let (relative, _) = seen_from(q, corners);
+    let length = |k: usize| {
+        let (u, v) = (relative[next(k)], relative[prev(k)]);
+        (v[0] - u[0]).hypot(v[1] - u[1])
+    };
+    let longer = |k: usize, i: usize| if length(i) > length(k) { i } else { k };
+    longer(longer(0, 1), 2)
+}
+
+/// The distances of `q` from two points with which it is collinear, up to a common factor: along the
+/// axis on which these are further apart. The other axis may be larger by all powers of two that
+/// there are, and a common unit would make these distances zero.
+fn distances(u: Point2, v: Point2, q: Point2) -> [f64; 2] {
+    let apart = [0, 1].map(|axis| (u[axis] - v[axis]).abs());
+    let axis = usize::from(apart[1] > apart[0]);
+    // Differences of small numbers are exact, those of large ones must not overflow.
+    let unit = if apart[axis] < 1e300 { 1.0 } else { 0.125 };
+    [u, v].map(|end| (q[axis] * unit - end[axis] * unit).abs())
 }
