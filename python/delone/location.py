@@ -6,6 +6,7 @@ to a point outside. Weights and points of the boundary are rounded.
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass, fields
 from fractions import Fraction
@@ -24,10 +25,14 @@ if TYPE_CHECKING:
 
     from delone.dimension import Dimension, Locator
 
+    Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
 __all__ = ["Location"]
+
+# The share of the extent of a facet by which a rounded distance to it may be off, with a margin.
+_DOUBT = 2.0**-30
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,32 +149,80 @@ def locate(
     )
 
 
-def find_near(
+def locate_near(
     dimension: Dimension,
     index: Any,
     points: Floats,
+    simplices: Indices,
     xi: ArrayLike,
     *,
     tolerance: float,
     workers: int | None,
-) -> Indices:
-    """Return the simplices that contain points, or those at most `tolerance` away, exactly.
+) -> Location:
+    """Locate points; outside at most `tolerance` away, at the nearest point of the boundary."""
+    limit = as_tolerance(tolerance)
+    place = locate(dimension, index, points, xi, workers)
+    if not limit:
+        return place
+    flat = as_vectors(xi, dimension.ndim, name="xi").reshape(-1, dimension.ndim)
+    d, leading = dimension.ndim, place.simplex.shape
+    beside, facet = place.beside.reshape(-1), place.facet.reshape(-1, d)
+    outside = np.flatnonzero(beside >= 0)
+    rows = outside[
+        _are_near(
+            points, facet[outside], place.nearest.reshape(-1, d)[outside], flat[outside], limit
+        )
+    ]
+    simplex, barycentric = place.simplex.reshape(-1), place.barycentric.reshape(-1, d + 1)
+    shares = place.weights.reshape(-1, d)
+    simplex[rows] = beside[rows]
+    # The weights of the corners of the facet; that of the corner opposite is zero.
+    corners = simplices[simplex[rows]]
+    barycentric[rows] = 0.0
+    for k in range(d):
+        at = corners == facet[rows, k, None]
+        barycentric[rows] += np.where(at, shares[rows, k, None], 0.0)
+    beside[rows], facet[rows], shares[rows] = -1, -1, np.nan
+    return Location(
+        simplex.reshape(leading),
+        barycentric.reshape((*leading, d + 1)),
+        place.nearest,
+        beside.reshape(leading),
+        facet.reshape((*leading, d)),
+        shares.reshape((*leading, d)),
+    )
 
-    Of points outside, that is the simplex at the nearest point of the boundary.
-    """
+
+def as_tolerance(tolerance: float) -> float:
+    """Check a distance beyond the boundary that counts as inside."""
     limit = as_number(tolerance, name="tolerance")
     if not limit >= 0:
         raise InputError(f"tolerance must be a number of at least 0, got {tolerance!r:.60}")
-    place = locate(dimension, index, points, xi, workers)
-    flat = as_vectors(xi, dimension.ndim, name="xi").reshape(-1, dimension.ndim)
-    found = place.simplex.reshape(-1).copy()
-    beside, facet = place.beside.reshape(-1), place.facet.reshape(-1, dimension.ndim)
-    for row in np.flatnonzero(beside >= 0).tolist():
-        corners = [_exact(each) for each in points[facet[row]]]
-        query = _exact(flat[row])
-        if math.isinf(limit) or _squared_distance(query, corners) <= Fraction(limit) ** 2:
-            found[row] = beside[row]
-    return found.reshape(place.simplex.shape)
+    return limit
+
+
+def _are_near(
+    points: Floats, facet: Indices, nearest: Floats, queries: Floats, limit: float
+) -> Bools:
+    """Return which queries are at most `limit` away from facets of the boundary, exactly.
+
+    `nearest` are points of the facets, rounded.
+    """
+    if math.isinf(limit):
+        return np.ones(len(queries), dtype=bool)
+    corners = points[facet]
+    with np.errstate(over="ignore", invalid="ignore"):
+        distance = functools.reduce(np.hypot, (queries - nearest).T)
+        largest = np.maximum(np.abs(corners).max(axis=(1, 2), initial=0.0), np.abs(queries).max(1))
+        extent = np.ptp(corners, axis=1).max(axis=1, initial=0.0)
+        # Weights are right to 1e-12 and coordinates to a few roundings: both with a wide margin.
+        error = _DOUBT * extent + 64 * np.spacing(largest)
+        found: Bools = distance + error <= limit
+        doubtful = ~found & ~(distance - error > limit)
+    for row in np.flatnonzero(doubtful).tolist():
+        exact = [_exact(each) for each in corners[row]]
+        found[row] = _squared_distance(_exact(queries[row]), exact) <= Fraction(limit) ** 2
+    return found
 
 
 def _exact(point: Floats) -> list[Fraction]:

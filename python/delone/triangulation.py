@@ -239,7 +239,7 @@ class Triangulation(Complex):
             Points outside at most this far away, in the unit of the points, are in the simplex at
             the nearest point of the boundary, such as points that lie on a side but for rounding.
             By default 0. The distance is compared exactly, which takes some 20 microseconds for
-            each point outside.
+            each point about this far away.
 
         Returns
         -------
@@ -282,8 +282,7 @@ class Triangulation(Complex):
         (array(-1, dtype=int32), array(0, dtype=int32))
         """
         if tolerance != 0:
-            own = self._dimension, self._locator, self._points
-            return location.find_near(*own, xi, tolerance=tolerance, workers=self._workers)
+            return self.locate(xi, tolerance=tolerance).simplex
         return location.find(self._dimension, self._locator, xi, self._workers)
 
     def nearest(self, xi: ArrayLike) -> Indices:
@@ -320,13 +319,17 @@ class Triangulation(Complex):
         """
         return location.nearest(self._dimension, self._sites, xi, self._workers)
 
-    def locate(self, xi: ArrayLike) -> location.Location:
+    def locate(self, xi: ArrayLike, *, tolerance: float = 0.0) -> location.Location:
         """Locate points: simplices, barycentric weights, nearest points of the boundary.
 
         Parameters
         ----------
         xi : array_like, shape (..., d)
             Points to locate.
+        tolerance : float, optional
+            Points outside at most this far away, in the unit of the points, are inside, at the
+            nearest point of the boundary, such as points that lie on a side but for rounding. By
+            default 0. The distance is compared exactly.
 
         Returns
         -------
@@ -337,6 +340,8 @@ class Triangulation(Complex):
         ------
         ShapeError, DtypeError
             `xi` is not a real array of shape (..., d).
+        InputError
+            `tolerance` is negative or NaN.
 
         Notes
         -----
@@ -358,8 +363,18 @@ class Triangulation(Complex):
         >>> place.nearest
         array([[1., 2.],
                [2., 2.]])
+        >>> mesh.locate((3, 3), tolerance=1.5).barycentric @ mesh.points[mesh.simplices[0]]
+        array([2., 2.])
         """
-        return location.locate(self._dimension, self._locator, self._points, xi, self._workers)
+        return location.locate_near(
+            self._dimension,
+            self._locator,
+            self._points,
+            self._simplices,
+            xi,
+            tolerance=tolerance,
+            workers=self._workers,
+        )
 
     @only(2, "locate points of the segment with `find_simplex`")
     def walk(self, a: ArrayLike, b: ArrayLike) -> Indices:

@@ -76,6 +76,17 @@ def test_cells_far_from_all_points_have_no_value(tmp_path, soundings, figures, c
     assert code == 2 and "max_distance must be at least 0" in err
 
 
+def test_cells_that_are_outside_by_less_than_a_tolerance_have_values(tmp_path, figures, command):
+    corners = tmp_path / "corners.csv"
+    corners.write_text("x,y,z\n0,0,1\n4,0,1\n0,4,1\n")
+    where = ("interpolate", corners, "--method", "linear", "--grid", "4x4")
+    assert figures(*where)["without_value"] == 6
+    # The centers beyond the slanted side are .71, 1.4 and 2.1 away from it.
+    assert figures(*where, "--tolerance", "1.5")["without_value"] == 1
+    code, _, err = command(*where, "--tolerance", "-1")
+    assert code == 2 and "tolerance must be a number of at least 0" in err
+
+
 def test_crossval(soundings, figures, command):
     found = figures("crossval", soundings, "--method", "nearest,sibson,farin")
     assert list(found["methods"]) == ["nearest", "sibson", "farin"]

@@ -162,6 +162,18 @@ def test_gradients_of_any_size_have_normals(unit):
     assert tin.normals == pytest.approx(expected, rel=1e-12, abs=0)
 
 
+def test_positions_on_a_slanted_side_have_heights():
+    tin = TIN.from_points([(0, 0, 0), (3, 1, 3), (1, 3, 1)])
+    side = np.linspace(0, 1, 31)[:, None] * (3, 1)
+    assert np.isnan(tin.heights(side)).any()
+    assert tin.heights(side, tolerance=1e-15) == pytest.approx(side[:, 0])
+    options = {"x": np.linspace(0, 3, 31), "y": np.linspace(0, 1, 31), "tolerance": 1e-15}
+    assert np.diagonal(tin.raster(**options).values) == pytest.approx(side[:, 0])
+    assert np.diagonal(tin.raster("slope", **options).values) == pytest.approx(45)
+    with pytest.raises(InputError, match="tolerance must be a number of at least 0"):
+        tin.raster(tolerance=-1, resolution=1)
+
+
 def test_rasters_sample_the_surface():
     tin = random_tin()
     for what in ("height", "slope", "aspect", "hillshade"):

@@ -81,6 +81,10 @@ def interpolate(
     extrapolate: Annotated[
         str, typer.Option(help="Outside the hull: nan, nearest or linear.")
     ] = "nan",
+    tolerance: Annotated[
+        float,
+        typer.Option(help="Nodes at most this far outside the hull are inside."),
+    ] = 0.0,
     max_distance: Annotated[
         float | None,
         typer.Option(help="No value farther than this from the nearest point."),
@@ -113,9 +117,10 @@ def interpolate(
             survey, crs, planar=planar, quiet=quiet, outputs=writers, known=WITH_CRS
         )
         say(f"triangulating {len(survey):,} points")
-        options = {"extrapolate": extrapolate, "duplicates": duplicates, "nan": nan}
+        options: dict[str, Any] = {"extrapolate": extrapolate, "tolerance": tolerance}
+        options |= {"duplicates": duplicates, "nan": nan, "workers": workers}
         with watch.stage("triangulate"):
-            made = _made(method, survey, values, gradients, options | {"workers": workers})
+            made = _made(method, survey, values, gradients, options)
         with watch.stage("interpolate"):
             found = grid(
                 made, **where, max_distance=max_distance, progress=_told(say, "interpolating")

@@ -8,10 +8,10 @@ import numpy as np
 
 from delone import _core, location
 from delone._arrays import as_choice, as_points, as_vectors, as_workers
-from delone.complex import Stored
 from delone.constrained import ConstrainedDelaunay
 from delone.counting import counted
 from delone.delaunay import Delaunay
+from delone.dynamic.given import as_ndim, given_points, own_points
 from delone.dynamic.results import Changes, Snapshot
 from delone.dynamic.segments import (
     FEW,
@@ -160,10 +160,10 @@ class Dynamic(Segmented):
         workers: int | None = None,
         planar: bool = False,
     ) -> None:
-        dimension = _as_ndim(ndim)
+        dimension = as_ndim(ndim)
         if points is None:
             points = np.empty((0, dimension or 2))
-        given = _given_points(points)
+        given = given_points(points)
         if isinstance(points, ConstrainedDelaunay):
             given = points.points[: points.npoints - points.nadded]
             segments = points.input_segments if segments is None else segments
@@ -355,7 +355,7 @@ class Dynamic(Segmented):
         >>> live.points[0]
         array([1., 1.])
         """
-        own, places = as_handles(handles), _own(points, self.ndim)
+        own, places = as_handles(handles), own_points(points, self.ndim)
         try:
             self._edited(self._live.relocate, own, places, self._threads(own))
         except ShapeError:
@@ -574,18 +574,25 @@ class Dynamic(Segmented):
 
     # Queries.
 
-    def find_simplex(self, xi: ArrayLike) -> Indices:
+    def find_simplex(self, xi: ArrayLike, *, tolerance: float = 0.0) -> Indices:
         """Find the simplices that contain points.
 
         Parameters
         ----------
         xi : array_like, shape (..., d)
             Points to locate. NaN and infinity are outside.
+        tolerance : float, optional
+            Points outside at most this far away are inside; as in `Delaunay.find_simplex`.
 
         Returns
         -------
         ndarray of int32, shape (...)
             Rows of `simplices`, the first one if there are several; -1 outside.
+
+        Raises
+        ------
+        InputError
+            `tolerance` is negative or NaN.
 
         Notes
         -----
@@ -600,15 +607,19 @@ class Dynamic(Segmented):
         queries = as_vectors(xi, self.ndim, name="xi")
         if self.nsimplex == 0:
             return np.full(queries.shape[:-1], -1, dtype=np.int32)
+        if tolerance != 0:
+            return self.locate(queries, tolerance=tolerance).simplex
         return location.find(_dimension(self.ndim), self._locator()[1], queries, self._workers)
 
-    def locate(self, xi: ArrayLike) -> Location:
+    def locate(self, xi: ArrayLike, *, tolerance: float = 0.0) -> Location:
         """Locate points: simplices, barycentric weights, nearest points of the boundary.
 
         Parameters
         ----------
         xi : array_like, shape (..., d)
             Points to locate.
+        tolerance : float, optional
+            Points outside at most this far away are inside; as in `Delaunay.locate`.
 
         Returns
         -------
@@ -619,6 +630,8 @@ class Dynamic(Segmented):
         ------
         DegenerateInputError
             There is no simplex.
+        InputError
+            `tolerance` is negative or NaN.
 
         Examples
         --------
@@ -627,7 +640,15 @@ class Dynamic(Segmented):
         np.float64(0.5)
         """
         made, index = self._locator()
-        return location.locate(_dimension(self.ndim), index, made.points, xi, self._workers)
+        return location.locate_near(
+            _dimension(self.ndim),
+            index,
+            made.points,
+            made.simplices,
+            xi,
+            tolerance=tolerance,
+            workers=self._workers,
+        )
 
     def _locator(self) -> tuple[_core.LiveArrays2 | _core.LiveArrays3, Locator]:
         """Return the present arrays, and what finds simplices in them."""
@@ -769,29 +790,3 @@ def _restore(core: _core.Live2 | _core.Live3, state: _core.LiveState2 | _core.Li
         return core.restore(state)
     own, other = (2, 3) if isinstance(core, _core.Live2) else (3, 2)
     raise DtypeError(f"a {other}-D snapshot cannot be restored to a {own}-D triangulation")
-
-
-def _given_points(points: Any) -> Any:
-    """The points of what is taken whole; others are refused by name."""
-    if not isinstance(points, Stored):
-        return points
-    if isinstance(points, Delaunay | ConstrainedDelaunay):
-        return points.points
-    name = type(points).__name__
-    raise InputError(
-        f"Dynamic takes points, a Delaunay or a ConstrainedDelaunay, not a {name}, of which the "
-        "points alone would be left: pass its points, and its segments if it has some"
-    )
-
-
-def _as_ndim(ndim: int | None) -> int | None:
-    """Return a number of coordinates, checked."""
-    if ndim not in (None, 2, 3):
-        raise ShapeError(f"ndim must be 2 or 3, got {ndim!r:.80}")
-    return ndim
-
-
-def _own(points: ArrayLike, ndim: int) -> Floats:
-    """Return points that nobody changes while the core runs."""
-    array = as_points(points, ndim=ndim)
-    return array if len(array) <= FEW else own_copy(points, ndim=ndim)

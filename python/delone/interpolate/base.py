@@ -86,7 +86,7 @@ class Interpolator:
         makes the interpolant periodic.
     values : array_like, shape (n,) or (n, ...), optional
         Values at the sites.
-    extrapolate, duplicates, nan, respect_constraints, workers, planar
+    extrapolate, tolerance, duplicates, nan, respect_constraints, workers, planar
         As in `Linear`.
 
     Examples
@@ -104,6 +104,7 @@ class Interpolator:
         values: ArrayLike | None = None,
         *,
         extrapolate: str = "nan",
+        tolerance: float = 0.0,
         duplicates: str = "raise",
         nan: str = "raise",
         respect_constraints: bool = False,
@@ -111,6 +112,7 @@ class Interpolator:
         planar: bool = False,
     ) -> None:
         self._extrapolate = chosen("extrapolate", extrapolate, self.EXTRAPOLATE)
+        self._tolerance = location.as_tolerance(tolerance)
         self._duplicates = chosen("duplicates", duplicates, DUPLICATES)
         self._nan = chosen("nan", nan, NAN)
         self._workers = workers
@@ -493,10 +495,11 @@ class Interpolator:
     def _fill_beside(
         self, found: Floats, columns: Floats, order: int, rows: Rows, place: Location
     ) -> None:
-        """Set derivatives in slivers at the hull to those just behind, in the triangle beside."""
+        """Set derivatives beside the sheet to those just behind its side, in the simplex beside."""
         if rows.size:
             sheet = self._sheet
-            middle = (sheet.points[sheet.simplices[place.beside]] / 3).sum(axis=1)
+            corners = sheet.points[sheet.simplices[place.beside]]
+            middle = (corners / corners.shape[1]).sum(axis=1)
             way = middle - place.nearest
             # Far enough that rounding does not bring it back.
             unit = np.spacing(np.abs(middle).max(axis=1)) / np.abs(way).max(axis=1)
@@ -520,18 +523,20 @@ class Interpolator:
     ) -> tuple[Rows, Location, Bools]:
         """The finite queries in no triangle of the sheet that have values, with their places.
 
-        Those inside the hull, in slivers, are marked; those outside are left out if they have no
-        value, and raise if that is the policy and `refuses`.
+        Those inside the hull, in slivers or by `tolerance`, are marked; those outside are left out
+        if they have no value, and raise if that is the policy and `refuses`.
         """
         suspects = np.arange(len(queries))
         if found is not None and found.shape[1]:
             suspects = np.flatnonzero(np.isnan(found[:, 0]))
-        if self._extrapolate == "nan" and not self._skipped().any():
+        exact = not (self._tolerance or self._skipped().any())
+        if self._extrapolate == "nan" and exact:
             suspects = suspects[:0]
         place = self._located(queries[suspects])
         within = np.zeros(len(suspects), dtype=bool)
-        if self._skipped().any():
-            within = (place.simplex < 0) & (self._mesh.find_simplex(queries[suspects]) >= 0)
+        if not exact:
+            found_in = self._mesh.find_simplex(queries[suspects], tolerance=self._tolerance)
+            within = (place.simplex < 0) & (found_in >= 0)
         if self._extrapolate == "raise" and refuses:
             # Not by `beside`, which is -1 for infinite queries and for meshes without triangles.
             missed = (place.simplex < 0) & ~within & ~np.isnan(queries[suspects]).any(axis=1)

@@ -54,6 +54,8 @@ class CloughTocher(Smooth):
     extrapolate : {"nan", "nearest", "linear", "raise"}, optional
         Behavior outside the hull: NaN; the value at the nearest point of the hull; linear
         extrapolation from there with the gradients of its sites; an error.
+    tolerance : float, optional
+        Queries outside at most this far from the hull are inside; as in `Linear`.
     duplicates, nan : str, optional
         As in `Linear`.
     respect_constraints : bool, optional
@@ -104,6 +106,7 @@ class CloughTocher(Smooth):
         tol: float = 1e-6,
         max_iter: int = 400,
         extrapolate: str = "nan",
+        tolerance: float = 0.0,
         duplicates: str = "raise",
         nan: str = "raise",
         respect_constraints: bool = False,
@@ -117,6 +120,7 @@ class CloughTocher(Smooth):
             tol=tol,
             max_iter=max_iter,
             extrapolate=extrapolate,
+            tolerance=tolerance,
             duplicates=duplicates,
             nan=nan,
             respect_constraints=respect_constraints,

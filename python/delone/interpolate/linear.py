@@ -35,6 +35,10 @@ class Linear(Interpolator):
         Behavior outside the hull: NaN; the value at the nearest point of the hull; linear
         extrapolation from there, with the gradients of the planes that best fit its sites and their
         neighbors; an error.
+    tolerance : float, optional
+        Queries outside at most this far from the hull, in the unit of the points, are inside: they
+        have the value at the nearest point of the hull. By default 0. Half of the points on a side
+        that is not parallel to an axis are outside by a rounding. The distance is compared exactly.
     duplicates : {"raise", "mean", "first", "last", "min", "max"}, optional
         The value of points that coincide but have different values.
     nan : {"raise", "drop", "propagate"}, optional

@@ -57,6 +57,8 @@ class NaturalNeighbor(Smooth):
     extrapolate : {"nan", "nearest", "linear", "raise"}, optional
         Behavior outside the hull: NaN; the value at the nearest point of the hull; linear
         extrapolation from there, as in `Linear` or with the gradients of the kind; an error.
+    tolerance : float, optional
+        Queries outside at most this far from the hull are inside; as in `Linear`.
     duplicates, nan : str, optional
         As in `Linear`.
     respect_constraints : bool, optional
@@ -106,6 +108,7 @@ class NaturalNeighbor(Smooth):
         tol: float = 1e-6,
         max_iter: int = 400,
         extrapolate: str = "nan",
+        tolerance: float = 0.0,
         duplicates: str = "raise",
         nan: str = "raise",
         respect_constraints: bool = False,
@@ -120,6 +123,7 @@ class NaturalNeighbor(Smooth):
             tol=tol,
             max_iter=max_iter,
             extrapolate=extrapolate,
+            tolerance=tolerance,
             duplicates=duplicates,
             nan=nan,
             respect_constraints=respect_constraints,

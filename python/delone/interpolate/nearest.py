@@ -35,6 +35,8 @@ class Nearest(Interpolator):
         Real or complex values at the sites. Optional if each call passes its own values.
     extrapolate : {"nearest", "nan", "raise"}, optional
         Behavior outside the hull: the value of the nearest site, as inside; NaN; an error.
+    tolerance : float, optional
+        Queries outside at most this far from the hull are inside; as in `Linear`.
     duplicates : {"raise", "mean", "first", "last", "min", "max"}, optional
         The value of points that coincide but have different values.
     nan : {"raise", "drop", "propagate"}, optional
@@ -75,6 +77,7 @@ class Nearest(Interpolator):
         values: ArrayLike | None = None,
         *,
         extrapolate: str = "nearest",
+        tolerance: float = 0.0,
         duplicates: str = "raise",
         nan: str = "raise",
         respect_constraints: bool = False,
@@ -85,6 +88,7 @@ class Nearest(Interpolator):
             points,
             values,
             extrapolate=extrapolate,
+            tolerance=tolerance,
             duplicates=duplicates,
             nan=nan,
             respect_constraints=respect_constraints,
@@ -124,9 +128,11 @@ class Nearest(Interpolator):
         if self._extrapolate == "nearest":
             return rows
         place = self._located(queries)
-        if self._extrapolate == "raise":
-            self._left(queries, None)
-        return np.where(place.simplex >= 0, rows, np.int32(-1))
+        inside = place.simplex >= 0
+        if self._extrapolate == "raise" or self._tolerance:
+            near, _, within = self._left(queries, None)
+            inside[near[within]] = True
+        return np.where(inside, rows, np.int32(-1))
 
     def _seen(self, queries: Floats) -> Indices:
         """The nearest of the neighbors that each query would have in the constrained mesh."""
@@ -142,7 +148,7 @@ class Nearest(Interpolator):
             distance = np.hypot(*(mesh.points[rows] - queries[owner]).T)
             order = np.lexsort((rows, distance, owner))
             found[some] = rows[order[indptr[some]]]
-        if self._extrapolate != "nan":
+        if self._extrapolate != "nan" or self._tolerance:
             outside, place, _ = self._left(queries, None)
             end = np.where(place.weights[:, 1] <= 0.5, *place.facet.T)
             found[outside] = end

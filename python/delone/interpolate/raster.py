@@ -214,8 +214,8 @@ def grid(
     progress : callable, optional
         Called from time to time with the fraction of the nodes that is done, from 0 to 1.
     **options
-        Options of the interpolator: ``extrapolate``, ``duplicates``, ``nan``, ``workers``,
-        ``planar``.
+        Options of the interpolator: ``extrapolate``, ``tolerance``, ``duplicates``, ``nan``,
+        ``workers``, ``planar``.
 
     Returns
     -------

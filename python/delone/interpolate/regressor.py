@@ -39,6 +39,8 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         As in `interpolator`.
     extrapolate : {"nearest", "linear", "nan", "raise"}, optional
         Behavior outside the hull of the training points.
+    tolerance : float, optional
+        Queries outside at most this far from the hull are inside; as in `Linear`.
     duplicates : str, optional
         The value of training points that coincide but have different values; as in `Linear`, but by
         default their mean.
@@ -77,6 +79,7 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         method: str = "linear",
         *,
         extrapolate: str = "nearest",
+        tolerance: float = 0.0,
         duplicates: str = "mean",
         columns: tuple[int, int] | None = None,
         workers: int | None = None,
@@ -84,6 +87,7 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     ) -> None:
         self.method = method
         self.extrapolate = extrapolate
+        self.tolerance = tolerance
         self.duplicates = duplicates
         self.columns = columns
         self.workers = workers
@@ -125,6 +129,7 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
             plane,
             np.asarray(y, dtype=np.float64),
             extrapolate=self.extrapolate,
+            tolerance=self.tolerance,
             duplicates=self.duplicates,
             workers=self.workers,
         )

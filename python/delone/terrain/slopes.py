@@ -6,20 +6,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_callback, as_choice, as_number
+from delone._arrays import as_callback, as_choice, as_number, as_vectors
 from delone.errors import InputError
 from delone.interpolate.raster import Grid, raster_nodes, require_memory
+from delone.location import as_tolerance
 from delone.plane import geometry
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from delone.terrain.surface import Surface
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["aspect", "cells_of", "gradient", "hillshade", "normals", "raster", "slope"]
+__all__ = ["aspect", "cells_of", "gradient", "heights", "hillshade", "normals", "raster", "slope"]
 
 _WHAT = ("height", "slope", "aspect", "hillshade")
 _LIGHT = ("azimuth", "altitude", "z_factor")
@@ -95,6 +96,15 @@ def hillshade(slopes: Floats, azimuth: float, altitude: float, z_factor: float) 
     return found
 
 
+def heights(tin: Surface, xy: ArrayLike, tolerance: float) -> Floats:
+    """Return heights at positions, NaN outside."""
+    place = tin.locate(as_vectors(xy, 2, name="xy"), tolerance=tolerance)
+    inside = place.simplex >= 0
+    corners = tin.z[tin.simplices[np.where(inside, place.simplex, 0)]]
+    found = np.where(inside, (place.barycentric * corners).sum(axis=-1), np.nan)
+    return np.asarray(found)
+
+
 def raster(tin: Surface, what: str, options: dict[str, Any]) -> Grid:
     """Sample heights, or a measure of triangles, at the centers of cells."""
     as_choice(what, _WHAT, name="what")
@@ -103,6 +113,7 @@ def raster(tin: Surface, what: str, options: dict[str, Any]) -> Grid:
         if name in options and what == "hillshade":
             light[name] = options.pop(name)
     tell = as_callback(options.pop("progress", None), name="progress")
+    tolerance = as_tolerance(options.pop("tolerance", 0.0))
     x, y = _nodes(tin, options)
     require_memory(len(x), len(y), 1)
     values = np.empty((len(y), len(x)))
@@ -113,9 +124,9 @@ def raster(tin: Surface, what: str, options: dict[str, Any]) -> Grid:
     for start in range(0, len(y), rows):
         nodes = np.stack(np.meshgrid(x, y[start : start + rows]), axis=-1)
         if of_triangles is None:
-            values[start : start + rows] = tin.heights(nodes)
+            values[start : start + rows] = tin.heights(nodes, tolerance=tolerance)
         else:
-            simplex = tin.find_simplex(nodes)
+            simplex = tin.find_simplex(nodes, tolerance=tolerance)
             values[start : start + rows] = np.where(simplex < 0, np.nan, of_triangles[simplex])
         if tell is not None:
             tell(min(1.0, (start + rows) / len(y)))

@@ -120,19 +120,19 @@ class Surface(Protocol):
     def _left_out(self) -> Indices:
         """Triangles of the hull that are no part of the surface."""
 
-    def heights(self, xy: ArrayLike) -> Floats:
+    def heights(self, xy: ArrayLike, *, tolerance: float = 0.0) -> Floats:
         """Heights at positions."""
 
     def hillshade(self, *, azimuth: float, altitude: float, z_factor: float) -> Floats:
         """Brightness of the triangles."""
 
-    def find_simplex(self, xi: ArrayLike) -> Indices:
+    def find_simplex(self, xi: ArrayLike, *, tolerance: float = 0.0) -> Indices:
         """The triangles at positions."""
 
     def nearest(self, xi: ArrayLike) -> Indices:
         """The vertices that are nearest to positions."""
 
-    def locate(self, xi: ArrayLike) -> Located:
+    def locate(self, xi: ArrayLike, *, tolerance: float = 0.0) -> Located:
         """Triangles and weights at positions."""
 
     def _stretches(self, a: Floats, b: Floats) -> list[Indices]:

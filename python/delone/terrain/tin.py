@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from delone._arrays import as_flag, as_vectors
+from delone._arrays import as_flag
 from delone.counting import counted
 from delone.errors import DtypeError, InputError
 from delone.immutable import kept, sealed
@@ -482,13 +482,15 @@ class TIN(Surveyed, Earthworks):
         """
         return slopes.hillshade(self.gradient, azimuth, altitude, z_factor)
 
-    def heights(self, xy: ArrayLike) -> Floats:
+    def heights(self, xy: ArrayLike, *, tolerance: float = 0.0) -> Floats:
         """Return heights of the surface.
 
         Parameters
         ----------
         xy : array_like, shape (..., 2)
             Positions.
+        tolerance : float, optional
+            Positions outside at most this far away are inside; as in `Delaunay.locate`.
 
         Returns
         -------
@@ -507,11 +509,7 @@ class TIN(Surveyed, Earthworks):
         >>> tin.heights([(1, 1), (0, 4), (5, 5)])
         array([ 4.,  9., nan])
         """
-        place = self.locate(as_vectors(xy, 2, name="xy"))
-        inside = place.simplex >= 0
-        corners = self._z[self._simplices[np.where(inside, place.simplex, 0)]]
-        found = np.where(inside, (place.barycentric * corners).sum(axis=-1), np.nan)
-        return np.asarray(found)
+        return slopes.heights(self, xy, tolerance)
 
     def contours(
         self,
@@ -754,8 +752,8 @@ class TIN(Surveyed, Earthworks):
         what : {"height", "slope", "aspect", "hillshade"}, optional
             The values: heights at the centers of cells, or the measure of the triangle there.
         **options
-            ``resolution``, ``shape``, ``x``, ``y``, ``bounds`` and ``progress`` as for
-            `delone.interpolate.grid`; for ``"hillshade"`` those of `hillshade`.
+            ``resolution``, ``shape``, ``x``, ``y``, ``bounds``, ``tolerance`` and ``progress`` as
+            for `delone.interpolate.grid`; for ``"hillshade"`` those of `hillshade`.
 
         Returns
         -------
