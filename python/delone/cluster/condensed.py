@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from delone import _core
+from delone.graphs.scale import rescaled
 from delone.immutable import sealed
 
 if TYPE_CHECKING:
@@ -73,8 +74,11 @@ def condensed_tree(
     n = len(points)
     if n >= 2 and samples <= n:
         core = _core.condensed2 if points.shape[1] == 2 else _core.condensed3
-        found = core(points, samples, least, epsilon, workers)
-        return CondensedTree(*found[:8], *found[8])
+        scaled, exponent = rescaled(points, epsilon)
+        reach = float(np.ldexp(epsilon, exponent))
+        found = core(scaled, samples, least, reach, workers)
+        made = CondensedTree(*found[:8], *found[8])
+        return replace(made, heights=np.ldexp(made.heights, -exponent)) if exponent else made
     # Core distances do not exist, so all rows leave the root at the start.
     zeros, root = np.zeros(n, dtype=np.int32), np.array([-1], dtype=np.int32)
     return CondensedTree(

@@ -9,6 +9,7 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_least, as_workers
 from delone.cluster.estimator import Clusterer, as_reach, numbered
+from delone.graphs.scale import rescaled
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -123,7 +124,9 @@ class DBSCAN(Clusterer):
         points = self._points(X)
         core = _core.density2 if points.shape[1] == 2 else _core.density3
         # A count above that of all rows stands for every larger one.
-        clusters, is_core = core(points, eps, min(samples, len(points) + 1), workers)
+        scaled, exponent = rescaled(points, eps)
+        reach = float(np.ldexp(eps, exponent))
+        clusters, is_core = core(scaled, reach, min(samples, len(points) + 1), workers)
         self.labels_ = numbered(clusters)
         self.core_sample_indices_ = np.flatnonzero(is_core).astype(np.int32)
         self.components_ = points[self.core_sample_indices_]

@@ -76,7 +76,8 @@ class HDBSCAN(Clusterer):
 
     The minimum spanning tree of all pairs is found by Boruvka's algorithm in a tree of boxes; it is
     not part of the Delaunay graph if `min_samples` exceeds 2. About O(n log n) time for scattered
-    points, and O(n) memory. Where squared distances exceed the range of doubles, time is quadratic.
+    points, and O(n) memory. Time is quadratic where some squared distances exceed the range of
+    doubles beside others.
 
     With `min_samples` above n, no row has a core distance, and all are noise. A single point is
     noise; so are points that all coincide, unless `allow_single_cluster` is set. Points on one line

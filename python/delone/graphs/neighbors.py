@@ -10,6 +10,7 @@ from delone.counting import counted
 from delone.errors import InputError
 from delone.graphs.coincident import repeated
 from delone.graphs.graph import Graph
+from delone.graphs.scale import rescaled
 from delone.graphs.skeleton import coordinates
 
 if TYPE_CHECKING:
@@ -68,8 +69,8 @@ def nearest_neighbors(
 
     By branch and bound in a tree of boxes along a Hilbert curve (N. Roussopoulos, S. Kelley and F.
     Vincent, "Nearest neighbor queries", 1995): about O(n (log n + k)) time for scattered points,
-    less than for the triangulation and a search in it. Where squared distances exceed the range of
-    doubles it is quadratic.
+    less than for the triangulation and a search in it. It is quadratic where some squared distances
+    exceed the range of doubles beside others.
 
     Examples
     --------
@@ -86,7 +87,7 @@ def nearest_neighbors(
     if not 1 <= count < len(own):
         _require_k(count, len(own), len(repeated(own)))
     core = _core.knn2 if own.shape[1] == 2 else _core.knn3
-    edges, duplicates = core(own, count, one_way, threads)
+    edges, duplicates = core(rescaled(own)[0], count, one_way, threads)
     _require_k(count, len(own), len(duplicates))
     kind = f"{count} nearest neighbors"
     return Graph._made(own, edges, duplicates, directed=one_way, kind=kind, workers=workers)
@@ -148,7 +149,7 @@ def sphere_of_influence(
     closed = as_choice(boundary, ("closed", "open"), name="boundary") == "closed"
     own = coordinates(points, ndim=None, planar=planar)
     core = _core.influence2 if own.shape[1] == 2 else _core.influence3
-    edges, duplicates = core(own, closed, as_workers(workers))
+    edges, duplicates = core(rescaled(own)[0], closed, as_workers(workers))
     return Graph._made(own, edges, duplicates, kind="sphere of influence", workers=workers)
 
 

@@ -221,8 +221,7 @@ def urquhart(points: Points, *, workers: int | None = None, planar: bool = False
     base = skeleton(points, workers=workers, planar=planar, ndim=2)
     if base.tiling is None:
         return _graph(base, base.edges, "Urquhart", workers)
-    tiling = base.points, *base.tiling
-    edges = _core.of_triangles2(tiling, "longest", 1.0, False, base.workers)
+    edges = _core.of_triangles2(base.tiling, "longest", 1.0, False, base.workers)
     return _graph(base, edges, "Urquhart", workers)
 
 
@@ -308,7 +307,7 @@ def _balls(base: Skeleton, *, closed: bool) -> NDArray[np.int32]:
     if closed or base.is_chain or not len(edges):
         return edges
     core = _core.antipodes2 if base.points.shape[1] == 2 else _core.antipodes3
-    simplices, beside = base.tiling or (None, None)
+    _, simplices, beside = base.tiling or (None, None, None)
     far = core(base.adjacency, simplices, beside, base.workers)
     return joined(edges, far) if len(far) else edges
 
@@ -319,8 +318,7 @@ def _filtered(base: Skeleton, region: str, beta: float, *, closed: bool) -> NDAr
         return _core.proximity3(base.adjacency, region, beta, closed, base.workers)
     if region == "lune" or base.tiling is None:
         return _core.proximity2(base.adjacency, region, beta, closed, base.workers)
-    tiling = base.points, *base.tiling
-    return _core.of_triangles2(tiling, region, beta, closed, base.workers)
+    return _core.of_triangles2(base.tiling, region, beta, closed, base.workers)
 
 
 def _graph(base: Skeleton, edges: NDArray[np.int32], kind: str, workers: int | None) -> Graph:

@@ -14,6 +14,7 @@ from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, InputError
 from delone.georeference import warn_of_degrees
 from delone.graphs.coincident import repeated
+from delone.graphs.scale import rescaled
 from delone.immutable import own_copy
 
 if TYPE_CHECKING:
@@ -47,15 +48,21 @@ class Skeleton:
 
     @property
     def adjacency(self) -> tuple[Floats, Indices, Indices, Indices]:
-        """Points, edges, and the neighbors of rows: what the functions of the core take."""
+        """Points, edges, and the neighbors of rows: what the functions of the core take.
+
+        The points are in a unit in which squares are doubles, as in `tiling`.
+        """
+        points, _ = rescaled(self.points)
         if self.mesh is not None:
-            return self.points, self.edges, *self.mesh.vertex_neighbor_vertices
-        return self.points, self.edges, *_core.around(self.edges, len(self.points))
+            return points, self.edges, *self.mesh.vertex_neighbor_vertices
+        return points, self.edges, *_core.around(self.edges, len(points))
 
     @property
-    def tiling(self) -> tuple[Indices, Indices] | None:
-        """Simplices and neighbors, if there are any."""
-        return None if self.mesh is None else (self.mesh.simplices, self.mesh.neighbors)
+    def tiling(self) -> tuple[Floats, Indices, Indices] | None:
+        """Points, simplices and neighbors, if there are any."""
+        if self.mesh is None:
+            return None
+        return rescaled(self.points)[0], self.mesh.simplices, self.mesh.neighbors
 
 
 def coordinates(points: Points, *, ndim: int | None, planar: bool) -> Floats:

@@ -68,7 +68,7 @@ def minimum_spanning_tree(
     base = skeleton(points, workers=workers, planar=planar)
     tiling, ndim = base.tiling, base.points.shape[1]
     if ndim == 2 and tiling is not None:
-        edges = _core.spanning_triangles2((base.points, *tiling), base.workers)
+        edges = _core.spanning_triangles2(tiling, base.workers)
     else:
         core = _core.spanning2 if ndim == 2 else _core.spanning3
         edges = core(base.adjacency, base.workers)
