@@ -24,6 +24,7 @@ from delone.errors import DtypeError, InputError
 from delone.georeference import warn_of_degrees
 from delone.immutable import own_copy
 from delone.interpolate.hull import summed
+from delone.interpolate.policies import Policies
 from delone.interpolate.repeated import repeated
 from delone.interpolate.space import SPACE
 from delone.interpolate.values import (
@@ -32,7 +33,6 @@ from delone.interpolate.values import (
     Field,
     as_field,
     chosen,
-    require_finite_values,
 )
 from delone.interpolate.weights import joined
 from delone.periodic import PeriodicDelaunay
@@ -389,8 +389,35 @@ class Interpolator:
         """Number of threads; None for one per core."""
         return self._workers
 
+    @property
+    def policies(self) -> Policies:
+        """What becomes of values, and which of the caller's rows are those of a table."""
+        if "policies" not in self._cache:
+            again = self._repeated
+            first = self._mesh.duplicate_of if again is None else again.duplicate_of
+            coincide = (first != np.arange(len(first))).any()
+            self._cache["policies"] = Policies(
+                npoints=self.npoints,
+                workers=self._workers,
+                duplicates=self._duplicates,
+                nan=self._nan,
+                kept=self._kept,
+                # Of periodic sites, not of copies: rounding may make those of others equal.
+                first=first if coincide else None,
+                count=len(first),
+                copies=1 if again is None else len(again.moves),
+                source=self._source,
+            )
+        made: Policies = self._cache["policies"]
+        return made
+
+    @property
+    def _source(self) -> Indices | None:
+        """The vertex for each row of a table; None if they are the same."""
+        return None
+
     def settled(self, field: Field) -> Floats:
-        """Apply the policies and return values for the vertices of the mesh.
+        """Apply the policies and return values for the rows of a table.
 
         Parameters
         ----------
@@ -400,77 +427,14 @@ class Interpolator:
         Returns
         -------
         ndarray of float64
-            One row for each point of the mesh.
+            One row for each row of a table.
 
         Raises
         ------
         InputError
             A policy rejects them.
         """
-        if self._kept is not None:
-            field = field.at(self._kept)
-        if self._nan == "raise":
-            require_finite_values(field)
-        if self._repeated is not None:
-            # Duplicates are those of the sites: rounding may make copies of different sites equal.
-            merged = field.merged(self._repeated.duplicate_of, self._duplicates)
-            return merged.at(self._repeated.sites(len(merged))).columns
-        return field.merged(self._mesh.duplicate_of, self._duplicates).columns
-
-    def caller_rows(self) -> NDArray[np.int32]:
-        """Return the caller's row that represents each point of the mesh.
-
-        Returns
-        -------
-        ndarray of int32
-            For points that coincide, the first, or the last with ``duplicates="last"``.
-        """
-        rows = np.arange(self._mesh.npoints, dtype=np.int32)
-        if self._duplicates == "last":
-            # Assignments to the same row happen in order, so the last one wins.
-            rows[self._mesh.duplicate_of] = rows.copy()
-        return self._as_given(rows[self._spoken_of()])
-
-    def _as_given(self, rows: NDArray[np.integer]) -> NDArray[np.int32]:
-        """The caller's rows for the given rows of the mesh."""
-        if self._repeated is not None:
-            rows = rows // len(self._repeated.moves)
-        return (rows if self._kept is None else self._kept[rows]).astype(np.int32)
-
-    def mixed_rows(self) -> tuple[Rows, NDArray[np.int32]] | None:
-        """Return the groups of the caller's rows that are averaged in each row of a table.
-
-        Returns
-        -------
-        tuple of ndarray, or None
-            Compressed rows (indptr, rows); None if `caller_rows` is sufficient.
-
-        Raises
-        ------
-        InputError
-            The policy takes the least or the greatest value of points that coincide.
-        """
-        first = self._mesh.duplicate_of
-        if self._duplicates not in ("mean", "min", "max") or not len(self._mesh.coplanar):
-            return None
-        if self._duplicates != "mean":
-            raise InputError(
-                f"duplicates={self._duplicates!r:.20} selects one value of points that coincide, "
-                "which depends on the values; use apply"
-            )
-        # The points of a group are adjacent; each of its rows lists the whole group.
-        order = np.argsort(first, kind="stable")
-        starts = np.searchsorted(first[order], first)
-        counts = np.bincount(first)[first]
-        places = self._spoken_of()
-        starts, counts = starts[places], counts[places]
-        indptr = np.concatenate(([0], np.cumsum(counts)))
-        within = np.arange(indptr[-1]) - np.repeat(indptr[:-1] - starts, counts)
-        return indptr, self._as_given(order[within])
-
-    def _spoken_of(self) -> NDArray[np.integer]:
-        """The point of the mesh for each row of a table."""
-        return np.arange(self._mesh.npoints)
+        return self.policies.settled(field)
 
     def _interpolated(self, queries: Floats, columns: Floats) -> Floats:
         found = self._derived(queries, columns, 0)

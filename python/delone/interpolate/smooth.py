@@ -23,7 +23,6 @@ from delone.interpolate.values import chosen
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.interpolate.values import Field
     from delone.periodic import PeriodicDelaunay
     from delone.triangulation import Triangulation
 
@@ -176,15 +175,9 @@ class Smooth(Interpolator):
             )
         return found
 
-    def settled(self, field: Field) -> Floats:
-        """Return values for the rows of the sheet; see `Interpolator.settled`."""
-        columns = super().settled(field)
-        source = self._sheet.source
-        return columns if source is None else np.ascontiguousarray(columns[source])
-
-    def _spoken_of(self) -> NDArray[np.integer]:
-        source = self._sheet.source
-        return super()._spoken_of() if source is None else source
+    @property
+    def _source(self) -> Indices | None:
+        return self._sheet.source if self._respect_constraints and self._constrained else None
 
     def _laid_out(self) -> Sheet:
         sheet, mesh = super()._laid_out(), self._mesh

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone.interpolate.hull import Terms
-    from delone.interpolate.values import Field
+    from delone.interpolate.policies import Policies
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -44,17 +44,12 @@ class Sites(Protocol):
     def workers(self) -> int | None:
         """Number of threads."""
 
-    def settled(self, field: Field) -> Floats:
-        """Columns of values for the rows of a table, after the policies."""
+    @property
+    def policies(self) -> Policies:
+        """What becomes of values, and which of the caller's rows are those of a table."""
 
     def gradients(self, columns: Floats) -> Floats | None:
         """Gradients (n, c, 2) of these columns, if the interpolant needs them."""
-
-    def caller_rows(self) -> Indices:
-        """The caller's row that represents each row of a table."""
-
-    def mixed_rows(self) -> tuple[NDArray[np.int64], Indices] | None:
-        """Groups of the caller's rows that are averaged; None if no rows are."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +70,8 @@ class Weights:
     shape : tuple of int
         Shape of the queries, without their last axis.
     sites : Interpolator
-        The interpolator that made the table.
+        The interpolator that made the table. Without `slopes`, a pickled table has its policies
+        only, not its triangulation.
 
     Examples
     --------
@@ -97,13 +93,18 @@ class Weights:
     def __len__(self) -> int:
         return len(self.indptr) - 1
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Only gradients need triangles.
+        sites = self.sites if self.slopes is not None else self.sites.policies
+        return type(self), (self.indptr, self.rows, self.weights, self.slopes, self.shape, sites)
+
     @property
     def indices(self) -> Indices:
         """The rows of the caller's points, (nnz,); for duplicates, the row whose value is used.
 
         If duplicates take their mean, least or greatest value, it is the first of them.
         """
-        found: Indices = self.sites.caller_rows()[self.rows]
+        found: Indices = self.sites.policies.caller_rows()[self.rows]
         return found
 
     def apply(self, values: ArrayLike) -> NDArray[Any]:
@@ -139,7 +140,7 @@ class Weights:
         [1.5, 4.0]
         """
         field = as_field(values, self.sites.npoints)
-        columns = self.sites.settled(field)
+        columns = self.sites.policies.settled(field)
         slopes, threads = self.slopes, as_workers(self.sites.workers)
         gradients = None if slopes is None else self.sites.gradients(columns)
         plane = slopes if slopes is not None and slopes.shape[1] == _PLANE else None
@@ -196,7 +197,7 @@ class Weights:
                 "this interpolant needs gradients, which a matrix cannot represent; use apply"
             )
         csr_array = require("scipy.sparse", extra="graph", what="a sparse matrix").csr_array
-        groups = self.sites.mixed_rows()
+        groups = self.sites.policies.mixed_rows()
         empty = np.flatnonzero(np.diff(self.indptr) == 0)
         ends = self.indptr[empty]
         indptr = self.indptr + np.concatenate(([0], np.cumsum(np.diff(self.indptr) == 0)))

@@ -18,7 +18,8 @@ from delone.counting import agreed
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.interpolate.base import as_max_distance, shaped_derivatives
 from delone.interpolate.hull import Terms
-from delone.interpolate.values import DUPLICATES, NAN, as_field, chosen, require_finite_values
+from delone.interpolate.policies import Policies
+from delone.interpolate.values import DUPLICATES, NAN, as_field, chosen
 from delone.interpolate.weights import Weights, joined, rectangular
 from delone.sphere.coordinates import queries_of
 from delone.sphere.delaunay import Delaunay
@@ -236,46 +237,26 @@ class _Interpolator:
         self._require_one()
         return (self if self._field is None else self._field[1])._table(xi)
 
+    @property
+    def policies(self) -> Policies:
+        """What becomes of values, and which of the caller's rows are those of a table."""
+        mesh = self._mesh
+        return Policies(
+            npoints=self.npoints,
+            workers=self._workers,
+            duplicates=self._duplicates,
+            nan=self._nan,
+            kept=self._kept,
+            first=mesh.duplicate_of if len(mesh.duplicates) else None,
+            count=mesh.npoints,
+        )
+
     def settled(self, field: Field) -> Floats:
         """Return values for the vertices, after the policies."""
-        if self._kept is not None:
-            field = field.at(self._kept)
-        if self._nan == "raise":
-            require_finite_values(field)
-        return field.merged(self._mesh.duplicate_of, self._duplicates).columns
+        return self.policies.settled(field)
 
     def gradients(self, columns: Floats) -> None:
         """Return None: no method here needs gradients."""
-
-    def caller_rows(self) -> Indices:
-        """Return the caller's row for each row of the mesh."""
-        rows = np.arange(self._mesh.npoints, dtype=np.int32)
-        if self._duplicates == "last":
-            # Assignments to the same row happen in order, so the last one wins.
-            rows[self._mesh.duplicate_of] = rows.copy()
-        return self._as_given(rows)
-
-    def mixed_rows(self) -> tuple[Rows, Indices] | None:
-        """Return the groups of the caller's rows that are averaged; None if none are."""
-        if self._duplicates not in ("mean", "min", "max") or not len(self._mesh.duplicates):
-            return None
-        if self._duplicates != "mean":
-            raise InputError(
-                f"duplicates={self._duplicates!r:.20} selects one value of points that coincide, "
-                "which depends on the values; use apply"
-            )
-        # The rows of a group are adjacent in `order`; each of its rows lists the whole group.
-        first = self._mesh.duplicate_of
-        order = np.argsort(first, kind="stable")
-        starts = np.searchsorted(first[order], first)
-        counts = np.bincount(first)[first]
-        indptr = np.concatenate(([0], np.cumsum(counts)))
-        within = np.arange(indptr[-1]) - np.repeat(indptr[:-1] - starts, counts)
-        return indptr, self._as_given(order[within])
-
-    def _as_given(self, rows: NDArray[np.integer]) -> Indices:
-        """The caller's rows for the given rows of the mesh."""
-        return (rows if self._kept is None else self._kept[rows]).astype(np.int32)
 
     def _with(self, values: ArrayLike | None) -> tuple[Field, _Interpolator, Floats]:
         """The field, the interpolator for its sites, and its values after the policies."""
