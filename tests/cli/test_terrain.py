@@ -53,6 +53,10 @@ def test_contours(folder, figures):
     assert found["output_bytes"] == out.stat().st_size and found["coordinates"] == 11
     table = geopandas.read_file(out)
     assert table.level.tolist() == [5, 10, 15, 20] and table.crs.to_epsg() == 28992
+    few = figures("contours", folder / "the points.csv", "--interval", 5, "--min-length", 41)
+    lengths = table.geometry.length
+    assert few["short_lines_left_out"] == np.count_nonzero(lengths < 41)
+    assert few["lines"] + few["short_lines_left_out"] == 4
     bands = folder / "some bands.geojson"
     figures("contours", folder / "the points.csv", "--levels", "10", "--bands", "-o", bands)
     assert geopandas.read_file(bands).area.tolist() == [800, 800]

@@ -351,3 +351,26 @@ def test_a_terrace_at_a_level_is_not_below_it():
     # A number of 17 digits is no decimal: the multiples are those of the double.
     third = TIN.from_points([(0, 0, 0), (1, 0, 1), (0, 1, 0)]).contours(interval=1 / 3)
     assert third.levels.tolist() == [0, 1 / 3, 2 / 3, 1]
+
+
+@pytest.mark.parametrize("smooth", [0, 2])
+def test_short_lines_are_left_out_and_counted(smooth):
+    rng = np.random.default_rng(2)
+    xy = rng.random((2000, 2)) * 100
+    tin = TIN.from_points(np.column_stack((xy, xy[:, 0] / 10 + rng.normal(0, 0.2, 2000))))
+    every = tin.contours(interval=0.5, smooth=smooth)
+    lengths = shapely.length(every.to_shapely())
+    found = tin.contours(interval=0.5, smooth=smooth, min_length=5)
+    kept = lengths >= 5
+    assert found.short == np.count_nonzero(~kept) > 40 and every.short == 0
+    assert np.array_equal(found.level, every.level[kept])
+    assert np.array_equal(found.index, every.index[kept])
+    assert (found.to_shapely() == every.to_shapely()[kept]).all()
+    assert np.array_equal(found.levels, every.levels)
+    none = tin.contours(interval=0.5, min_length=1e9)
+    assert len(none) == 0 and none.short == len(tin.contours(interval=0.5))
+    assert none.to_shapely().shape == (0,)
+    assert tin.contours([1e9], min_length=1).short == 0
+    for bad in (-1, float("nan"), float("inf")):
+        with pytest.raises(InputError, match="min_length must be finite and at least 0"):
+            tin.contours(interval=1, min_length=bad)

@@ -66,6 +66,9 @@ def contours(
     base: Annotated[float, typer.Option(help="A level from which the interval counts.")] = 0.0,
     index: Annotated[int, typer.Option(help="Mark each so many levels as index contours.")] = 5,
     smooth: Annotated[int, typer.Option(help="Rounds of corner cutting, 0 to 5.")] = 0,
+    min_length: Annotated[
+        float, typer.Option(help="Leave out lines shorter than this, in units of the points.")
+    ] = 0.0,
     bands: Annotated[
         bool, typer.Option("--bands", help="Write polygons between levels instead of lines.")
     ] = False,
@@ -95,6 +98,8 @@ def contours(
     wanted = None if levels is None else _numbers(levels, "--levels")
     if bands and smooth:
         raise Failure("--smooth is for lines, not for --bands", Exit.USAGE)
+    if bands and min_length:
+        raise Failure("--min-length is for lines, not for --bands", Exit.USAGE)
     options = SurfaceOptions.among(locals())
     _check(output or [], source, options, "contours")
     watch = Stopwatch()
@@ -112,6 +117,7 @@ def contours(
                     base=base,
                     index=index,
                     smooth=smooth,
+                    min_length=min_length,
                     max_points=max_points,
                 )
         say(f"writing {len(found):,} {'polygons' if bands else 'lines'}")
@@ -122,6 +128,7 @@ def contours(
         "levels": len(np.unique(found.low if bands else found.level)),
         "coordinates": len(found.points),
         "triangles_left_out": found.left_out or None,
+        "short_lines_left_out": found.short if min_length else None,
         "stages": watch.rows(tin.npoints),
     }
     print_figures(source, figures, as_json=as_json, quiet=quiet)

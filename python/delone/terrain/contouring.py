@@ -56,6 +56,8 @@ class Contours(ReadOnly):
     left_out : int, optional
         The number of triangles at the outline that are left out because they are thinner than the
         resolution of the coordinates, so that lines in them would cross. Usually 0.
+    short : int, optional
+        The number of lines that are left out because they are shorter than `min_length`.
     crs : str, optional
         Coordinate reference system.
     units : str, optional
@@ -76,6 +78,7 @@ class Contours(ReadOnly):
     index: Bools
     levels: Floats
     left_out: int = 0
+    short: int = 0
     crs: str | None = None
     units: str | None = None
 
@@ -355,27 +358,53 @@ def _multiples(
     return found[within], np.asarray(marked)[within]
 
 
-def lines(tin: Surface, levels: Floats, marked: Bools, smooth: int, max_points: int) -> Contours:
+def lines(  # noqa: PLR0917
+    tin: Surface, levels: Floats, marked: Bools, smooth: int, min_length: float, max_points: int
+) -> Contours:
     """Return the contours of a surface."""
     from delone.terrain.smoothing import smoothed
 
     rounds = as_count(smooth, name="smooth")
+    least = as_number(min_length, name="min_length")
+    if not 0 <= least < math.inf:
+        raise InputError(f"min_length must be finite and at least 0, got {min_length!r:.60}")
     # Each round doubles the points at most.
     factor = 1 << min(rounds, _MOST_ROUNDS)
     made, left_out = _within(_core.contour_lines2, tin, levels, max_points, factor)
     points, starts = made.points, made.starts
     if rounds:
         points, starts = smoothed(points, starts, tin, rounds)
+    level = made.levels
+    if least:
+        kept = _lengths(points, starts) >= least
+        points, starts, level = *_only(points, starts, kept), level[kept]
     return Contours(
         points=points,
         starts=starts,
-        level=levels[made.levels],
-        index=marked[made.levels],
+        level=levels[level],
+        index=marked[level],
         levels=levels,
         left_out=left_out,
+        short=len(made.levels) - len(level),
         crs=tin.crs,
         units=tin.units,
     )
+
+
+def _lengths(points: Floats, starts: Rows) -> Floats:
+    """Return the lengths of lines, rounded."""
+    steps = np.zeros(len(points))
+    steps[1:] = np.hypot(*np.diff(points, axis=0).T)
+    # Not from the end of a line to the start of the next; each line has two points or more.
+    steps[starts[:-1]] = 0.0
+    return np.add.reduceat(steps, starts[:-1]) if len(starts) > 1 else np.zeros(0)
+
+
+def _only(points: Floats, starts: Rows, kept: Bools) -> tuple[Floats, Rows]:
+    """Return the points and starts of the lines that are kept."""
+    counts = np.diff(starts)
+    ends = np.concatenate(([0], np.cumsum(counts[kept])))
+    return np.ascontiguousarray(points[np.repeat(kept, counts)]), ends
 
 
 def _within(

@@ -519,6 +519,7 @@ class TIN(Surveyed, Earthworks):
         base: float = 0.0,
         index: int = 5,
         smooth: int = 0,
+        min_length: float = 0.0,
         max_points: int = contouring.MOST,
     ) -> contouring.Contours:
         """Compute contour lines.
@@ -537,6 +538,8 @@ class TIN(Surveyed, Earthworks):
         smooth : int, optional
             Rounds of corner cutting, at most 5; 0 keeps contours straight in each triangle.
             Smoothed lines do not cross: where they would, corners remain.
+        min_length : float, optional
+            Lines shorter than this, in the unit of the points, are left out and counted.
         max_points : int, optional
             Maximum number of points of all contours; smoothing may double them in each round.
 
@@ -548,17 +551,16 @@ class TIN(Surveyed, Earthworks):
         Raises
         ------
         InputError
-            Levels are not finite, or not exactly one of `levels` and `interval` is given.
+            Levels or `min_length` are out of range, or not one of `levels` and `interval` is given.
         BudgetExceededError
             There would be more than `max_points` points; raised before they are computed.
 
         Notes
         -----
         A vertex is above a level if its height is at least the level, exactly. So lines join, end
-        at the outline only, and those of one level enclose those of the next, also on plateaus and
-        saddles and where vertices are exactly at a level. Loops without an area, around a vertex
-        or ridge exactly at a level, are left out. Coordinates are rounded once; where rounding
-        would make lines cross, points are merged. Lines may touch at points.
+        at the outline only, and enclose those of the next level, also on plateaus and saddles.
+        Loops without an area, around a vertex or ridge exactly at a level, are left out.
+        Coordinates are rounded once; where lines would cross then, points are merged.
 
         Examples
         --------
@@ -571,7 +573,7 @@ class TIN(Surveyed, Earthworks):
         ([3.0, 6.0], [[0.0, 3.0], [3.0, 3.0], [4.0, 3.0]])
         """
         wanted, marked = contouring.levels_of(self._z, levels, interval, base, index)
-        return contouring.lines(self, wanted, marked, smooth, max_points)
+        return contouring.lines(self, wanted, marked, smooth, min_length, max_points)
 
     def bands(
         self,
