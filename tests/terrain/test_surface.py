@@ -291,3 +291,21 @@ def test_exported_files_have_the_heights(suffix, tmp_path):
 def test_only_the_class_methods_make_a_surface():
     with pytest.raises(TypeError, match="from_points"):
         TIN(SQUARE)
+
+
+def test_points_outside_of_the_boundary_do_not_count():
+    rng = np.random.default_rng(0)
+    xy = rng.random((500, 2)) * 100
+    z = np.where(xy[:, 0] > 50, 1000.0, 0.0) + rng.random(500)
+    inside = [(5, 5), (25, 5), (25, 95), (5, 95)]
+    tin = TIN.from_points(np.column_stack((xy, z)), boundary=inside)
+    corners = np.unique(tin.simplices)
+    low, high = tin.z[corners].min(), tin.z[corners].max()
+    assert high < 2 and tin.z.max() > 1000
+    assert f"heights {low:.6g} to {high:.6g}" in repr(tin)
+    levels = tin.contours(interval=0.25).levels
+    assert low <= levels.min() < 0.5 < levels.max() <= high
+    grid = tin.raster(resolution=5)
+    assert grid.extent == (5, 25, 5, 95)
+    assert np.isfinite(grid.values).all()
+    assert {tin.bands(interval=0.25).low.min(), tin.bands(interval=0.25).high.max()} == {low, high}

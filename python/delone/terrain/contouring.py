@@ -17,6 +17,7 @@ from delone.errors import BudgetExceededError, DtypeError, InputError
 from delone.extras import require
 from delone.immutable import ReadOnly, sealed
 from delone.terrain.slivers import drawn
+from delone.terrain.surface import on_surface
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -313,7 +314,7 @@ class Bands(ReadOnly):
 
 
 def levels_of(
-    z: Floats, levels: ArrayLike | None, interval: float | None, base: float, index: int
+    tin: Surface, levels: ArrayLike | None, interval: float | None, base: float, index: int
 ) -> tuple[Floats, Bools]:
     """Return ascending levels, each once, and which are index contours."""
     if (levels is None) == (interval is None):
@@ -329,7 +330,7 @@ def levels_of(
     step, start = as_number(interval, name="interval"), as_number(base, name="base")
     if not (0 < step < math.inf and math.isfinite(start)):
         raise InputError(f"interval must be above 0 and base finite, got {interval} and {base}")
-    every = as_count(index, name="index")
+    every, z = as_count(index, name="index"), tin.z[on_surface(tin)]
     first, last = (float(each - start) / step for each in (z.min(), z.max()))
     if not last - first < _LEVELS:
         raise BudgetExceededError(
@@ -435,7 +436,7 @@ def _within(
 def bands(tin: Surface, levels: Floats, max_points: int) -> Bands:
     """Return the polygons between contours of a surface."""
     made, left_out = _within(_core.contour_bands2, tin, levels, max_points, 1)
-    used = tin.z[np.unique(tin.simplices)]
+    used = tin.z[on_surface(tin)]
     ends = np.concatenate(([used.min()], levels, [used.max()]))
     return Bands(
         points=made.points,

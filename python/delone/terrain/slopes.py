@@ -11,6 +11,7 @@ from delone.errors import InputError
 from delone.interpolate.raster import Grid, raster_nodes, require_memory
 from delone.location import as_tolerance
 from delone.plane import geometry
+from delone.terrain.surface import on_surface
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -20,7 +21,17 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["aspect", "cells_of", "gradient", "heights", "hillshade", "normals", "raster", "slope"]
+__all__ = [
+    "aspect",
+    "cells_of",
+    "extremes",
+    "gradient",
+    "heights",
+    "hillshade",
+    "normals",
+    "raster",
+    "slope",
+]
 
 _WHAT = ("height", "slope", "aspect", "hillshade")
 _LIGHT = ("azimuth", "altitude", "z_factor")
@@ -105,6 +116,12 @@ def heights(tin: Surface, xy: ArrayLike, tolerance: float) -> Floats:
     return np.asarray(found)
 
 
+def extremes(tin: Surface) -> tuple[float, float]:
+    """Return the least and the greatest height of a surface."""
+    z = tin.z[on_surface(tin)]
+    return float(z.min()), float(z.max())
+
+
 def raster(tin: Surface, what: str, options: dict[str, Any]) -> Grid:
     """Sample heights, or a measure of triangles, at the centers of cells."""
     as_choice(what, _WHAT, name="what")
@@ -141,7 +158,8 @@ def _nodes(tin: Surface, options: dict[str, Any]) -> tuple[Floats, Floats]:
         raise InputError(
             f"{', '.join(sorted(unknown))}: give resolution, shape and bounds, or x and y"
         )
-    low, high = tin.min_bound.tolist(), tin.max_bound.tolist()
+    corners = tin.points[on_surface(tin)]
+    low, high = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
     return raster_nodes((low, high), **options)
 
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
+import numpy as np
+
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Located", "Sheet", "Surface"]
+__all__ = ["Located", "Sheet", "Surface", "on_surface"]
 
 
 class Sheet(Protocol):
@@ -137,3 +138,13 @@ class Surface(Protocol):
 
     def _stretches(self, a: Floats, b: Floats) -> list[Indices]:
         """The triangles along a segment: a list for each part of it that is on the surface."""
+
+
+def on_surface(tin: Surface) -> Bools:
+    """Return which points are corners of triangles; all points if there are no triangles.
+
+    A boundary leaves others outside of the surface.
+    """
+    used = np.zeros(tin.npoints, dtype=bool)
+    used[tin.simplices] = True
+    return used if used.any() else ~used

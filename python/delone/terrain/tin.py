@@ -395,7 +395,7 @@ class TIN(Surveyed, Earthworks):
         return super()._arrays() | {name: text for name, text in known.items() if str(text)}
 
     def _described(self) -> str:
-        low, high = float(self.z.min()), float(self.z.max())
+        low, high = slopes.extremes(self)
         return (
             f"{counted(self.npoints, 'point')}: {counted(self.nsimplex, 'triangle')}, "
             f"heights {low:.6g} to {high:.6g}"
@@ -572,7 +572,7 @@ class TIN(Surveyed, Earthworks):
         >>> found.level.tolist(), found.coordinates(1).tolist()
         ([3.0, 6.0], [[0.0, 3.0], [3.0, 3.0], [4.0, 3.0]])
         """
-        wanted, marked = contouring.levels_of(self._z, levels, interval, base, index)
+        wanted, marked = contouring.levels_of(self, levels, interval, base, index)
         return contouring.lines(self, wanted, marked, smooth, min_length, max_points)
 
     def bands(
@@ -608,7 +608,7 @@ class TIN(Surveyed, Earthworks):
         >>> tin.bands([4.0])
         <Bands of 2 ranges: 2 polygons>
         """
-        wanted, _ = contouring.levels_of(self._z, levels, interval, base, 1)
+        wanted, _ = contouring.levels_of(self, levels, interval, base, 1)
         return contouring.bands(self, wanted, max_points)
 
     def profile(self, line: Any) -> profiles.Profile:
