@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from fractions import Fraction
 from typing import Any, ClassVar
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 from delone import datasets, mesh
 from delone.compat.triangle import convex_hull, delaunay, triangulate, voronoi
 from delone.errors import DtypeError, InputError, ShapeError
+from tiers import seeds
 
 SQUARE: dict[str, Any] = {"vertices": [(0, 0), (1, 0), (1, 1), (0, 1)]}
 
@@ -106,3 +108,77 @@ class TestWholeSegments:
             triangulate(SQUARE, "qYa2")
             triangulate(self.STRIP, "pqa0.5")
             triangulate(self.STRIP, "pYYa")
+
+
+class TestRefinedAgain:
+    """Switch r: triangles stay in the region between segments that they are in."""
+
+    # A square around another one, whose ring no edge connects to the boundary.
+    NESTED: ClassVar[dict[str, Any]] = {
+        "vertices": [(0, 0), (9, 0), (9, 9), (0, 9), (3, 3), (6, 3), (6, 6), (3, 6)],
+        "segments": [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)],
+        "regions": [(1, 1, 1, 0), (4, 4, 2, 0)],
+    }
+
+    @staticmethod
+    def areas(out: dict[str, Any]) -> dict[float, Fraction]:
+        """The exact area of the triangles of each attribute."""
+        found: dict[float, Fraction] = {}
+        corners = out["vertices"][out["triangles"]].tolist()
+        for triangle, mark in zip(corners, out["triangle_attributes"].ravel(), strict=True):
+            (ax, ay), (bx, by), (cx, cy) = [map(Fraction, each) for each in triangle]
+            area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+            assert area > 0
+            found[float(mark)] = found.get(float(mark), Fraction(0)) + area / 2
+        return found
+
+    @pytest.mark.parametrize("opts", ["r", "rq", "rqa1", "ra0.5"])
+    def test_a_ring_that_nothing_connects_to_the_boundary_stays(self, opts: str) -> None:
+        given = triangulate(self.NESTED, "pA")
+        out = triangulate(given, opts)
+        assert {k: float(a) for k, a in self.areas(out).items()} == pytest.approx({1: 72, 2: 9})
+
+    @pytest.mark.parametrize("shift", [0.0, 2.0**30])
+    def test_regions_as_narrow_as_a_rounding_keep_their_attribute(self, shift: float) -> None:
+        middle = (1 + shift, np.nextafter(1 / 3 + shift, np.inf))
+        outer = [(0, 0), (3, 1), (3, -3), (-3, 3), (3, 3)]
+        points = [(x + shift, y + shift) for x, y in outer] + [middle]
+        lines = [(0, 1), (1, 5), (5, 0), (0, 2), (2, 1), (1, 4), (4, 3), (3, 0)]
+        seeds = [(2 + shift, shift, 1, 0), (1 + shift, 2 + shift, 2, 0)]
+        given = triangulate({"vertices": points, "segments": lines, "regions": seeds}, "pA")
+        before = self.areas(given)
+        assert sorted(before) == [0, 1, 2]
+        assert 0 < before[0] < 1e-6
+        assert self.areas(triangulate(given, "r")) == before
+
+    @pytest.mark.parametrize("seed", seeds(5, deep=200))
+    def test_any_order_of_triangles_and_corners(self, seed: int) -> None:
+        given = triangulate(self.NESTED, "pqAa2")
+        rng = np.random.default_rng(seed)
+        order = rng.permutation(len(given["triangles"]))
+        turned = [rng.permutation(row) for row in given["triangles"][order]]
+        other = given | {"triangles": np.array(turned)}
+        other["triangle_attributes"] = given["triangle_attributes"][order]
+        one, two = (triangulate(each, "rqa0.7") for each in (given, other))
+        assert np.array_equal(one["triangles"], two["triangles"])
+        assert np.array_equal(one["triangle_attributes"], two["triangle_attributes"])
+
+    def test_orientation_is_exact(self) -> None:
+        # The rounded determinant of this triangle has the wrong sign or none.
+        points = np.array([(0.5, 0.5), (12, 12), (24, 24.0)])
+        points[0] += (2.0**-53, 3 * 2.0**-53)
+        for corners in ([0, 1, 2], [0, 2, 1]):
+            out = triangulate({"vertices": points, "triangles": [corners]}, "r")
+            assert self.areas(out | {"triangle_attributes": np.zeros(1)})[0] > 0
+
+    def test_equal_vertices_are_one(self) -> None:
+        points = [(0, 0), (1, 0), (1, 1), (0, 1), (0, 0), (1, 1)]
+        twice = {"vertices": points, "triangles": [(0, 1, 2), (4, 5, 3)], "segments": [(4, 5)]}
+        marked = twice | {"triangle_attributes": [[5.0], [7.0]]}
+        assert self.areas(triangulate(marked, "r")) == {5: Fraction(1, 2), 7: Fraction(1, 2)}
+
+    def test_triangles_without_an_area_are_named(self) -> None:
+        points = [*SQUARE["vertices"], (-1, -1), (-2, -2)]
+        flat = {"vertices": points, "triangles": [(0, 1, 2), (0, 2, 3), (4, 5, 0)]}
+        with pytest.raises(InputError, match=r"without an area cannot be refined: 2;"):
+            triangulate(flat, "r")

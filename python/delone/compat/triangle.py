@@ -16,6 +16,7 @@ import numpy as np
 
 from delone._arrays import LARGEST_LIMIT, as_points, as_segments
 from delone.compat.triangle_input import (
+    Given,
     Switches,
     again,
     interpolated,
@@ -146,6 +147,7 @@ into Triangle; use size= of delone.mesh
     if "vertices" not in tri:
         raise InputError("key 'vertices' is missing")
     points = as_points(tri["vertices"], ndim=2, name="vertices")
+    base: Given | ConstrainedDelaunay
     if "r" in switches.on:
         made, attributes, base = again(tri, points, switches)
     else:

@@ -9,7 +9,8 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_segments, as_simplices
-from delone.counting import counted
+from delone.counting import counted, listed
+from delone.duplicates import first_rows
 from delone.errors import InputError, ShapeError
 from delone.plane import topology
 from delone.refine import domains
@@ -23,10 +24,15 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
+    Rows = NDArray[np.int64]
 
-__all__ = ["Switches", "again", "interpolated", "keys_of", "not_reached", "rows_of"]
+__all__ = ["Given", "Switches", "again", "interpolated", "keys_of", "not_reached", "rows_of"]
+
+# Rows that messages name.
+_FIRST = 5
 
 
 class Switches(NamedTuple):
@@ -37,6 +43,71 @@ class Switches(NamedTuple):
     area: float | None
     steiner: int | None
     fixed: bool | str
+
+
+class Given(NamedTuple):
+    """The given triangles of switch r, counter-clockwise."""
+
+    points: Floats
+    simplices: Indices
+    neighbors: Indices
+    # (m, 3): whether the edge opposite each vertex is a segment, or has no triangle beyond it.
+    walls: Bools
+    # (m,): the region between walls, which no triangle of a refined mesh leaves.
+    part: Indices
+    index: Any
+
+    @classmethod
+    def of(cls, triangles: Any, segments: Indices, points: Floats) -> Given:
+        """Turn the triangles counter-clockwise, with the first of equal points as corners."""
+        simplices = first_rows(points)[as_simplices(triangles, len(points), 2)].astype(np.int32)
+        a, b, c = (np.ascontiguousarray(points[simplices[:, k]]) for k in range(3))
+        sides = _core.orient2d(a, b, c)
+        if not sides.all():
+            flat = np.flatnonzero(sides == 0)
+            raise InputError(
+                f"triangles without an area cannot be refined: {listed(flat, _FIRST)}; remove them"
+            )
+        turned = sides < 0
+        simplices = np.where(turned[:, None], simplices[:, [0, 2, 1]], simplices).astype(np.int32)
+        neighbors = topology.neighbors(simplices, len(points))
+        keys = _keys_of_sides(simplices, len(points))
+        walls = (neighbors < 0) | topology.among(keys, keys_of(segments, len(points)))
+        part = _core.components2(neighbors, walls)
+        index = _core.Locator2(points, simplices, neighbors)
+        return cls(points, simplices, neighbors, walls, part, index)
+
+    def homes(self, points: Floats, simplices: Indices, neighbors: Indices, part: Indices) -> Rows:
+        """Return the given triangle from which each triangle of a refined mesh has its properties.
+
+        `part` is the region of each triangle, and decides: the triangle at its rounded center
+        counts only if it is in the same region. Others take that of a neighbor there.
+        """
+        place = self.index.locate(np.ascontiguousarray(points[simplices].mean(axis=1)), 1)
+        homes: Rows = np.where(place.simplex >= 0, place.simplex, place.beside).astype(np.int64)
+        homes[self.part[homes] != part] = -1
+        beside = np.append(part, -1)[neighbors] == part[:, None]
+        # Each round finds a home for some triangle, or is the last one.
+        while True:
+            bare = np.flatnonzero(homes < 0)
+            near = np.where(beside[bare], np.append(homes, -1)[neighbors[bare]], -1)
+            side = (near >= 0).argmax(axis=1)
+            found = near[np.arange(len(bare)), side]
+            if not (found >= 0).any():
+                break
+            homes[bare] = found
+        homes[bare] = self._firsts()[part[bare]]
+        return homes
+
+    def _firsts(self) -> Rows:
+        """Return the triangle of each region whose corners are smallest, by x, then by y."""
+        rank = np.empty(len(self.points), dtype=np.int64)
+        rank[np.lexsort(self.points.T[::-1])] = np.arange(len(self.points))
+        order = np.lexsort(np.sort(rank[self.simplices], axis=1).T[::-1])
+        found = np.empty(int(self.part.max()) + 1, dtype=np.int64)
+        # The last value assigned remains.
+        found[self.part[order[::-1]]] = order[::-1]
+        return found
 
 
 def rows_of(values: Any, columns: int | None, name: str, count: int | None = None) -> Floats:
@@ -60,23 +131,19 @@ def keys_of(edges: Indices, npoints: int) -> NDArray[np.int64]:
 
 def again(
     tri: Mapping[str, Any], points: Floats, switches: Switches
-) -> tuple[Mesh, Floats | None, Any]:
+) -> tuple[Mesh, Floats | None, Given]:
     """Refine given triangles.
 
-    Returns the mesh, the attributes of the given triangles that contain its triangles, and the
-    given triangles: vertices, neighbors, point location index.
+    Returns the mesh, the attributes of the given triangles that its triangles inherit, and the
+    given triangles.
     """
     if "triangles" not in tri:
         raise InputError("switch r needs the key 'triangles'")
-    simplices = as_simplices(tri["triangles"], len(points), 2)
-    corners = points[simplices]
-    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    turned = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] < 0
-    simplices = np.where(turned[:, None], simplices[:, [0, 2, 1]], simplices).astype(np.int32)
-    neighbors = topology.neighbors(simplices, len(points))
-    index = _core.Locator2(points, simplices, neighbors)
-    domain = _domain(tri, points, simplices, neighbors, switches)
-    caps = _caps(tri, domain, index, switches)
+    given = as_segments(tri.get("segments", ()), len(points))
+    segments = first_rows(points)[given].astype(np.int32)
+    base = Given.of(tri["triangles"], segments, points)
+    domain = _domain(tri, base, segments, switches)
+    caps = _caps(tri, domain, base, switches)
     most = MOST_ADDED if switches.steiner is None else switches.steiner
     bound = as_min_angle(switches.angle)
     made, counts = domains.refined(
@@ -85,21 +152,19 @@ def again(
     found = Mesh._of(made, counts, bound, {}, None)
     attributes = None
     if tri.get("triangle_attributes") is not None:
-        given = rows_of(tri["triangle_attributes"], None, "triangle_attributes", len(simplices))
-        home = _homes(found.points[found.simplices].mean(axis=1), index)
-        attributes = given[home]
-    return found, attributes, (simplices, neighbors, index)
+        count = len(base.simplices)
+        table = rows_of(tri["triangle_attributes"], None, "triangle_attributes", count)
+        attributes = table[_homes_of(found, base)]
+    return found, attributes, base
 
 
-def _domain(
-    tri: Mapping[str, Any],
-    points: Floats,
-    simplices: Indices,
-    neighbors: Indices,
-    switches: Switches,
-) -> Domain:
-    """The given triangles, made Delaunay between segments and boundary."""
-    given = as_segments(tri.get("segments", ()), len(points))
+def _homes_of(found: Mesh, base: Given) -> Rows:
+    return base.homes(found.points, found.simplices, found.neighbors, found.region)
+
+
+def _domain(tri: Mapping[str, Any], base: Given, given: Indices, switches: Switches) -> Domain:
+    """The given triangles, made Delaunay between segments and boundary; regions are their parts."""
+    points, simplices, neighbors = base.points, base.simplices, base.neighbors
     markers = as_rows(tri.get("segment_markers"), len(given), "segment_markers")
     rim = topology.boundary_edges(simplices, neighbors)
     n = len(points)
@@ -109,7 +174,7 @@ def _domain(
     _, first = np.unique(keys_of(ends, n), return_index=True)
     first.sort()
     ends = ends[first]
-    made, label = domains.triangulated(points, ends, rim, np.zeros(len(rim), np.int32), None)
+    made, _ = domains.triangulated(points, ends, rim, np.zeros(len(rim), np.int32), None)
     marks = np.append(markers, np.zeros(int(bare.sum()), dtype=np.int32))[first]
     own = np.flatnonzero(first < len(given))
     counts = (first < len(given)).astype(np.int64)
@@ -132,14 +197,33 @@ def _domain(
         on=np.full(n, -1, dtype=np.int32),
         simplices=made.simplices,
         neighbors=made.neighbors,
-        labels=label,
-        regions=np.zeros(1, dtype=np.int32),
+        labels=_parts_in(made, base),
+        regions=np.arange(int(base.part.max()) + 1, dtype=np.int32),
         sides=domains.sides_at(made.simplices, made.constrained, (ends, np.arange(len(ends)))),
         lines=lines,
     )
 
 
-def _caps(tri: Mapping[str, Any], domain: Domain, index: Any, switches: Switches) -> Floats:
+def _parts_in(made: _core.ConstrainedTriangulation, base: Given) -> Indices:
+    """Return the part of the given triangles in which each triangle is, -1 outside.
+
+    Both have the walls as edges, and the parts to the left of them are the same.
+    """
+    n = len(base.points)
+    walls = topology.among(
+        _keys_of_sides(made.simplices, n), _keys_of_sides(base.simplices, n)[base.walls]
+    )
+    edges = np.column_stack(topology.half_edges(base.simplices, *np.nonzero(base.walls)))
+    labels = base.part[np.nonzero(base.walls)[0]]
+    return domains.labels_beside((made.simplices, made.neighbors, walls), edges, labels, n)
+
+
+def _keys_of_sides(simplices: Indices, npoints: int) -> NDArray[np.int64]:
+    """Return the key of the edge opposite each vertex, (m, 3)."""
+    return topology.edge_keys(simplices[:, [1, 2, 0]], simplices[:, [2, 0, 1]], npoints)
+
+
+def _caps(tri: Mapping[str, Any], domain: Domain, base: Given, switches: Switches) -> Floats:
     caps = np.full(len(domain.simplices), math.inf)
     inside = domain.labels >= 0
     if switches.area is not None:
@@ -147,8 +231,16 @@ def _caps(tri: Mapping[str, Any], domain: Domain, index: Any, switches: Switches
     elif "a" in switches.on and tri.get("triangle_max_area") is not None:
         count = len(tri["triangles"])
         given = rows_of(tri["triangle_max_area"], None, "triangle_max_area", count)[:, 0]
-        centers = domain.points[domain.simplices[inside]].mean(axis=1)
-        wanted = given[_homes(centers, index)]
+        number = np.full(len(inside) + 1, -1)
+        number[:-1][inside] = np.arange(np.count_nonzero(inside))
+        wanted = given[
+            base.homes(
+                domain.points,
+                domain.simplices[inside],
+                number[domain.neighbors[inside]],
+                domain.labels[inside],
+            )
+        ]
         caps[inside] = np.where(wanted > 0, wanted, math.inf)
     return caps
 
@@ -156,7 +248,7 @@ def _caps(tri: Mapping[str, Any], domain: Domain, index: Any, switches: Switches
 def not_reached(tri: Mapping[str, Any], found: Mesh, base: Any, switches: Switches) -> str | None:
     """A warning about triangles that miss bounds because segments were not split; None if none do.
 
-    `base` are the triangles before points were added: ConstrainedDelaunay, or a tuple from `again`.
+    `base` are the triangles before points were added: ConstrainedDelaunay, or `Given`.
     """
     if not switches.fixed:
         return None
@@ -179,11 +271,11 @@ def _allowed(tri: Mapping[str, Any], found: Mesh, base: Any, switches: Switches)
     """Return the maximum area for each triangle of a mesh."""
     if switches.area is not None or "a" not in switches.on:
         return math.inf if switches.area is None else switches.area
-    if isinstance(base, tuple):
+    if isinstance(base, Given):
         if tri.get("triangle_max_area") is None:
             return math.inf
         given = rows_of(tri["triangle_max_area"], None, "triangle_max_area")[:, 0]
-        wanted = given[_homes(found.points[found.simplices].mean(axis=1), base[2])]
+        wanted = given[_homes_of(found, base)]
     else:
         areas = rows_of(tri.get("regions"), 4, "regions")[:, 3]
         if not len(areas):
@@ -191,13 +283,6 @@ def _allowed(tri: Mapping[str, Any], found: Mesh, base: Any, switches: Switches)
         # The last row is for triangles without a seed, with number -1.
         wanted = np.append(areas, 0.0)[found.region]
     return np.where(wanted > 0, wanted, math.inf)
-
-
-def _homes(places: Floats, index: Any) -> Indices:
-    """The given triangle of each place, or the nearest one."""
-    place = index.locate(np.ascontiguousarray(places), 1)
-    homes: Indices = np.where(place.simplex >= 0, place.simplex, place.beside)
-    return homes
 
 
 def interpolated(found: Mesh, values: Floats, base: Any) -> Floats:
@@ -211,8 +296,8 @@ def interpolated(found: Mesh, values: Floats, base: Any) -> Floats:
     places = np.ascontiguousarray(found.points[~old])
     if not len(places):
         return out
-    if isinstance(base, tuple):
-        simplices, _, index = base
+    if isinstance(base, Given):
+        simplices, index = base.simplices, base.index
     else:
         simplices, index = base.simplices, base._locator
     place = index.locate(places, 1)
@@ -230,7 +315,7 @@ def interpolated(found: Mesh, values: Floats, base: Any) -> Floats:
 
 def _with_crossings(values: Floats, base: Any) -> Floats:
     """Values of vertices added at crossings: the mean of those of their neighbors."""
-    if isinstance(base, tuple) or not base.nadded:
+    if isinstance(base, Given) or not base.nadded:
         return values
     full = np.concatenate((values, np.full((base.nadded, values.shape[1]), np.nan)))
     indptr, indices = base.vertex_neighbor_vertices

@@ -35,6 +35,7 @@ __all__ = [
     "Domain",
     "Lines",
     "extended",
+    "labels_beside",
     "needles_in",
     "of_constrained",
     "refined",
@@ -296,10 +297,22 @@ def triangulated(
     # magnitudes.
     points = points / unit_of(points)
     made, _ = _core.constrained2(points, segments, False, False, 0, "auto", count)
-    simplices, constrained = made.simplices, made.constrained
-    component = _core.components2(made.neighbors, constrained)
+    walls = made.simplices, made.neighbors, made.constrained
+    return made, labels_beside(walls, edges, labels, len(points))
+
+
+def labels_beside(
+    walls: tuple[Indices, Indices, Bools], edges: Indices, labels: Indices, npoints: int
+) -> Indices:
+    """Return labels of triangles from labels of directed edges, to whose left they are.
+
+    `walls` are triangles, their neighbors, and which of their sides separate components. The label
+    is -1 in components without one of `edges`, (e, 2).
+    """
+    simplices, neighbors, constrained = walls
+    component = _core.components2(neighbors, constrained)
     t, k = np.nonzero(constrained)
-    n = np.int64(len(points))
+    n = np.int64(npoints)
     tail, head = topology.half_edges(simplices, t, k)
     keys = tail * n + head
     known = edges[:, 0] * n + edges[:, 1]
@@ -309,7 +322,7 @@ def triangulated(
     same = known[partner] == keys
     of_component = np.full(int(component.max(initial=-1)) + 1, -1, dtype=np.int32)
     of_component[component[t[same]]] = labels[partner[same]]
-    return made, of_component[component]
+    return of_component[component]
 
 
 def sides_at(
