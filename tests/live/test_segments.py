@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import pickle
 import random
 import threading
 from fractions import Fraction
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -21,6 +23,8 @@ from delone import (
     HandleError,
     InputError,
 )
+from delone.dynamic import DynamicReport, validation
+from tiers import seeds
 
 CIRCLE = [
     (sx * x, sy * y)
@@ -29,7 +33,18 @@ CIRCLE = [
     for sy in (1, -1)
 ] + [(0.0, 0.0)]
 
+JUNCTIONS = [(0.1, 0.2), (9.3, 7.7), (0.4, 8.1), (8.8, 0.3), (5.2, 9.9)]
+
+
+def on_a_road(draw: random.Random) -> tuple[float, float]:
+    """Return a junction, or a point of one of few roads between them, rounded."""
+    (a, b), (c, d) = draw.sample(JUNCTIONS, 2)
+    t = draw.randrange(9) / 8 if draw.random() < 0.5 else draw.random()
+    return a + t * (c - a), b + t * (d - b)
+
+
 PLACES = {
+    "roads": on_a_road,
     "lattice of 3": lambda draw: (float(draw.randrange(3)), float(draw.randrange(3))),
     "lattice of 6": lambda draw: (float(draw.randrange(6)), float(draw.randrange(6))),
     "circle": lambda draw: draw.choice(CIRCLE),
@@ -141,6 +156,7 @@ class Twin:
         numbers = live.segment_handles
         expected = [(numbers[s], numbers[t], v) for s, t, v in fresh.report.crossings]
         assert sorted(met) == sorted(expected)
+        assert live.validate(), str(live.validate())
 
     def nearest(self) -> None:
         for x, y in [self.place(self.draw) for _ in range(2 if len(self.live) else 0)]:
@@ -379,3 +395,136 @@ def test_handles_have_any_dtype_of_integers(dtype: Any) -> None:
     assert len(live.insert_segments(np.array([(0, 2)], dtype=dtype)))
     with pytest.raises(DtypeError, match="below 2"):
         live.insert_segments(np.array([(0, 2**63)], dtype=np.uint64))
+
+
+def test_a_segment_is_straight_again_when_the_crossing_that_bent_it_is_gone() -> None:
+    """A crossing may be rounded to an end of a segment, where another segment then bends."""
+    almost = 0.9999999999999999
+    points = [(-1e3, 3e3), (1, -2), (2, -1), (-1, -3), (-1, -2), (-almost, almost)]
+    live = Dynamic(points, [(4, 2), (1, 0), (3, 5)], crossing="split")
+    bent = len(live.segments)
+    live.remove_segments([0])
+    fresh = ConstrainedDelaunay(points, [(1, 0), (3, 5)], crossing="split")
+    assert bent > len(live.segments) == len(fresh.segments)
+    assert places(live.points, live.simplices) == places(fresh.points, fresh.simplices)
+
+
+@pytest.mark.parametrize("block", seeds(1, deep=25))
+def test_side_roads_leave_a_road_as_a_fresh_build_has_it(block: int) -> None:
+    bent = 0
+    for seed in range(120 * block, 120 * block + 120):
+        draw = np.random.default_rng(seed)
+        a, b = draw.random((2, 2)) * 1000
+        points, segments = [a, b], [(0, 1)]
+        for _ in range(3):
+            points += [a + (0.05 + 0.9 * draw.random()) * (b - a), draw.random(2) * 1000]
+            segments.append((len(points) - 2, len(points) - 1))
+        points += list(draw.random((6, 2)) * 1000)
+        live = Dynamic(points, segments, crossing="split")
+        k = int(draw.integers(1, 4))
+        met = live.crossings[:, :2].tolist()
+        bent += [0, k] in met and any(k in pair for pair in met if pair[0])
+        live.remove_segments([k])
+        fresh = ConstrainedDelaunay(points, segments[:k] + segments[k + 1 :], crossing="split")
+        assert places(live.points, live.simplices) == places(fresh.points, fresh.simplices)
+        assert len(live.segments) == len(fresh.segments)
+    assert bent > 5
+
+
+@pytest.mark.parametrize("edit", ["remove", "move"])
+def test_a_crossing_is_named_by_a_handle_that_is_there(edit: str) -> None:
+    """The crossing is rounded to an end of a segment, of which there is a duplicate before it."""
+    named = 0
+    for seed in range(40):
+        draw = np.random.default_rng(seed)
+        a, b, far = draw.random((3, 2)) * 10
+        end = a + draw.random() * (b - a)
+        live = Dynamic([a, b, end, end, far], [(0, 1), (3, 4)], crossing="split")
+        before = live.crossings
+        if len(before) == 0 or len(live) > 5:
+            continue
+        named += 1
+        assert before.tolist() == [[0, 1, 2]]
+        if edit == "remove":
+            live.remove([2])
+        else:
+            live.move([2], [(50, 50)])
+        assert live.crossings.tolist() == [[0, 1, 3]]
+        # Back again, also by a snapshot and a pickle.
+        state = live.snapshot()
+        live.move([3], [end])
+        live.restore(state)
+        assert pickle.loads(pickle.dumps(live)).crossings.tolist() == [[0, 1, 3]]
+    assert named > 5
+
+
+def faulty(live: Dynamic, **other: Any) -> DynamicReport:
+    """Validate the state of a triangulation with other arrays in place of some."""
+    plane: Any = live._live
+    made, own = plane.arrays(), plane.segments()
+    arrays = {name: getattr(made, name) for name in ("handles", "points", "simplices", "neighbors")}
+    arrays |= {"constrained": made.constrained}
+    lists = {name: getattr(own, name) for name in ("handles", "ends", "crossings", "added")}
+    of_segments = {name[4:]: other.pop(name) for name in list(other) if name.startswith("own_")}
+    return validation.validate(
+        SimpleNamespace(**arrays | other),
+        SimpleNamespace(**lists | of_segments),
+        split=True,
+        workers=1,
+    )
+
+
+def faults_of(report: DynamicReport) -> dict[str, Any]:
+    """Return the fields that are not empty."""
+    every = {each.name: getattr(report, each.name).tolist() for each in dataclasses.fields(report)}
+    return {name: faults for name, faults in every.items() if faults}
+
+
+def test_validation_judges_the_present_arrays() -> None:
+    square = [(0, 0), (4, 0), (4, 4), (0, 4), (9, 2)]
+    live = Dynamic(square, [(0, 2), (1, 3)], crossing="split")
+    made, own = live._live.arrays(), live._live.segments()
+    assert faults_of(faulty(live)) == {}
+    # A segment that is not marked, and edges that are although no segment runs along them.
+    found = faults_of(faulty(live, constrained=np.zeros_like(made.constrained)))
+    assert found["uncovered"] == [0, 1]
+    assert len(found["flags"]) == 4
+    found = faults_of(faulty(live, constrained=np.ones_like(made.constrained)))
+    assert list(found) == ["flags"]
+    # A crossing that stays when a segment is gone, with the detour through it.
+    found = faults_of(
+        faulty(
+            live, own_handles=own.handles[:1], own_ends=own.ends[:1], own_crossings=own.crossings
+        )
+    )
+    assert found["surplus"] == [5]
+    assert found["crossings"] == [[0, 1, 5]]
+    assert found["uncovered"] == [0]
+    # A crossing with the name of another point, and one that is not listed.
+    wrong = np.array([[0, 1, 2]])
+    assert faults_of(faulty(live, own_crossings=wrong)) == {"crossings": [[0, 1, 2], [0, 1, 5]]}
+    assert faults_of(faulty(live, own_crossings=wrong[:0])) == {"crossings": [[0, 1, 5]]}
+    # Triangles of points alone, in which the segment is no edge.
+    plain = Dynamic([(0, 0), (4, 0), (9, 1), (4, 3), (0, 3)])
+    flat, marks = plain._live.arrays(), np.zeros((3, 3), dtype=bool)
+    live = Dynamic(plain.points, [(1, 4), (0, 2)], crossing="split")
+    assert not faulty(live, simplices=flat.simplices, neighbors=flat.neighbors, constrained=marks)
+    live = Dynamic(plain.points, [(0, 2)])
+    found = faults_of(
+        faulty(live, simplices=flat.simplices, neighbors=flat.neighbors, constrained=marks)
+    )
+    assert found == {"absent": [[0, 2]], "uncovered": [0]}
+    # A triangle that is turned over.
+    simplices = live.simplices.copy()
+    simplices[0] = simplices[0, ::-1]
+    assert 0 in faults_of(faulty(live, simplices=simplices))["orientation"]
+
+
+def test_validation_finds_a_segment_that_kept_a_detour() -> None:
+    """The report is that of the arrays that there are, whatever a new build would have."""
+    points = [(0, 0), (8, 0), (4, 1e-300), (4, 6), (1, 5), (7, 5), (4, -7)]
+    bent = Dynamic(points, [(0, 2), (2, 1)])
+    assert bent.validate()
+    found = faults_of(faulty(bent, own_handles=np.array([7]), own_ends=np.array([[0, 1]])))
+    assert found["uncovered"] == [7]
+    assert found["flags"]

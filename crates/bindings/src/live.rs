@@ -327,7 +327,7 @@ impl Live2 {
     fn segments(&self, py: Python<'_>) -> PyResult<LiveSegments2> {
         let (handles, ends, crossings, added, total) = self.with(py, usize::MAX, |plane, _| {
             let (handles, ends) = plane.segments()?;
-            let crossings = plane.crossings().iter().map(|c| c.map(i64::from));
+            let crossings = plane.crossings()?.into_iter().map(|c| c.map(i64::from));
             let added = plane.crossing_rows().iter().copied().map(i64::from);
             let crossings: Vec<_> = crossings.collect();
             let added: Vec<_> = added.collect();
@@ -422,10 +422,19 @@ impl Live2 {
             .map(LiveState2)
     }
 
-    /// Restores a state.
-    fn restore(&self, py: Python<'_>, state: &LiveState2) -> PyResult<()> {
+    /// Restores a state; not if `known` is given and is not the number of edits so far. Whether it was
+    /// restored.
+    #[pyo3(signature = (state, known=None))]
+    fn restore(&self, py: Python<'_>, state: &LiveState2, known: Option<i64>) -> PyResult<bool> {
         let state = &state.0;
-        self.edit(py, usize::MAX, |plane, watch| plane.restore(state, watch))
+        self.with(py, usize::MAX, |plane, watch| {
+            if known.is_some_and(|known| known != self.edits.load(Ordering::Relaxed)) {
+                return Ok(false);
+            }
+            plane.restore(state, watch)?;
+            self.edits.fetch_add(1, Ordering::Relaxed);
+            Ok(true)
+        })
     }
 }
 

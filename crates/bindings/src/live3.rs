@@ -234,10 +234,19 @@ impl Live3 {
             .map(LiveState3)
     }
 
-    /// Restores a state.
-    fn restore(&self, py: Python<'_>, state: &LiveState3) -> PyResult<()> {
+    /// Restores a state; not if `known` is given and is not the number of edits so far. Whether it was
+    /// restored.
+    #[pyo3(signature = (state, known=None))]
+    fn restore(&self, py: Python<'_>, state: &LiveState3, known: Option<i64>) -> PyResult<bool> {
         let state = &state.0;
-        self.edit(py, usize::MAX, |space, watch| space.restore(state, watch))
+        self.with(py, usize::MAX, |space, watch| {
+            if known.is_some_and(|known| known != self.edits.load(Ordering::Relaxed)) {
+                return Ok(false);
+            }
+            space.restore(state, watch)?;
+            self.edits.fetch_add(1, Ordering::Relaxed);
+            Ok(true)
+        })
     }
 }
 

@@ -2,5 +2,6 @@
 
 from delone.dynamic.dynamic import Dynamic
 from delone.dynamic.results import Changes, Snapshot
+from delone.dynamic.validation import DynamicReport
 
-__all__ = ["Changes", "Dynamic", "Snapshot"]
+__all__ = ["Changes", "Dynamic", "DynamicReport", "Snapshot"]

@@ -9,6 +9,7 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_plain_array, as_workers
 from delone.constrained import ConstrainedDelaunay
+from delone.dynamic import validation
 from delone.errors import DtypeError, HandleError, InputError, ShapeError
 from delone.immutable import sealed
 
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
+
+    from delone.dynamic.validation import DynamicReport
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -35,6 +38,7 @@ class Segmented:
     __slots__ = ("_edit", "_live", "_workers")
 
     _live: _core.Live2 | _core.Live3
+    # An object of its own for each state.
     _edit: object
     _workers: int | None
 
@@ -194,6 +198,13 @@ class Segmented:
             workers=self._workers,
             planar=True,
         )
+
+    def _validated_segments(self) -> DynamicReport:
+        """Check the present triangulation with its segments, all of one state."""
+        plane = self._plane().state().open()
+        split = plane.constraints()[1]
+        made, own = plane.arrays(), plane.segments()
+        return validation.validate(made, own, split=split, workers=self._workers)
 
     def _refuse_held(self, handles: Handles) -> None:
         """Raise an error if points to be removed are ends of segments, or crossings."""

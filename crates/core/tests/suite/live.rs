@@ -467,7 +467,7 @@ fn marks_and_links_agree_after_edits_of_segments() {
             .unwrap();
         live.check().unwrap();
     }
-    assert!(!live.crossings().is_empty());
+    assert!(!live.crossings().unwrap().is_empty());
     for i in 0..60i64 {
         let segments = [(17 * i) % 60];
         live.remove_segments(&segments, 1, &idle()).unwrap();

@@ -355,9 +355,18 @@ impl Plane {
         self.segments.total()
     }
 
-    /// Two segments and the row of the vertex where they cross, for each crossing.
-    pub fn crossings(&self) -> &[[u32; 3]] {
-        &self.segments.tangle.crossings
+    /// Two segments and the row of the vertex where they cross, for each crossing, ascending. Of several
+    /// rows there it is the smallest, which another one is as soon as it is gone.
+    pub fn crossings(&self) -> Result<Vec<[u32; 3]>> {
+        let known = &self.segments.tangle.crossings;
+        let mut crossings = with_room(known.len())?;
+        crossings.extend(
+            known
+                .iter()
+                .map(|&[s, t, v]| [s, t, self.mesh.sites[v as usize].head]),
+        );
+        crossings.sort_unstable();
+        Ok(crossings)
     }
 
     /// The rows of vertices that only crossings need, ascending.

@@ -1,8 +1,9 @@
 //! Segments are taken out of the mesh: those that are removed or moved, and those that cross them.
 //!
 //! Segments that cross are taken out together, with all that cross those, and their crossings go as well:
-//! a *component*. What remains is triangulated as if they had never been there (see `constrained`), and
-//! `weave` puts back those that stay.
+//! a *component*. A crossing may be a point of the input, and then a segment that bends there does so
+//! because of another one at the same point: these are of one component as well. What remains is
+//! triangulated as if they had never been there (see `constrained`), and `weave` puts back those that stay.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -159,7 +160,9 @@ impl Plane {
         met.extend(tangle.rows.iter().map(|&row| self.vertex(row)));
         met.sort_unstable();
         let is_met = |v: &u32| met.binary_search(v).is_ok();
-        let part = component(&tangle, seeds, is_met)?;
+        let part = component(&tangle, seeds, |segment, v| {
+            is_met(&v) || self.bends(segment, v)
+        })?;
         let own = tangle.edges.iter().filter(|e| part.contains(&e.0));
         let edges: BTreeSet<[u32; 2]> = own.map(|&(_, [u, v])| [u.min(v), u.max(v)]).collect();
         // Another segment may run along an edge between two points.
@@ -188,21 +191,35 @@ impl Plane {
         loose.segments.extend(part);
         Ok(outcome)
     }
+
+    /// Whether a vertex is not exactly on a segment that runs through it.
+    fn bends(&self, segment: u32, v: u32) -> bool {
+        let ends = self.segments.ends(i64::from(segment)).unwrap_or_default();
+        let [a, b] = ends.map(|row| self.mesh.at(self.vertex(row)));
+        !orient2d(a, b, self.mesh.at(v)).is_zero()
+    }
 }
 
-/// Tangled segments, and all that share crossings with them, directly or not.
+/// Tangled segments, and all that depend on them, directly or not: `binds` tells whether a vertex makes
+/// all segments at it depend on each other, because the given one would not be there without them.
 fn component(
     tangle: &Tangle,
     seeds: &[u32],
-    is_met: impl Fn(&u32) -> bool,
+    binds: impl Fn(u32, u32) -> bool,
 ) -> Result<BTreeSet<u32>> {
     let mut at: Vec<(u32, u32)> = Vec::new();
+    let mut bound = BTreeSet::new();
     for &(segment, ends) in &tangle.edges {
-        for v in ends.into_iter().filter(&is_met) {
+        for v in ends {
             push(&mut at, (v, segment))?;
+            if binds(segment, v) {
+                bound.insert(v);
+            }
         }
     }
+    at.retain(|(v, _)| bound.contains(v));
     at.sort_unstable();
+    at.dedup();
     let mut part: BTreeSet<u32> = seeds.iter().copied().collect();
     let mut waiting: Vec<u32> = part.iter().copied().collect();
     while let Some(segment) = waiting.pop() {

@@ -32,7 +32,7 @@ pub struct Tangle {
     pub segments: Vec<u32>,
     /// The rows of vertices that only crossings need, ascending.
     pub rows: Vec<u32>,
-    /// Two segments, ascending, and the row of the vertex where they cross.
+    /// Two segments, ascending, and the vertex where they cross.
     pub crossings: Vec<[u32; 3]>,
     /// The edges of these segments: the segment, ascending, and two vertices.
     pub edges: Vec<(u32, [u32; 2])>,

@@ -145,13 +145,6 @@ impl Plane {
         }
         let mut tangle = tangled(&made, &input, &ends)?;
         tangle.segments.iter_mut().for_each(|i| *i = number(*i));
-        for crossing in &made.crossings {
-            let [s, t, v] = *crossing;
-            push(
-                &mut tangle.crossings,
-                [number(s), number(t), rows[v as usize]],
-            )?;
-        }
         tangle.rows.extend_from_slice(&rows[input.rows.len()..]);
         sort(&mut tangle.rows, watch)?;
         let mut sorted: Vec<(u32, usize)> = with_room(rows.len())?;
@@ -168,6 +161,11 @@ impl Plane {
             total: input.total,
         };
         self.replace(&with_crossings, workers, watch)?;
+        for &[s, t, v] in &made.crossings {
+            let v = self.vertex(rows[v as usize]);
+            push(&mut tangle.crossings, [number(s), number(t), v])?;
+        }
+        tangle.crossings.sort_unstable();
         self.link_pieces(&made, &rows, &mut tangle, number, watch)?;
         self.segments.tangle = Arc::new(tangle);
         Ok(())

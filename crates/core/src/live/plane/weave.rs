@@ -287,8 +287,7 @@ impl Plane {
     ) -> Result<()> {
         let number = |i: u32| threads[i as usize].0;
         for &([i, j], v) in knots {
-            let row = self.mesh.sites[v as usize].head;
-            push(&mut tangle.crossings, [number(i), number(j), row])?;
+            push(&mut tangle.crossings, [number(i), number(j), v])?;
         }
         for &(i, ends) in edges {
             push(&mut tangle.segments, number(i))?;

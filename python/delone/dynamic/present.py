@@ -1,0 +1,303 @@
+"""The present state of a live triangulation as arrays, and queries in it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone import _core, location
+from delone._arrays import as_vectors
+from delone.delaunay import Delaunay
+from delone.dynamic.segments import Segmented
+from delone.errors import ShapeError
+from delone.immutable import sealed
+from delone.plane.dimension import PLANE
+from delone.space.dimension import SPACE
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.dimension import Dimension, Locator
+    from delone.location import Location
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+    Handles = NDArray[np.int64]
+
+__all__ = ["Present"]
+
+
+class Present(Segmented):
+    """What a `Dynamic` tells about its present state."""
+
+    __slots__ = ("_index", "_known", "_present")
+
+    # The arrays of a state, and the object that stands for it.
+    _present: tuple[object, _core.LiveArrays2 | _core.LiveArrays3] | None
+    # What finds simplices, and the arrays that it is for.
+    _index: tuple[_core.LiveArrays2 | _core.LiveArrays3, Locator] | None
+    # The number of an edit, and the handles of all points after it.
+    _known: tuple[int, Handles]
+
+    def _arrays(self) -> _core.LiveArrays2 | _core.LiveArrays3:
+        """Return the arrays of the present state, made once after each edit."""
+        edit, present = self._edit, self._present
+        if present is None or present[0] is not edit:
+            made = self._live.arrays()
+            for array in (made.handles, made.points, made.simplices, made.neighbors):
+                sealed(array)
+            sealed(made.duplicates)
+            present = (edit, made)
+            self._present = present
+        return present[1]
+
+    @property
+    def points(self) -> Floats:
+        """The coordinates, (n, d), in ascending order of handles."""
+        return self._arrays().points
+
+    @property
+    def handles(self) -> Handles:
+        """The handles of the rows of `points`, ascending, (n,)."""
+        return self._arrays().handles
+
+    @property
+    def simplices(self) -> Indices:
+        """The simplices as rows of `points`, positively oriented, (m, d + 1)."""
+        return self._arrays().simplices
+
+    @property
+    def neighbors(self) -> Indices:
+        """The simplex opposite each vertex, (m, d + 1); -1 outside."""
+        return self._arrays().neighbors
+
+    @property
+    def duplicates(self) -> Handles:
+        """Handles of duplicates, and the vertex of each, (k, 2): the smallest handle there."""
+        made = self._arrays()
+        return sealed(made.handles[made.duplicates])
+
+    @property
+    def ndim(self) -> int:
+        """The number of coordinates, 2 or 3."""
+        return 2 if isinstance(self._live, _core.Live2) else 3
+
+    @property
+    def npoints(self) -> int:
+        """The number of points, duplicates included."""
+        return self._live.counts()[0]
+
+    @property
+    def nsimplex(self) -> int:
+        """The number of simplices; 0 if all points are on one line or in one plane."""
+        return self._live.counts()[2]
+
+    @property
+    def workers(self) -> int | None:
+        """Maximum number of threads; None for one per core. The result does not depend on it."""
+        return self._workers
+
+    # Queries.
+
+    def find_simplex(self, xi: ArrayLike, *, tolerance: float = 0.0) -> Indices:
+        """Find the simplices that contain points.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., d)
+            Points to locate. NaN and infinity are outside.
+        tolerance : float, optional
+            Points outside at most this far away are inside; as in `Delaunay.find_simplex`.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            Rows of `simplices`, the first one if there are several; -1 outside.
+
+        Raises
+        ------
+        InputError
+            `tolerance` is negative or NaN.
+
+        Notes
+        -----
+        The arrays are made again after an edit; `corners` and `interpolate` do without.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> Dynamic([(0, 0), (1, 0), (0, 1)]).find_simplex([(0.25, 0.25), (2, 2)])
+        array([ 0, -1], dtype=int32)
+        """
+        queries = as_vectors(xi, self.ndim, name="xi")
+        if self.nsimplex == 0:
+            return np.full(queries.shape[:-1], -1, dtype=np.int32)
+        if tolerance != 0:
+            return self.locate(queries, tolerance=tolerance).simplex
+        return location.find(_dimension(self.ndim), self._locator()[1], queries, self._workers)
+
+    def locate(self, xi: ArrayLike, *, tolerance: float = 0.0) -> Location:
+        """Locate points: simplices, barycentric weights, nearest points of the boundary.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., d)
+            Points to locate.
+        tolerance : float, optional
+            Points outside at most this far away are inside; as in `Delaunay.locate`.
+
+        Returns
+        -------
+        Location
+            Its `simplex` and `beside` are rows of `simplices`, its `facet` rows of `points`.
+
+        Raises
+        ------
+        DegenerateInputError
+            There is no simplex.
+        InputError
+            `tolerance` is negative or NaN.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> Dynamic([(0, 0), (4, 0), (0, 4)]).locate((1, 2)).barycentric.max()
+        np.float64(0.5)
+        """
+        made, index = self._locator()
+        return location.locate_near(
+            _dimension(self.ndim),
+            index,
+            made.points,
+            made.simplices,
+            xi,
+            tolerance=tolerance,
+            workers=self._workers,
+        )
+
+    def _locator(self) -> tuple[_core.LiveArrays2 | _core.LiveArrays3, Locator]:
+        """Return the present arrays, and what finds simplices in them."""
+        made, index = self._arrays(), self._index
+        if not len(made.simplices):
+            # The error says why there is none.
+            Delaunay(made.points, workers=self._workers, planar=True)
+        if index is None or index[0] is not made:
+            locator = _dimension(self.ndim).locator
+            index = (made, locator(made.points, made.simplices, made.neighbors))
+            self._index = index
+        return index
+
+    def corners(self, xi: ArrayLike) -> tuple[Handles, Floats]:
+        """Return corners and weights of the simplices that contain points.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., d)
+            Points to locate.
+
+        Returns
+        -------
+        handles : ndarray of int64, shape (..., d + 1)
+            The handles of the corners of a simplex with the point inside or on its boundary; -1
+            outside.
+        weights : ndarray of float64, shape (..., d + 1)
+            Their barycentric weights; NaN outside.
+
+        Notes
+        -----
+        By a walk in the present state, without arrays: cheap between edits.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> handles, weights = Dynamic([(0, 0), (4, 0), (0, 4)]).corners((1, 2))
+        >>> sorted(zip(handles.tolist(), weights.tolist(), strict=True))
+        [(0, 0.25), (1, 0.25), (2, 0.5)]
+        """
+        queries = as_vectors(xi, self.ndim, name="xi")
+        flat = np.ascontiguousarray(queries.reshape(-1, self.ndim))
+        handles, weights = self._live.corners(flat)
+        shape = (*queries.shape[:-1], self.ndim + 1)
+        return handles.reshape(shape), weights.reshape(shape)
+
+    def nearest(self, xi: ArrayLike) -> Handles:
+        """Find the points that are nearest to others.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., d)
+            Points, inside or outside.
+
+        Returns
+        -------
+        ndarray of int64, shape (...)
+            The handle of the nearest point, the smallest if there are several; -1 if a coordinate
+            is NaN or infinite, or there is no point.
+
+        Notes
+        -----
+        Exact, by a walk in the present state, without arrays: cheap between edits.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> Dynamic([(0, 0), (1, 0), (0, 1)]).nearest([(0.9, 0.2), (0.5, 0.5)])
+        array([1, 0])
+        """
+        queries = as_vectors(xi, self.ndim, name="xi")
+        flat = np.ascontiguousarray(queries.reshape(-1, self.ndim))
+        return self._live.nearest(flat).reshape(queries.shape[:-1])
+
+    def interpolate(self, values: ArrayLike, xi: ArrayLike) -> Floats:
+        """Interpolate values linearly in the present simplices.
+
+        Parameters
+        ----------
+        values : array_like, shape (n, ...)
+            A value for each row of `points`; of duplicates, that of the vertex counts.
+        xi : array_like, shape (..., d)
+            Where to interpolate.
+
+        Returns
+        -------
+        ndarray of float64, shape (..., ...)
+            The values; NaN outside.
+
+        Raises
+        ------
+        ShapeError
+            There are not as many values as points.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> live = Dynamic([(0, 0), (4, 0), (0, 4)])
+        >>> live.remove([0])
+        >>> _ = live.insert([(4, 4)])
+        >>> live.interpolate(live.points.sum(axis=1), (3, 3))
+        array(6.)
+        """
+        given = np.asarray(values, dtype=np.float64)
+        queries = as_vectors(xi, self.ndim, name="xi")
+        flat = np.ascontiguousarray(queries.reshape(-1, self.ndim))
+        # One call for all that must be of one state, whatever other threads do.
+        edit, own = self._known
+        corners, weights, now, changed = self._live.weights(flat, edit)
+        if changed is not None:
+            own = changed
+            self._known = now, own
+        if given.ndim == 0 or len(given) != len(own):
+            raise ShapeError(f"values must have {len(own)} rows, one per point, got {given.shape}")
+        shape = (*queries.shape[:-1], *given.shape[1:])
+        if not len(own):
+            return np.full(shape, np.nan)
+        rows = np.searchsorted(own, corners).clip(max=len(own) - 1)
+        shares = weights.reshape(*weights.shape, *(1,) * (given.ndim - 1))
+        found = (shares * given[rows]).sum(axis=1)
+        return np.asarray(found).reshape(shape)
+
+
+def _dimension(ndim: int) -> Dimension:
+    """Return the functions for a number of coordinates."""
+    return PLANE if ndim == 2 else SPACE
