@@ -10,7 +10,7 @@ import pytest
 from delone import ConflictingValuesError, CrossingSegmentsError, InputError, NonFiniteError
 from delone.interpolate import Grid
 from delone.io import write_mesh
-from delone.terrain import TIN
+from delone.terrain import TIN, slopes
 
 SQUARE = [(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)]
 
@@ -162,7 +162,9 @@ def test_gradients_of_any_size_have_normals(unit):
     assert tin.normals == pytest.approx(expected, rel=1e-12, abs=0)
 
 
-def test_positions_on_a_slanted_side_have_heights():
+@pytest.mark.parametrize("block", [1 << 18, 40])
+def test_positions_on_a_slanted_side_have_heights(monkeypatch, block):
+    monkeypatch.setattr(slopes, "_BLOCK", block)  # of one row, or of all
     tin = TIN.from_points([(0, 0, 0), (3, 1, 3), (1, 3, 1)])
     side = np.linspace(0, 1, 31)[:, None] * (3, 1)
     assert np.isnan(tin.heights(side)).any()
