@@ -78,7 +78,7 @@ def test_points_in_space(survey, figures, command, tmp_path):
     path = tmp_path / "labels.csv"
     options = ("--method", "dbscan", "--eps", "40", "-o", path)
     flat = figures("cluster", survey, *options)
-    assert path.read_text().startswith("x,y,label,core\n")
+    assert path.read_text().startswith("x,y,z,label,core\n")
     solid = figures("cluster", survey, "--3d", *options)
     assert path.read_text().startswith("x,y,z,label,core\n")
     assert solid["noise"] > flat["noise"]

@@ -11,7 +11,7 @@ import numpy as np
 import typer
 
 from delone import __version__, cluster
-from delone.atomic import check_target, replacing
+from delone.atomic import replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.options import (
     Classes,
@@ -25,20 +25,17 @@ from delone.cli.options import (
     space_or_plane,
     split,
 )
-from delone.cli.referenced import Crs, Planar, referenced, require_known
+from delone.cli.referenced import Crs, Planar, note, referenced, require_known
 from delone.cli.report import Stopwatch, peak_memory
+from delone.cli.rows import ROW_SUFFIXES, carried, read_rows, ready_rows, renaming, write_rows
 from delone.cli.show import print_json, print_report, spinner
 from delone.cli.solid import is_space
-from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
-from delone.extras import require
-from delone.io import input_suffixes, read_points
+from delone.io import input_suffixes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = ["cluster_points"]
-
-_SUFFIXES = (*TABLE_SUFFIXES, ".csv")
 
 
 class Method(StrEnum):
@@ -59,7 +56,6 @@ class Selection(StrEnum):
 class Labels(NamedTuple):
     """What is known of each point."""
 
-    points: NDArray[np.float64]
     labels: NDArray[np.int32]
     others: dict[str, NDArray[Any]]
 
@@ -95,7 +91,7 @@ def cluster_points(
             "--output",
             "-o",
             metavar="OUTPUT",
-            help="File of points with labels, once or more: " + " ".join(_SUFFIXES),
+            help="File of points with labels, once or more: " + " ".join(ROW_SUFFIXES),
         ),
     ] = None,
     min_cluster_size: Annotated[
@@ -139,7 +135,10 @@ def cluster_points(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Find clusters of points, and write the points with their labels; noise is -1."""
+    """Find clusters of points, and write the points with their labels; noise is -1.
+
+    The output has all columns of the input.
+    """
     given = {
         "--min-cluster-size": min_cluster_size,
         "--min-samples": min_samples,
@@ -156,13 +155,17 @@ def cluster_points(
     with writing():
         protect_inputs(output or (), source)
         for path in output or ():
-            _ready(path)
+            ready_rows(path, "labels")
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
         with reading(), watch.stage("read"):
-            survey = read_points(
-                source, columns=split(columns), classes=class_numbers(classes), layer=layer
+            survey = read_rows(
+                source,
+                quiet=quiet,
+                columns=split(columns),
+                classes=class_numbers(classes),
+                layer=layer,
             )
             survey = referenced(survey, crs, planar=planar, quiet=quiet)
         say(f"clustering {len(survey):,} points")
@@ -171,11 +174,16 @@ def cluster_points(
             points = np.column_stack((survey.points, survey.z))
         with watch.stage("cluster"):
             found = _found(method, points, _options(given, workers))
+        own = {"label": found.labels, **found.others}
+        others, renamed = carried(survey, list(own))
+        if output:
+            note(renaming(renamed), quiet=quiet)
         with writing(), ExitStack() as stack:
             for path in output or ():
                 say(f"writing {path.name}")
                 with watch.stage(f"write {path.name}"):
-                    _write_one(found, survey.crs, stack.enter_context(replacing(path)))
+                    target = stack.enter_context(replacing(path))
+                    write_rows(target, survey, others, own, layer="labels")
     sizes = np.bincount(found.labels[found.labels >= 0])
     figures: dict[str, Any] = {
         "delone": __version__,
@@ -187,6 +195,8 @@ def cluster_points(
         "noise": int((found.labels < 0).sum()),
         "largest": int(sizes.max(initial=0)),
         "smallest": int(sizes.min()) if len(sizes) else 0,
+        "columns": list(others),
+        "renamed": renamed,
         "stages": watch.rows(len(points)),
         "outputs": [str(path) for path in output or ()],
         "peak_memory_bytes": peak_memory(),
@@ -224,43 +234,15 @@ def _found(method: Method, points: NDArray[np.float64], options: dict[str, Any])
     """Labels by a method. Notes about degrees have been printed."""
     if method is Method.HDBSCAN:
         model = cluster.HDBSCAN(**options).fit(points)
-        return Labels(points, model.labels_, {"probability": model.probabilities_})
+        return Labels(model.labels_, {"probability": model.probabilities_})
     if method is Method.DBSCAN:
         dense = cluster.DBSCAN(**options).fit(points)
         is_core = np.zeros(len(points), dtype=bool)
         is_core[dense.core_sample_indices_] = True
-        return Labels(points, dense.labels_, {"core": is_core})
+        return Labels(dense.labels_, {"core": is_core})
     own = {name: options.pop(name) for name in ("height", "n_clusters") if name in options}
     merges = cluster.single_linkage(points, **options)
-    return Labels(points, merges.labels(**own), {})
-
-
-def _ready(path: Path) -> None:
-    """Check that a file can be written before any work is done."""
-    suffix = path.suffix.lower()
-    if suffix not in _SUFFIXES:
-        raise Failure(f"{path}: labels can only be written to {' '.join(_SUFFIXES)}", Exit.USAGE)
-    if suffix == ".csv":
-        check_target(path)
-    else:
-        ready_table(path, "labels")
-
-
-def _write_one(found: Labels, crs: str | None, path: Path) -> None:
-    """Write points with labels in place; the suffix determines the format."""
-    if path.suffix.lower() != ".csv":
-        geopandas = require("geopandas", extra="geo", what="writing labels")
-        shapes = geopandas.points_from_xy(*found.points.T)
-        table = {"label": found.labels, **found.others}
-        write_table(geopandas.GeoDataFrame(table, geometry=shapes, crs=crs), path, layer="labels")
-        return
-    others = {name: values * 1 for name, values in found.others.items()}
-    names = [*"xyz"[: found.points.shape[1]], "label", *others]
-    columns = [*found.points.T, found.labels, *others.values()]
-    with path.open("w", encoding="utf-8", newline="\n") as file:
-        file.write(",".join(names) + "\n")
-        rows = zip(*(column.tolist() for column in columns), strict=True)
-        file.writelines(",".join(map(repr, row)) + "\n" for row in rows)
+    return Labels(merges.labels(**own), {})
 
 
 def _print(figures: dict[str, Any], source: str) -> None:

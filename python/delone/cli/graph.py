@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import ExitStack
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 import typer
@@ -25,16 +25,20 @@ from delone.cli.options import (
     space_or_plane,
     split,
 )
-from delone.cli.referenced import Crs, Planar, referenced, require_known
+from delone.cli.referenced import Crs, Planar, note, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
+from delone.cli.rows import ROW_SUFFIXES, carried, read_rows, ready_rows, renaming, write_rows
 from delone.cli.show import print_json, print_report, spinner
 from delone.cli.solid import is_space
 from delone.cli.tables import TABLE_SUFFIXES, write_table
+from delone.counting import counted
 from delone.extras import require
-from delone.io import input_suffixes, read_points
+from delone.io import input_suffixes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from numpy.typing import NDArray
 
     from delone.graphs import Graph
     from delone.io import PointSet
@@ -42,6 +46,19 @@ if TYPE_CHECKING:
 __all__ = ["graph"]
 
 _SUFFIXES = (*TABLE_SUFFIXES, ".csv", ".npz")
+
+
+class Rows(NamedTuple):
+    """The points with the columns of the input, which of these have other names, and the rows."""
+
+    survey: PointSet
+    columns: dict[str, NDArray[Any]]
+    renamed: dict[str, str]
+    own: dict[str, NDArray[Any]]
+
+    def write(self, path: Path) -> None:
+        """Write the points as the layer ``nodes``."""
+        write_rows(path, self.survey, self.columns, self.own, layer="nodes")
 
 
 class Kind(StrEnum):
@@ -95,6 +112,14 @@ def graph(
             help="File of edges, once or more: " + " ".join(_SUFFIXES),
         ),
     ] = None,
+    nodes: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="FILE",
+            help="File of the points with all their columns, and the row of each, which v0 and v1 "
+            "of edges name, once or more: " + " ".join(ROW_SUFFIXES),
+        ),
+    ] = None,
     boundary: Annotated[
         Boundary | None,
         typer.Option(
@@ -126,7 +151,10 @@ def graph(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Compute a graph of neighbors, such as a spanning tree, and write its edges as lines."""
+    """Compute a graph of neighbors, such as a spanning tree, and write its edges as lines.
+
+    Points that have columns are written as well: to a second layer of GeoPackages, or by --nodes.
+    """
     given = {"--boundary": boundary, "--beta": beta, "--region": region, "-k": k}
     _require_own(kind, given)
     if max_length is not None and percentile is not None:
@@ -134,15 +162,23 @@ def graph(
     space = space_or_plane(in_space, in_plane)
     require_known(crs)
     with writing():
-        protect_inputs(output or (), source)
+        protect_inputs([*(output or ()), *(nodes or ())], source)
         for path in output or ():
             _ready(path)
+        for path in nodes or ():
+            ready_rows(path, "nodes")
+        if len({*(output or ()), *(nodes or ())}) < len(output or ()) + len(nodes or ()):
+            raise Failure("--output and --nodes: give each file once", Exit.USAGE)
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
         with reading(), watch.stage("read"):
-            survey = read_points(
-                source, columns=split(columns), classes=class_numbers(classes), layer=layer
+            survey = read_rows(
+                source,
+                quiet=quiet,
+                columns=split(columns),
+                classes=class_numbers(classes),
+                layer=layer,
             )
             survey = referenced(survey, crs, planar=planar, quiet=quiet)
         say(f"computing the graph of {len(survey):,} points")
@@ -153,7 +189,18 @@ def graph(
             found = _MAKE[kind](points, _options(given, workers))
             if max_length is not None or percentile is not None:
                 found = found.prune(max_length=max_length, percentile=percentile)
-        _write(found, survey, output or [], watch, say)
+        own = {"row": np.arange(len(survey))}
+        table = Rows(survey, *carried(survey, list(own)), own)
+        _tell(table, output or [], nodes or [], quiet=quiet)
+        with writing(), ExitStack() as stack:
+            for path in (*(output or ()), *(nodes or ())):
+                say(f"writing {path.name}")
+                with watch.stage(f"write {path.name}"):
+                    target = stack.enter_context(replacing(path))
+                    if path in (nodes or ()):
+                        table.write(target)
+                    else:
+                        _write_one(found, table, target)
     figures: dict[str, Any] = {
         "delone": __version__,
         "input": str(source),
@@ -166,8 +213,10 @@ def graph(
         "isolated": int((found.degrees == 0).sum()) - len(found.duplicates),
         "length": finite_or_none(float(found.lengths.sum())),
         "longest": finite_or_none(float(found.lengths.max(initial=0.0))),
+        "columns": list(table.columns),
+        "renamed": table.renamed,
         "stages": watch.rows(found.npoints),
-        "outputs": [str(path) for path in output or ()],
+        "outputs": [str(path) for path in (*(output or ()), *(nodes or ()))],
         "peak_memory_bytes": peak_memory(),
     }
     if as_json:
@@ -222,21 +271,21 @@ def _ready(path: Path) -> None:
     check_target(path)
 
 
-def _write(
-    found: Graph,
-    survey: PointSet,
-    output: list[Path],
-    watch: Stopwatch,
-    say: Callable[[str], object],
-) -> None:
-    with writing(), ExitStack() as stack:
-        for path in output:
-            say(f"writing {path.name}")
-            with watch.stage(f"write {path.name}"):
-                _write_one(found, survey.crs, stack.enter_context(replacing(path)))
+def _tell(table: Rows, output: list[Path], nodes: list[Path], *, quiet: bool) -> None:
+    """Print notes: which columns have other names, and which are in no file."""
+    with_nodes = [path for path in output if path.suffix.lower() == ".gpkg"]
+    if table.columns and (nodes or with_nodes):
+        note(renaming(table.renamed), quiet=quiet)
+    elif table.columns and output:
+        what = counted(len(table.columns), "further column")
+        note(
+            f"{table.survey.source} has {what}, which edges have not: v0 and v1 are its rows, and "
+            "--nodes FILE writes the points with all columns",
+            quiet=quiet,
+        )
 
 
-def _write_one(found: Graph, crs: str | None, path: Path) -> None:
+def _write_one(found: Graph, table: Rows, path: Path) -> None:
     """Write edges in place; the suffix determines the format."""
     suffix = path.suffix.lower()
     if suffix == ".npz":
@@ -247,7 +296,9 @@ def _write_one(found: Graph, crs: str | None, path: Path) -> None:
             rows = zip(*found.edges.T.tolist(), found.lengths.tolist(), strict=True)
             file.writelines(f"{a},{b},{length!r}\n" for a, b, length in rows)
     else:
-        write_table(found.to_geopandas(crs=crs), path, layer="edges")
+        write_table(found.to_geopandas(crs=table.survey.crs), path, layer="edges")
+        if suffix == ".gpkg" and table.columns:
+            table.write(path)
 
 
 def _print(figures: dict[str, Any], source: str) -> None:

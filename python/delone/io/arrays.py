@@ -55,18 +55,20 @@ def read_points(
     columns: Sequence[str | int] | None,
     attributes: Sequence[str],
     layer: str | None,
+    everything: bool = False,
 ) -> PointSet:
     """Read points from an npy or npz file; see `delone.io.read_points`."""
     source = str(path)
+    wanted = None if everything else attributes
     with _corrupt_is_an_error(source):
         if path.suffix.lower() == ".npy":
             if layer is not None:
                 raise FileFormatError(f"{source}: an npy file has one array and no layers")
             with path.open("rb") as file:
                 require_claim(file, path.stat().st_size, source)
-            return _from_table(np.load(path, mmap_mode="r"), columns, attributes, source)
+            return _from_table(np.load(path, mmap_mode="r"), columns, wanted, source)
         with archived(path) as archive:
-            return _from_archive(archive, columns, attributes, layer, source)
+            return _from_archive(archive, columns, wanted, layer, source)
 
 
 def read_mesh(path: Path) -> MeshFile:
@@ -195,10 +197,13 @@ def _corrupt_is_an_error(source: str) -> Iterator[None]:
 def _from_table(
     table: NDArray[Any],
     columns: Sequence[str | int] | None,
-    attributes: Sequence[str],
+    attributes: Sequence[str] | None,
     source: str,
 ) -> PointSet:
-    """Extract points from one array: (n, 2 or more), or records with named fields."""
+    """Extract points from one array: (n, 2 or more), or records with named fields.
+
+    By default all other columns are attributes.
+    """
     named = table.dtype.names
     if named is None and (table.ndim != 2 or table.shape[1] < 2):
         raise FileFormatError(
@@ -223,6 +228,8 @@ def _from_table(
     plain = named is None and chosen[:2] == [0, 1]
     xy = table[:, :2] if plain else np.column_stack([column(i) for i in chosen[:2]])
     z = as_values(column(chosen[2]), len(table)) if len(chosen) == 3 else None
+    if attributes is None:
+        attributes = [name for i, name in enumerate(names) if i not in chosen]
     further = {name: np.array(column(find_column(names, name, source))) for name in attributes}
     # Points are copied, as a mapped file may be replaced while they are in use.
     points = np.array(as_points(xy, ndim=2), subok=False)
@@ -233,7 +240,7 @@ def _from_table(
 def _from_archive(
     archive: zipfile.ZipFile,
     columns: Sequence[str | int] | None,
-    attributes: Sequence[str],
+    attributes: Sequence[str] | None,
     layer: str | None,
     source: str,
 ) -> PointSet:
@@ -242,11 +249,15 @@ def _from_archive(
         wanted = layer if layer is not None else "points"
         if wanted not in names:
             raise FileFormatError(f"{source} has no array {wanted!r:.80}: {_listed(names)}")
-        survey = _from_table(_member(archive, wanted), columns, (), source)
+        others = attributes if attributes is None else ()
+        survey = _from_table(_member(archive, wanted), columns, others, source)
         z = survey.z
         if z is None and "z" in names and columns is None and layer is None:
             z = as_values(_member(archive, "z"), len(survey))
-        further = {name: _member(archive, name) for name in attributes}
+        further = dict(survey.attributes)
+        if attributes is None:
+            further |= _as_long(archive, len(survey), without=(wanted, "z"))
+        further |= {name: _member(archive, name) for name in attributes or ()}
         crs = _member(archive, "crs") if "crs" in names else None
         return PointSet(
             points=survey.points,
@@ -264,13 +275,25 @@ def _from_archive(
     if len({array.shape for array in members}) != 1:
         raise FileFormatError(f"{source}: the arrays of coordinates have different shapes")
     arrays = [array.reshape(-1) for array in members]
+    further = {name: _member(archive, name) for name in attributes or ()}
+    if attributes is None:
+        further = _as_long(archive, len(arrays[0]), without=[ordered[i] for i in chosen])
     return PointSet(
         points=as_points(np.column_stack(arrays[:2])),
         z=as_values(arrays[2], len(arrays[0])) if len(arrays) == 3 else None,
-        attributes={name: _member(archive, name) for name in attributes},
+        attributes=further,
         source=source,
         columns=tuple(ordered[i] for i in chosen),
     )
+
+
+def _as_long(
+    archive: zipfile.ZipFile, rows: int, *, without: Sequence[str]
+) -> dict[str, NDArray[Any]]:
+    """Return the arrays with a number for each row of points."""
+    names = [name for name in _ordered_names(archive) if name not in without]
+    found = {name: _member(archive, name) for name in names}
+    return {name: array for name, array in found.items() if array.shape == (rows,)}
 
 
 def _ordered_names(archive: zipfile.ZipFile) -> list[str]:

@@ -41,8 +41,11 @@ _LINE = re.compile(rb"^\$([^\n]*)\n?", re.MULTILINE)
 
 
 @contextmanager
-def needed_sections(path: Path, attributes: Sequence[str]) -> Iterator[Path]:
-    """Yield a file with the needed sections of another: itself, or a temporary copy of these."""
+def needed_sections(path: Path, attributes: Sequence[str] | None) -> Iterator[Path]:
+    """Yield a file with the needed sections of another: itself, or a temporary copy of these.
+
+    Values of points are needed if `attributes` has their name, or is None.
+    """
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         spans = _spans(content, path)
         named = [span for span in spans if span[0] != "Comments"]
@@ -54,8 +57,9 @@ def needed_sections(path: Path, attributes: Sequence[str]) -> Iterator[Path]:
             wanted = name in ("Nodes", "Elements")
             if wanted:
                 checked.section(name, content[body:stop])
-            elif attributes and name == "NodeData":
-                wanted = checked.view(content[body:stop]) in attributes
+            elif attributes != () and name == "NodeData":
+                named_so = checked.view(content[body:stop])
+                wanted = attributes is None or named_so in attributes
             if wanted:
                 kept.append((start, end))
         if len(kept) == len(spans):

@@ -44,6 +44,7 @@ def read_points(
     columns: Sequence[str | int] | None,
     attributes: Sequence[str],
     classes: Sequence[int] | None,
+    everything: bool = False,
 ) -> PointSet:
     """Read points from a LAS or LAZ file; see `delone.io.read_points`."""
     if columns is not None:
@@ -54,6 +55,9 @@ def read_points(
     _check_records(path)
     with _corrupt_is_an_error(path), laspy.open(path) as file:
         _check_claim(path, file)
+        if everything:
+            names = file.header.point_format.dimension_names
+            attributes = [name for name in names if name not in ("X", "Y", "Z")]
         _check_names(path, file.header, attributes)
         points, z, further = _read(file, classes, attributes)
         crs = _crs(path, file.header)

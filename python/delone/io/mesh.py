@@ -50,12 +50,18 @@ _OWN = {".ply": ply.read, ".obj": obj.read, ".vtu": vtu.read}
 
 
 def read_points(
-    path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]
+    path: Path,
+    *,
+    columns: Sequence[str | int] | None,
+    attributes: Sequence[str],
+    everything: bool = False,
 ) -> PointSet:
     """Read the vertices of a mesh; see `delone.io.read_points`."""
     if columns is not None:
         raise FileFormatError(f"{path}: coordinates of a mesh are x, y and z, not to be chosen")
-    mesh = _read(path, attributes)
+    mesh = _read(path, None if everything else attributes)
+    if everything:
+        attributes = [str(name) for name in mesh.point_data]
     missing = [name for name in attributes if name not in mesh.point_data]
     if missing:
         raise FileFormatError(f"{path} has no values {missing[0]!r:.80} of points")
@@ -144,8 +150,11 @@ def _coordinates(
     return plane, z
 
 
-def _read(path: Path, attributes: Sequence[str] = ()) -> ReadMesh:
-    """Return the points and cells of a file, and values of points: all, or those of an MSH file."""
+def _read(path: Path, attributes: Sequence[str] | None = ()) -> ReadMesh:
+    """Return the points and cells of a file, and values of points: all, or those of an MSH file.
+
+    None means all of an MSH file as well.
+    """
     suffix = path.suffix.lower()
     if suffix in _OWN:
         return _OWN[suffix](path)

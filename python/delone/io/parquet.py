@@ -38,13 +38,18 @@ __all__ = ["holds_geometries", "look", "read_geometries", "read_points", "read_r
 
 
 def read_points(
-    path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]
+    path: Path,
+    *,
+    columns: Sequence[str | int] | None,
+    attributes: Sequence[str],
+    everything: bool = False,
 ) -> PointSet:
     """Read points from a table; see `delone.io.read_points`."""
+    wanted = None if everything else attributes
     with _corrupt_is_an_error(path):
         if path.suffix.lower() == ".parquet":
-            return _parquet(path, columns, attributes)
-        return _feather(path, columns, attributes)
+            return _parquet(path, columns, wanted)
+        return _feather(path, columns, wanted)
 
 
 def holds_geometries(path: Path) -> bool:
@@ -136,14 +141,14 @@ def _corrupt_is_an_error(path: Path) -> Iterator[None]:
 
 
 def _parquet(
-    path: Path, columns: Sequence[str | int] | None, attributes: Sequence[str]
+    path: Path, columns: Sequence[str | int] | None, attributes: Sequence[str] | None
 ) -> PointSet:
     parquet = require("pyarrow.parquet", extra="geo", what="reading Parquet")
     with parquet.ParquetFile(path) as file:
         schema = file.schema_arrow
         if b"geo" not in (schema.metadata or {}):
             kept = _coordinates(schema, columns, path)
-            names = _known(schema, attributes, path)
+            names = _wanted(schema, attributes, kept, path)
             return _from_table(file.read(columns=[*kept, *names]), kept, names, str(path))
     return from_frame(_frame(path), columns=columns, attributes=attributes, source=str(path))
 
@@ -163,7 +168,7 @@ def _frame(path: Path) -> Any:
 
 
 def _feather(
-    path: Path, columns: Sequence[str | int] | None, attributes: Sequence[str]
+    path: Path, columns: Sequence[str | int] | None, attributes: Sequence[str] | None
 ) -> PointSet:
     arrow = require("pyarrow", extra="geo", what="reading Arrow")
     with arrow.memory_map(str(path)) as mapped:
@@ -173,7 +178,8 @@ def _feather(
             mapped.seek(0)
             table = arrow.ipc.open_stream(mapped).read_all()
         kept = _coordinates(table.schema, columns, path)
-        return _from_table(table, kept, _known(table.schema, attributes, path), str(path))
+        names = _wanted(table.schema, attributes, kept, path)
+        return _from_table(table, kept, names, str(path))
 
 
 def _coordinates(schema: Any, columns: Sequence[str | int] | None, path: Path) -> list[str]:
@@ -182,6 +188,15 @@ def _coordinates(schema: Any, columns: Sequence[str | int] | None, path: Path) -
     tests = (types.is_integer, types.is_floating, types.is_decimal)
     numbers = [field.name for field in schema if any(test(field.type) for test in tests)]
     return [numbers[i] for i in choose_columns(numbers, columns, str(path), named=True)]
+
+
+def _wanted(
+    schema: Any, attributes: Sequence[str] | None, kept: Sequence[str], path: Path
+) -> list[str]:
+    """Return the names of the attributes: by default all columns that are not coordinates."""
+    if attributes is not None:
+        return _known(schema, attributes, path)
+    return [name for name in schema.names if name not in kept]
 
 
 def _known(schema: Any, attributes: Sequence[str], path: Path) -> list[str]:

@@ -92,6 +92,8 @@ _HOLDERS: dict[str, tuple[tuple[str, ...], str]] = {
     "tetrahedra": (_TETRAHEDRA, "tetrahedra"),
 }
 _SHEETS = ("landxml", "dxf")
+# Files of points without values.
+_WITHOUT_ATTRIBUTES = (".landxml", ".dxf", ".off")
 _GEOMETRIES = ("vector", "parquet", *_SHEETS)
 # Formats that can store a reference system, or label the axes with it.
 _LABELS = (".png", ".svg")
@@ -193,7 +195,7 @@ def read_points(
     columns: Sequence[str | int] | None = None,
     classes: Sequence[int] | None = None,
     layer: str | None = None,
-    attributes: Sequence[str] = (),
+    attributes: Sequence[str] | str = (),
 ) -> PointSet:
     r"""Read points from a file; the suffix determines the format.
 
@@ -212,8 +214,10 @@ def read_points(
         Keep the points of these classes (LAS and LAZ).
     layer : str, optional
         The layer, for files that have several; the array of an npz file; the surface of LandXML.
-    attributes : sequence of str, optional
-        Further columns to read.
+    attributes : sequence of str or "all", optional
+        Further columns to read. "all" means all that are not coordinates: those of text files are
+        numbers where each field is one, else words, and a name that repeats gets the number of its
+        column; LandXML, DXF and OFF have none.
 
     Returns
     -------
@@ -222,6 +226,8 @@ def read_points(
 
     Raises
     ------
+    InputError
+        `attributes` is another string.
     FileNotFoundError
         There is no such file.
     FileFormatError
@@ -263,7 +269,13 @@ def read_points(
     module = _module(_READERS, suffix, file, "read")
     if classes is not None and suffix not in (".las", ".laz"):
         raise FileFormatError(f"{file}: only LAS and LAZ files have classes")
-    options: dict[str, Any] = {"columns": columns, "attributes": tuple(attributes)}
+    everything = isinstance(attributes, str)
+    if everything and attributes != "all":
+        raise InputError(f"attributes must be 'all' or names of columns, got {attributes!r:.60}")
+    named = () if everything else tuple(attributes)
+    options: dict[str, Any] = {"columns": columns, "attributes": named}
+    if everything and not module.__name__.endswith(_WITHOUT_ATTRIBUTES):
+        options["everything"] = True
     if module.__name__.endswith(".las"):
         options["classes"] = classes
     if module.__name__.endswith((".vector", ".arrays", ".landxml", ".dxf")):

@@ -23,6 +23,7 @@ from delone.errors import FileFormatError
 from delone.io.compressed import Bounded, corrupt_is_an_error, opened, require_expansion
 from delone.io.counts import announced
 from delone.io.pointset import PointSet, choose_columns, find_column
+from delone.io.words import Words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -62,9 +63,16 @@ class _Layout:
 
 
 def read_points(
-    path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]
+    path: Path,
+    *,
+    columns: Sequence[str | int] | None,
+    attributes: Sequence[str],
+    everything: bool = False,
 ) -> PointSet:
-    """Read points from a text file; see `delone.io.read_points`."""
+    """Read points from a text file; see `delone.io.read_points`.
+
+    With `everything`, all other columns are attributes, also those of words.
+    """
     source = str(path)
     with _no_text_is_an_error(source):
         require_expansion(path)
@@ -73,14 +81,16 @@ def read_points(
             _refuse_point_numbers(layout.sample, source)
         chosen = choose_columns(layout.names, columns, source, named=layout.named)
         extra = [find_column(layout.names, name, source) for name in attributes]
+        others = [i for i in range(len(layout.names)) if i not in chosen] if everything else []
+        words = Words([layout.names[i] for i in others], others, layout.decimal, source)
         with _opened(path) as lines:
-            table = _table(lines, layout, chosen + extra, path)
+            table = _table(lines, layout, chosen + extra, path, words)
     if layout.claimed is not None and len(table) < layout.claimed:
         raise FileFormatError(
             f"{source} declares {layout.claimed} points and contains {len(table)}: it is truncated"
         )
     z = np.ascontiguousarray(table[:, 2]) if len(chosen) == 3 else None
-    further = dict(zip(attributes, table[:, len(chosen) :].T, strict=True))
+    further = dict(zip(attributes, table[:, len(chosen) :].T, strict=True)) | words.columns()
     return PointSet(
         points=np.ascontiguousarray(table[:, :2]),
         z=z,
@@ -258,17 +268,19 @@ def _is_number(field: str, decimal: str) -> bool:
     return True
 
 
-def _table(file: IO[str], layout: _Layout, columns: list[int], path: Path) -> Floats:
+def _table(file: IO[str], layout: _Layout, columns: list[int], path: Path, words: Words) -> Floats:
     """Read the chosen columns, block by block."""
     for _ in range(layout.skip):
         file.readline()
     lines: Iterator[str] = filter(_is_row, file)
-    if layout.decimal != ".":
-        lines = (line.replace(layout.decimal, ".") for line in lines)
     blocks: list[Floats] = []
     rows = 0
     while True:
-        block = _block(lines, layout, columns, rows, path)
+        content = list(itertools.islice(lines, _BLOCK))
+        words.add(content, layout.delimiter)
+        if layout.decimal != ".":
+            content = [line.replace(layout.decimal, ".") for line in content]
+        block = _block(content, layout, columns, rows, path)
         blocks.append(block)
         rows += len(block)
         if len(block) < _BLOCK:
@@ -276,9 +288,8 @@ def _table(file: IO[str], layout: _Layout, columns: list[int], path: Path) -> Fl
 
 
 def _block(
-    lines: Iterator[str], layout: _Layout, columns: list[int], before: int, path: Path
+    content: list[str], layout: _Layout, columns: list[int], before: int, path: Path
 ) -> Floats:
-    content = list(itertools.islice(lines, _BLOCK))
     if not content:
         return np.empty((0, len(columns)))
     _refuse_long_rows(content, layout, before, path)

@@ -133,7 +133,11 @@ def _segments(numbers: Numbers, first: int, file: Path, n: int) -> dict[str, NDA
 
 
 def read_points(
-    path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]
+    path: Path,
+    *,
+    columns: Sequence[str | int] | None,
+    attributes: Sequence[str],
+    everything: bool = False,
 ) -> PointSet:
     """Read the points of a file; see `delone.io.read_points`."""
     if columns is not None or attributes:
@@ -141,7 +145,14 @@ def read_points(
     if tetgen.is_solid(path):
         places = tetgen.read_nodes(path)
         return PointSet(points=places[:, :2].copy(), z=places[:, 2].copy(), source=str(path))
-    return PointSet(points=_points(read_triangle(path), path), source=str(path))
+    found = read_triangle(path)
+    further = {}
+    if everything:
+        values = found.get("vertex_attributes", np.empty((0, 0)))
+        further = {f"attribute_{i}": column.copy() for i, column in enumerate(values.T)}
+        if "vertex_markers" in found:
+            further["marker"] = found["vertex_markers"].reshape(-1)
+    return PointSet(points=_points(found, path), attributes=further, source=str(path))
 
 
 def _points(found: dict[str, NDArray[Any]], path: Path) -> Floats:

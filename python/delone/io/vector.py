@@ -30,7 +30,7 @@ from delone.io.systems import check_system
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from delone.exchange.parts import HasParts
 
@@ -63,10 +63,13 @@ def read_points(
     columns: Sequence[str | int] | None,
     attributes: Sequence[str],
     layer: str | None,
+    everything: bool = False,
 ) -> PointSet:
     """Read points from a file of geometries; see `delone.io.read_points`."""
-    frame = _read(path, columns, attributes, layer)
-    return from_frame(frame, columns=columns, attributes=attributes, source=str(path))
+    frame = _read(path, columns, None if everything else attributes, layer)
+    return from_frame(
+        frame, columns=columns, attributes=None if everything else attributes, source=str(path)
+    )
 
 
 def read_geometries(
@@ -80,10 +83,10 @@ def read_geometries(
 def _read(
     path: Path,
     columns: Sequence[str | int] | None,
-    attributes: Sequence[str],
+    attributes: Sequence[str] | None,
     layer: str | None,
 ) -> Any:
-    """Return a GeoDataFrame of all features and the requested columns."""
+    """Return a GeoDataFrame of all features and the requested columns, by default all."""
     pyogrio = require("pyogrio", extra="geo", what=f"reading {path.suffix}")
     require("geopandas", extra="geo", what=f"reading {path.suffix}")
     source = str(path)
@@ -91,8 +94,9 @@ def _read(
         layer = _layer(pyogrio, name, layer, path)
         facts = _facts(pyogrio, name, layer, path)
         fields = list(facts["fields"])
-        wanted = (*_height(columns), *attributes)
+        wanted = (*_height(columns), *(attributes or ()))
         kept = [fields[find_column(fields, column, source)] for column in wanted]
+        kept = fields if attributes is None else kept
         frame = pyogrio.read_dataframe(name, layer=layer, columns=kept)
     if len(frame) < facts["features"]:
         claimed = facts["features"]
@@ -121,15 +125,34 @@ def attribute_names(path: Path, *, layer: str | None) -> list[str]:
 
 
 def from_frame(
-    frame: Any, *, columns: Sequence[str | int] | None, attributes: Sequence[str], source: str
+    frame: Any,
+    *,
+    columns: Sequence[str | int] | None,
+    attributes: Sequence[str] | None,
+    source: str,
 ) -> PointSet:
-    """Extract Points and MultiPoints from a GeoDataFrame; `columns` is as in `geometries_of`."""
+    """Extract Points and MultiPoints from a GeoDataFrame; `columns` is as in `geometries_of`.
+
+    By default all columns are attributes; other geometries as text.
+    """
     shapely = require("shapely", extra="geo", what="reading geometries")
     found = geometries_of(frame, columns=columns, source=source)
     points = found.as_points()
     index = np.repeat(np.arange(len(found)), shapely.get_num_coordinates(found.geometries))
-    values = {name: np.asarray(frame[_same(frame, name, source)])[index] for name in attributes}
+    if attributes is None:
+        own = frame.geometry.name
+        attributes = [str(name) for name in frame.columns if name != own]
+    values = {name: _values(frame[_same(frame, name, source)])[index] for name in attributes}
     return replace(points, attributes=values)
+
+
+def _values(column: Any) -> NDArray[Any]:
+    """Return a column as an array; geometries beside those that are read become text."""
+    if str(column.dtype) != "geometry":
+        return np.asarray(column)
+    shapely = require("shapely", extra="geo", what="reading geometries")
+    texts = shapely.to_wkt(np.asarray(column.values), rounding_precision=-1)
+    return np.asarray(texts, dtype=object)
 
 
 def geometries_of(frame: Any, *, columns: Sequence[str | int] | None, source: str) -> GeometrySet:
