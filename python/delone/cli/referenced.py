@@ -19,7 +19,7 @@ from delone.georeference import (
     message_of_degrees,
     same_crs,
 )
-from delone.io import GeometrySet, PointSet, SurfaceFile
+from delone.io import GeometrySet, LeftOutWarning, PointSet, SurfaceFile
 from delone.io.referencing import left_out
 from delone.units import UnitsWarning
 
@@ -100,11 +100,11 @@ def note(message: str | None, *, quiet: bool = False) -> None:
 
 @contextmanager
 def noting(*, quiet: bool = False) -> Iterator[None]:
-    """Print warnings about units and reference systems as notes, and pass all others on.
+    """Print warnings about units, reference systems and what is left out as notes.
 
-    So are those without a class of their own.
+    So are those without a class of their own; all others are passed on.
     """
-    kinds = (UnitsWarning, CRSWarning)
+    kinds = (UnitsWarning, CRSWarning, LeftOutWarning)
     with warnings.catch_warnings(record=True) as caught:
         for kind in (*kinds, UserWarning):
             warnings.simplefilter("always", kind)

@@ -20,8 +20,10 @@ from delone.io import (
     input_suffixes,
     read_geometries,
     read_points,
+    read_raster,
     read_surface,
 )
+from delone.io.dem import is_raster
 from delone.io.registry import holds_surface
 from delone.terrain import TIN
 
@@ -38,6 +40,7 @@ __all__ = [
     "MaxEdge",
     "Retriangulate",
     "SoftBreaklines",
+    "Step",
     "SurfaceOptions",
     "Survey",
     "Tolerance",
@@ -84,6 +87,9 @@ Retriangulate = Annotated[
         "--retriangulate", help="Triangulate points and lines of LandXML or DXF, not its faces."
     ),
 ]
+Step = Annotated[
+    int, typer.Option(help="Of a raster (.tif, .asc), read each so many-th row and column.")
+]
 EastingFirst = Annotated[
     bool, typer.Option("--easting-first", help="Take the first number of LandXML as the easting.")
 ]
@@ -93,6 +99,7 @@ EastingFirst = Annotated[
 class SurfaceOptions:
     """How a surface is made of files."""
 
+    step: int
     columns: str | None
     classes: str | None
     layer: str | None
@@ -128,8 +135,12 @@ def surface(
     say(f"reading {source.name}")
     lined: dict[str, Any] = {"max_edge": options.max_edge}
     survey: PointSet | SurfaceFile
-    with reading(), watch.stage("read"):
-        if source.exists() and holds_surface(source):
+    with reading(), noting(quiet=options.quiet), watch.stage("read"):
+        if is_raster(source):
+            survey = _read_raster(source, options)
+        elif options.step != 1:
+            raise Failure(f"{source}: --step is for rasters: .tif .tiff .asc", Exit.USAGE)
+        elif source.exists() and holds_surface(source):
             survey = _read_surface(source, options)
         else:
             survey = read_points(
@@ -151,6 +162,15 @@ def surface(
         if isinstance(survey, PointSet):
             return TIN.from_points(survey, planar=True, **lined)
         return TIN.from_surface(survey, faces=not options.retriangulate, planar=True, **lined)
+
+
+def _read_raster(source: Path, options: SurfaceOptions) -> PointSet:
+    if options.columns is not None or options.classes is not None:
+        raise Failure(f"{source}: rasters have neither columns nor classes", Exit.USAGE)
+    layer = options.layer
+    if layer is not None and not layer.isdecimal():
+        raise Failure(f"{source}: the layer of a raster is the number of a band", Exit.USAGE)
+    return read_raster(source, band=None if layer is None else int(layer), step=options.step)
 
 
 def _read_surface(source: Path, options: SurfaceOptions) -> SurfaceFile:

@@ -4,6 +4,7 @@
 package handles one family of formats and imports the libraries it needs when it is used.
 """
 
+from delone.io.dem import read_raster
 from delone.io.geometryset import GeometrySet
 from delone.io.pointset import PointSet
 from delone.io.raster import raster_suffixes, write_raster
@@ -33,6 +34,7 @@ __all__ = [
     "read_geometries",
     "read_mesh",
     "read_points",
+    "read_raster",
     "read_surface",
     "write_mesh",
     "write_raster",

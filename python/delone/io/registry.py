@@ -65,6 +65,7 @@ _READERS = {
     **dict.fromkeys(_LANDXML, "landxml"),
     ".dxf": "dxf",
     ".off": "off",
+    **dict.fromkeys((".tif", ".tiff", ".asc"), "dem"),
 }
 _WRITERS = {
     **dict.fromkeys(_MESHES, "mesh"),
@@ -93,7 +94,7 @@ _HOLDERS: dict[str, tuple[tuple[str, ...], str]] = {
 }
 _SHEETS = ("landxml", "dxf")
 # Files of points without values.
-_WITHOUT_ATTRIBUTES = (".landxml", ".dxf", ".off")
+_WITHOUT_ATTRIBUTES = (".landxml", ".dxf", ".off", ".dem")
 _GEOMETRIES = ("vector", "parquet", *_SHEETS)
 # Formats that can store a reference system, or label the axes with it.
 _LABELS = (".png", ".svg")
@@ -203,8 +204,8 @@ def read_points(
     ----------
     path : str or path-like
         CSV, TSV, TXT, XYZ, PTS, DAT or GeoJSON (these also .gz, .xz, .bz2), npy, npz, LAS, LAZ,
-        GeoPackage, Shapefile, FlatGeobuf, Parquet, GeoParquet, Arrow, Feather, LandXML, DXF, or the
-        vertices of a mesh.
+        GeoPackage, Shapefile, FlatGeobuf, Parquet, GeoParquet, Arrow, Feather, LandXML, DXF, the
+        cells of GeoTIFF and ESRI ASCII grids (`read_raster`), or the vertices of a mesh.
     columns : sequence of str or int, optional
         Columns of x, y and (optionally) z, by name or by number from 0. By default columns are
         recognized by their names; without names the first two or three are used, unless the first
@@ -213,7 +214,8 @@ def read_points(
     classes : sequence of int, optional
         Keep the points of these classes (LAS and LAZ).
     layer : str, optional
-        The layer, for files that have several; the array of an npz file; the surface of LandXML.
+        The layer, for files that have several; the array of an npz file; the surface of LandXML;
+        the band of a raster.
     attributes : sequence of str or "all", optional
         Further columns to read. "all" means all that are not coordinates: those of text files are
         numbers where each field is one, else words, and a name that repeats gets the number of its
@@ -278,7 +280,7 @@ def read_points(
         options["everything"] = True
     if module.__name__.endswith(".las"):
         options["classes"] = classes
-    if module.__name__.endswith((".vector", ".arrays", ".landxml", ".dxf")):
+    if module.__name__.endswith((".vector", ".arrays", ".landxml", ".dxf", ".dem")):
         options["layer"] = layer
     elif layer is not None:
         raise FileFormatError(f"{file}: {suffix} files have no layers")

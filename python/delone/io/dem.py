@@ -1,0 +1,239 @@
+"""Rasters of heights as points, GeoTIFF and ESRI ASCII grids, with rasterio (extra ``raster``).
+
+Each cell with a height is a point at its center; GDAL turns rasters whose pixels are points into
+such. Only the driver of the suffix may open a file, and no file beside it is read but the .prj
+of an ASCII grid. Rows are read one after the other, and sizes are checked before any of them.
+"""
+
+from __future__ import annotations
+
+import os
+import warnings
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import as_least
+from delone.counting import counted
+from delone.errors import DeloneError, FileFormatError
+from delone.extras import require
+from delone.io.companions import require_companion
+from delone.io.pointset import PointSet
+from delone.io.surfacefile import LeftOutWarning
+from delone.io.systems import check_system
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["is_raster", "read_points", "read_raster"]
+
+_DRIVERS = {".tif": "GTiff", ".tiff": "GTiff", ".asc": "AAIGrid"}
+# A triangulation of so many points takes some 10 GB.
+MOST_POINTS = 50_000_000
+# Bytes of a block, or of a row, which GDAL holds in memory whatever is read of it.
+_LARGEST_BLOCK = 1 << 30
+# Bytes of a .prj file.
+_LONGEST_SYSTEM = 1 << 16
+_OPTIONS = {
+    "GDAL_DISABLE_READDIR_ON_OPEN": "EMPTY_DIR",
+    "GDAL_PAM_ENABLED": "NO",
+    "GDAL_GEOREF_SOURCES": "INTERNAL",
+}
+
+
+def is_raster(path: Path) -> bool:
+    """Return whether the suffix is that of a raster which `read_raster` reads."""
+    return path.suffix.lower() in _DRIVERS
+
+
+def read_points(
+    path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str], layer: str | None
+) -> PointSet:
+    """Read the cells of a raster; see `delone.io.read_points`. A layer is a band."""
+    if columns is not None or attributes:
+        raise FileFormatError(f"{path}: rasters have heights of cells, and no columns to choose")
+    if layer is not None and not (layer.isascii() and layer.isdecimal() and len(layer) < 6):
+        raise FileFormatError(f"{path}: the layers of a raster are bands: 1, 2, ...")
+    return read_raster(path, band=None if layer is None else int(layer))
+
+
+def read_raster(
+    path: str | os.PathLike[str],
+    *,
+    band: int | None = None,
+    step: int = 1,
+    max_points: int = MOST_POINTS,
+) -> PointSet:
+    r"""Read the heights of a raster as points at the centers of its cells.
+
+    Parameters
+    ----------
+    path : str or path-like
+        GeoTIFF (.tif, .tiff) or ESRI ASCII grid (.asc).
+    band : int, optional
+        The band, from 1; needed if there are several.
+    step : int, optional
+        Read each so many-th row and column, from the first.
+    max_points : int, optional
+        Maximum number of cells to read, those without a height included.
+
+    Returns
+    -------
+    PointSet
+        Points row by row from the top, with heights `z` and the reference system of the file.
+        Scale and offset of the band, if any, are applied.
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no such file.
+    FileFormatError
+        The file is truncated, not what its suffix says, has no georeference, no such band, complex
+        values or no cell with a height; it has more than `max_points` cells, of which the message
+        says with which `step` they would be few enough.
+    MissingExtraError
+        rasterio is not installed (extra ``raster``).
+
+    Warns
+    -----
+    LeftOutWarning
+        Cells have no height: nodata, masked, NaN or infinite. The message has their number.
+
+    Notes
+    -----
+    Rotated and sheared rasters have rotated points. The memory is that of the points and of one
+    row of blocks. No file beside it is read, except the .prj of an ASCII grid, for its reference
+    system: world files (.tfw) are ignored.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from delone.io import read_raster
+    >>> text = "ncols 2\\nnrows 2\\nxllcorner 10\\nyllcorner 20\\ncellsize 4\\n5 6\\n7 8\\n"
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "dem.asc"
+    ...     _ = file.write_text(text)
+    ...     survey = read_raster(file)
+    >>> survey.points[0].tolist(), survey.z.tolist()
+    ([12.0, 26.0], [5.0, 6.0, 7.0, 8.0])
+    """
+    file = Path(path)
+    step = as_least(step, 1, name="step")
+    most = as_least(max_points, 1, name="max_points")
+    wanted = None if band is None else as_least(band, 1, name="band")
+    with _opened(file) as raster:
+        number = _band(raster, wanted, file)
+        _check_size(raster, number, step, most, file)
+        points, z, empty = _cells(raster, number, step)
+        crs = None if raster.crs is None else str(raster.crs.to_string())
+    check_system(crs, str(file))
+    if not len(points):
+        raise FileFormatError(f"{file}: no cell has a height")
+    if empty:
+        message = f"{file}: {counted(empty, 'cell')} without a height left out"
+        warnings.warn(message, LeftOutWarning, stacklevel=3)
+    return PointSet(points=points, z=z, crs=crs, source=str(file))
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """Yield the dataset of a file; errors of rasterio and GDAL are FileFormatErrors."""
+    driver = _DRIVERS.get(path.suffix.lower())
+    if driver is None:
+        raise FileFormatError(f"{path} is not a raster; known are {' '.join(_DRIVERS)}")
+    rasterio = require("rasterio", extra="raster", what="reading rasters")
+    if not path.exists():
+        raise FileNotFoundError(f"{path}: no such file")
+    name = os.path.abspath(path)
+    if name.startswith("/vsi"):
+        raise FileFormatError(f"{path}: names that begin with /vsi are reserved by GDAL")
+    _check_beside(path, driver)
+    try:
+        with warnings.catch_warnings(), rasterio.Env(**_OPTIONS):
+            warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
+            with rasterio.open(name, driver=driver) as raster:
+                if raster.transform.is_identity:
+                    raise FileFormatError(
+                        f"{path} has no georeference of its own (ground control points and world "
+                        "files do not count): write it with gdal_translate or gdalwarp"
+                    )
+                yield raster
+    except (DeloneError, FileNotFoundError, PermissionError, MemoryError):
+        raise
+    except Exception as error:
+        reason = str(error).partition("\n")[0] or type(error).__name__
+        raise FileFormatError(
+            f"{path} is truncated or not a {path.suffix} file: {reason:.200}"
+        ) from error
+
+
+def _check_beside(path: Path, driver: str) -> None:
+    """Check the file that GDAL reads beside an ASCII grid."""
+    if driver != "AAIGrid":
+        return
+    for suffix in (".prj", ".PRJ"):
+        system = path.with_suffix(suffix)
+        if not os.path.lexists(system):
+            continue
+        require_companion(path, system)
+        if system.stat().st_size > _LONGEST_SYSTEM:
+            raise FileFormatError(f"{system} is too long for a reference system")
+        check_system(system.read_text(encoding="latin-1"), str(system))
+
+
+def _band(raster: Any, band: int | None, path: Path) -> int:
+    if band is None and raster.count > 1:
+        raise FileFormatError(
+            f"{path} has {raster.count} bands: choose one with band (--layer), from 1"
+        )
+    number = 1 if band is None else band
+    if number > raster.count:
+        raise FileFormatError(f"{path} has no band {number}, only {raster.count}")
+    if raster.dtypes[number - 1].startswith("complex"):
+        raise FileFormatError(f"{path}: band {number} has complex values, not heights")
+    return number
+
+
+def _check_size(raster: Any, band: int, step: int, most: int, path: Path) -> None:
+    """Reject what would not fit into memory, before anything is read."""
+    rows, columns = raster.height, raster.width
+    count = -(-rows // step) * -(-columns // step)
+    if count > most:
+        least = max(step, int((rows * columns / most) ** 0.5))
+        while -(-rows // least) * -(-columns // least) > most:  # ends: one cell is few enough
+            least += 1 + least // 1000
+        raise FileFormatError(
+            f"{path} has {columns} x {rows} cells, {count} to read, and at most {most} are read "
+            f"(max_points): read each {least}th row and column with step={least} (--step)"
+        )
+    high, wide = raster.block_shapes[band - 1]
+    size = np.dtype(raster.dtypes[band - 1]).itemsize
+    if max(high * wide, columns) * size > _LARGEST_BLOCK:
+        raise FileFormatError(f"{path} has blocks of {wide} x {high} cells, too large to read")
+
+
+def _cells(raster: Any, band: int, step: int) -> tuple[Floats, Floats, int]:
+    """Return centers and heights of cells, and the number of cells without a height."""
+    scale, offset = raster.scales[band - 1], raster.offsets[band - 1]
+    a, b, c, d, e, f = raster.transform[:6]
+    columns = np.arange(0, raster.width, step)
+    points, heights, empty = [np.empty((0, 2))], [np.empty(0)], 0
+    # Row by row: GDAL keeps the blocks of a row of blocks until it is done.
+    for row in range(0, raster.height, step):
+        read = raster.read(band, window=((row, row + 1), (0, raster.width)), masked=True)
+        values = np.ma.getdata(read)[0, ::step].astype(np.float64)
+        there = ~np.ma.getmaskarray(read)[0, ::step] & np.isfinite(values)
+        across, down = columns[there] + 0.5, row + 0.5
+        x, y = a * across + (b * down + c), d * across + (e * down + f)
+        points.append(np.column_stack((x, y)))
+        known = values[there]
+        heights.append(known if (scale, offset) == (1, 0) else known * scale + offset)
+        empty += int(len(there) - there.sum())
+    return np.concatenate(points), np.concatenate(heights), empty

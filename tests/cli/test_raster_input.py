@@ -1,0 +1,54 @@
+"""Rasters as input of the commands of terrain."""
+
+import json
+
+import geopandas
+import numpy as np
+import pytest
+import rasterio
+import shapely
+
+
+@pytest.fixture
+def ramp(tmp_path):
+    """Ten rows and columns of a plane of slope 1, one cell of which is empty."""
+    path = tmp_path / "ramp.tif"
+    values = np.tile(np.arange(10.0), (10, 1))
+    values[0, 0] = -1
+    with rasterio.open(
+        path, "w", driver="GTiff", count=1, height=10, width=10, dtype="float64", nodata=-1,
+        crs="EPSG:28992", transform=rasterio.Affine(2, 0, 1000, 0, -2, 2000),
+    ) as file:  # fmt: skip
+        file.write(values, 1)
+    return path
+
+
+def test_commands_of_terrain_read_rasters(ramp, command, tmp_path):
+    line = tmp_path / "line.gpkg"
+    way = shapely.LineString([(1001, 1985), (1019, 1985)])
+    geopandas.GeoDataFrame(geometry=[way], crs="EPSG:28992").to_file(line)
+    for call in (
+        ("contours", ramp, "--interval", "2", "-o", tmp_path / "lines.gpkg"),
+        ("volume", ramp, "0"),
+        ("profile", ramp, line),
+        ("dem", ramp, "-r", "1", "--hillshade", "-o", tmp_path / "shade.tif"),
+    ):
+        code, out, err = command(*call)
+        assert code == 0, err
+        assert "1 cell without a height left out" in err
+        assert "99" in out
+
+
+def test_volume_of_a_ramp(ramp, command):
+    code, out, _ = command("volume", ramp, "0", "--json", "--quiet")
+    assert code == 0
+    # 18 x 18 meters of mean height 4.5, without half a cell at the corner: heights 0, 0 and 1.
+    assert json.loads(out)["cut"] == pytest.approx(18 * 18 * 4.5 - 2 * 1 / 3)
+    code, out, _ = command("volume", ramp, "0", "--step", "3", "--json", "--quiet")
+    assert json.loads(out)["points"] == 15
+
+
+def test_step_is_for_rasters(survey, command):
+    code, _, err = command("volume", survey, "0", "--step", "2")
+    assert code == 2
+    assert "--step is for rasters" in err
