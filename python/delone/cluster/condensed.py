@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["CondensedTree", "condensed_tree"]
+__all__ = ["CondensedTree", "binary", "condensed_tree"]
 
 _TABLE = [
     ("parent", np.int64),
@@ -93,3 +93,34 @@ def condensed_tree(
         below=0,
         up_to=0,
     )
+
+
+def binary(table: NDArray[np.void]) -> NDArray[np.void]:
+    """Return a table of `CondensedTree.table` in which no cluster splits into more than two.
+
+    Of more, all but the first are in a cluster without rows of its own, which splits at the same
+    lambda, and so on. Parents have smaller numbers, and all numbers from the root on are used.
+    """
+    root = int(table["parent"].min())
+    inner = table[table["child"] >= root]
+    kids: dict[int, list[int]] = {}
+    for i, parent in enumerate(inner["parent"].tolist()):
+        kids.setdefault(parent, []).append(i)
+    number = {root: root}
+    rows: list[tuple[int, int, float, int]] = []
+    for cluster in range(root, root + len(inner) + 1):
+        # The number of a cluster is known, because those of its parents are smaller.
+        holder, left = number[cluster], kids.get(cluster, [])
+        while left:  # ends: one less in each round
+            parts = [left] if len(left) == 1 else [left[:1], left[1:]]
+            for part in parts:
+                new = root + 1 + len(rows)
+                size = int(inner["child_size"][part].sum())
+                rows.append((holder, new, inner["lambda_val"][part[0]], size))
+                if len(part) == 1:
+                    number[int(inner["child"][part[0]])] = new
+            left, holder = (left[1:], new) if len(left) > 2 else ([], new)
+    leaves = table[table["child"] < root].copy()
+    leaves["parent"] = [number[parent] for parent in leaves["parent"].tolist()]
+    found = np.concatenate((leaves, np.array(rows, dtype=_TABLE)))
+    return found[np.lexsort((found["child"], found["parent"]))]

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone._arrays import as_choice, as_flag, as_least, as_workers
-from delone.cluster.condensed import condensed_tree
+from delone.cluster.condensed import binary, condensed_tree
 from delone.cluster.estimator import Clusterer, as_reach, numbered
 from delone.cluster.selection import labeled, memberships, selected
+from delone.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -174,3 +175,38 @@ class HDBSCAN(Clusterer):
         self.probabilities_ = memberships(tree, labels)
         self.condensed_tree_ = tree.table()
         return self
+
+    def to_hdbscan(self) -> NDArray[np.void]:
+        """Return the condensed tree with splits into two, as the package hdbscan expects.
+
+        Returns
+        -------
+        ndarray, shape (m,)
+            The fields of `condensed_tree_`. Where a cluster splits into more than two at once, all
+            but one of these are in a further cluster without rows of its own, which splits at the
+            same lambda. ``hdbscan.plots.CondensedTree(model.to_hdbscan())`` plots it.
+
+        Raises
+        ------
+        InputError
+            The estimator has not been fitted.
+
+        Notes
+        -----
+        Clusters have other numbers than in `condensed_tree_` if there are such splits. Which of the
+        clusters is split off first has no meaning. O(m log m) time.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from delone.cluster import HDBSCAN
+        >>> x = np.array([0, 1, 2, 10, 11, 12, 20, 21, 22])
+        >>> model = HDBSCAN(3, min_samples=1).fit(np.column_stack((x, 0 * x)))
+        >>> trees = model.condensed_tree_, model.to_hdbscan()
+        >>> [int((tree["child_size"] > 1).sum()) for tree in trees]
+        [3, 4]
+        """
+        table = getattr(self, "condensed_tree_", None)
+        if table is None:
+            raise InputError("this HDBSCAN has not been fitted: call fit first")
+        return binary(table)
