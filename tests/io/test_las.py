@@ -202,3 +202,39 @@ def test_records_behind_the_points_are_no_points(tmp_path, count):
     las.evlrs = laspy.vlrs.vlrlist.VLRList([laspy.VLR("me", 1, "long", b"x" * 1000)])
     las.write(tmp_path / "a.las")
     assert len(read_points(tmp_path / "a.las")) == count
+
+
+def with_more_extra_bytes(path, more):
+    """Write a file whose record of extra bytes is longer by some bytes than what it needs."""
+    cloud = laspy.create(point_format=3, file_version="1.2")
+    cloud.x, cloud.y, cloud.z = [0, 1, 0], [0, 0, 1], [5, 6, 7]
+    cloud.add_extra_dim(laspy.ExtraBytesParams("h", "f8"))
+    cloud["h"] = [1, 2, 3]
+    cloud.write(path)
+    content = bytearray(path.read_bytes())
+    head, start = struct.unpack_from("<H", content, 94)[0], struct.unpack_from("<I", content, 96)[0]
+    length = struct.unpack_from("<H", content, head + 20)[0]
+    record = content[head + 54 : head + 54 + length]
+    extra = more(record)
+    struct.pack_into("<H", content, head + 20, length + len(extra))
+    struct.pack_into("<I", content, 96, start + len(extra))
+    content[head + 54 + length : head + 54 + length] = extra
+    path.write_bytes(content)
+    return path
+
+
+def test_a_record_of_extra_bytes_that_is_too_long(tmp_path):
+    path = with_more_extra_bytes(tmp_path / "a.las", lambda record: bytes(10))
+    assert read_points(path).z.tolist() == [5, 6, 7]
+    with pytest.raises(FileFormatError, match=r"has 202 bytes, not a multiple of 192.*ExtraBytes"):
+        read_points(path, attributes=["h"])
+    raw = read_points(path, attributes="all").attributes["ExtraBytes"]
+    assert np.ascontiguousarray(raw).view("<f8").ravel().tolist() == [1, 2, 3]
+
+
+def test_a_record_that_describes_more_extra_bytes_than_points_have(tmp_path):
+    path = with_more_extra_bytes(
+        tmp_path / "a.las", lambda record: record[:4] + b"second".ljust(32, b"\0") + record[36:]
+    )
+    with pytest.raises(FileFormatError, match=r"points of 50 bytes, but points have 42: remove"):
+        read_points(path)

@@ -6,6 +6,7 @@ needed beyond the coordinates is that of one block. Coordinates are scaled exact
 
 from __future__ import annotations
 
+import re
 import struct
 from contextlib import contextmanager
 from typing import IO, TYPE_CHECKING, Any
@@ -34,6 +35,8 @@ _LAYERED = 3
 _LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
 # Sizes in bytes, from the LAS specification 1.4, R15.
 _LONGEST_HEADER, _RECORD_HEADER, _LONG_RECORD_HEADER = 375, 54, 60
+# Size of the description of a dimension of extra bytes.
+_EXTRA_BYTES = 192
 # The minimum size of a header for each minor version; before 1.3 it is 227.
 _HEADER, _HEADERS = 227, {3: 235, 4: 375}
 
@@ -168,8 +171,30 @@ def _check_names(path: Path, header: Any, names: Sequence[str]) -> None:
     unknown = [name for name in names if name not in known]
     if unknown:
         raise FileFormatError(
-            f"{path} has no {unknown[0]!r:.80}; it has {', '.join(sorted(known))}"
+            f"{path} has no {unknown[0]!r:.80}; it has {', '.join(sorted(known))}" + _unnamed(path)
         )
+
+
+def _unnamed(path: Path) -> str:
+    """Return why extra bytes of a file have no names, if its record of them cannot be read."""
+    head = _head(path)
+    (start,), (before, count) = (
+        struct.unpack_from("<H", head, 94),
+        struct.unpack_from("<II", head, 96),
+    )
+    with path.open("rb") as file:
+        for _ in range(count):
+            if start + _RECORD_HEADER > before:
+                break
+            file.seek(start)
+            user, number, length = struct.unpack_from("<2x16sHH", file.read(_RECORD_HEADER))
+            if (user.rstrip(b"\0"), number) == (b"LASF_Spec", 4) and length % _EXTRA_BYTES:
+                return (
+                    f"; its record of extra bytes has {length} bytes, not a multiple of "
+                    f"{_EXTRA_BYTES}, so they have no names, and are in ExtraBytes"
+                )
+            start += _RECORD_HEADER + length
+    return ""
 
 
 @contextmanager
@@ -183,6 +208,13 @@ def _corrupt_is_an_error(path: Path) -> Iterator[None]:
         if not isinstance(error, Exception) and type(error).__name__ != "PanicException":
             raise
         reason = str(error).partition("\n")[0] or type(error).__name__
+        if "Incoherent point size" in reason:
+            has, says = [*re.findall(r"\d+", reason), "other", "other"][:2]
+            raise FileFormatError(
+                f"{path}: its record of extra bytes describes points of {says} bytes, but points "
+                f"have {has}: remove or repair that record (LASF_Spec, number 4), such as with "
+                "laspy or PDAL"
+            ) from error
         raise FileFormatError(f"{path} is truncated or not a LAS file: {reason}") from error
 
 
