@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["check_faces", "read_faces"]
+    from delone.io import MeshFile
+
+__all__ = ["check_faces", "read_faces", "read_parts"]
 
 _FIRST = 10
 # Attributes of the result with the rows of faults.
@@ -36,13 +38,19 @@ _FAULTS = (
 
 def read_faces(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Read the points, (n, 3), and triangles of a surface in 3-D."""
+    points, mesh = read_parts(path)
+    return points, mesh.simplices
+
+
+def read_parts(path: Path) -> tuple[NDArray[np.float64], MeshFile]:
+    """Read the points, (n, 3), and triangles of a surface, its markers, holes and regions."""
     with reading():
         mesh = read_mesh(path, polygons="split")
     if mesh.simplices.shape[1] != 3:
         raise Failure(f"{path}: a surface has triangles, not tetrahedra", Exit.USAGE)
     if mesh.z is None:
         raise Failure(f"{path}: a surface has points with three coordinates", Exit.USAGE)
-    return np.column_stack((mesh.points, mesh.z)), mesh.simplices
+    return np.column_stack((mesh.points, mesh.z)), mesh
 
 
 def check_faces(path: Path, *, say: Callable[[str], None]) -> tuple[dict[str, Any], list[str]]:

@@ -12,7 +12,7 @@ import typer
 from delone import TetMesh, __version__, improve, tetrahedralize
 from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure, as_options, protect_inputs, writing
-from delone.cli.faces import read_faces
+from delone.cli.faces import read_parts
 from delone.cli.options import Json, MeshOutput, Quiet, Workers
 from delone.cli.outputs import write_all
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
@@ -82,11 +82,18 @@ def fill(
     ] = "faces",
     hole: Annotated[
         list[str] | None,
-        typer.Option(metavar="X,Y,Z", help="Leave the region around a point empty; repeatable."),
+        typer.Option(
+            metavar="X,Y,Z",
+            help="Leave the region around a point empty, instead of those around holes of the file; "
+            "repeatable.",
+        ),
     ] = None,
     region: Annotated[
         list[str] | None,
-        typer.Option(metavar="X,Y,Z,LABEL", help="Label the region around a point; repeatable."),
+        typer.Option(
+            metavar="X,Y,Z,LABEL",
+            help="Label the region around a point, instead of those of the file; repeatable.",
+        ),
     ] = None,
     max_points: Annotated[
         int | None, typer.Option(help="Maximum number of added points; by default a million.")
@@ -100,6 +107,8 @@ def fill(
 ) -> None:
     """Fill a closed surface with tetrahedra; its triangles are kept exactly.
 
+    Holes, regions and markers of faces in .smesh and .poly are used.
+
     With ``--boundary surface``, triangles in one plane are cut again, which adds fewer points.
 
     A PNG file shows the tetrahedra behind a cut.
@@ -107,7 +116,7 @@ def fill(
     with writing():
         protect_inputs(output or (), source)
         writers = {path: _ready(path) for path in output or ()}
-    options = {
+    options: dict[str, Any] = {
         "boundary": boundary,
         # Faces of TetGen's files have any orientation.
         "inside": inside or ("enclosed" if source.suffix.lower() in _UNORIENTED else "winding"),
@@ -120,7 +129,13 @@ def fill(
     with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
         with watch.stage("read"):
-            points, faces = read_faces(source)
+            points, given = read_parts(source)
+            faces = given.simplices
+        options["face_markers"] = given.markers
+        for name in ("holes", "regions"):
+            # Those of the command line replace those of the file, as in Python.
+            if options[name] is None:
+                options[name] = getattr(given, name)
         with watch.stage("tetrahedralize"):
             mesh = _filled(source, (points, faces), options, say)
         gained: dict[str, Any] = {}
@@ -135,6 +150,9 @@ def fill(
         "delone": __version__,
         "input": str(source),
         "faces": len(faces),
+        "file_holes": 0 if given.holes is None else len(given.holes),
+        "file_regions": 0 if given.regions is None else len(given.regions),
+        "face_markers": [] if given.markers is None else np.unique(given.markers).tolist(),
         **figures,
         **gained,
         "stages": watch.rows(mesh.npoints),

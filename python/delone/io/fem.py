@@ -1,4 +1,4 @@
-"""Meshes for solvers: XDMF, MED (Salome) and INP (Abaqus) by meshio (extra ``mesh``), and SU2.
+"""Meshes for solvers: XDMF, MED, INP, VTK and Medit by meshio (extra ``mesh``), and SU2.
 
 Triangles or tetrahedra are written, and the segments of a mesh with their markers: as named parts
 of the boundary in SU2, as values in XDMF, as groups in MED, which has regions as well.
@@ -28,7 +28,11 @@ if TYPE_CHECKING:
 
 __all__ = ["require_libraries", "write_mesh"]
 
-_MODULES = {".xdmf": "xdmf", ".med": "med", ".inp": "abaqus"}
+_MODULES = {
+    ".xdmf": "xdmf", ".med": "med", ".inp": "abaqus", ".vtk": "vtk", ".mesh": "medit",
+}  # fmt: skip
+# Those with values of points and cells.
+_VALUED = (".xdmf", ".vtk")
 # The numbers that SU2 has for cells, those of VTK.
 _LINE, _TRIANGLE, _TETRAHEDRON = 3, 5, 10
 
@@ -54,7 +58,7 @@ def write_mesh(
     suffix = path.suffix.lower()
     if edges:
         raise FileFormatError(f"{suffix} files cannot store edges; use .vtu, .msh or .gpkg")
-    if attributes and suffix != ".xdmf":
+    if attributes and suffix not in _VALUED:
         raise FileFormatError(f"{suffix} files cannot store attributes; use .vtu or .xdmf")
     found = content(triangulation, z=z, attributes=attributes)
     if suffix == ".su2":
@@ -66,10 +70,12 @@ def write_mesh(
     families = _families(made) if suffix == ".med" else None
     if suffix == ".inp":
         made.cell_sets = _sets(made)
-    if suffix in (".inp", ".med"):
+    references = _references(made) if suffix == ".mesh" else {}
+    if suffix in (".inp", ".med", ".mesh"):
         made.point_data, made.cell_data = {}, {}
     for tag in TAGS:
         made.cell_data.pop(tag, None)
+    made.cell_data |= references
     module = importlib.import_module(f"meshio.{_MODULES[suffix]}")
     if suffix == ".xdmf":
         # Everything in the one file: no second one beside it.
@@ -99,6 +105,21 @@ def _families(mesh: Any) -> tuple[dict[str, list[NDArray[np.int64]]], dict[int, 
                 names[number] = [f"{name} {own}"]
                 tags[block][value == own] = number
     return {"cell_tags": tags}, names
+
+
+def _references(mesh: Any) -> dict[str, list[NDArray[np.int64]]]:
+    """The references of a Medit file: regions of cells and markers of facets.
+
+    No region is 0; where there is a region 0 as well, each number of a region is one greater.
+    """
+    found = [np.zeros(len(block.data), dtype=np.int64) for block in mesh.cells]
+    if "region" in mesh.cell_data:
+        region = np.asarray(mesh.cell_data["region"][0]).astype(np.int64)
+        has_both = (region == 0).any() and (region < 0).any()
+        found[0] = region + 1 if has_both else np.maximum(region, 0)
+    if "marker" in mesh.cell_data and len(found) > 1:
+        found[1] = np.asarray(mesh.cell_data["marker"][1]).astype(np.int64)
+    return {"medit:ref": found}
 
 
 def _sets(mesh: Any) -> dict[str, list[NDArray[np.int64]]]:

@@ -69,7 +69,7 @@ _READERS = {
 }
 _WRITERS = {
     **dict.fromkeys(_MESHES, "mesh"),
-    **dict.fromkeys((".xdmf", ".med", ".inp", ".su2"), "fem"),
+    **dict.fromkeys((".xdmf", ".med", ".inp", ".su2", ".vtk", ".mesh"), "fem"),
     **dict.fromkeys(_TRIANGLE, "triangle"),
     **dict.fromkeys(_TETGEN, "tetgen"),
     ".off": "off",
@@ -80,10 +80,23 @@ _WRITERS = {
 }
 # What holds tetrahedra, or triangles in 3-D, or draws them.
 _TETRAHEDRA = (
-    *(".vtu", ".msh", ".xdmf", ".med", ".inp", ".su2", ".npz", ".png"),
-    *(".node", ".ele", *_TETGEN),
+    *(".vtu", ".msh", ".xdmf", ".med", ".inp", ".su2", ".vtk", ".mesh", ".npz", ".png"),
+    *(".node", ".ele", ".poly", *_TETGEN),
 )
-_SURFACES = (*_MESHES, ".npz", ".xdmf", ".med", ".inp", ".png", ".off", ".node", *_TETGEN)
+_SURFACES = (
+    *_MESHES,
+    ".npz",
+    ".xdmf",
+    ".med",
+    ".inp",
+    ".vtk",
+    ".mesh",
+    ".png",
+    ".off",
+    ".node",
+    ".poly",
+    *_TETGEN,
+)
 # What holds triangles that share no points.
 _SEPARATE = (*_MESHES, ".npz", ".xdmf", ".gpkg", ".geojson")
 _HOLDERS: dict[str, tuple[tuple[str, ...], str]] = {
@@ -562,14 +575,15 @@ def write_mesh(
     Parameters
     ----------
     path : str or path-like
-        VTU, PLY, OBJ, STL, OFF, MSH, XDMF, MED, INP, SU2, Triangle's NODE, ELE and POLY, TetGen's
-        NODE, ELE, FACE and SMESH, GeoPackage, GeoJSON, LandXML (.xml, .landxml), npz, PNG or SVG.
+        VTU, PLY, OBJ, STL, OFF, MSH, XDMF, MED, INP, SU2, VTK (legacy), MESH (Medit),
+        Triangle's NODE, ELE and POLY, TetGen's NODE, ELE, FACE, SMESH and POLY, GeoPackage, GeoJSON, LandXML (.xml, .landxml), npz, PNG or SVG.
         An existing file is replaced only once the new one is complete.
     triangulation : Delaunay, ConstrainedDelaunay, Mesh, TetMesh or another mesh
         What to write: also a `RegularTriangulation`, a `PeriodicDelaunay` or a `ConvexHull` in 3-D.
-        Tetrahedra go to VTU, MSH, XDMF, MED, INP, SU2, NODE, ELE, FACE, SMESH and PNG, those of a
-        `Delaunay` or `TetMesh` to npz as well. The surface of a hull goes to VTU, MSH, PLY, OBJ,
-        STL, OFF, XDMF, MED, INP, NODE, FACE, SMESH and PNG. Both are written without `z` and `crs`.
+        Tetrahedra go to VTU, MSH, XDMF, MED, INP, SU2, VTK, MESH, NODE, ELE, FACE, SMESH,
+        POLY and PNG, those of a `Delaunay` or `TetMesh` to npz as well. The surface of a hull goes to VTU, MSH, PLY, OBJ,
+        STL, OFF, XDMF, MED, INP, VTK, MESH, NODE, FACE, SMESH, POLY and PNG.
+        Both are written without `z` and `crs`.
     z : array_like of float, shape (n,), optional
         Heights, the third coordinate, by default those of a `delone.terrain.TIN`; in plots the
         color, with shading if there are 2000 triangles or more, but never on a `Mesh`.

@@ -217,11 +217,53 @@ def write_mesh(
         if suffix == ".face":
             text = table(f"{len(faces)} 1", (faces, markers[:, None]))
         else:
-            facets = zip(faces.tolist(), markers.tolist(), strict=True)
-            lines = [" ".join(map(str, (3, *face, marker))) for face, marker in facets]
+            lines = []
+            for face, marker in zip(faces.tolist(), markers.tolist(), strict=True):
+                corners = " ".join(map(str, (3, *face)))
+                lines += (
+                    [f"1 0 {marker}", corners] if suffix == ".poly" else [f"{corners} {marker}"]
+                )
+            seeds = region_seeds(triangulation, points, faces)
             text = table(f"{len(points)} 3 0 0", (points,))
-            text += "\n".join([f"{len(faces)} 1", *lines, "0", "0"]) + "\n"
+            text += "\n".join([f"{len(faces)} 1", *lines, "0", str(len(seeds)), *seeds]) + "\n"
     path.write_text(text, encoding="utf-8")
+
+
+def region_seeds(mesh: Any, points: Floats, faces: Indices) -> list[str]:
+    """Return lines with a point in each part of a mesh, between faces, that has a region number.
+
+    It is the center of the part's largest tetrahedron. Without numbers there are none.
+    """
+    region, neighbors = getattr(mesh, "region", None), getattr(mesh, "neighbors", None)
+    corners = mesh.simplices
+    if region is None or neighbors is None or corners.shape[1] != 4 or (region < 0).all():
+        return []
+    walls = set(map(tuple, np.sort(faces, axis=1).tolist()))
+    part = np.arange(len(corners))
+    pairs = [np.empty((0, 2), dtype=np.int64)]
+    for i in range(4):
+        t = np.flatnonzero(neighbors[:, i] > part)
+        sides = np.sort(np.delete(corners[t], i, axis=1), axis=1).tolist()
+        free = np.array([tuple(side) not in walls for side in sides], dtype=bool)
+        pairs.append(np.column_stack((t, neighbors[t, i]))[free])
+    one, other = np.concatenate(pairs).T
+    while True:  # ends: numbers of parts only decrease
+        least = np.minimum(part[one], part[other])
+        before = part.copy()
+        np.minimum.at(part, one, least)
+        np.minimum.at(part, other, least)
+        part = part[part]
+        if np.array_equal(part, before):
+            break
+    a, b, c, d = (points[column] for column in corners.T)
+    size = np.abs(np.einsum("ij,ij->i", a - d, np.cross(b - d, c - d)))
+    order = np.lexsort((-size, part))
+    largest = order[np.unique(part[order], return_index=True)[1]]
+    centers = points[corners].mean(axis=1)
+    return [
+        " ".join(map(repr, (i, *centers[t].tolist(), int(region[t]))))
+        for i, t in enumerate(largest[region[largest] >= 0].tolist())
+    ]
 
 
 def _triangles(mesh: Any, simplices: Indices) -> tuple[Indices, Indices]:

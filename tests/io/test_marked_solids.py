@@ -1,0 +1,112 @@
+"""Markers of faces and regions of tetrahedra in all formats that can carry them."""
+
+import meshio
+import numpy as np
+import pytest
+
+import delone
+import solids
+from delone import tetrahedralize
+from delone.cli import run
+from delone.io import read_mesh
+
+SHELLS = solids.joined(solids.box((0, 0, 0), (4, 4, 4)), solids.box((1, 1, 1), (2, 2, 2)))
+SEEDS = [(0.5, 0.5, 0.5, 7), (1.5, 1.25, 1.5, 3)]
+POINTS, FACES = SHELLS
+MARKERS = np.arange(len(FACES)) // 2 + 1
+MESH = tetrahedralize(POINTS, FACES, face_markers=MARKERS, regions=SEEDS)
+
+
+def keyed(rows, values):
+    return {tuple(sorted(row)): int(v) for row, v in zip(rows.tolist(), values, strict=True)}
+
+
+REGIONS = keyed(MESH.simplices, MESH.region)
+WALLS = keyed(MESH.input_faces, MESH.face_markers)
+
+
+@pytest.mark.parametrize("suffix", [".vtk", ".mesh", ".vtu", ".xdmf", ".msh"])
+def test_meshio_reads_markers_and_regions(suffix, tmp_path):
+    path = tmp_path / f"a{suffix}"
+    delone.io.write_mesh(path, MESH)
+    found = meshio.read(path)
+    assert np.array_equal(found.points, MESH.points)
+    tets, triangles = {}, {}
+    for i, block in enumerate(found.cells):
+        values = {name: each[i] for name, each in found.cell_data.items()}
+        if suffix == ".mesh":
+            region = marker = values["medit:ref"]
+        elif suffix == ".msh":
+            names = {(int(tag), int(n)): name for name, (tag, n) in found.field_data.items()}
+            ndim = 3 if block.type == "tetra" else 2
+            region = marker = [
+                int(names[int(tag), ndim].split()[1]) for tag in values["gmsh:physical"]
+            ]
+        else:
+            region, marker = values["region"], values["marker"]
+        if block.type == "tetra":
+            tets |= keyed(block.data, region)
+        else:
+            triangles |= keyed(block.data, marker)
+    assert tets == REGIONS
+    assert triangles == WALLS
+
+
+@pytest.mark.parametrize("suffix", [".med", ".inp"])
+def test_groups_of_markers_and_regions(suffix, tmp_path):
+    path = tmp_path / f"a{suffix}"
+    delone.io.write_mesh(path, MESH)
+    found = meshio.read(path)
+    groups = {}
+    if suffix == ".med":
+        for i, block in enumerate(found.cells):
+            for row, tag in zip(block.data.tolist(), found.cell_data["cell_tags"][i], strict=True):
+                for name in found.cell_tags.get(int(tag), []):
+                    groups.setdefault(name, set()).add(tuple(sorted(row)))
+    else:
+        for name, sets in found.cell_sets.items():
+            for block, rows in zip(found.cells, sets, strict=True):
+                if len(rows):
+                    own = {tuple(sorted(row)) for row in block.data[rows].tolist()}
+                    groups.setdefault(name.replace("_", " "), set()).update(own)
+    expected = {}
+    for kind, rows in (("region", REGIONS), ("marker", WALLS)):
+        for row, value in rows.items():
+            expected.setdefault(f"{kind} {value}", set()).add(row)
+    assert groups == expected
+
+
+@pytest.mark.parametrize("suffix", [".smesh", ".poly"])
+def test_tetgen_files_have_region_seeds_and_markers(suffix, tmp_path):
+    path = tmp_path / f"a{suffix}"
+    delone.io.write_mesh(path, MESH)
+    found = read_mesh(path)
+    assert keyed(found.simplices, found.markers) == WALLS
+    assert sorted(found.regions[:, 3].tolist()) == [3, 7]
+    again = tetrahedralize(path)
+    for seed in SEEDS:
+        at = int(again.find_simplex([seed[:3]])[0])
+        assert again.region[at] == seed[3]
+    for name in (".smesh", ".poly"):
+        out = tmp_path / f"b{name}"
+        assert run(["tetrahedralize", str(path), "-o", str(out), "--quiet"]) == 0
+        assert keyed(read_mesh(out).simplices, read_mesh(out).markers) == WALLS
+        assert sorted(read_mesh(out).regions[:, 3].tolist()) == [3, 7]
+
+
+def test_holes_of_a_file_are_holes_on_the_command_line(tmp_path, capsys):
+    path = tmp_path / "a.smesh"
+    delone.io.write_mesh(path, MESH)
+    lines = path.read_text().splitlines()
+    at = len(lines) - 4
+    assert lines[at : at + 2] == ["0", "2"]
+    lines[at : at + 1] = ["1", "0 1.5 1.25 1.5"]
+    lines[-3:] = ["1", next(line for line in lines[-2:] if line.endswith(" 7"))]
+    path.write_text("\n".join(lines) + "\n")
+    out = tmp_path / "a.vtu"
+    assert run(["tetrahedralize", str(path), "-o", str(out), "--json"]) == 0
+    text = capsys.readouterr().out
+    assert '"file_holes": 1' in text and '"file_regions": 1' in text
+    mesh = tetrahedralize(path)
+    assert mesh.volumes.sum() == pytest.approx(63)
+    assert meshio.read(out).cells_dict["tetra"].tolist() == mesh.simplices.tolist()
