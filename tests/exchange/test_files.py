@@ -164,7 +164,7 @@ def test_heights_and_values_of_periodic_points_are_those_of_their_rows(tmp_path:
         (periodic, ".png", "share no points"),
         (tetmesh, ".stl", "tetrahedra"),
         (tetmesh, ".gpkg", "tetrahedra"),
-        (tetmesh, ".poly", "tetrahedra"),
+        (tetmesh, ".ply", "tetrahedra"),
     ],
 )
 def test_what_a_format_has_no_place_for(make: Any, suffix: str, why: str, tmp_path: Path) -> None:

@@ -112,7 +112,7 @@ def test_failure_in_the_middle_leaves_what_was_there(tmp_path, monkeypatch, suff
 
     module = {".gpkg": "vector", ".geojson": "vector", ".npz": "arrays"}.get(suffix, "mesh")
     module = "picture" if suffix in (".png", ".svg") else module
-    module = "fem" if suffix in (".xdmf", ".med", ".inp", ".su2") else module
+    module = "fem" if suffix in (".xdmf", ".med", ".inp", ".su2", ".vtk", ".mesh") else module
     module = "triangle" if suffix in (".node", ".ele", ".poly") else module
     module = "tetgen" if suffix in (".smesh", ".face") else module
     module = "off" if suffix == ".off" else module

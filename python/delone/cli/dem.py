@@ -19,6 +19,7 @@ from delone.cli.show import print_json, print_rows, spinner
 from delone.cli.surfaces import (
     Boundary,
     Breaklines,
+    Chord,
     Columns,
     Crossing,
     Duplicates,
@@ -99,6 +100,7 @@ def dem(
     duplicates: Duplicates = "raise",
     crossing: Crossing = "raise",
     tolerance: Tolerance = 0.0,
+    chord: Chord = None,
     step: Step = 1,
     columns: Columns = None,
     classes: Classes = None,

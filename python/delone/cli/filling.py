@@ -84,7 +84,7 @@ def fill(
         list[str] | None,
         typer.Option(
             metavar="X,Y,Z",
-            help="Leave the region around a point empty, instead of those around holes of the file; "
+            help="Leave the region around a point empty, instead of the holes of the file; "
             "repeatable.",
         ),
     ] = None,

@@ -15,6 +15,7 @@ from delone.cli.referenced import noting, referenced
 from delone.cli.report import Stopwatch, peak_memory
 from delone.cli.show import print_json, print_report
 from delone.io import (
+    GeometrySet,
     PointSet,
     SurfaceFile,
     input_suffixes,
@@ -28,11 +29,12 @@ from delone.io.registry import holds_surface
 from delone.terrain import TIN
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
 __all__ = [
     "Boundary",
     "Breaklines",
+    "Chord",
     "Columns",
     "Crossing",
     "Duplicates",
@@ -45,6 +47,7 @@ __all__ = [
     "Survey",
     "Tolerance",
     "figures_of",
+    "is_drawing",
     "print_figures",
     "surface",
 ]
@@ -90,6 +93,10 @@ Retriangulate = Annotated[
 Step = Annotated[
     int, typer.Option(help="Of a raster (.tif, .asc), read each so many-th row and column.")
 ]
+Chord = Annotated[
+    float | None,
+    typer.Option(help="Of DXF files: how far chords may be from arcs and other curves."),
+]
 EastingFirst = Annotated[
     bool, typer.Option("--easting-first", help="Take the first number of LandXML as the easting.")
 ]
@@ -99,6 +106,7 @@ EastingFirst = Annotated[
 class SurfaceOptions:
     """How a surface is made of files."""
 
+    chord: float | None
     step: int
     columns: str | None
     classes: str | None
@@ -128,18 +136,33 @@ class SurfaceOptions:
         return [path for path in lines if path is not None]
 
 
+def is_drawing(path: Path) -> bool:
+    """Return whether the suffix is that of a DXF file, which has curves."""
+    return path.suffix.lower() == ".dxf"
+
+
 def surface(
-    source: Path, options: SurfaceOptions, watch: Stopwatch, say: Callable[[str], None]
+    source: Path,
+    options: SurfaceOptions,
+    watch: Stopwatch,
+    say: Callable[[str], None],
+    *,
+    others: Sequence[Path] = (),
 ) -> TIN:
-    """Read points and lines, or a surface, and triangulate them."""
+    """Read points and lines, or a surface, and triangulate them.
+
+    Options for formats may be for `others`, which will be read with them, too.
+    """
     say(f"reading {source.name}")
+    if options.chord is not None and not any(map(is_drawing, (source, *options.inputs(), *others))):
+        raise Failure("--chord is for DXF files, and none is among the inputs", Exit.USAGE)
+    if options.step != 1 and not any(map(is_raster, (source, *others))):
+        raise Failure(f"{source}: --step is for rasters: .tif .tiff .asc", Exit.USAGE)
     lined: dict[str, Any] = {"max_edge": options.max_edge}
     survey: PointSet | SurfaceFile
     with reading(), noting(quiet=options.quiet), watch.stage("read"):
-        if is_raster(source):
+        if is_raster(source) and source.exists():
             survey = _read_raster(source, options)
-        elif options.step != 1:
-            raise Failure(f"{source}: --step is for rasters: .tif .tiff .asc", Exit.USAGE)
         elif source.exists() and holds_surface(source):
             survey = _read_surface(source, options)
         else:
@@ -151,7 +174,7 @@ def surface(
             )
         for name in ("breaklines", "soft_breaklines", "boundary"):
             path = getattr(options, name)
-            lined[name] = None if path is None else read_geometries(path)
+            lined[name] = None if path is None else _lines(path, options)
     if isinstance(survey, PointSet) and survey.z is None:
         raise Failure(f"{source}: no column has heights: name it with --columns x,y,z", Exit.USAGE)
     survey = referenced(survey, options.crs, planar=options.planar, quiet=options.quiet)
@@ -177,7 +200,16 @@ def _read_surface(source: Path, options: SurfaceOptions) -> SurfaceFile:
     if options.columns is not None or options.classes is not None:
         raise Failure(f"{source}: surfaces have neither columns nor classes", Exit.USAGE)
     order = "enz" if options.easting_first else None
-    return read_surface(source, layer=options.layer, order=order)
+    return read_surface(source, layer=options.layer, order=order, chord=_curved(source, options))
+
+
+def _curved(path: Path, options: SurfaceOptions) -> float | None:
+    """Return the option --chord for a DXF file, and none for another."""
+    return options.chord if is_drawing(path) else None
+
+
+def _lines(path: Path, options: SurfaceOptions) -> GeometrySet:
+    return read_geometries(path, chord=_curved(path, options))
 
 
 def figures_of(source: Path, tin: TIN, output: list[Path] | None) -> dict[str, Any]:

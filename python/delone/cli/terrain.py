@@ -19,6 +19,7 @@ from delone.cli.show import spinner
 from delone.cli.surfaces import (
     Boundary,
     Breaklines,
+    Chord,
     Columns,
     Crossing,
     Duplicates,
@@ -31,12 +32,14 @@ from delone.cli.surfaces import (
     Survey,
     Tolerance,
     figures_of,
+    is_drawing,
     print_figures,
     surface,
 )
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
 from delone.extras import require
 from delone.io import read_geometries
+from delone.io.dem import is_raster
 from delone.terrain.contouring import MOST
 
 if TYPE_CHECKING:
@@ -84,6 +87,7 @@ def contours(
     duplicates: Duplicates = "raise",
     crossing: Crossing = "raise",
     tolerance: Tolerance = 0.0,
+    chord: Chord = None,
     step: Step = 1,
     columns: Columns = None,
     classes: Classes = None,
@@ -153,6 +157,7 @@ def profile(
     duplicates: Duplicates = "raise",
     crossing: Crossing = "raise",
     tolerance: Tolerance = 0.0,
+    chord: Chord = None,
     step: Step = 1,
     columns: Columns = None,
     classes: Classes = None,
@@ -174,9 +179,9 @@ def profile(
         protect_inputs([] if output is None else [output], source, line, *options.inputs())
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
-        with reading():
-            along = read_geometries(line)
-        tin = surface(source, options, watch, say)
+        with reading(), noting(quiet=quiet):
+            along = read_geometries(line, chord=chord if is_drawing(line) else None)
+        tin = surface(source, options, watch, say, others=[line])
         say("computing the profile")
         with watch.stage("profile"), noting(quiet=quiet):
             found = tin.profile(along)
@@ -212,6 +217,7 @@ def volume(
     duplicates: Duplicates = "raise",
     crossing: Crossing = "raise",
     tolerance: Tolerance = 0.0,
+    chord: Chord = None,
     step: Step = 1,
     columns: Columns = None,
     classes: Classes = None,
@@ -234,7 +240,7 @@ def volume(
     with spinner(quiet or as_json) as say:
         with reading():
             within = None if region is None else read_geometries(region)
-        tin = surface(source, options, watch, say)
+        tin = surface(source, options, watch, say, others=[Path(other)])
         within_other = replace(options, layer=other_layer or options.layer)
         goal = _goal(other, within_other, watch, say)
         say("computing volumes")
@@ -276,9 +282,14 @@ def _goal(
             return float(other)
         except ValueError:
             raise Failure(f"{other}: neither a file nor a height", Exit.INPUT) from None
+    file = Path(other)
+    own: dict[str, Any] = {
+        "chord": options.chord if is_drawing(file) else None,
+        "step": options.step if is_raster(file) else 1,
+    }
     return surface(
-        Path(other),
-        replace(options, breaklines=None, soft_breaklines=None, boundary=None),
+        file,
+        replace(options, breaklines=None, soft_breaklines=None, boundary=None, **own),
         watch,
         say,
     )

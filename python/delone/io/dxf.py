@@ -35,21 +35,30 @@ _SHOWN = 20
 
 
 def read_points(
-    path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str], layer: str | None
+    path: Path,
+    *,
+    columns: Sequence[str | int] | None,
+    attributes: Sequence[str],
+    layer: str | None,
+    chord: float | None = None,
 ) -> PointSet:
     """Read the points of a drawing; see `delone.io.read_points`."""
     _refuse_columns(path, columns, attributes)
-    found = read_surface(path, name=layer, order="enz")
+    found = read_surface(path, name=layer, order="enz", chord=chord)
     found.warn_left_out()
     return found.as_points()
 
 
 def read_geometries(
-    path: Path, *, columns: Sequence[str | int] | None, layer: str | None
+    path: Path,
+    *,
+    columns: Sequence[str | int] | None,
+    layer: str | None,
+    chord: float | None = None,
 ) -> GeometrySet:
     """Read the lines of a drawing; see `delone.io.read_geometries`."""
     _refuse_columns(path, columns, ())
-    found = read_surface(path, name=layer, order="enz")
+    found = read_surface(path, name=layer, order="enz", chord=chord)
     found.warn_left_out()
     return found.as_geometries()
 

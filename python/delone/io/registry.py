@@ -210,6 +210,7 @@ def read_points(
     classes: Sequence[int] | None = None,
     layer: str | None = None,
     attributes: Sequence[str] | str = (),
+    chord: float | None = None,
 ) -> PointSet:
     r"""Read points from a file; the suffix determines the format.
 
@@ -233,6 +234,8 @@ def read_points(
         Further columns to read. "all" means all that are not coordinates: those of text files are
         numbers where each field is one, else words, and a name that repeats gets the number of its
         column; LandXML, DXF and OFF have none.
+    chord : float, optional
+        How far chords may be from the curves of a DXF file; see `read_surface`.
 
     Returns
     -------
@@ -288,7 +291,7 @@ def read_points(
     if everything and attributes != "all":
         raise InputError(f"attributes must be 'all' or names of columns, got {attributes!r:.60}")
     named = () if everything else tuple(attributes)
-    options: dict[str, Any] = {"columns": columns, "attributes": named}
+    options: dict[str, Any] = {"columns": columns, "attributes": named} | _chord(file, chord)
     if everything and not module.__name__.endswith(_WITHOUT_ATTRIBUTES):
         options["everything"] = True
     if module.__name__.endswith(".las"):
@@ -372,6 +375,7 @@ def read_geometries(
     *,
     columns: Sequence[str | int] | None = None,
     layer: str | None = None,
+    chord: float | None = None,
 ) -> GeometrySet:
     """Read points, lines and areas from a file; the suffix determines the format.
 
@@ -385,6 +389,8 @@ def read_geometries(
         heights are those of the coordinates, if any.
     layer : str, optional
         The layer, for files that have several.
+    chord : float, optional
+        How far chords may be from the curves of a DXF file; see `read_surface`.
 
     Returns
     -------
@@ -413,7 +419,7 @@ def read_geometries(
     modules = {suffix: name for suffix, name in _READERS.items() if name in _GEOMETRIES}
     module = _module(modules, _suffix(file), file, "read geometries from")
     read: Callable[..., GeometrySet] = module.read_geometries
-    return read(file, columns=columns, layer=layer)
+    return read(file, columns=columns, layer=layer, **_chord(file, chord))
 
 
 def holds_surface(path: str | os.PathLike[str]) -> bool:
@@ -502,12 +508,19 @@ def read_surface(
     read: Callable[..., SurfaceFile] = module.read_surface
     if chord is None:
         return read(file, name=layer, order=order or plain)
-    if plain == "nez":
-        raise InputError(f"{file}: chord is for DXF files; LandXML has no curves in surfaces")
+    return read(file, name=layer, order=order or plain, **_chord(file, chord))
+
+
+def _chord(file: Path, chord: float | None) -> dict[str, float]:
+    """Return the option `chord` of the reader of DXF files, if it is given."""
+    if chord is None:
+        return {}
+    if _READERS.get(_suffix(file)) != "dxf":
+        raise InputError(f"{file}: chord is for DXF files, which have curves")
     distance = as_number(chord, name="chord")
     if not distance > 0:
         raise InputError(f"chord must be a distance above 0, got {distance:g}")
-    return read(file, name=layer, order=order or plain, chord=distance)
+    return {"chord": distance}
 
 
 def read_mesh(path: str | os.PathLike[str], *, polygons: str | None = None) -> MeshFile:
@@ -576,13 +589,14 @@ def write_mesh(
     ----------
     path : str or path-like
         VTU, PLY, OBJ, STL, OFF, MSH, XDMF, MED, INP, SU2, VTK (legacy), MESH (Medit),
-        Triangle's NODE, ELE and POLY, TetGen's NODE, ELE, FACE, SMESH and POLY, GeoPackage, GeoJSON, LandXML (.xml, .landxml), npz, PNG or SVG.
-        An existing file is replaced only once the new one is complete.
+        Triangle's NODE, ELE and POLY, TetGen's NODE, ELE, FACE, SMESH and POLY, GeoPackage,
+        GeoJSON, LandXML (.xml, .landxml), npz, PNG or SVG. An existing file is replaced only once
+        the new one is complete.
     triangulation : Delaunay, ConstrainedDelaunay, Mesh, TetMesh or another mesh
         What to write: also a `RegularTriangulation`, a `PeriodicDelaunay` or a `ConvexHull` in 3-D.
         Tetrahedra go to VTU, MSH, XDMF, MED, INP, SU2, VTK, MESH, NODE, ELE, FACE, SMESH,
-        POLY and PNG, those of a `Delaunay` or `TetMesh` to npz as well. The surface of a hull goes to VTU, MSH, PLY, OBJ,
-        STL, OFF, XDMF, MED, INP, VTK, MESH, NODE, FACE, SMESH, POLY and PNG.
+        POLY and PNG, those of a `Delaunay` or `TetMesh` to npz as well. The surface of a hull goes
+        to VTU, MSH, PLY, OBJ, STL, OFF, XDMF, MED, INP, VTK, MESH, NODE, FACE, SMESH, POLY and PNG.
         Both are written without `z` and `crs`.
     z : array_like of float, shape (n,), optional
         Heights, the third coordinate, by default those of a `delone.terrain.TIN`; in plots the
