@@ -110,3 +110,16 @@ def test_holes_of_a_file_are_holes_on_the_command_line(tmp_path, capsys):
     mesh = tetrahedralize(path)
     assert mesh.volumes.sum() == pytest.approx(63)
     assert meshio.read(out).cells_dict["tetra"].tolist() == mesh.simplices.tolist()
+
+
+def test_parts_of_the_boundary_of_su2(tmp_path):
+    path = tmp_path / "a.su2"
+    delone.io.write_mesh(path, MESH)
+    found = meshio.read(path)
+    sides = {}
+    for block, tags in zip(found.cells, found.cell_data["su2:tag"], strict=True):
+        if block.type == "triangle":
+            sides |= keyed(block.data, tags)
+    # The walls inside are no boundary.
+    outer = {row: value for row, value in WALLS.items() if value <= 6}
+    assert sides == outer

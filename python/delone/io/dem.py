@@ -116,7 +116,7 @@ def read_raster(
     >>> import tempfile
     >>> from pathlib import Path
     >>> from delone.io import read_raster
-    >>> text = "ncols 2\\nnrows 2\\nxllcorner 10\\nyllcorner 20\\ncellsize 4\\n5 6\\n7 8\\n"
+    >>> text = "ncols 2\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 4\n5 6\n7 8\n"
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder) / "dem.asc"
     ...     _ = file.write_text(text)
