@@ -49,7 +49,7 @@ SPACE = {
     "TetMesh": lambda: delone.improve(delone.Delaunay(SOLID)),
 }
 PICTURES = {".png", ".svg"}
-MESHIO = [".vtu", ".msh", ".xdmf", ".inp", ".ply", ".obj"]
+MESHIO = [".vtu", ".msh", ".xdmf", ".inp", ".ply", ".obj", ".vtk", ".mesh"]
 
 
 def heights(mesh: Any) -> np.ndarray[Any, Any]:
@@ -105,6 +105,9 @@ def test_by_meshio(suffix: str, name: str, deep: bool, tmp_path: Path) -> None:
         return
     edges = by_edge(mesh.segments, mesh.segment_markers)
     assert set(edges.values()) == set(MARKERS)
+    if suffix == ".mesh":
+        assert by_edge(lines, of_kind(found, "medit:ref", "line")) == edges
+        return
     if suffix == ".msh":
         for tag in ("gmsh:physical", "gmsh:geometrical"):
             assert by_edge(lines, of_kind(found, tag, "line")) == edges
