@@ -21,11 +21,9 @@ from delone.cli.options import (
     Quiet,
     Solid,
     Workers,
-    class_numbers,
     space_or_plane,
-    split,
 )
-from delone.cli.referenced import Crs, Planar, note, referenced, require_known
+from delone.cli.referenced import Crs, Planar, note, require_known
 from delone.cli.report import Stopwatch, peak_memory
 from delone.cli.rows import ROW_SUFFIXES, carried, read_rows, ready_rows, renaming, write_rows
 from delone.cli.show import print_json, print_report, spinner
@@ -160,14 +158,8 @@ def cluster_points(
     with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
         with reading(), watch.stage("read"):
-            survey = read_rows(
-                source,
-                quiet=quiet,
-                columns=split(columns),
-                classes=class_numbers(classes),
-                layer=layer,
-            )
-            survey = referenced(survey, crs, planar=planar, quiet=quiet)
+            which = {"columns": columns, "classes": classes, "layer": layer}
+            survey = read_rows(source, which, crs, planar=planar, quiet=quiet)
         say(f"clustering {len(survey):,} points")
         points = survey.points
         if is_space(source, space, survey) and survey.z is not None:

@@ -12,7 +12,8 @@ import numpy as np
 
 from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure
-from delone.cli.referenced import noting
+from delone.cli.options import class_numbers, split
+from delone.cli.referenced import noting, referenced
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
 from delone.counting import counted
 from delone.extras import require
@@ -33,10 +34,22 @@ ROW_SUFFIXES = (*TABLE_SUFFIXES, ".csv")
 _OF_TABLES = ("fid", "geom", "geometry")
 
 
-def read_rows(source: Path, *, quiet: bool, **options: Any) -> PointSet:
-    """Read points with all their columns; warnings become notes."""
+def read_rows(
+    source: Path, which: Mapping[str, str | None], crs: str | None, *, planar: bool, quiet: bool
+) -> PointSet:
+    """Read points with all their columns, by the options of a command; warnings become notes.
+
+    `which` has the options ``columns``, ``classes`` and ``layer``.
+    """
     with noting(quiet=quiet):
-        return read_points(source, attributes="all", **options)
+        survey = read_points(
+            source,
+            attributes="all",
+            columns=split(which["columns"]),
+            classes=class_numbers(which["classes"]),
+            layer=which["layer"],
+        )
+    return referenced(survey, crs, planar=planar, quiet=quiet)
 
 
 def ready_rows(path: Path, what: str) -> None:

@@ -91,7 +91,7 @@ Retriangulate = Annotated[
     ),
 ]
 Step = Annotated[
-    int, typer.Option(help="Of a raster (.tif, .asc), read each so many-th row and column.")
+    int, typer.Option(help="Of a raster (.tif, .asc), read only every N-th row and column.")
 ]
 Chord = Annotated[
     float | None,

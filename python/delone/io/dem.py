@@ -79,7 +79,7 @@ def read_raster(
     band : int, optional
         The band, from 1; needed if there are several.
     step : int, optional
-        Read each so many-th row and column, from the first.
+        Read every `step`-th row and column, starting with the first.
     max_points : int, optional
         Maximum number of cells to read, those without a height included.
 
@@ -211,7 +211,7 @@ def _check_size(raster: Any, band: int, step: int, most: int, path: Path) -> Non
             least += 1 + least // 1000
         raise FileFormatError(
             f"{path} has {columns} x {rows} cells, {count} to read, and at most {most} are read "
-            f"(max_points): read each {least}th row and column with step={least} (--step)"
+            f"(max_points): read every {least}th row and column with step={least} (--step)"
         )
     high, wide = raster.block_shapes[band - 1]
     size = np.dtype(raster.dtypes[band - 1]).itemsize
