@@ -61,3 +61,46 @@ def test_chord_is_for_drawings(survey, command):
     code, _, err = command("volume", survey, "0", "--chord", "1")
     assert code == 2
     assert "--chord is for DXF files" in err
+
+
+@pytest.mark.parametrize("call", ["mesh", "triangulate --outline"])
+def test_chords_of_closed_lines(call, drawing, command):
+    for chord in (1.0, 0.001):
+        code, out, err = command(*call.split(), drawing, "--chord", chord, "--json")
+        assert code == 0, err
+        assert err.startswith("delone: note: ") and "TEXT" in err
+        area = json.loads(out)["area"]
+        assert np.pi * (10 - chord) ** 2 < area < np.pi * 100
+
+
+@pytest.mark.parametrize("call", ["mesh", "triangulate"])
+def test_quiet_prints_no_notes(call, drawing, command):
+    assert command(call, drawing, "--quiet") == (0, "", "")
+
+
+def test_info_has_notes_and_no_warnings(drawing, command):
+    code, _, err = command("info", drawing)
+    assert code == 0
+    assert err.startswith("delone: note: ") and "Warning" not in err
+
+
+def test_chords_of_a_region(command, tmp_path):
+    points = tmp_path / "p.csv"
+    points.write_text("x,y,z\n-20,-20,1\n20,-20,1\n20,20,1\n-20,20,1\n")
+    made = ezdxf.new()
+    made.modelspace().add_circle((0, 0), 10)
+    made.saveas(tmp_path / "r.dxf")
+    call = ("volume", points, "0", "--region", tmp_path / "r.dxf", "--json")
+    rough, fine = (json.loads(command(*call, "--chord", d)[1])["cut"] for d in ("1", "0.001"))
+    assert rough < fine < 100 * np.pi
+    assert fine > np.pi * (10 - 0.001) ** 2
+
+
+def test_lines_and_points_of_a_drawing_are_triangulated(drawing, command):
+    code, out, err = command("triangulate", drawing, "--chord", "1", "--json")
+    assert code == 0, err
+    figures = json.loads(out)
+    segments = figures["constraints"]["segments"]
+    assert segments == 7
+    assert figures["points"] == 4 + segments
+    assert figures["constraints"]["features"] == 5

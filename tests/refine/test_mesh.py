@@ -439,3 +439,26 @@ def test_points_alone_are_no_domain(kind: Any) -> None:
     with pytest.raises(InputError, match=r"without segments.*\(points, segments\).*Polygon"):
         delone.mesh(points)
     assert delone.mesh(delone.ConstrainedDelaunay(points, [])).nsimplex >= 2
+
+
+def _line(points: list[tuple[float, float]]) -> dict[str, object]:
+    return {"type": "LineString", "coordinates": points}
+
+
+def test_lines_without_polygons_enclose_the_domain() -> None:
+    outer = [(0.0, 0.0), (6.0, 0.0), (6.0, 6.0), (0.0, 6.0), (0.0, 0.0)]
+    inner = [(2.0, 2.0), (4.0, 2.0), (4.0, 4.0), (2.0, 4.0), (2.0, 2.0)]
+    # As an iterator, which can be read once.
+    mesh = delone.mesh(map(_line, (outer, inner)), max_area=1)
+    assert mesh.areas.sum() == 36
+    middle = mesh.region[mesh.find_simplex((3, 3))]
+    assert mesh.areas[mesh.region == middle].sum() == 4
+    assert set(mesh.geometry_of_segment.tolist()) == {0, 1}
+    # A polygon among them decides: a line around it encloses nothing.
+    square = {"type": "Polygon", "coordinates": [inner]}
+    assert delone.mesh([_line(outer), square]).areas.sum() == 4
+
+
+def test_open_lines_enclose_nothing() -> None:
+    with pytest.raises(delone.InputError, match="the domain is empty: the outline is open"):
+        delone.mesh(_line([(0.0, 0.0), (6.0, 0.0), (6.0, 6.0)]))

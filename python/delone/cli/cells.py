@@ -76,7 +76,7 @@ def voronoi(
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
-        with reading(), watch.stage("read"):
+        with reading(quiet=quiet), watch.stage("read"):
             sites = _sites(source, split(columns), layer, split(attributes), weights)
             sites = referenced(sites, crs, planar=planar, quiet=quiet)
             outline = _outline(clip, sites.crs)

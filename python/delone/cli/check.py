@@ -63,9 +63,9 @@ def check(
         raise Failure("--canonical is for triangulations, not for --surface", Exit.USAGE)
     with spinner(quiet or as_json) as say:
         if surface:
-            figures, lines = check_faces(mesh, say=say)
+            figures, lines = check_faces(mesh, say=say, quiet=quiet)
         else:
-            figures, lines = _figures(mesh, canonical=canonical, say=say)
+            figures, lines = _figures(mesh, canonical=canonical, say=say, quiet=quiet)
     if as_json:
         print_json(figures)
     elif not quiet:
@@ -78,7 +78,7 @@ def check(
 
 
 def _figures(
-    path: Path, *, canonical: bool, say: Callable[[str], None]
+    path: Path, *, canonical: bool, say: Callable[[str], None], quiet: bool
 ) -> tuple[dict[str, Any], list[str]]:
     """Prove that triangles are Delaunay, or name the faults: figures, with ``ok``, and lines.
 
@@ -87,7 +87,7 @@ def _figures(
     """
     watch = Stopwatch()
     say(f"reading {path.name}")
-    with reading(), watch.stage("read"):
+    with reading(quiet=quiet), watch.stage("read"):
         mesh = read_mesh(path)
     solid = mesh.points.shape[1] == 3
     say(f"checking {len(mesh.simplices):,} {'tetrahedra' if solid else 'triangles'}")

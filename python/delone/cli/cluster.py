@@ -13,6 +13,7 @@ import typer
 from delone import __version__, cluster
 from delone.atomic import replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.notes import note
 from delone.cli.options import (
     Classes,
     Flat,
@@ -23,7 +24,7 @@ from delone.cli.options import (
     Workers,
     space_or_plane,
 )
-from delone.cli.referenced import Crs, Planar, note, require_known
+from delone.cli.referenced import Crs, Planar, require_known
 from delone.cli.report import Stopwatch, peak_memory
 from delone.cli.rows import ROW_SUFFIXES, carried, read_rows, ready_rows, renaming, write_rows
 from delone.cli.show import print_json, print_report, spinner
@@ -157,7 +158,7 @@ def cluster_points(
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
-        with reading(), watch.stage("read"):
+        with reading(quiet=quiet), watch.stage("read"):
             which = {"columns": columns, "classes": classes, "layer": layer}
             survey = read_rows(source, which, crs, planar=planar, quiet=quiet)
         say(f"clustering {len(survey):,} points")

@@ -99,7 +99,10 @@ COMMANDS = {
     ),
     "hull": Listed("outline", "hull", "Compute the outline of points, and write its polygons."),
     "mesh": Listed(
-        "meshing", "make_mesh", "Mesh polygons with triangles without small angles.", on_rows=False
+        "meshing",
+        "make_mesh",
+        "Mesh polygons, or what closed lines enclose, with triangles without small angles.",
+        on_rows=False,
     ),
     "tetrahedralize": Listed(
         "filling",

@@ -9,8 +9,8 @@ import numpy as np
 from delone import Delaunay, from_geometry
 from delone.cli.exits import Exit, Failure
 from delone.errors import CrossingSegmentsError, NonFiniteError
-from delone.io import GeometrySet, read_geometries, read_points
-from delone.io.registry import holds_geometries
+from delone.io import GeometrySet, read_geometries, read_points, read_surface
+from delone.io.registry import holds_geometries, holds_surface
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -54,13 +54,30 @@ def read_input(
     classes: Sequence[int] | None,
     layer: str | None,
     attributes: Sequence[str] = (),
+    chord: float | None = None,
 ) -> PointSet | GeometrySet:
     """Read points, or geometries if there are lines or areas among them."""
+    if holds_surface(source) and source.exists() and columns is None and classes is None:
+        sheet = read_surface(source, layer=layer, chord=chord)
+        sheet.warn_left_out()
+        lines = (
+            sheet.breaklines,
+            sheet.soft_breaklines,
+            sheet.boundary,
+            sheet.holes,
+            sheet.islands,
+        )
+        return sheet.as_geometries(points=True) if any(map(len, lines)) else sheet.as_points()
     if classes is None and holds_geometries(source):
-        found = read_geometries(source, columns=columns, layer=layer)
+        found = read_geometries(source, columns=columns, layer=layer, chord=chord)
         return found.as_points() if found.only_points else found
     return read_points(
-        source, columns=columns, classes=classes, layer=layer, attributes=tuple(attributes)
+        source,
+        columns=columns,
+        classes=classes,
+        layer=layer,
+        attributes=tuple(attributes),
+        chord=chord,
     )
 
 

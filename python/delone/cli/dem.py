@@ -11,7 +11,7 @@ import typer
 from delone import __version__, distributed
 from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
-from delone.cli.options import Classes, Json, Layer, Quiet, Workers
+from delone.cli.options import Chord, Classes, Json, Layer, Quiet, Workers
 from delone.cli.outputs import write_all
 from delone.cli.referenced import Crs, Planar, require_known
 from delone.cli.report import Stopwatch
@@ -19,7 +19,6 @@ from delone.cli.show import print_json, print_rows, spinner
 from delone.cli.surfaces import (
     Boundary,
     Breaklines,
-    Chord,
     Columns,
     Crossing,
     Duplicates,
@@ -188,7 +187,7 @@ def _of_tiles(
 ) -> None:
     with writing():
         check_target(output)
-    with reading():
+    with reading(quiet=quiet):
         found = distributed.open(folder)
     with spinner(quiet or as_json) as say, writing():
         say(f"interpolating {found.ntiles:,} tiles")

@@ -153,9 +153,12 @@ def os_message(error: OSError) -> str:
 
 
 @contextmanager
-def reading() -> Iterator[None]:
-    """Treat errors of files as errors of the input."""
-    with _blaming(Exit.INPUT):
+def reading(*, quiet: bool = False) -> Iterator[None]:
+    """Treat errors of files as errors of the input, and print warnings as notes."""
+    # Help shows the exit codes, and needs no reader.
+    from delone.cli.notes import noting
+
+    with _blaming(Exit.INPUT), noting(quiet=quiet):
         yield
 
 

@@ -36,15 +36,15 @@ _FAULTS = (
 )
 
 
-def read_faces(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+def read_faces(path: Path, *, quiet: bool) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Read the points, (n, 3), and triangles of a surface in 3-D."""
-    points, mesh = read_parts(path)
+    points, mesh = read_parts(path, quiet=quiet)
     return points, mesh.simplices
 
 
-def read_parts(path: Path) -> tuple[NDArray[np.float64], MeshFile]:
+def read_parts(path: Path, *, quiet: bool) -> tuple[NDArray[np.float64], MeshFile]:
     """Read the points, (n, 3), and triangles of a surface, its markers, holes and regions."""
-    with reading():
+    with reading(quiet=quiet):
         mesh = read_mesh(path, polygons="split")
     if mesh.simplices.shape[1] != 3:
         raise Failure(f"{path}: a surface has triangles, not tetrahedra", Exit.USAGE)
@@ -53,12 +53,14 @@ def read_parts(path: Path) -> tuple[NDArray[np.float64], MeshFile]:
     return np.column_stack((mesh.points, mesh.z)), mesh
 
 
-def check_faces(path: Path, *, say: Callable[[str], None]) -> tuple[dict[str, Any], list[str]]:
+def check_faces(
+    path: Path, *, say: Callable[[str], None], quiet: bool
+) -> tuple[dict[str, Any], list[str]]:
     """Check a surface exactly: figures, with ``ok``, and lines. `say` is told the current step."""
     watch = Stopwatch()
     say(f"reading {path.name}")
     with watch.stage("read"):
-        points, faces = read_faces(path)
+        points, faces = read_faces(path, quiet=quiet)
     say(f"checking {len(faces):,} faces")
     with watch.stage("check"):
         try:

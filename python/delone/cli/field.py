@@ -112,7 +112,9 @@ def interpolate(
         writers = {path: (raster_writer(path), check_target(path))[0] for path in output or ()}
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
-        survey, values, name = _read(source, value, columns, classes, layer, watch, say)
+        survey, values, name = _read(
+            source, value, columns, classes, layer, watch, say, quiet=quiet
+        )
         survey = referenced(
             survey, crs, planar=planar, quiet=quiet, outputs=writers, known=WITH_CRS
         )
@@ -230,10 +232,12 @@ def _read(  # noqa: PLR0917
     layer: str | None,
     watch: Stopwatch,
     say: Callable[[str], None],
+    *,
+    quiet: bool = False,
 ) -> tuple[PointSet, NDArray[Any], str]:
     """Points, values and the name of the values."""
     say(f"reading {source.name}")
-    with reading(), watch.stage("read"):
+    with reading(quiet=quiet), watch.stage("read"):
         survey = read_points(
             source,
             columns=split(columns),

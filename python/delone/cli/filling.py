@@ -129,7 +129,7 @@ def fill(
     with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
         with watch.stage("read"):
-            points, given = read_parts(source)
+            points, given = read_parts(source, quiet=quiet)
             faces = given.simplices
         options["face_markers"] = given.markers
         for name in ("holes", "regions"):

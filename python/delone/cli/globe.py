@@ -13,9 +13,10 @@ import typer
 from delone import __version__, datasets, sphere
 from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.notes import note
 from delone.cli.options import Classes, Columns, Json, Layer, Quiet, Workers, class_numbers, split
 from delone.cli.outputs import write_all
-from delone.cli.referenced import Crs, note, require_known
+from delone.cli.referenced import Crs, require_known
 from delone.cli.report import Stopwatch, peak_memory
 from delone.cli.show import print_json, print_report, spinner
 from delone.extras import require
@@ -91,7 +92,7 @@ def globe(
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
-        with reading(), watch.stage("read"):
+        with reading(quiet=quiet), watch.stage("read"):
             survey = read_points(
                 source, columns=split(columns), classes=class_numbers(classes), layer=layer
             )

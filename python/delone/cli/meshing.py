@@ -13,7 +13,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from delone import Mesh, __version__, mesh
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
-from delone.cli.options import Json, Layer, MeshOutput, Quiet
+from delone.cli.options import Chord, Json, Layer, MeshOutput, Quiet
 from delone.cli.outputs import ready, write_all
 from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, peak_memory, summary
@@ -36,7 +36,8 @@ def make_mesh(
     source: Annotated[
         Path,
         typer.Argument(
-            metavar="INPUT", help="File of polygons, with optional lines and points inside."
+            metavar="INPUT",
+            help="File of polygons, with optional lines and points inside, or of closed lines.",
         ),
     ],
     *,
@@ -56,13 +57,14 @@ def make_mesh(
     freeze: Annotated[
         bool, typer.Option("--freeze-boundary", help="Add no points on the boundary.")
     ] = False,
+    chord: Chord = None,
     layer: Layer = None,
     crs: Crs = None,
     planar: Planar = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Mesh polygons with triangles without small angles.
+    """Mesh polygons, or what closed lines enclose, with triangles without small angles.
 
     Plots show the mesh and the histogram of its angles.
     """
@@ -71,8 +73,8 @@ def make_mesh(
         protect_inputs(output or (), source)
         writers = {path: ready(path) for path in output or ()}
     watch = Stopwatch()
-    with reading(), watch.stage("read"):
-        survey = read_geometries(source, layer=layer)
+    with reading(quiet=quiet), watch.stage("read"):
+        survey = read_geometries(source, layer=layer, chord=chord)
     survey = referenced(survey, crs, planar=planar, quiet=quiet, outputs=writers, known=WITH_CRS)
     options: dict[str, Any] = {
         "min_angle": min_angle,

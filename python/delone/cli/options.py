@@ -11,6 +11,7 @@ from delone.cli.exits import Exit, Failure
 from delone.io import input_suffixes, output_suffixes
 
 __all__ = [
+    "Chord",
     "Classes",
     "Columns",
     "Flat",
@@ -32,6 +33,10 @@ Input = Annotated[
         metavar="INPUT",
         help="File of points, lines or polygons: " + " ".join(input_suffixes()),
     ),
+]
+Chord = Annotated[
+    float | None,
+    typer.Option(help="Of DXF files: how far chords may be from arcs and other curves."),
 ]
 Columns = Annotated[
     str | None,

@@ -82,7 +82,7 @@ def hull(
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
-        with reading(), watch.stage("read"):
+        with reading(quiet=quiet), watch.stage("read"):
             survey = read_points(
                 source, columns=split(columns), classes=class_numbers(classes), layer=layer
             )

@@ -2,35 +2,31 @@
 
 from __future__ import annotations
 
-import sys
-import warnings
-from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
 from delone.cli.exits import Exit, Failure
+from delone.cli.notes import note
 from delone.georeference import (
-    CRSWarning,
     degrees_in,
     is_known,
     may_be_degrees,
     message_of_degrees,
     same_crs,
 )
-from delone.io import GeometrySet, LeftOutWarning, PointSet, SurfaceFile
+from delone.io import GeometrySet, PointSet, SurfaceFile
 from delone.io.referencing import left_out
-from delone.units import UnitsWarning
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Sequence
     from pathlib import Path
 
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["Crs", "Planar", "note", "note_degrees", "noting", "referenced", "require_known"]
+__all__ = ["Crs", "Planar", "note_degrees", "referenced", "require_known"]
 
 Crs = Annotated[
     str | None,
@@ -90,27 +86,3 @@ def note_degrees(
     if by is not None and may_be_degrees(coordinates):
         sentence = message_of_degrees(f"{source}: coordinates", by)
         note(sentence.replace("planar=True", "--planar"), quiet=quiet)
-
-
-def note(message: str | None, *, quiet: bool = False) -> None:
-    """Print a note on standard error, if there is one."""
-    if message is not None and not quiet:
-        print(f"delone: note: {' '.join(message.split())}", file=sys.stderr)
-
-
-@contextmanager
-def noting(*, quiet: bool = False) -> Iterator[None]:
-    """Print warnings about units, reference systems and what is left out as notes.
-
-    So are those without a class of their own; all others are passed on.
-    """
-    kinds = (UnitsWarning, CRSWarning, LeftOutWarning)
-    with warnings.catch_warnings(record=True) as caught:
-        for kind in (*kinds, UserWarning):
-            warnings.simplefilter("always", kind)
-        yield
-    for each in caught:
-        if issubclass(each.category, kinds) or each.category is UserWarning:
-            note(str(each.message), quiet=quiet)
-        else:
-            warnings.warn_explicit(each.message, each.category, each.filename, each.lineno)

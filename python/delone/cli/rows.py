@@ -13,7 +13,7 @@ import numpy as np
 from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure
 from delone.cli.options import class_numbers, split
-from delone.cli.referenced import noting, referenced
+from delone.cli.referenced import referenced
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
 from delone.counting import counted
 from delone.extras import require
@@ -37,18 +37,17 @@ _OF_TABLES = ("fid", "geom", "geometry")
 def read_rows(
     source: Path, which: Mapping[str, str | None], crs: str | None, *, planar: bool, quiet: bool
 ) -> PointSet:
-    """Read points with all their columns, by the options of a command; warnings become notes.
+    """Read points with all their columns, by the options of a command.
 
     `which` has the options ``columns``, ``classes`` and ``layer``.
     """
-    with noting(quiet=quiet):
-        survey = read_points(
-            source,
-            attributes="all",
-            columns=split(which["columns"]),
-            classes=class_numbers(which["classes"]),
-            layer=which["layer"],
-        )
+    survey = read_points(
+        source,
+        attributes="all",
+        columns=split(which["columns"]),
+        classes=class_numbers(which["classes"]),
+        layer=which["layer"],
+    )
     return referenced(survey, crs, planar=planar, quiet=quiet)
 
 

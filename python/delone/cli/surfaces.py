@@ -10,8 +10,9 @@ import typer
 
 from delone import __version__
 from delone.cli.exits import Exit, Failure, reading
+from delone.cli.notes import noting
 from delone.cli.options import class_numbers, split
-from delone.cli.referenced import noting, referenced
+from delone.cli.referenced import referenced
 from delone.cli.report import Stopwatch, peak_memory
 from delone.cli.show import print_json, print_report
 from delone.io import (
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
 __all__ = [
     "Boundary",
     "Breaklines",
-    "Chord",
     "Columns",
     "Crossing",
     "Duplicates",
@@ -46,8 +46,8 @@ __all__ = [
     "SurfaceOptions",
     "Survey",
     "Tolerance",
+    "curves_of",
     "figures_of",
-    "is_drawing",
     "print_figures",
     "surface",
 ]
@@ -93,10 +93,6 @@ Retriangulate = Annotated[
 Step = Annotated[
     int, typer.Option(help="Of a raster (.tif, .asc), read only every N-th row and column.")
 ]
-Chord = Annotated[
-    float | None,
-    typer.Option(help="Of DXF files: how far chords may be from arcs and other curves."),
-]
 EastingFirst = Annotated[
     bool, typer.Option("--easting-first", help="Take the first number of LandXML as the easting.")
 ]
@@ -136,8 +132,12 @@ class SurfaceOptions:
         return [path for path in lines if path is not None]
 
 
-def is_drawing(path: Path) -> bool:
-    """Return whether the suffix is that of a DXF file, which has curves."""
+def curves_of(path: Path, chord: float | None) -> dict[str, Any]:
+    """Return --chord as an option of readers for a DXF file, which has curves; none for others."""
+    return {"chord": chord} if _is_drawing(path) else {}
+
+
+def _is_drawing(path: Path) -> bool:
     return path.suffix.lower() == ".dxf"
 
 
@@ -154,13 +154,14 @@ def surface(
     Options for formats may be for `others`, which will be read with them, too.
     """
     say(f"reading {source.name}")
-    if options.chord is not None and not any(map(is_drawing, (source, *options.inputs(), *others))):
+    files = (source, *options.inputs(), *others)
+    if options.chord is not None and not any(map(_is_drawing, files)):
         raise Failure("--chord is for DXF files, and none is among the inputs", Exit.USAGE)
     if options.step != 1 and not any(map(is_raster, (source, *others))):
         raise Failure(f"{source}: --step is for rasters: .tif .tiff .asc", Exit.USAGE)
     lined: dict[str, Any] = {"max_edge": options.max_edge}
     survey: PointSet | SurfaceFile
-    with reading(), noting(quiet=options.quiet), watch.stage("read"):
+    with reading(quiet=options.quiet), watch.stage("read"):
         if is_raster(source) and source.exists():
             survey = _read_raster(source, options)
         elif source.exists() and holds_surface(source):
@@ -200,16 +201,12 @@ def _read_surface(source: Path, options: SurfaceOptions) -> SurfaceFile:
     if options.columns is not None or options.classes is not None:
         raise Failure(f"{source}: surfaces have neither columns nor classes", Exit.USAGE)
     order = "enz" if options.easting_first else None
-    return read_surface(source, layer=options.layer, order=order, chord=_curved(source, options))
-
-
-def _curved(path: Path, options: SurfaceOptions) -> float | None:
-    """Return the option --chord for a DXF file, and none for another."""
-    return options.chord if is_drawing(path) else None
+    curved = curves_of(source, options.chord)
+    return read_surface(source, layer=options.layer, order=order, **curved)
 
 
 def _lines(path: Path, options: SurfaceOptions) -> GeometrySet:
-    return read_geometries(path, chord=_curved(path, options))
+    return read_geometries(path, **curves_of(path, options.chord))
 
 
 def figures_of(source: Path, tin: TIN, output: list[Path] | None) -> dict[str, Any]:

@@ -12,14 +12,14 @@ import typer
 
 from delone.atomic import replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
-from delone.cli.options import Classes, Json, Layer, Quiet, Workers
-from delone.cli.referenced import Crs, Planar, noting, require_known
+from delone.cli.notes import noting
+from delone.cli.options import Chord, Classes, Json, Layer, Quiet, Workers
+from delone.cli.referenced import Crs, Planar, require_known
 from delone.cli.report import Stopwatch
 from delone.cli.show import spinner
 from delone.cli.surfaces import (
     Boundary,
     Breaklines,
-    Chord,
     Columns,
     Crossing,
     Duplicates,
@@ -31,8 +31,8 @@ from delone.cli.surfaces import (
     SurfaceOptions,
     Survey,
     Tolerance,
+    curves_of,
     figures_of,
-    is_drawing,
     print_figures,
     surface,
 )
@@ -179,8 +179,8 @@ def profile(
         protect_inputs([] if output is None else [output], source, line, *options.inputs())
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
-        with reading(), noting(quiet=quiet):
-            along = read_geometries(line, chord=chord if is_drawing(line) else None)
+        with reading(quiet=quiet):
+            along = read_geometries(line, **curves_of(line, chord))
         tin = surface(source, options, watch, say, others=[line])
         say("computing the profile")
         with watch.stage("profile"), noting(quiet=quiet):
@@ -238,9 +238,10 @@ def volume(
     require_known(crs)
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
-        with reading():
-            within = None if region is None else read_geometries(region)
-        tin = surface(source, options, watch, say, others=[Path(other)])
+        with reading(quiet=quiet):
+            within = None if region is None else read_geometries(region, **curves_of(region, chord))
+        others = [Path(other)] if region is None else [Path(other), region]
+        tin = surface(source, options, watch, say, others=others)
         within_other = replace(options, layer=other_layer or options.layer)
         goal = _goal(other, within_other, watch, say)
         say("computing volumes")
@@ -284,7 +285,7 @@ def _goal(
             raise Failure(f"{other}: neither a file nor a height", Exit.INPUT) from None
     file = Path(other)
     own: dict[str, Any] = {
-        "chord": options.chord if is_drawing(file) else None,
+        **curves_of(file, options.chord),
         "step": options.step if is_raster(file) else 1,
     }
     return surface(

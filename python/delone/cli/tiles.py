@@ -86,7 +86,7 @@ def tile(
     require_known(crs)
     if workers < 1:
         raise Failure(f"--workers must be at least 1, got {workers}", Exit.USAGE)
-    with reading():
+    with reading(quiet=quiet):
         if dry_run:
             _print_plan(distributed.plan(sources, workers=workers, **options), as_json)
             return

@@ -9,7 +9,9 @@ import typer
 from delone import ConstrainedDelaunay, Delaunay, __version__
 from delone.cli.constraints import Constraints, constraint_figures, read_input, triangulated
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.notes import note
 from delone.cli.options import (
+    Chord,
     Classes,
     Columns,
     Flat,
@@ -25,7 +27,7 @@ from delone.cli.options import (
     split,
 )
 from delone.cli.outputs import ready, write_all
-from delone.cli.referenced import Crs, Planar, note, referenced, require_known
+from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, peak_memory, summary
 from delone.cli.show import print_json, print_report, space_rows, spinner, triangulation_rows
 from delone.cli.solid import (
@@ -50,6 +52,7 @@ def triangulate(
     source: Input,
     *,
     output: MeshOutput = None,
+    chord: Chord = None,
     classes: Classes = None,
     columns: Columns = None,
     layer: Layer = None,
@@ -122,9 +125,13 @@ def triangulate(
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
-        with reading(), watch.stage("read"):
+        with reading(quiet=quiet), watch.stage("read"):
             survey = read_input(
-                source, columns=split(columns), classes=class_numbers(classes), layer=layer
+                source,
+                columns=split(columns),
+                classes=class_numbers(classes),
+                layer=layer,
+                chord=chord,
             )
         survey = referenced(
             survey, crs, planar=planar, quiet=quiet, outputs=writers, known=WITH_CRS

@@ -115,24 +115,9 @@ def from_geometry(
     >>> delone.from_geometry([square, line], boundary="polygons").polygon.tolist()
     [0, 0, 0, 0]
     """
-    parts = geodata.parts_of(geometries)
-    geodata.require_finite_parts(parts)
-    system = common_crs(geometries) if crs is None else as_known_crs(crs)
-    by = system if system is not None and is_geographic(system) else None
-    warn_of_degrees(None, parts.coordinates, planar=planar, name="geometries", by=by)
-    points, vertex = _merged(parts.coordinates)
-    ends, part = geodata.steps_of(parts)
-    # Points have no segments, so they are not counted among the parts.
-    number = np.cumsum(parts.kinds != geodata.POINTS) - 1
-    origin = Origin(
-        parts.geometries[part].astype(np.int32),
-        parts.kinds[part] >= geodata.EXTERIOR,
-        number[part].astype(np.int32),
-    )
-    return ConstrainedDelaunay._of_geometries(
-        points,
-        vertex[ends],
-        origin,
+    parts, system = _read(geometries, crs, planar=planar)
+    return _triangulated(
+        parts,
         holes=holes,
         regions=regions,
         boundary=boundary,
@@ -143,6 +128,47 @@ def from_geometry(
         workers=workers,
         crs=system,
     )
+
+
+def inside_of(geometries: Any, *, planar: bool, **options: Any) -> ConstrainedDelaunay:
+    """Triangulate the inside of polygons or, if there are none, what closed lines enclose."""
+    parts, system = _read(geometries, None, planar=planar)
+    areas = bool((parts.kinds >= geodata.EXTERIOR).any())
+    boundary = "polygons" if areas or not len(parts.kinds) else "outline"
+    return _triangulated(
+        parts,
+        holes=None,
+        regions=None,
+        boundary=boundary,
+        conforming=False,
+        max_points=None,
+        method="auto",
+        crs=system,
+        **options,
+    )
+
+
+def _read(geometries: Any, crs: Any, *, planar: bool) -> tuple[geodata.Parts, str | None]:
+    """Return the parts of geometries and their reference system, after the checks of both."""
+    parts = geodata.parts_of(geometries)
+    geodata.require_finite_parts(parts)
+    system = common_crs(geometries) if crs is None else as_known_crs(crs)
+    by = system if system is not None and is_geographic(system) else None
+    warn_of_degrees(None, parts.coordinates, planar=planar, name="geometries", by=by)
+    return parts, system
+
+
+def _triangulated(parts: geodata.Parts, **options: Any) -> ConstrainedDelaunay:
+    points, vertex = _merged(parts.coordinates)
+    ends, part = geodata.steps_of(parts)
+    # Points have no segments, so they are not counted among the parts.
+    number = np.cumsum(parts.kinds != geodata.POINTS) - 1
+    origin = Origin(
+        parts.geometries[part].astype(np.int32),
+        parts.kinds[part] >= geodata.EXTERIOR,
+        number[part].astype(np.int32),
+    )
+    return ConstrainedDelaunay._of_geometries(points, vertex[ends], origin, **options)
 
 
 def _merged(coordinates: Floats) -> tuple[Floats, Indices]:

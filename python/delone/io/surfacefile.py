@@ -151,8 +151,13 @@ class SurfaceFile:
         x_y, z = np.ascontiguousarray(found[:, :2]), found[:, 2].copy()
         return PointSet(points=x_y, z=z, crs=self.crs, source=self.source)
 
-    def as_geometries(self) -> GeometrySet:
+    def as_geometries(self, *, points: bool = False) -> GeometrySet:
         """Return breaklines as lines, rings as polygons (extra ``geo``).
+
+        Parameters
+        ----------
+        points : bool, optional
+            Whether the points come first, each as a geometry of its own.
 
         Returns
         -------
@@ -175,7 +180,8 @@ class SurfaceFile:
         rings = [*self.boundary, *self.holes, *self.islands]
         if not lines and not rings:
             raise FileFormatError(f"{self.source} contains no lines")
-        found = [shapely.linestrings(_known(line)) for line in lines]
+        found = [*shapely.points(self.points)] if points and len(self.points) else []
+        found += [shapely.linestrings(_known(line)) for line in lines]
         found += [shapely.polygons(_known(ring)) for ring in rings]
         geometries = np.empty(len(found), dtype=object)
         geometries[:] = found

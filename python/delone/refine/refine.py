@@ -14,7 +14,7 @@ import numpy as np
 from delone._arrays import as_callback, as_count, as_flag, as_limit, as_plain_array, as_workers
 from delone._masks import refuse_masks
 from delone.constrained.delaunay import ConstrainedDelaunay
-from delone.constrained.polygons import from_geometry
+from delone.constrained.polygons import inside_of
 from delone.constrained.segments import open_ends
 from delone.counting import listed
 from delone.errors import DtypeError, InputError, ShapeError
@@ -65,7 +65,8 @@ def mesh(
     domain : ConstrainedDelaunay, tuple of two arrays, or geometry
         What is meshed: the triangles of a constrained triangulation; the area that segments
         enclose, as ``(points, segments)``; or the inside of polygons, in any form that
-        `from_geometry` accepts, with lines and points in them as further edges and vertices.
+        `from_geometry` accepts, with lines and points in them as further edges and vertices. If
+        there are only lines, what they enclose is meshed.
     min_angle : float, optional
         Lower bound on angles in degrees, from 0 to below 60. Smaller angles remain only where the
         angles of the input force them. Refinement terminates in practice up to 33 degrees; above
@@ -301,14 +302,8 @@ def _base(
         raise DtypeError(f"domain must be {_DOMAINS}, got None")
     else:
         _refuse_points(domain)
-        base = from_geometry(
-            domain,
-            boundary="polygons",
-            crossing=crossing or "split",
-            workers=workers,
-            planar=planar,
-        )
-        region = base.polygon
+        base = inside_of(domain, crossing=crossing or "split", workers=workers, planar=planar)
+        region = base.polygon if base._options.boundary == "polygons" else base.region
     return base, region
 
 

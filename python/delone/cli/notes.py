@@ -1,0 +1,41 @@
+"""Notes on standard error: what the user should know though the command goes on."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from delone.georeference import CRSWarning
+from delone.io import LeftOutWarning
+from delone.units import UnitsWarning
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["note", "noting"]
+
+
+def note(message: str | None, *, quiet: bool = False) -> None:
+    """Print a note on standard error, if there is one."""
+    if message is not None and not quiet:
+        print(f"delone: note: {' '.join(message.split())}", file=sys.stderr)
+
+
+@contextmanager
+def noting(*, quiet: bool = False) -> Iterator[None]:
+    """Print warnings about units, reference systems and what is left out as notes.
+
+    So are those without a class of their own; all others are passed on.
+    """
+    kinds = (UnitsWarning, CRSWarning, LeftOutWarning)
+    with warnings.catch_warnings(record=True) as caught:
+        for kind in (*kinds, UserWarning):
+            warnings.simplefilter("always", kind)
+        yield
+    for each in caught:
+        if issubclass(each.category, kinds) or each.category is UserWarning:
+            note(str(each.message), quiet=quiet)
+        else:
+            warnings.warn_explicit(each.message, each.category, each.filename, each.lineno)
