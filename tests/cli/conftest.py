@@ -1,6 +1,7 @@
 """A few surveys, and the command run in this process."""
 
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -8,14 +9,19 @@ import pytest
 from delone.cli import run
 
 
-@pytest.fixture
-def survey(tmp_path):
-    """Ten thousand points with heights and three duplicates, as CSV."""
+@pytest.fixture(scope="session")
+def written(tmp_path_factory):
     points = np.random.default_rng(7).integers(0, 2**20, (9997, 3)) / 1024
     points = np.vstack((points, points[[0, 5, 5]]))
-    file = tmp_path / "survey.csv"
+    file = tmp_path_factory.mktemp("surveys") / "survey.csv"
     np.savetxt(file, points, delimiter=",", header="x,y,z", comments="", fmt="%.17g")
     return file
+
+
+@pytest.fixture
+def survey(written, tmp_path):
+    """Ten thousand points with heights and three duplicates, as CSV; a copy for each test."""
+    return shutil.copy(written, tmp_path / "survey.csv")
 
 
 @pytest.fixture
