@@ -16,7 +16,8 @@
 //! 4. Points on the boundary are suppressed (`suppress`): each is replaced by one point in each
 //!    sector between faces; then free points are taken away (`thin`) where a neighbor sees all, also
 //!    after flips that leave them fewer edges.
-//! 5. Coordinates are exact (`coordinates`) until doubles are found (`place`).
+//! 5. Coordinates are exact (`coordinates`) until doubles are found (`place`); where no double sees
+//!    all faces around a point, they are divided among two or three (`divide`).
 //!
 //! What is locked contains no e: it would cross the segment or face, which valid input excludes.
 //!
@@ -28,6 +29,7 @@
 mod center;
 mod coordinates;
 mod crossing;
+mod divide;
 mod export;
 mod facets;
 mod flips;
@@ -48,10 +50,14 @@ use crate::memory::filled;
 use crate::watch::Watch;
 use export::Rows;
 use mesh::{NONE, PAIRS, ascending, pair};
+use place::Near;
 use work::{Origin, Work};
 
 /// Sweeps that look for doubles.
 const SWEEPS: usize = 8;
+
+/// How many of these divide faces among two points.
+const DIVISIONS: usize = 2;
 
 /// How deep edges are removed to take points away. These are few, so that depth costs little.
 const DEEPEST: usize = 3;
@@ -239,7 +245,7 @@ impl Work<'_> {
             }
             for v in self.free_points() {
                 self.pace.spend(32)?;
-                self.center_free(v);
+                self.center_free(v, Near::One);
             }
             self.thin(self.given)?;
             let after = self.free_points().len();
@@ -247,6 +253,7 @@ impl Work<'_> {
                 break;
             }
         }
+        let mut divisions = DIVISIONS;
         for _ in 0..SWEEPS {
             let double = |v| self.mesh.points.is_double(v);
             if self.free_points().into_iter().all(double) {
@@ -254,12 +261,21 @@ impl Work<'_> {
             }
             let walls = self.walls()?;
             let out = self.outside(&walls)?;
-            if self.wide_inside(&out).is_empty() {
+            let wide = self.wide_inside(&out);
+            if wide.is_empty() {
                 break;
             }
+            for v in wide {
+                // If one point has no place, those of others are of no use.
+                if divisions == 0 || !self.divide(v)? {
+                    divisions = 1;
+                    break;
+                }
+            }
+            divisions -= divisions.min(1);
             for v in self.free_points() {
                 self.pace.spend(32)?;
-                self.center_free(v);
+                self.center_free(v, Near::One);
             }
             self.thin(self.given)?;
         }

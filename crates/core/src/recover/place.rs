@@ -16,6 +16,45 @@ const HALVINGS: i32 = 1100;
 /// After a wide point was found, so many halvings more look for a double.
 const FURTHER: i32 = 12;
 
+/// How many doubles are tried for a point on the way to the center of its kernel.
+#[derive(Debug, Clone, Copy)]
+pub enum Near {
+    /// The nearest one at a few places.
+    One,
+    /// Those next to it as well, at more places.
+    Many,
+}
+
+impl Near {
+    /// The parts of the way from the point.
+    fn parts(self) -> &'static [f64] {
+        match self {
+            Self::One => &[1.0, 0.5, 0.25, 0.125, 0.0],
+            Self::Many => &[
+                1.0, 0.9375, 0.875, 0.8125, 0.75, 0.6875, 0.625, 0.5625, 0.5, 0.4375, 0.375,
+                0.3125, 0.25, 0.1875, 0.125, 0.0625, 0.0,
+            ],
+        }
+    }
+
+    /// The number of doubles at each place.
+    fn count(self) -> u8 {
+        match self {
+            Self::One => 1,
+            Self::Many => 27,
+        }
+    }
+}
+
+/// A double, the next one up, or the next one down.
+fn next(x: f64, step: u8) -> f64 {
+    match step {
+        0 => x,
+        1 => x.next_up(),
+        _ => x.next_down(),
+    }
+}
+
 impl Work<'_> {
     /// A new free point that sees all faces, looked for from the point `s`, which sees those that do
     /// not contain it in their planes.
@@ -74,18 +113,27 @@ impl Work<'_> {
     }
 
     /// Moves a free point to the center of its kernel, in doubles. False if it stays.
-    pub fn center_free(&mut self, v: u32) -> bool {
+    pub fn center_free(&mut self, v: u32, near: Near) -> bool {
         let star = self.mesh.star(v, usize::MAX);
         let faces = self.mesh.outer_faces(&star);
         let (size, lift, vertices) = self.size(v, &faces);
         let old = self.mesh.points.exact(v);
+        let start = self.mesh.points.near(v);
         if let Some(whole) = self.step_to_center(v, &faces, &vertices, size, lift) {
-            for part in [1.0, 0.5, 0.25, 0.125, 0.0] {
-                let at = whole.at.map(|x| x * part);
-                let step = Step { at, ..whole };
-                self.mesh.points.place(v, old.clone());
-                if self.try_double(v, v, &faces, step) {
-                    return true;
+            for &part in near.parts() {
+                let step = Step {
+                    at: whole.at.map(|x| x * part),
+                    ..whole
+                };
+                let p = step.from(start);
+                for k in 0..near.count() {
+                    let moved = [next(p[0], k % 3), next(p[1], k / 3 % 3), next(p[2], k / 9)];
+                    if moved.iter().all(|x| x.is_finite())
+                        && self.mesh.points.place(v, Wide::of(moved))
+                        && self.sees(&faces, v)
+                    {
+                        return true;
+                    }
                 }
             }
         }
