@@ -106,7 +106,6 @@ impl Work<'_> {
             .iter()
             .map(|&t| self.mesh.corners[t as usize])
             .collect();
-        let before = self.mesh.points.exact(v);
         let faces = self.mesh.outer_faces(&cells);
         self.mesh.fan(&cells, &faces, q)?;
         if self.center_free(v, near)
@@ -114,7 +113,6 @@ impl Work<'_> {
         {
             return Ok(true);
         }
-        self.mesh.points.place(v, before);
         let star = self.mesh.star(q, usize::MAX);
         self.mesh.replace(&star, &old)?;
         self.drop_last();
