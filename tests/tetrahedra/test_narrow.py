@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BARS = json.loads(
-    (Path(__file__).parents[1] / "corpus/surfaces/narrow-bars.json").read_text(encoding="utf-8")
+    (Path(__file__).parent / "files" / "narrow-bars.json").read_text(encoding="utf-8")
 )
 
 
