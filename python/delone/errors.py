@@ -29,6 +29,7 @@ __all__ = [
     "DeloneError",
     "DirectionError",
     "DtypeError",
+    "EditConflictError",
     "FileFormatError",
     "HandleError",
     "InputError",
@@ -669,6 +670,23 @@ class InternalError(DeloneError, RuntimeError):
     def __init__(self, message: str = "an internal check failed") -> None:
         # Unpickling calls the constructor with the complete text, which must not grow again.
         super().__init__(message if self.REQUEST in message else f"{message}. {self.REQUEST}")
+
+
+class EditConflictError(DeloneError, RuntimeError):
+    """Another thread has edited a `Dynamic` while several edits were made as one.
+
+    Parameters
+    ----------
+    message : str
+        The message.
+
+    Examples
+    --------
+    >>> from delone import EditConflictError
+    >>> raise EditConflictError("edited meanwhile")
+    Traceback (most recent call last):
+    delone.errors.EditConflictError: edited meanwhile
+    """
 
 
 class HandleError(DeloneError, KeyError):

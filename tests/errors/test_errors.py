@@ -36,6 +36,7 @@ CASES = [
     errors.OutsideError("m", place=(1.0, 2.5)),
     errors.FileFormatError("m"),
     errors.HandleError("m", handles=[4, 9]),
+    errors.EditConflictError("m"),
     errors.MissingExtraError("m", extra="las"),
 ]
 
@@ -79,6 +80,7 @@ def test_constructs_from_a_message_alone(error: errors.DeloneError) -> None:
         (errors.OutsideError, ValueError),
         (errors.FileFormatError, ValueError),
         (errors.HandleError, KeyError),
+        (errors.EditConflictError, RuntimeError),
         (errors.MissingExtraError, ImportError),
     ],
 )

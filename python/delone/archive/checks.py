@@ -37,6 +37,7 @@ __all__ = [
     "check_diagram",
     "check_graph",
     "check_input",
+    "check_live",
     "check_mesh",
     "check_range",
     "check_segments",
@@ -165,6 +166,30 @@ def check_input(**arrays: NDArray[Any]) -> None:
     """Check input that is computed again."""
     require(len(arrays["points"]) > 0, "it has no points")
     require(np.isfinite(arrays["points"]).all(), "a coordinate is not finite")
+
+
+def check_live(**arrays: NDArray[Any]) -> None:
+    """Check points and segments with their handles."""
+    points, handles, segments = arrays["points"], arrays["handles"], arrays["segments"]
+    require(np.isfinite(points).all(), "a coordinate is not finite")
+    require(len(arrays["numbers"]) == 3, "its numbers are incomplete")
+    total, split, segments_total = arrays["numbers"].tolist()
+    require(split in (0, 1), "whether crossings are split is not a flag")
+    for name, given, end, items in (
+        ("handles", handles, total, len(points)),
+        ("segments", segments, segments_total, len(arrays["ends"])),
+    ):
+        require(0 <= end < 2**32 - 1, f"{name} has a next one that is out of range")
+        check_range(name, given, 0, end)
+        require((np.diff(given) > 0).all(), f"{name} is out of order")
+        require(len(given) == items, f"{name} does not have {items} entries")
+    require((np.diff(arrays["added"]) > 0).all(), "added is out of order")
+    require(np.isin(arrays["added"], handles).all(), "added has a handle that is not there")
+    ends = arrays["ends"].ravel()
+    own = handles[~np.isin(handles, arrays["added"])]
+    require(np.isin(ends, own).all(), "a segment has an end that is not there")
+    flat = points.shape[1] == 2
+    require(flat or not len(segments) + segments_total + split, "it has segments in 3-D")
 
 
 def check_diagram(**arrays: NDArray[Any]) -> None:

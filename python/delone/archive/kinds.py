@@ -205,6 +205,22 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
         ),
     ),
     "Graph": (_graph(2), _graph(3)),
+    "Dynamic": tuple(
+        Kind(
+            f"delone.Dynamic {ndim}-D",
+            {
+                "points": ("<f8", ndim),
+                "handles": ("<i8", 0),
+                # The next handle, whether crossings are split, the next handle of a segment.
+                "numbers": ("<i8", 0),
+                "segments": ("<i8", 0),
+                "ends": ("<i8", 2),
+                "added": ("<i8", 0),
+            },
+            checks.check_live,
+        )
+        for ndim in (2, 3)
+    ),
     "AlphaComplex": (
         _input("AlphaComplex", 2, weights=_WEIGHTS, periods=_PERIODS),
         _input("AlphaComplex", 3, weights=_WEIGHTS),

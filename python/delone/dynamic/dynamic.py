@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_choice, as_points, as_workers
+from delone._arrays import as_choice, as_limit, as_points, as_workers
 from delone.constrained import ConstrainedDelaunay
 from delone.counting import counted
 from delone.delaunay import Delaunay
 from delone.dynamic.given import as_ndim, given_points, own_points
-from delone.dynamic.present import Present
+from delone.dynamic.measured import Measured
 from delone.dynamic.results import Changes, Snapshot
-from delone.dynamic.segments import (
-    FEW,
-    adopt,
-    as_handles,
-    given_segments,
-    refuse,
-    saved_segments,
-)
-from delone.errors import DtypeError, InputError, ShapeError
+from delone.dynamic.saving import State, require_few_handles
+from delone.dynamic.segments import FEW, as_handles, given_segments, refuse, refuse_crossings
+from delone.errors import DtypeError, EditConflictError, InputError, ShapeError
 from delone.georeference import warn_of_degrees
 from delone.immutable import own_copy
 
 if TYPE_CHECKING:
+    import os
+    from collections.abc import Iterator
+
     from numpy.typing import ArrayLike, NDArray
 
     from delone.validation import ValidationReport
@@ -38,7 +36,7 @@ if TYPE_CHECKING:
 __all__ = ["Dynamic"]
 
 
-class Dynamic(Present):
+class Dynamic(Measured):
     """A 2-D or 3-D Delaunay triangulation whose points are inserted, removed and moved.
 
     Parameters
@@ -174,6 +172,7 @@ class Dynamic(Present):
         self._workers = workers
         self._edit = object()
         self._present = None
+        self._whole = None
         self._index = None
         self._known = -1, np.empty(0, dtype=np.int64)
 
@@ -186,32 +185,17 @@ class Dynamic(Present):
         return made
 
     @classmethod
-    def _again(
-        cls,
-        points: Floats,
-        handles: Handles,
-        total: int,
-        options: tuple[int | None, bool],
-        segments: tuple[Any, ...] | None = None,
-    ) -> Self:
+    def _again(cls, saved: tuple[Any, ...], options: tuple[int | None, bool]) -> Self:
         """Return the triangulation of a pickle; options are `workers` and `planar`."""
         workers, planar = options
-        if segments is not None:
-            kept = ~np.isin(handles, segments[4])
-            points, handles = points[kept], handles[kept]
-        core = _live(points.shape[1])(points, handles, total, as_workers(workers))
-        if segments is not None and isinstance(core, _core.Live2):
-            adopt(core, segments, as_workers(workers))
-        return cls._of(core, workers, planar)
+        return cls._of(State(*saved).opened(as_workers(workers)), workers, planar)
+
+    def _state(self) -> State:
+        """Return the present state, one whatever other threads do."""
+        return State.of(self._live.state().open())
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Of one state, whatever other threads do.
-        core = self._live.state().open()
-        handles, points = core.points()
-        counts = core.counts()[3]
-        options = self._workers, self._planar
-        saved = (points, handles, counts, options, saved_segments(core))
-        return type(self)._again, saved
+        return type(self)._again, (tuple(self._state()), (self._workers, self._planar))
 
     def __copy__(self) -> Self:
         return self._of(self._live.state().open(), self._workers, self._planar)
@@ -282,37 +266,62 @@ class Dynamic(Present):
         warn_of_degrees(points, array, planar=self._planar)
         return self._edited(self._live.insert, array, threads)
 
-    def remove(self, handles: ArrayLike) -> None:
+    def remove(self, handles: ArrayLike, *, segments: str = "raise") -> None:
         """Remove points.
 
         Parameters
         ----------
         handles : array_like of int, shape (k,)
             Their handles, each once.
+        segments : {"raise", "remove"}, optional
+            Whether a point that is an end of segments is an error, or its segments are removed as
+            well.
 
         Raises
         ------
         HandleError
-            A handle is not there, is named twice, or is an end or a crossing of segments; nothing
-            has changed.
+            A handle is not there, is named twice, is an end of segments and these are not to be
+            removed, or is a crossing of segments; nothing has changed.
         DtypeError
             `handles` are not integers.
+
+        Notes
+        -----
+        Ends of segments are removed with these in a copy, which then takes the place of this
+        triangulation: that compares all segments with the handles.
 
         Examples
         --------
         >>> from delone import Dynamic
-        >>> live = Dynamic([(0, 0), (1, 0), (0, 1), (1, 1)])
-        >>> live.remove([0])
+        >>> live = Dynamic([(0, 0), (1, 0), (0, 1), (1, 1)], [(0, 3)])
+        >>> live.remove([0], segments="remove")
         >>> live.simplices
         array([[0, 2, 1]], dtype=int32)
         """
         own = as_handles(handles)
+        also = as_choice(segments, ("raise", "remove"), name="segments") == "remove"
+        if also and self._has_segments:
+            self._remove_with_segments(own)
+            return
         try:
             self._edited(self._live.remove, own, self._threads(own))
         except ShapeError:
             self._refuse(own)
             self._refuse_held(own)
             raise
+
+    def _remove_with_segments(self, handles: Handles) -> None:
+        while True:
+            known, draft = self._draft()
+            draft._refuse(handles)
+            plane = draft._plane()
+            refuse_crossings(plane, handles)
+            own = plane.segments()
+            draft.remove_segments(own.handles[np.isin(own.ends, handles).any(axis=1)])
+            draft.remove(handles)
+            # Otherwise another thread has edited meanwhile, and these edits are made in its state.
+            if self._take(draft, known):
+                return
 
     def move(self, handles: ArrayLike, points: ArrayLike) -> None:
         """Move points, all at once, with their segments.
@@ -359,6 +368,146 @@ class Dynamic(Present):
         refuse(gone, twice, "handle")
 
     # States.
+
+    @contextmanager
+    def edits(self) -> Iterator[Self]:
+        """Make several edits as one.
+
+        Yields
+        ------
+        Dynamic
+            A draft: a triangulation of its own in the present state. Its edits become those of
+            this triangulation when the block ends. If the block raises an exception, Ctrl-C
+            included, nothing has changed.
+
+        Raises
+        ------
+        EditConflictError
+            This triangulation was edited outside of the draft meanwhile; that stays, and the
+            draft is dropped.
+
+        Notes
+        -----
+        Until the block ends, the old state is that of all other readers. The draft shares its
+        memory with this triangulation except for what it changes. Handles are given as if it were
+        this one; those given in a draft that is dropped are given again.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> live = Dynamic([(0, 0), (4, 0), (4, 3), (0, 3)])
+        >>> with live.edits() as draft:
+        ...     center, = draft.insert([(2, 1)])
+        ...     draft.remove([0])
+        >>> live.handles
+        array([1, 2, 3, 4])
+        """
+        known, draft = self._draft()
+        yield draft
+        if draft._live.edits and not self._take(draft, known):
+            raise EditConflictError(
+                "the triangulation was edited outside of the draft meanwhile: the draft is "
+                "dropped, and its edits have to be made again"
+            )
+
+    def _draft(self) -> tuple[int, Self]:
+        """Return a copy of the present state, and how many edits led to it."""
+        while True:
+            known = self._live.edits
+            state = self._live.state()
+            # Otherwise an edit of another thread is complete.
+            if self._live.edits == known:
+                return known, self._of(state.open(), self._workers, self._planar)
+
+    def _take(self, draft: Self, known: int) -> bool:
+        """Take the state of a draft, unless there has been another edit than those known."""
+        return self._edited(_restore, self._live, draft._live.state(), known)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the present state to an .npz file, atomically.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file. No suffix is added.
+
+        Raises
+        ------
+        OSError
+            The file cannot be written, or is not a regular file; a file that exists stays as it
+            is.
+        TypeError
+            `path` is not a path. File objects are refused.
+
+        See Also
+        --------
+        load : The inverse.
+
+        Notes
+        -----
+        The file holds points, segments and their handles, from which `load` triangulates again.
+        Snapshots are not part of it; they can be pickled.
+
+        Examples
+        --------
+        >>> import os, tempfile
+        >>> from delone import Dynamic
+        >>> live = Dynamic([(0, 0), (1, 0), (0, 1), (1, 1)])
+        >>> live.remove([0])
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = os.path.join(folder, "live.npz")
+        ...     live.save(path)
+        ...     Dynamic.load(path).handles
+        array([1, 2, 3])
+        """
+        from delone import archive
+
+        archive.write(path, self._state().arrays(), Dynamic.__name__)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], *, max_handles: int | None = None) -> Self:
+        """Read a file that `save` wrote.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file.
+        max_handles : int, optional
+            How many handles of points, or of segments, may have been given. By default 10,000,000,
+            or 64 for each point or segment if that is more.
+
+        Returns
+        -------
+        Dynamic
+            The same state: the next handles are those that would have been given. `workers` is
+            None.
+
+        Raises
+        ------
+        FileFormatError
+            The file is truncated or of another class, its arrays contradict each other, or it has
+            too many handles.
+        OSError
+            The file cannot be read, or is not a regular file.
+        TypeError
+            `path` is not a path. File objects are refused.
+
+        Examples
+        --------
+        See `save`.
+        """
+        from delone import archive
+
+        most = None if max_handles is None else as_limit(max_handles, name="max_handles")
+        state = State.from_arrays(archive.read(path, Dynamic.__name__))
+        require_few_handles(path, state, most)
+        try:
+            made = cls._of(state.opened(as_workers(None)), None)
+        except InputError as error:
+            raise archive.refusal(path, error) from error
+        if not np.array_equal(made.handles, state.handles):
+            raise archive.refusal(path, ValueError("its crossings are not those of its segments"))
+        return made
 
     def snapshot(self) -> Snapshot:
         """Return the present state, to be restored later.
@@ -414,7 +563,7 @@ class Dynamic(Present):
         """
         if not isinstance(snapshot, Snapshot):
             raise DtypeError(f"snapshot must be a Snapshot, got {type(snapshot).__name__}")
-        self._edited(_restore, self._live, snapshot._state)
+        self._edited(_restore, self._live, snapshot._state, None)
 
     def changes(self) -> Changes:
         """Return the simplices that went and came since the last call.
@@ -466,6 +615,44 @@ class Dynamic(Present):
             return self._frozen_segments()
         return self._frozen(made)
 
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Draw with matplotlib (extra ``plot``) or, in 3-D, with PyVista (extra ``pyvista``).
+
+        Parameters
+        ----------
+        ax : matplotlib Axes or pyvista Plotter, optional
+            Where to draw; by default on a new one.
+        **options
+            As for `delone.plot.plot`; with segments those of a `ConstrainedDelaunay`.
+
+        Returns
+        -------
+        matplotlib Axes or pyvista Plotter
+            Where it is drawn.
+
+        Raises
+        ------
+        MissingExtraError
+            The library is not installed.
+        InputError
+            An option does not exist for this kind of object, or there is nothing to draw.
+
+        Notes
+        -----
+        What is drawn is `freeze`, so it takes linear time, and with segments that of a new
+        `ConstrainedDelaunay`.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> ax = Dynamic([(0, 0), (1, 0), (0, 1)]).plot()
+        >>> ax.get_aspect()
+        1.0
+        """
+        from delone.plot import plot
+
+        return plot(self.freeze(), ax, **options)
+
     def _frozen(self, made: _core.LiveArrays2 | _core.LiveArrays3) -> Delaunay:
         """Return arrays without segments as a triangulation that never changes."""
         if not len(made.simplices):
@@ -510,13 +697,15 @@ def _live(ndim: int) -> type[_core.Live2] | type[_core.Live3]:
     return _core.Live2 if ndim == 2 else _core.Live3
 
 
-def _restore(core: _core.Live2 | _core.Live3, state: _core.LiveState2 | _core.LiveState3) -> None:
-    """Restore a state of the same number of coordinates."""
+def _restore(
+    core: _core.Live2 | _core.Live3,
+    state: _core.LiveState2 | _core.LiveState3,
+    known: int | None,
+) -> bool:
+    """Restore a state of the same dimension, unless there are other edits than the known ones."""
     if isinstance(core, _core.Live2) and isinstance(state, _core.LiveState2):
-        core.restore(state)
-        return
+        return core.restore(state, known)
     if isinstance(core, _core.Live3) and isinstance(state, _core.LiveState3):
-        core.restore(state)
-        return
+        return core.restore(state, known)
     own, other = (2, 3) if isinstance(core, _core.Live2) else (3, 2)
     raise DtypeError(f"a {other}-D snapshot cannot be restored to a {own}-D triangulation")

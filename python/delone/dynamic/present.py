@@ -9,8 +9,9 @@ import numpy as np
 from delone import _core, location
 from delone._arrays import as_vectors
 from delone.delaunay import Delaunay
-from delone.dynamic.segments import Segmented
-from delone.errors import ShapeError
+from delone.dynamic.results import DynamicArrays
+from delone.dynamic.segments import Segmented, as_handles, refuse
+from delone.errors import HandleError, ShapeError
 from delone.immutable import sealed
 from delone.plane.dimension import PLANE
 from delone.space.dimension import SPACE
@@ -249,7 +250,78 @@ class Present(Segmented):
         flat = np.ascontiguousarray(queries.reshape(-1, self.ndim))
         return self._live.nearest(flat).reshape(queries.shape[:-1])
 
-    def interpolate(self, values: ArrayLike, xi: ArrayLike) -> Floats:
+    def arrays(self, values: ArrayLike | None = None) -> DynamicArrays:
+        """Return all arrays of one state, whatever other threads do.
+
+        Parameters
+        ----------
+        values : array_like, shape (k, ...), optional
+            A value for each handle: that of handle h is ``values[h]``. There may be more than
+            there are handles, as in an array that grows.
+
+        Returns
+        -------
+        DynamicArrays
+            Handles, points, simplices, neighbors, and the values of these points.
+
+        Raises
+        ------
+        ShapeError
+            There are fewer values than the largest handle needs.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> live = Dynamic([(0, 0), (4, 0), (4, 3), (0, 3)])
+        >>> live.remove([1])
+        >>> state = live.arrays(values=[10.0, 11.0, 12.0, 13.0])
+        >>> state.handles, state.values
+        (array([0, 2, 3]), array([10., 12., 13.]))
+        """
+        made, own = self._arrays(), None
+        if values is not None:
+            given, least = np.asarray(values), int(made.handles[-1]) + 1 if len(made.handles) else 0
+            if given.ndim == 0 or len(given) < least:
+                raise ShapeError(
+                    f"values must have {least} rows or more, one for each handle, got {given.shape}"
+                )
+            own = given[made.handles]
+        return DynamicArrays(made.handles, made.points, made.simplices, made.neighbors, own)
+
+    def rows(self, handles: ArrayLike) -> NDArray[np.int64]:
+        """Return the rows of `points` that have these handles.
+
+        Parameters
+        ----------
+        handles : array_like of int, shape (k,)
+            Handles; they may repeat.
+
+        Returns
+        -------
+        ndarray of int64, shape (k,)
+            The row of each.
+
+        Raises
+        ------
+        HandleError
+            A handle is not there.
+        DtypeError
+            `handles` are not integers.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> live = Dynamic([(0, 0), (4, 0), (4, 3), (0, 3)])
+        >>> live.remove([1])
+        >>> live.rows([3, 0])
+        array([2, 0])
+        """
+        wanted = as_handles(handles)
+        return _places(self._arrays().handles, wanted)
+
+    def interpolate(
+        self, values: ArrayLike, xi: ArrayLike, *, handles: ArrayLike | None = None
+    ) -> Floats:
         """Interpolate values linearly in the present simplices.
 
         Parameters
@@ -258,6 +330,9 @@ class Present(Segmented):
             A value for each row of `points`; of duplicates, that of the vertex counts.
         xi : array_like, shape (..., d)
             Where to interpolate.
+        handles : array_like of int, shape (n,), optional
+            The handles that the values belong to, in any order, each once. All points must be
+            among them; others are not used. By default those of the present rows.
 
         Returns
         -------
@@ -267,7 +342,9 @@ class Present(Segmented):
         Raises
         ------
         ShapeError
-            There are not as many values as points.
+            There are not as many values as points, or as handles.
+        HandleError
+            A point is not among `handles`, or one is named twice.
 
         Examples
         --------
@@ -287,6 +364,8 @@ class Present(Segmented):
         if changed is not None:
             own = changed
             self._known = now, own
+        if handles is not None:
+            given = _of_handles(given, as_handles(handles), own)
         if given.ndim == 0 or len(given) != len(own):
             raise ShapeError(f"values must have {len(own)} rows, one per point, got {given.shape}")
         shape = (*queries.shape[:-1], *given.shape[1:])
@@ -296,6 +375,34 @@ class Present(Segmented):
         shares = weights.reshape(*weights.shape, *(1,) * (given.ndim - 1))
         found = (shares * given[rows]).sum(axis=1)
         return np.asarray(found).reshape(shape)
+
+
+def _places(own: Handles, wanted: Handles) -> NDArray[np.int64]:
+    """Return the places of handles among others, which ascend."""
+    place = np.searchsorted(own, wanted).clip(max=max(len(own) - 1, 0))
+    there = own[place] == wanted if len(own) else np.zeros(len(wanted), dtype=bool)
+    refuse(np.unique(wanted[~there]), np.empty(0, dtype=np.int64), "handle")
+    return place
+
+
+def _of_handles(values: Floats, handles: Handles, own: Handles) -> Floats:
+    """Return the values of handles in the order of the present rows."""
+    if values.ndim == 0 or len(values) != len(handles):
+        raise ShapeError(
+            f"values must have {len(handles)} rows, one per handle, got {values.shape}"
+        )
+    order = np.argsort(handles, kind="stable")
+    ascending = handles[order]
+    twice = ascending[1:][ascending[1:] == ascending[:-1]]
+    refuse(np.empty(0, dtype=np.int64), twice, "handle")
+    missing = own[~np.isin(own, ascending)]
+    if len(missing):
+        raise HandleError(
+            f"handle {missing[0]} is a point without a value: it is not among `handles`",
+            handles=missing,
+        )
+    found: Floats = values[order[_places(ascending, own)]]
+    return found
 
 
 def _dimension(ndim: int) -> Dimension:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from delone import _core
+from delone._arrays import as_workers
+from delone.dynamic.saving import State
 from delone.errors import DtypeError
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["Changes", "Snapshot"]
+__all__ = ["Changes", "DynamicArrays", "Snapshot"]
 
 
 class Changes(NamedTuple):
@@ -46,6 +48,34 @@ class Changes(NamedTuple):
     new: NDArray[np.int64]
 
 
+class DynamicArrays(NamedTuple):
+    """The arrays of one state.
+
+    Parameters
+    ----------
+    handles : ndarray of int64, shape (n,)
+        The handles of the rows of `points`, ascending.
+    points : ndarray of float64, shape (n, d)
+        The coordinates.
+    simplices : ndarray of int32, shape (m, d + 1)
+        The simplices as rows of `points`, positively oriented.
+    neighbors : ndarray of int32, shape (m, d + 1)
+        The simplex opposite each vertex; -1 outside.
+    values : ndarray, shape (n, ...), or None
+        The caller's values of these points.
+
+    Examples
+    --------
+    See `Dynamic.arrays`.
+    """
+
+    handles: NDArray[np.int64]
+    points: NDArray[np.float64]
+    simplices: NDArray[np.int32]
+    neighbors: NDArray[np.int32]
+    values: NDArray[Any] | None
+
+
 class Snapshot:
     """A state of a `Dynamic`, for `Dynamic.restore`; it never changes.
 
@@ -56,7 +86,8 @@ class Snapshot:
 
     Notes
     -----
-    Snapshots share with each other what has not changed between them.
+    Snapshots share with each other what has not changed between them. Pickles and deep copies in
+    other processes hold points, segments and handles, share nothing, and restore the same state.
 
     Examples
     --------
@@ -70,6 +101,14 @@ class Snapshot:
     """
 
     __slots__ = ("_state",)
+
+    @classmethod
+    def _again(cls, saved: tuple[Any, ...]) -> Snapshot:
+        """Return the snapshot of a pickle."""
+        return cls(State(*saved).opened(as_workers(None)).state())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self)._again, (tuple(State.of(self._state.open())),)
 
     def __init__(self, state: _core.LiveState2 | _core.LiveState3) -> None:
         self._state = state

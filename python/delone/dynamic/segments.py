@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-__all__ = ["Segmented", "adopt", "as_handles", "given_segments", "refuse", "saved_segments"]
+__all__ = ["FEW", "Segmented", "as_handles", "given_segments", "refuse", "refuse_crossings"]
 
 # Fewer items are edited with the GIL, so that nobody can change them meanwhile.
 FEW = 16
@@ -118,11 +118,7 @@ class Segmented:
         flat = np.ascontiguousarray(own.reshape(-1))
         gone, _ = plane.faults(flat)
         refuse(gone, np.empty(0, dtype=np.int64), "handle")
-        if len(crossed := _crossings_among(plane, flat)):
-            raise HandleError(
-                f"handle {crossed[0]} is a crossing of segments, not a point that was inserted",
-                handles=crossed,
-            )
+        refuse_crossings(plane, flat)
         return self._edited(plane.insert_segments, own, as_workers(self._workers))
 
     def remove_segments(self, segments: ArrayLike) -> None:
@@ -215,17 +211,11 @@ class Segmented:
             if segment < 0:
                 message = f"handle {handle} is a crossing of segments: it goes with them"
             else:
-                message = f"handle {handle} is an end of segment {segment}: remove that one first"
+                message = (
+                    f"handle {handle} is an end of segment {segment}: remove that one first, or "
+                    'give segments="remove"'
+                )
             raise HandleError(message, handles=held[:, 0])
-
-
-def adopt(
-    live: _core.Live2, saved: tuple[bool, Handles, Handles, int, Handles, Floats], workers: int
-) -> None:
-    """Insert the segments of a pickle."""
-    split, handles, ends, total, added, places = saved
-    live.split_crossings(split)
-    live.adopt_segments((handles, ends), total, (added, places), workers)
 
 
 def given_segments(live: _core.Live2, segments: ArrayLike, workers: int) -> None:
@@ -283,24 +273,18 @@ def _as_integers(handles: ArrayLike, name: str) -> Handles:
     return np.ascontiguousarray(array, dtype=np.int64)
 
 
-def saved_segments(live: _core.Live2 | _core.Live3) -> tuple[Any, ...] | None:
-    """Return what a pickle keeps of the segments."""
-    if not isinstance(live, _core.Live2):
-        return None
-    own, (_, split) = live.segments(), live.constraints()
-    handles, points = live.points()
-    places = points[np.searchsorted(handles, own.added)]
-    return split, own.handles, own.ends, own.total, own.added, places
-
-
 def _marked(made: _core.LiveArrays2 | _core.LiveArrays3) -> NDArray[np.bool_]:
     """Return which edges are parts of segments."""
     marked = made.constrained if isinstance(made, _core.LiveArrays2) else None
     return np.zeros(made.simplices.shape, dtype=bool) if marked is None else marked
 
 
-def _crossings_among(plane: _core.Live2, handles: Handles) -> Handles:
-    """Return which of these handles are crossings."""
+def refuse_crossings(plane: _core.Live2, handles: Handles) -> None:
+    """Raise an error if some of these handles are crossings."""
     held = plane.held(handles)
     crossed: Handles = held[held[:, 1] < 0, 0]
-    return crossed
+    if len(crossed):
+        raise HandleError(
+            f"handle {crossed[0]} is a crossing of segments, not a point that was inserted",
+            handles=crossed,
+        )

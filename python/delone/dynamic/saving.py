@@ -1,0 +1,99 @@
+"""What a state of a live triangulation consists of, for pickles and files."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone import _core
+from delone.errors import FileFormatError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Handles = NDArray[np.int64]
+
+__all__ = ["State", "require_few_handles"]
+
+# Handles that a file may have whatever its size, and for each point in it. Each takes 12 bytes.
+_ALWAYS, _PER_POINT = 10_000_000, 64
+
+
+class State(NamedTuple):
+    """Points and segments with their handles: all that the core needs for the same state."""
+
+    points: Floats
+    handles: Handles
+    total: int  # the next handle of a point
+    split: bool  # whether crossings of segments are split
+    segments: Handles  # handles of segments, ascending
+    ends: Handles  # (s, 2), handles of points
+    segments_total: int  # the next handle of a segment
+    added: Handles  # handles of the points where segments cross
+
+    @classmethod
+    def of(cls, core: _core.Live2 | _core.Live3) -> State:
+        """Return the state of a core that nobody edits meanwhile."""
+        handles, points = core.points()
+        none = np.empty(0, dtype=np.int64)
+        total = core.counts()[3]
+        if not isinstance(core, _core.Live2):
+            return cls(points, handles, total, False, none, none.reshape(0, 2), 0, none)
+        own, (_, split) = core.segments(), core.constraints()
+        return cls(points, handles, total, split, own.handles, own.ends, own.total, own.added)
+
+    def opened(self, workers: int) -> _core.Live2 | _core.Live3:
+        """Return a core in this state."""
+        # Crossings come back with the segments, at the same places and with the same handles.
+        crossed = np.isin(self.handles, self.added)
+        kept = ~crossed
+        live = _core.Live2 if self.points.shape[1] == 2 else _core.Live3
+        core = live(self.points[kept], self.handles[kept], self.total, workers)
+        if isinstance(core, _core.Live2):
+            core.split_crossings(self.split)
+            if len(self.segments) or self.segments_total:
+                known, places = (self.segments, self.ends), (self.added, self.points[crossed])
+                core.adopt_segments(known, self.segments_total, places, workers)
+        return core
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Return what a file has."""
+        numbers = [self.total, self.split, self.segments_total]
+        return {
+            "points": self.points,
+            "handles": self.handles,
+            "numbers": np.array(numbers, dtype=np.int64),
+            "segments": self.segments,
+            "ends": self.ends,
+            "added": self.added,
+        }
+
+    @classmethod
+    def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> State:
+        """Return the state in a file, whose arrays have been checked."""
+        total, split, segments_total = arrays["numbers"].tolist()
+        return cls(
+            arrays["points"],
+            arrays["handles"],
+            total,
+            bool(split),
+            arrays["segments"],
+            arrays["ends"],
+            segments_total,
+            arrays["added"],
+        )
+
+
+def require_few_handles(path: Any, state: State, most: int | None) -> None:
+    """Refuse a file whose handles would take much more memory than its points."""
+    items = max(len(state.points), len(state.segments))
+    limit = max(_ALWAYS, _PER_POINT * items) if most is None else most
+    found = max(state.total, state.segments_total)
+    if found > limit:
+        raise FileFormatError(
+            f"{path} says that {found:,} handles have been given, for {len(state.points):,} "
+            f"points: at most {limit:,} are taken, since each needs 12 bytes; "
+            f"max_handles={found} takes them"
+        )
