@@ -212,11 +212,6 @@ def test_three_sites_and_great_circles_have_lunes():
         assert circle.cell_areas[1] == circle.cell_areas[-1]
     areas = sphere.Voronoi(lonlat=[(0, 0), (20, 0), (100, 0)]).cell_areas
     assert np.degrees(areas) == pytest.approx([280, 100, 340])
-    with pytest.raises(delone.InputError, match="one great circle"):
-        circle.nearest((0, 0))
-    with pytest.raises(delone.DegenerateInputError) as caught:
-        sphere.Voronoi(lonlat=[(0, 0), (10, 10), (0, 0)])
-    assert caught.value.chain.tolist() == [0, 1] or caught.value.chain.tolist() == [1, 0]
 
 
 def test_duplicates_share_a_cell():

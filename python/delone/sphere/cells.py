@@ -37,6 +37,8 @@ class Cells:
     around: Indices | None
     measures: tuple[Floats, Floats] | None
     simplex_vertex: Indices
+    # Of lunes the middle of each ridge, (r, 3), a unit vector.
+    middles: Floats | None = None
 
     def spans(self, vectors: Floats, workers: int) -> tuple[Floats, Floats]:
         """Return the length of each ridge, and the areas from its two sites to it, (r, 2)."""
@@ -82,19 +84,20 @@ def _dual_cells(vectors: Floats, simplices: Indices, neighbors: Indices, workers
 
 
 def lunes(chain: Indices, points: Floats, axis: Floats, simplices: int) -> Cells:
-    """Return the cells of at least three sites on one circle: lunes from pole to pole.
+    """Return the cells of at least two sites on one circle: lunes from pole to pole.
 
-    `chain` has the rows of the sites, counter-clockwise around the axis, a unit vector, and
+    `chain` has the rows of the sites, counter-clockwise around the axis, a unit vector, of two
+    sites the shorter way first, and
     `points` the unit vectors of all rows. The axis is vertex 0 and the opposite direction vertex 1.
     All `simplices` triangles are around vertex 0.
     """
     count = len(chain)
     after = np.roll(chain, -1)
-    steps = points[after] - points[chain]
-    before = np.roll(steps, 1, axis=0)
-    # At the poles a lune has the angle between its bisectors, which is that between the chords.
+    middles = _middles(points[chain], points[after], axis)
+    before = np.roll(middles, 1, axis=0)
+    # At the poles a lune has the angle between its bisectors.
     turns = np.arctan2(
-        np.linalg.norm(np.cross(before, steps), axis=1), np.einsum("ij,ij->i", before, steps)
+        np.linalg.norm(np.cross(before, middles), axis=1), np.einsum("ij,ij->i", before, middles)
     )
     # Down from the axis, the next site is to the left. Each cell is counted at one of its ridges.
     sites = np.column_stack((after, chain)).astype(np.int32)
@@ -112,7 +115,36 @@ def lunes(chain: Indices, points: Floats, axis: Floats, simplices: int) -> Cells
         around=None,
         measures=(np.full(count, np.pi), np.column_stack((np.zeros(count), 2 * turns))),
         simplex_vertex=np.zeros(simplices, dtype=np.int32),
+        middles=middles,
     )
+
+
+def _middles(tails: Floats, heads: Floats, axis: Floats) -> Floats:
+    """Return the unit vectors halfway from each site on a circle to the next one.
+
+    Of the plane through the axis that is perpendicular to the chord, which of close sites is taken
+    from their sum: their difference may be all rounding.
+    """
+    chords = heads - tails
+    # Seen along the axis, from the middle of the circle.
+    tails, heads = (_normal(each - np.outer(each @ axis, axis)) for each in (tails, heads))
+    half = tails + heads
+    close = np.einsum("ij,ij->i", tails, heads) > 0
+    lengths = np.linalg.norm(heads - tails, axis=1)
+    if close.all():
+        # Steps of less than a quarter around the circle; or all sites are within a quarter, and the
+        # longest step, back to the first of them, is the rest of the circle.
+        longest = 1 if len(tails) == 2 else int(lengths.argmax())
+        angles = 2 * np.arcsin(np.minimum(lengths / 2, 1))
+        if len(tails) == 2 or angles.sum() - angles[longest] < np.pi:
+            half[longest] *= -1
+    return _normal(np.where(close[:, None], half, np.cross(chords, axis)))
+
+
+def _normal(vectors: Floats) -> Floats:
+    """Return vectors, none of which is zero, with length 1."""
+    found: Floats = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+    return found
 
 
 def around_circle(chain: Indices, points: Floats) -> Floats:

@@ -215,7 +215,9 @@ def clipped(whole: Whole, region: Region, workers: int | None) -> Clipped:
         region.given.winding,
         len(vectors) + len(region.vectors),
     )
-    every = np.concatenate((vectors, region.vectors))
+    # Without three sites all arcs may be on one great circle: points off it make a triangulation.
+    few = np.eye(3) if len(whole.cells.ends) < 3 else np.empty((0, 3))
+    every = np.concatenate((vectors, region.vectors, few, -few))
     mesh = ConstrainedDelaunay._of_geometries(
         every, given, most_added("split", None), True, workers
     )
@@ -272,6 +274,8 @@ def _pieces(cells: Cells, lengths: Floats, points: Floats) -> tuple[Floats, Indi
 
 def _middles(cells: Cells, lengths: Floats, points: Floats) -> tuple[Rows, Floats]:
     """Return the ridges that may be half a great circle long, and their middles."""
+    if cells.middles is not None:
+        return np.arange(len(cells.ends)), cells.middles
     start = cells.ends[:, 0]
     long = np.flatnonzero(lengths > _LONGEST)
     left, right = (points[cells.sites[long, j]] for j in (0, 1))

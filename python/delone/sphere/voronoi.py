@@ -12,7 +12,8 @@ from delone.counting import counted
 from delone.errors import DegenerateInputError, DtypeError, InputError
 from delone.extras import require
 from delone.immutable import kept, sealed
-from delone.sphere.cells import Cells, around_circle, cells_of, lunes
+from delone.sphere.cells import Cells, cells_of
+from delone.sphere.circle import cells_of_few, first_rows, nearest_of_few
 from delone.sphere.clipping import (
     Whole,
     as_region,
@@ -22,7 +23,7 @@ from delone.sphere.clipping import (
     sums,
     whole_rings,
 )
-from delone.sphere.coordinates import directions_of, lonlat_of, units_of
+from delone.sphere.coordinates import directions_of, lonlat_of, queries_of, units_of
 from delone.sphere.delaunay import Delaunay
 from delone.voronoi.results import Neighbors
 from delone.voronoi.rows import as_lists, of_pairs
@@ -94,7 +95,7 @@ class Voronoi(Stored):
     Raises
     ------
     DegenerateInputError
-        Fewer than three directions are distinct; ``error.chain`` has the first row of each.
+        There is no site.
     InputError
         `radius` is not positive and finite, or `clip` is not made of polygons, has no area, or has
         outer rings that run in both directions.
@@ -121,7 +122,9 @@ class Voronoi(Stored):
     insertion into the boundary of the triangulation (Chew, 1990) in expected linear time.
 
     Three sites, and any number on one circle, have lunes as cells: all ridges lead from one vertex
-    to the opposite one. `triangulation` is None on a great circle.
+    to the opposite one. Two sites have a hemisphere each, with two ridges that are half of its rim;
+    the cell of one site is the whole sphere, without a vertex. `triangulation` is None for these,
+    and on a great circle.
 
     The area of a cell is the sum of the triangles between its site and its ridges, each from a
     formula in which nothing cancels, so that the areas of cells a millimeter wide on the Earth, and
@@ -253,11 +256,9 @@ class Voronoi(Stored):
         try:
             mesh = Delaunay._of_vectors(vectors, degrees, workers)
         except DegenerateInputError as error:
-            if error.reason != "one great circle":
+            if not len(error.chain):
                 raise
-            points = units_of(vectors, workers)
-            chain = error.chain.astype(np.int32)
-            cells = lunes(chain, points, around_circle(chain, points), 0)
+            cells = cells_of_few(error.chain.astype(np.int32), vectors, units_of(vectors, workers))
         else:
             self._hold_dual(mesh, options)
             return
@@ -335,7 +336,10 @@ class Voronoi(Stored):
 
     @property
     def triangulation(self) -> Delaunay | None:
-        """The triangulation whose dual this is; None if all sites are on one great circle."""
+        """The triangulation whose dual this is; None if all sites are on one great circle.
+
+        One or two sites are.
+        """
         return self._mesh
 
     @property
@@ -423,7 +427,7 @@ class Voronoi(Stored):
         """The site of each row, (n,): the first row with the same direction."""
         if self._mesh is not None:
             return self._mesh.duplicate_of
-        return sealed(_first_rows(self._vectors, self._cells.cell))
+        return sealed(first_rows(self._vectors, self._cells.cell))
 
     @property
     @kept
@@ -457,6 +461,9 @@ class Voronoi(Stored):
             found = self._left.areas(self.npoints)
         else:
             found = sums(self._cells.sites.ravel(), self._spans[1].ravel(), self.npoints)
+            if not len(self.ridge_points):
+                # One site has the whole sphere.
+                found[self._cells.cell >= 0] = 4 * np.pi
         return sealed(found[self.duplicate_of] * self._radius**2)
 
     @property
@@ -470,6 +477,9 @@ class Voronoi(Stored):
         if self._left is not None:
             pairs, angles = self._left.ridges()
             lengths = angles * self._radius
+        elif len(pairs) == 2:
+            # Two sites have two ridges, which are one circle.
+            pairs, lengths = pairs[:1], lengths.sum(keepdims=True)
         indptr, indices, beside = of_pairs(pairs, lengths, self.npoints)
         return Neighbors(sealed(indptr), sealed(indices), sealed(beside))
 
@@ -487,8 +497,10 @@ class Voronoi(Stored):
 
         Notes
         -----
-        Without a clip each cell is one ring, its region. Longitudes are from -180 to 180; a ring
-        that crosses the date line jumps there. Rows with the same direction have the same cell.
+        Without a clip each cell is one ring, its region; of two sites also the middles of their
+        ridges. The cell of one site, the whole sphere, is a part without rings. Longitudes are from
+        -180 to 180; a ring that crosses the date line jumps there. Rows with the same direction
+        have the same cell.
 
         Examples
         --------
@@ -499,11 +511,10 @@ class Voronoi(Stored):
         >>> len(cells[0]), len(cells[1]), sorted(cells[1][0][0].round(6).tolist())
         (0, 1, [[-9.0, -9.0], [-9.0, 9.0], [9.0, -9.0], [9.0, 9.0]])
         """
-        if self._left is not None:
-            found = [
-                [[lonlat_of(ring) for ring in rings] for rings in parts]
-                for parts in self._left.polygons(self.npoints)
-            ]
+        few = len(self.ridge_points) < 3
+        if self._left is not None or few:
+            cells = self._rings() if self._left is None else self._left.polygons(self.npoints)
+            found = [[[lonlat_of(ring) for ring in rings] for rings in parts] for parts in cells]
         else:
             corners = self.vertices_lonlat
             found = [[] for _ in range(self.npoints)]
@@ -559,10 +570,8 @@ class Voronoi(Stored):
         if not 0 < width < np.inf:
             raise InputError(f"step must be positive and finite, got {step!r:.60}")
         shapely = shapely_or_say()
-        if self._left is not None:
-            cells = self._left.polygons(self.npoints)
-        else:
-            cells = whole_rings(self._cells, self._spans[0], self.points, self.regions)
+        left = self._left
+        cells = self._rings() if left is None else left.polygons(self.npoints)
         shapes = np.full(self.npoints, shapely.Polygon(), dtype=object)
         for row in np.flatnonzero(self.duplicate_of == np.arange(self.npoints)).tolist():
             parts = [flat_polygon(rings, width) for rings in cells[row]]
@@ -573,12 +582,18 @@ class Voronoi(Stored):
             data = require("pandas", extra="geo", what="a table of cells").DataFrame(data)
         return cells_to_geopandas(shapes[self.duplicate_of], data, crs)
 
+    def _rings(self) -> list[list[list[Floats]]]:
+        """Return the parts of whole cells as rings of unit vectors; one site has a part without."""
+        if not len(self.ridge_points):
+            return [[[]] if cell >= 0 else [] for cell in self._cells.cell.tolist()]
+        return whole_rings(self._cells, self._spans[0], self.points, self.regions)
+
     def _nearest(self, places: Floats) -> Indices:
         """Return the sites nearest to vectors, also on one great circle."""
         if self._mesh is not None:
             return self._mesh._ask(places, self._mesh._locator.nearest)
-        near = [(part @ self.points.T).argmax(axis=1) for part in np.array_split(places, 1000)]
-        return np.concatenate(near).astype(np.int32)
+        sites = np.flatnonzero(self._cells.cell >= 0).astype(np.int32)
+        return nearest_of_few(sites, self._vectors, self.points, places)
 
     def nearest(self, xi: ArrayLike) -> Indices:
         """Find the sites whose cells contain directions, which are the nearest sites.
@@ -596,8 +611,6 @@ class Voronoi(Stored):
 
         Raises
         ------
-        InputError
-            All sites are on one great circle.
         DirectionError
             A latitude is beyond a pole, or a longitude has more than three turns.
         ShapeError, DtypeError
@@ -605,7 +618,8 @@ class Voronoi(Stored):
 
         Notes
         -----
-        Exact, see `delone.sphere.Delaunay.nearest`.
+        Exact, see `delone.sphere.Delaunay.nearest`. Sites on one great circle, which have no
+        triangulation, are compared with each query.
 
         Examples
         --------
@@ -614,11 +628,10 @@ class Voronoi(Stored):
         >>> diagram.nearest([(175, 1), (-171, 1)])
         array([0, 1], dtype=int32)
         """
-        if self._mesh is None:
-            raise InputError(
-                "all sites are on one great circle, where nearest needs a triangulation: add a site"
-            )
-        return self._mesh.nearest(xi)
+        if self._mesh is not None:
+            return self._mesh.nearest(xi)
+        queries = queries_of(xi, degrees=self._degrees, workers=self._workers)
+        return self._nearest(queries.reshape(-1, 3)).reshape(queries.shape[:-1])
 
     def validate(self) -> SphereReport:
         """Prove that the triangulation whose dual this is is correct.
@@ -721,18 +734,3 @@ def _as_radius(radius: Any) -> float:
     if not 0 < value < np.inf:
         raise InputError(f"radius must be positive and finite, got {value!r:.80}")
     return value
-
-
-def _first_rows(vectors: Floats, cell: Indices) -> Indices:
-    """Return the first row of the direction of each row, on one great circle.
-
-    Rows without a cell repeat the direction of one that has a cell.
-    """
-    found = np.arange(len(vectors), dtype=np.int32)
-    firsts = np.flatnonzero(cell >= 0)
-    scaled = vectors / np.abs(vectors).max(axis=1, keepdims=True)
-    units = scaled / np.linalg.norm(scaled, axis=1, keepdims=True)
-    for row in np.flatnonzero(cell < 0):
-        away = np.abs(units[firsts] - units[row]).sum(axis=1)
-        found[row] = firsts[away.argmin()]
-    return found
