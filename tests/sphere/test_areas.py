@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import delone
 from delone import sphere
 
 BITS = 500
@@ -68,3 +69,26 @@ def test_areas_of_scattered_directions() -> None:
     mesh = sphere.Delaunay(xyz=np.random.default_rng(1).standard_normal((60, 3)))
     expected = [solid_angle(corners) for corners in mesh.vectors[mesh.simplices]]
     assert mesh.areas == pytest.approx(expected, rel=1e-14, abs=0)
+
+
+@pytest.mark.parametrize("width", [1e-7, 1e-10, 1e-12, 1e-14])
+def test_cells_around_close_sites_are_those_of_their_outline(width: float) -> None:
+    # Seen from far away the sites are one, and the cell of a corner of their outline is a lune
+    # between the normals of its sides: its area is twice the angle there.
+    rng = np.random.default_rng(5)
+    middle = np.array([0.6, 0.3, math.sqrt(1 - 0.45)])
+    east = np.cross((0, 0, 1), middle)
+    east /= np.linalg.norm(east)
+    north = np.cross(middle, east)
+    away = rng.uniform(-width, width, (60, 2))
+    vectors = middle + away @ np.stack((east, north))
+    # As rounded: differences of vectors that are so close are exact.
+    places = (vectors - vectors[0]) @ np.stack((east, north)).T / width
+    corners = delone.ConvexHull(places).vertices
+    sides = np.roll(places[corners], -1, axis=0) - places[corners]
+    before = np.roll(sides, 1, axis=0)
+    cross = before[:, 0] * sides[:, 1] - before[:, 1] * sides[:, 0]
+    angles = np.arctan2(cross, (before * sides).sum(axis=1))
+    found = sphere.Voronoi(xyz=vectors).cell_areas
+    assert found[corners] == pytest.approx(2 * angles, rel=1e-11 + 10 * width)
+    assert found.sum() == pytest.approx(4 * np.pi, rel=1e-14)

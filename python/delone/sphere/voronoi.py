@@ -127,9 +127,9 @@ class Voronoi(Stored):
     and on a great circle.
 
     The area of a cell is the sum of the triangles between its site and its ridges, each from a
-    formula in which nothing cancels, so that the areas of cells a millimeter wide on the Earth, and
-    of slivers, have relative errors of about 1e-11, too. They sum to the whole sphere. Lunes are
-    measured from rounded unit vectors.
+    formula in which nothing cancels, so that the areas of slivers, and of cells of sites that are a
+    nanometer apart on the Earth, have relative errors of about 1e-11, too. They sum to the whole
+    sphere. Lunes are measured from rounded unit vectors.
 
     With a `clip`, areas, neighbors and `polygons` are those of the clipped cells; the attributes
     listed above remain those of the whole diagram. Ridges, between their rounded vertices, and the

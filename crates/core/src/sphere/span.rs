@@ -9,7 +9,9 @@
 //! D |p|^2 / 2 : |n| |m| + (a n) |m| + (a m) |n| + n m.
 //!
 //! Each factor comes from differences of directions, and none cancels, so that slivers and cells beyond
-//! a hemisphere keep nearly all bits. The triangle from b is its mirror image.
+//! a hemisphere keep nearly all bits. Only the denominator does where n and m are nearly opposite, as
+//! those of the cells around sites that are close to each other: it is computed by integers there. The
+//! triangle from b is its mirror image.
 
 use delone_predicates::Point3;
 use delone_predicates::arithmetic::Pair;
@@ -22,7 +24,7 @@ use crate::error::Result;
 use crate::memory::filled;
 use crate::parallel;
 use crate::watch::Watch;
-use crate::wide::{determinant, lowest, ratio, root, scaled};
+use crate::wide::{angle, determinant, lowest, ratio, root, scaled};
 
 /// Ridges that are measured together.
 const SHARE: usize = 1 << 10;
@@ -31,6 +33,11 @@ const SHARE: usize = 1 << 10;
 const UNSURE: f64 = 1.0 / (1_u64 << 58) as f64;
 /// Digits of square roots in integers.
 const DIGITS: u32 = 512;
+/// A denominator with this part of its terms has lost too much.
+const LOST: f64 = 1.0 / (1_u64 << 40) as f64;
+/// Digits after the point of directions in integers. They differ by 2^-107 or more, as pairs of doubles
+/// do, and what is left of the denominator is the sixth power of that.
+const PLACES: u32 = 1792;
 
 /// For each ridge, by its edge and the corners to its left and right: its length, and the area of the
 /// triangle between it and either of its sites.
@@ -98,10 +105,12 @@ fn span(corners: [Point3; 4], directions: &[Unit; 4]) -> [f64; 2] {
     let across = dot(&p, &p).hi;
     let cosine = long * wide + dot(&a, &n) * wide + dot(&a, &m) * long + both;
     let sine = det * across / (2.0 * up.hi);
-    [
-        (det * across.sqrt()).atan2(both.hi),
-        2.0 * sine.atan2(cosine.hi),
-    ]
+    let half = if cosine.hi.abs() < LOST * (long * wide).hi {
+        exact_half_area(corners)
+    } else {
+        sine.atan2(cosine.hi)
+    };
+    [(det * across.sqrt()).atan2(both.hi), 2.0 * half]
 }
 
 /// The determinant of the differences of the last three of four directions from the first, by integers
@@ -123,4 +132,38 @@ fn exact_determinant(corners: [Point3; 4]) -> f64 {
         - &roots[3] * determinant([a, b, c]);
     let lengths = root(&squares.iter().product()) << DIGITS;
     ratio(&(sum << 64_u32), &lengths, 0).unwrap_or_default()
+}
+
+/// Half the area of the triangle between a site and its ridge, by integers.
+#[cold]
+fn exact_half_area(corners: [Point3; 4]) -> f64 {
+    let [a, b, c, d] = corners.map(|v| {
+        let v = leveled(v);
+        let low = lowest(&[v], &[]);
+        let whole = v.map(|x| scaled(x, low));
+        let square: BigInt = whole.iter().map(|x| x * x).sum();
+        let length = (square << (2 * PLACES)).sqrt();
+        whole.map(|x| (x << (2 * PLACES)) / &length)
+    });
+    let minus = |x: &[BigInt; 3], y: &[BigInt; 3]| [0, 1, 2].map(|k| &x[k] - &y[k]);
+    let times = |x: &BigInt, y: &BigInt| (x * y) >> PLACES;
+    let dot = |x: &[BigInt; 3], y: &[BigInt; 3]| -> BigInt {
+        let sum: BigInt = (0..3).map(|k| &x[k] * &y[k]).sum();
+        sum >> PLACES
+    };
+    let cross = |x: &[BigInt; 3], y: &[BigInt; 3]| {
+        [0, 1, 2].map(|k| {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            (&x[i] * &y[j] - &x[j] * &y[i]) >> PLACES
+        })
+    };
+    let [p, q, r] = [minus(&b, &a), minus(&c, &a), minus(&d, &a)];
+    let (n, m) = (cross(&p, &q), cross(&r, &p));
+    let [long, wide] = [&n, &m].map(|x| (dot(x, x) << PLACES).sqrt());
+    let det = -dot(&m, &q);
+    let sine = times(&det, &dot(&p, &p)) >> 1_u32;
+    let cosine =
+        times(&long, &wide) + times(&dot(&a, &n), &wide) + times(&dot(&a, &m), &long) + dot(&n, &m);
+    // The corners to both sides are not on one circle with the site, so the sine is positive.
+    angle(&sine, &cosine)
 }
