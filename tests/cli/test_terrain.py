@@ -267,3 +267,15 @@ def test_all_commands_that_read_points_take_a_reference_system(folder, command, 
 def test_info_reports_the_given_reference_system(folder, figures):
     found = figures("info", folder / "the points.csv", "--crs", "EPSG:28992")
     assert found["crs"] == "EPSG:28992"
+
+
+def test_voids_inside_are_open(command, figures, tmp_path):
+    x, y = (each.ravel() for each in np.meshgrid(np.arange(9.0), np.arange(8.0)))
+    lake = (np.abs(x - 4) < 2) & (np.abs(y - 3.5) < 1)
+    points = np.column_stack((x, y, np.ones(len(x))))[~lake]
+    np.savetxt(tmp_path / "p.csv", points, delimiter=",", header="x,y,z", comments="")
+    call = ("volume", tmp_path / "p.csv", "0", "--max-edge", "1.5")
+    assert figures(*call)["cut"] == 56
+    assert figures(*call, "--voids")["cut"] == 56 - 12 + 4 * 0.5
+    code, _, err = command("volume", tmp_path / "p.csv", "0", "--voids")
+    assert code == 2 and "--voids needs --max-edge" in err

@@ -29,6 +29,7 @@ from delone.cli.surfaces import (
     Step,
     SurfaceOptions,
     Tolerance,
+    Voids,
     figures_of,
     print_figures,
     surface,
@@ -96,6 +97,7 @@ def dem(
     soft_breaklines: SoftBreaklines = None,
     boundary: Boundary = None,
     max_edge: MaxEdge = None,
+    voids: Voids = False,
     duplicates: Duplicates = "raise",
     crossing: Crossing = "raise",
     tolerance: Tolerance = 0.0,
@@ -169,7 +171,9 @@ def _refuse_for_tiles(given: dict[str, Any], what: str) -> None:
     names = ("bounds", "breaklines", "soft_breaklines", "boundary", "max_edge", "columns")
     set_ = [name for name in (*names, "classes", "layer", "workers") if given[name] is not None]
     set_ += [name for name in ("duplicates", "crossing") if given[name] != "raise"]
-    set_ += [name for name in ("tolerance", "retriangulate", "easting_first") if given[name]]
+    set_ += [
+        name for name in ("tolerance", "retriangulate", "easting_first", "voids") if given[name]
+    ]
     if set_:
         options = ", ".join(f"--{name.replace('_', '-')}" for name in set_)
         raise Failure(f"{options}: for files of points, not for folders of tiles", Exit.USAGE)

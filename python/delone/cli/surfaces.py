@@ -46,6 +46,7 @@ __all__ = [
     "SurfaceOptions",
     "Survey",
     "Tolerance",
+    "Voids",
     "curves_of",
     "figures_of",
     "print_figures",
@@ -71,6 +72,10 @@ SoftBreaklines = Annotated[
 Boundary = Annotated[Path | None, typer.Option(help="File of polygons where the surface ends.")]
 MaxEdge = Annotated[
     float | None, typer.Option(help="Remove outer triangles with a longer outer edge.")
+]
+Voids = Annotated[
+    bool,
+    typer.Option("--voids", help="Remove triangles with an edge above --max-edge inside as well."),
 ]
 Duplicates = Annotated[
     str,
@@ -113,6 +118,7 @@ class SurfaceOptions:
     soft_breaklines: Path | None
     boundary: Path | None
     max_edge: float | None
+    voids: bool
     duplicates: str
     crossing: str
     tolerance: float
@@ -159,7 +165,9 @@ def surface(
         raise Failure("--chord is for DXF files, and none is among the inputs", Exit.USAGE)
     if options.step != 1 and not any(map(is_raster, (source, *others))):
         raise Failure(f"{source}: --step is for rasters: .tif .tiff .asc", Exit.USAGE)
-    lined: dict[str, Any] = {"max_edge": options.max_edge}
+    if options.voids and options.max_edge is None:
+        raise Failure("--voids needs --max-edge, the longest edge that spans nothing", Exit.USAGE)
+    lined: dict[str, Any] = {"max_edge": options.max_edge, "voids": options.voids}
     survey: PointSet | SurfaceFile
     with reading(quiet=options.quiet), watch.stage("read"):
         if is_raster(source) and source.exists():

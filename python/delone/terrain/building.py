@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_choice, as_number, as_points, require_finite
+from delone import _core
+from delone._arrays import as_choice, as_flag, as_number, as_points, as_workers, require_finite
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import InputError, ShapeError
 from delone.georeference import (
@@ -20,6 +21,7 @@ from delone.georeference import (
     warn_of_degrees,
     warn_of_unknown,
 )
+from delone.plane.topology import among, edge_keys
 from delone.terrain.extent import Part, refuse_crossing_rings, within, without_outer
 from delone.terrain.gathering import SOFT, Lines, gathered
 from delone.terrain.heights import (
@@ -86,6 +88,7 @@ def build(
     holes: Any,
     islands: Any,
     max_edge: float | None,
+    voids: bool,
     duplicates: str,
     crossing: str,
     tolerance: float,
@@ -102,6 +105,8 @@ def build(
     as_choice(duplicates, POLICIES, name="duplicates")
     as_choice(crossing, POLICIES, name="crossing")
     allowed = as_tolerance(tolerance)
+    if as_flag(voids, name="voids") and max_edge is None:
+        raise InputError("voids=True needs max_edge, the longest edge that spans nothing")
     points = _points_of(xyz)
     system = system_of(crs, xyz)
     if system is None:
@@ -138,7 +143,7 @@ def build(
         limit = as_number(max_edge, name="max_edge")
         if not limit > 0:
             raise InputError(f"max_edge must be above 0, got {max_edge!r:.80}")
-        kept = peeled(mesh.points, mesh.simplices, mesh.neighbors, kept, mesh.constrained, limit)
+        kept = peeled(mesh, kept, limit, voids=voids)
     return compact(mesh, heights, kept, soft, system, heights_in)
 
 
@@ -229,33 +234,42 @@ def is_soft(mesh: ConstrainedDelaunay, lines: Lines) -> Bools:
     return found
 
 
-def peeled(  # noqa: PLR0917
-    points: Floats,
-    simplices: Indices,
-    neighbors: Indices,
-    kept: Bools,
-    constrained: Bools,
-    limit: float,
-) -> Bools:
+def peeled(mesh: ConstrainedDelaunay, kept: Bools, limit: float, *, voids: bool) -> Bools:
     """Remove triangles from outside as long as their outer edge is longer than `limit`.
 
-    Each round removes at least one triangle, so it ends. Segments are never outer edges of what is
-    removed.
+    With `voids`, all that have such an edge are removed. Segments count as short.
     """
-    kept = kept.copy()
-    ends = points[simplices[:, [[1, 2], [2, 0], [0, 1]]]]
-    long = np.hypot(*np.moveaxis(ends[:, :, 1] - ends[:, :, 0], -1, 0)) > limit
-    candidates: NDArray[Any] = np.arange(len(simplices))
+    kept, neighbors = kept.copy(), mesh.neighbors
+    long = _longer(mesh, limit) & ~mesh.constrained
+    if voids:
+        # What is left has no long edge, so nothing else is removed from outside.
+        return kept & ~long.any(axis=1)
+    candidates: NDArray[Any] = np.arange(len(neighbors))
+    # Each round removes at least one triangle, so it ends.
     while len(candidates):
         around = neighbors[candidates]
         outer = (around < 0) | ~kept[around]
-        gone = candidates[
-            (outer & (long & ~constrained)[candidates]).any(axis=1) & kept[candidates]
-        ]
+        gone = candidates[(outer & long[candidates]).any(axis=1) & kept[candidates]]
         kept[gone] = False
         around = np.unique(neighbors[gone])
         candidates = around[(around >= 0) & kept[around]]
     return kept
+
+
+def _longer(mesh: ConstrainedDelaunay, limit: float) -> Bools:
+    """Whether the edge opposite each corner of a triangle is longer than a number, exactly."""
+    ends = mesh.simplices[:, [[1, 2], [2, 0], [0, 1]]]
+    along = mesh.points[ends[..., 1]] - mesh.points[ends[..., 0]]
+    length = np.hypot(along[..., 0], along[..., 1])
+    found: Bools = length > limit
+    # Rounded a few times each, among the smallest doubles by a unit; the core compares near ones.
+    near = np.abs(length - limit) <= limit * 2.0**-48 + 2.0**-1070
+    if near.any():
+        unit = np.array([(0.0, 0.0), (limit, 0.0)])
+        short = _core.not_longer2(mesh.points, ends[near], unit, as_workers(mesh.workers))
+        keys = edge_keys(ends[near][:, 0], ends[near][:, 1], mesh.npoints)
+        found[near] = ~among(keys, edge_keys(short[:, 0], short[:, 1], mesh.npoints))
+    return found
 
 
 def compact(  # noqa: PLR0917

@@ -111,6 +111,7 @@ class TIN(Surveyed, Earthworks):
         holes: Any = None,
         islands: Any = None,
         max_edge: float | None = None,
+        voids: bool = False,
         duplicates: str = "raise",
         crossing: str = "raise",
         tolerance: float = 0.0,
@@ -127,8 +128,8 @@ class TIN(Surveyed, Earthworks):
             The points, in one unit of length horizontally; heights in the unit of your choice,
             preferably the same.
         breaklines, soft_breaklines : optional
-            Lines that edges follow, such as the edges of roads, dikes and water: geometries of
-            shapely, tables of them, a `delone.io.GeometrySet`, or arrays of shape (k, 2) or (k, 3).
+            Lines that edges follow, such as those of roads, dikes and water: shapely geometries,
+            GeoDataFrames, a `delone.io.GeometrySet`, or arrays of shape (k, 2) or (k, 3).
             Lines without heights follow the surface of the points; single points of a line without
             one (NaN) are on it. Both kinds are edges; contours are not smoothed at hard ones.
         boundary, holes : optional
@@ -140,15 +141,16 @@ class TIN(Surveyed, Earthworks):
         max_edge : float, optional
             Triangles are removed from outside as long as their outer edge is longer than this, up
             to lines; by default the surface covers the convex hull or the boundary.
+        voids : bool, optional
+            Remove all triangles with an edge above `max_edge`, up to lines: also across lakes.
         duplicates : {"raise", "min", "max", "mean"}, optional
-            The height of points with the same x and y and different heights, or of such a point and
-            a line.
+            The height where points, or a point and a line, have different ones at one place.
         crossing : {"raise", "min", "max", "mean"}, optional
             The height where lines with different heights cross or touch.
         tolerance : float, optional
-            Heights at one place that differ by at most this are equal, in units of height; by
-            default those that differ by no more than the slope of a line times the rounding of its
-            coordinates. Of equal heights the most accurate remains, of several such the lowest.
+            Heights at one place that differ by at most this are equal; by default those that differ
+            by at most the slope of a line times the rounding of its coordinates. Of equal heights
+            the most accurate remains, of several such the lowest.
         crs : optional
             Coordinate reference system, as ``"EPSG:28992"``, an EPSG code or a pyproj.CRS; by
             default that of the data. Lines that declare another one are transformed (pyproj).
@@ -170,21 +172,18 @@ class TIN(Surveyed, Earthworks):
         ConflictingValuesError
             Heights differ at a place, and the policy is ``"raise"``; the message has places and
             heights, and ``error.rows`` rows of `points`. A vertical wall is such a conflict.
-        NonFiniteError
-            A coordinate or height is NaN or infinite.
         CrossingSegmentsError
             The rings of a polygon cross themselves or each other.
         InputError
             A line without heights leaves the points, `crs` is not the reference system of the
             points, no triangle is left, or an option is not one of its choices.
-        DegenerateInputError, ShapeError, DtypeError, MemoryError, KeyboardInterrupt
+        DegenerateInputError, NonFiniteError, ShapeError, DtypeError, MemoryError
             As for `delone.Delaunay`.
 
         Warns
         -----
         GeographicWarning, UnitsWarning, CRSWarning
-            x and y are degrees, or in another unit than the heights, or one of two reference
-            systems is unknown, and taken to be the other.
+            x and y are degrees or in another unit than heights; an unknown CRS is taken as known.
 
         Examples
         --------
@@ -201,6 +200,7 @@ class TIN(Surveyed, Earthworks):
             holes=holes,
             islands=islands,
             max_edge=max_edge,
+            voids=voids,
             duplicates=duplicates,
             crossing=crossing,
             tolerance=tolerance,
@@ -323,7 +323,7 @@ class TIN(Surveyed, Earthworks):
         faces : bool, optional
             Keep the faces, if there are some, as triangles. Else points and lines are triangulated.
         **options
-            Options of `from_points`; those for lines and `max_edge` only where no faces are kept.
+            Options of `from_points`; those for lines and edges only where no faces are kept.
 
         Returns
         -------
