@@ -461,3 +461,21 @@ class TestWhatIsNoGeometry:
         monkeypatch.setattr(shapely, "get_rings", refused)
         with pytest.raises(errors.InputError, match="curves are not supported"):
             take(shapely.Polygon(RING))
+
+
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize("shift", [0.0, 5e5])
+def test_holes_as_narrow_as_a_rounding_are_oriented_exactly(turned: bool, shift: float) -> None:
+    rng = np.random.default_rng(1)
+    ring = [(shift, shift), (1 + shift, shift), (1 + shift, 1 + shift), (shift, 1 + shift)]
+    for _ in range(40):
+        # There and almost back: the signed area is all rounding.
+        a, b = rng.uniform(0.1, 0.9, (2, 2)) + shift
+        middle = a + rng.uniform(0.2, 0.8) * (b - a)
+        hole = [tuple(each) for each in np.array([a, middle, b]).tolist()]
+        (ax, ay), (bx, by), (cx, cy) = (map(Fraction, p) for p in hole)
+        twice = abs((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))
+        for corners in (hole, hole[::-1]):
+            given = corners if not turned else corners[1:] + corners[:1]
+            shape = {"type": "Polygon", "coordinates": [ring, given]}
+            assert area(triangulate_polygon(shape, rule="nonzero")) == 1 - twice / 2

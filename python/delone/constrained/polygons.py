@@ -7,6 +7,7 @@ many small rings.
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -338,8 +339,15 @@ def _rings_of_geometry(polygon: Any, nonzero: bool) -> tuple[Floats, Indices]:
 
 
 def _turns_left(ring: Floats) -> bool:
-    """Return whether the signed area of a ring is positive; arbitrary if it is nearly 0."""
+    """Return whether the signed area of a ring is positive, exactly; False for one of 0."""
     # Halved, then divided by the longest coordinate difference, so that nothing overflows.
     edges = ring / 2 - ring[0] / 2
     x, y = (edges / (np.abs(edges).max() or 1.0)).T
-    return bool(np.dot(x, np.roll(y, -1)) > np.dot(y, np.roll(x, -1)))
+    left, right = x * np.roll(y, -1), y * np.roll(x, -1)
+    twice = float(left.sum() - right.sum())
+    # Differences, quotients, products and sums are rounded once each, and none of them exceeds 1.
+    if abs(twice) > 2.0**-50 * len(ring) * (len(ring) + 4):
+        return twice > 0
+    exact = [(Fraction(p), Fraction(q)) for p, q in ring.tolist()]
+    after = exact[1:] + exact[:1]
+    return sum(p[0] * q[1] - q[0] * p[1] for p, q in zip(exact, after, strict=True)) > 0
