@@ -27,6 +27,8 @@ __all__ = ["read_geometries", "read_points", "read_surface", "require_libraries"
 # Elements that are done when they end: all others are small, and hold what belongs to these.
 _LEAVES = ("P", "F", "PntList2D", "PntList3D")
 _SHOWN = 20
+# Points, faces and lines that are dropped together.
+_AT_ONCE = 256
 
 
 def read_points(
@@ -85,13 +87,20 @@ def _drafts(etree: Any, path: Path, head: Head, wanted: str | None) -> Iterator[
             remove_pis=True,
         )
         draft: Draft | None = None
-        depth = 0
+        depth = leaves = 0
+        names: dict[str, str] = {}
         for event, element in events:
-            tag = _local(element)
+            # Of most files nearly all elements are points and faces: each step counts.
+            whole = element.tag
+            tag = names.get(whole)
+            if tag is None:
+                tag = names[whole] = _local(element)
             if event == "start":
                 if depth == 0:
                     _require_root(element, path)
                 depth += 1
+                if tag in _LEAVES:
+                    continue
                 if tag == "Surface":
                     draft = Draft(head, element.get("name"), element.sourceline)
                 elif draft is None:
@@ -105,6 +114,10 @@ def _drafts(etree: Any, path: Path, head: Head, wanted: str | None) -> Iterator[
                 draft = None
             elif draft is not None and tag in _LEAVES and wanted in (None, draft.name):
                 draft.end(tag, element)
+                leaves += 1
+                if leaves % _AT_ONCE:
+                    continue
+            # What was read is dropped, some elements at a time.
             element.clear()
             while element.getprevious() is not None:
                 del element.getparent()[0]

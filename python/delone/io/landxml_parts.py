@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from array import array
 from collections import Counter
 from typing import TYPE_CHECKING, Any
@@ -23,6 +24,7 @@ __all__ = ["ORDERS", "Draft", "Head"]
 # The places of x and y among the first two numbers of a point.
 ORDERS = {"nez": (1, 0), "enz": (0, 1)}
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_POINT = re.compile(r"\s*{0}\s+{0}\s+{0}\s*".format(f"({_NUMBER.pattern.replace('(', '(?:')})"))
 _EPSG = re.compile(r"\d{1,6}")
 # Lines by the element around them: breaklines, contours, boundaries, and points.
 _AROUND = ("Breakline", "Contour", "Boundary", "DataPoints", "Chain", "Watershed")
@@ -89,7 +91,7 @@ class Draft:
     def __init__(self, head: Head, name: str | None, line: int) -> None:
         self.head, self.name, self.line = head, name, line
         self._coordinates, self._rows = array("d"), dict[str, int]()
-        self._faces, self._pending = array("q"), list[tuple[int, list[str], int]]()
+        self._faces, self._pending = array("q"), list[tuple[int, str, int]]()
         self._lines: dict[str, list[Floats]] = {}
         self._has_faces = self._is_grid = False
         self._around: Any = None
@@ -128,11 +130,19 @@ class Draft:
             raise self.head.fault(element, f"a second point has the id {name!r:.40}")
         if len(element):
             raise self.head.fault(element, f"point {name!r:.40} contains another element")
-        found = self.head.numbers(element, 3)
-        if len(found) > 1:
-            raise self.head.fault(element, f"point {name!r:.40} has {found.size} numbers, not 3")
+        three = _POINT.fullmatch(element.text or "")
+        given = [float(word) for word in three.groups()] if three else []
+        if given and max(map(abs, given)) <= sys.float_info.max:
+            i, j = self.head.order
+            self._coordinates.extend((given[i], given[j], given[2]))
+        else:
+            # The error, or a separator that is not plain white space.
+            found = self.head.numbers(element, 3)
+            if len(found) > 1:
+                message = f"point {name!r:.40} has {found.size} numbers, not 3"
+                raise self.head.fault(element, message)
+            self._coordinates.extend(found[0].tolist())
         self._rows[name] = len(self._rows)
-        self._coordinates.extend(found[0].tolist())
 
     def _face(self, element: Any) -> None:
         names = (element.text or "").split()
@@ -146,13 +156,17 @@ class Draft:
             return
         if (element.get("b") or "0").strip().strip("0 "):
             self._left_out["mark of breaklines (b) of a face"] += 1
-        self._quads += len(names) == 4
-        corners = names[:3] if len(names) == 3 else [names[k] for k in (0, 1, 2, 0, 2, 3)]
-        for name in corners:
-            row = self._rows.get(name)
-            if row is None:  # points may follow
-                self._pending.append((len(self._faces), [name], element.sourceline))
-            self._faces.append(-1 if row is None else row)
+        if len(names) == 4:
+            self._quads += 1
+            names = [names[k] for k in (0, 1, 2, 0, 2, 3)]
+        rows = [self._rows.get(name, -1) for name in names]
+        if -1 in rows:  # points may follow
+            self._pending += [
+                (len(self._faces) + place, name, element.sourceline)
+                for place, (name, row) in enumerate(zip(names, rows, strict=True))
+                if row < 0
+            ]
+        self._faces.extend(rows)
 
     def _triangles(self) -> NDArray[np.int64]:
         """Return the faces, each once, without those that repeat a corner."""
@@ -194,7 +208,7 @@ class Draft:
             raise FileFormatError(
                 f"{head.source}, line {self.line}: {self.name!r:.60} is a grid without faces"
             )
-        for place, (name,), line in self._pending:
+        for place, name, line in self._pending:
             if name not in self._rows:
                 raise FileFormatError(
                     f"{head.source}, line {line}: a face refers to point {name!r:.40}, which the "
