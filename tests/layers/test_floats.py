@@ -90,6 +90,10 @@ ALLOWED: dict[str, dict[str, str]] = {
     # products with one sign.
     "sphere/flat.py": {"np.dot(tail[:2], head[:2]) > 0": EXACT, "each.area > 0": EMPTY},
     "sphere/interpolation.py": {"owner._distance(xi) <= limit": WANTED},
+    "sphere/nearby.py": {
+        "dot(cross(normal, a), query) > 0": EXACT,
+        "dot(cross(b, normal), query) > 0": EXACT,
+    },
     "sphere/outside.py": {
         "queries @ np.cross(normal, a).T > 0": VALUE,
         "queries @ np.cross(b, normal).T > 0": VALUE,

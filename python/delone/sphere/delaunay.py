@@ -13,8 +13,10 @@ from delone.counting import counted
 from delone.errors import InternalError
 from delone.exchange.parts import Parts
 from delone.immutable import kept, sealed
+from delone.location import as_tolerance
 from delone.plane import topology
 from delone.sphere.coordinates import directions_of, lonlat_of, queries_of, units_of
+from delone.sphere.nearby import nearby
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
+    Rows = NDArray[np.int64]
 
 __all__ = ["Delaunay"]
 
@@ -317,13 +320,16 @@ class Delaunay(Stored):
         workers = as_workers(self._workers)
         return _core.SphereLocator(self._vectors, self._simplices, self._neighbors, workers)
 
-    def find_simplex(self, xi: ArrayLike) -> Indices:
+    def find_simplex(self, xi: ArrayLike, *, tolerance: float = 0.0) -> Indices:
         """Return the triangles that contain directions.
 
         Parameters
         ----------
         xi : array_like, shape (..., 2) or (..., 3)
             Longitudes and latitudes, in the unit of the constructor, or vectors of any length.
+        tolerance : float, optional
+            Directions outside of a hull, at most this angle from its boundary, are in the triangle
+            there; in the unit of the constructor.
 
         Returns
         -------
@@ -333,6 +339,8 @@ class Delaunay(Stored):
 
         Raises
         ------
+        InputError
+            `tolerance` is negative or NaN.
         DirectionError
             A latitude is beyond a pole, or a longitude has more than three turns.
         ShapeError, DtypeError
@@ -341,7 +349,8 @@ class Delaunay(Stored):
         Notes
         -----
         Exact. Directions are taken along a space-filling curve, each starting from the triangle of
-        the previous one; the answers do not depend on each other.
+        the previous one; the answers do not depend on each other. Those outside are compared with
+        all edges of the boundary if there is a `tolerance`, which is exact as well.
 
         Examples
         --------
@@ -350,7 +359,26 @@ class Delaunay(Stored):
         >>> mesh.find_simplex([(180, 1), (0, 0)]) >= 0
         array([ True, False])
         """
-        return self._ask(xi, self._locator.find)
+        limit = as_tolerance(tolerance)
+        found = self._ask(xi, self._locator.find)
+        if not limit or self.covers_sphere:
+            return found
+        queries = queries_of(xi, degrees=self._degrees, workers=self._workers).reshape(-1, 3)
+        flat = found.reshape(-1)
+        outside, arc = self._nearby(queries, flat, limit)
+        triangles, _ = np.nonzero(self._neighbors < 0)
+        flat[outside] = triangles[arc]
+        return flat.reshape(found.shape)
+
+    def _nearby(self, queries: Floats, simplex: Indices, limit: float) -> tuple[Rows, Rows]:
+        """Return the queries outside that are near the boundary, and an edge of it for each."""
+        known = np.isfinite(queries).all(axis=1) & queries.any(axis=1)
+        outside = np.flatnonzero((simplex < 0) & known)
+        arc = nearby(
+            self._vectors, self.points, self.boundary, queries[outside], limit,
+            degrees=self._degrees,
+        )  # fmt: skip
+        return outside[arc >= 0], arc[arc >= 0]
 
     def nearest(self, xi: ArrayLike) -> Indices:
         """Return the rows of the points nearest to directions.

@@ -21,6 +21,7 @@ from delone.interpolate.hull import Terms
 from delone.interpolate.policies import Policies
 from delone.interpolate.values import DUPLICATES, NAN, as_field, chosen
 from delone.interpolate.weights import Weights, joined, rectangular
+from delone.location import as_tolerance
 from delone.sphere.coordinates import queries_of
 from delone.sphere.delaunay import Delaunay
 from delone.sphere.outside import arc_weights
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from delone.interpolate.weights import Table
 
     Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
     Indices = NDArray[np.int32]
     Rows = NDArray[np.int64]
     # A field, and interpolators of parts of its values.
@@ -53,12 +55,14 @@ class _Interpolator:
         values: ArrayLike | None = None,
         *,
         extrapolate: str = "nan",
+        tolerance: float = 0.0,
         duplicates: str = "raise",
         nan: str = "raise",
         degrees: bool = True,
         workers: int | None = None,
     ) -> None:
         self._extrapolate = chosen("extrapolate", extrapolate, self.EXTRAPOLATE)
+        self._tolerance = as_tolerance(tolerance)
         self._duplicates = chosen("duplicates", duplicates, DUPLICATES)
         self._nan = chosen("nan", nan, NAN)
         as_workers(workers)
@@ -350,12 +354,17 @@ class _Interpolator:
         """
         raise NotImplementedError
 
-    def _inside(self, queries: Floats, names: Rows, count: int) -> Indices:
-        """The triangle of each query, -1 outside; raises if that is the policy."""
-        simplex = self._mesh.find_simplex(queries)
-        missed = names[simplex < 0]
+    def _inside(self, queries: Floats, names: Rows, count: int) -> tuple[Indices, Bools]:
+        """The triangle of each query, -1 outside, and which of these the tolerance includes.
+
+        Raises if there are others, and that is the policy.
+        """
+        simplex, near = self._mesh.find_simplex(queries), np.zeros(len(queries), dtype=bool)
+        if self._tolerance and not self._mesh.covers_sphere:
+            near[self._mesh._nearby(queries, simplex, self._tolerance)[0]] = True
+        missed = names[(simplex < 0) & ~near]
         if self._extrapolate != "raise" or not missed.size:
-            return simplex
+            return simplex, near
         first = ", ".join(map(str, missed[:_NAMED].tolist()))
         more = ", ..." if len(missed) > _NAMED else ""
         raise InputError(
@@ -431,7 +440,7 @@ class _Continuous(_Interpolator):
         assert isinstance(owner, _Continuous)
         flat, known, shape = self._queries(xi)
         simplex = np.full(len(flat), -1, dtype=np.int32)
-        simplex[known] = owner._inside(flat[known], known, len(flat))
+        simplex[known], _ = owner._inside(flat[known], known, len(flat))
         threads = as_workers(self._workers)
         found = owner._mesh._locator.weights(self._kind, flat, simplex, True, threads)
         slopes = found.slopes
@@ -443,13 +452,13 @@ class _Continuous(_Interpolator):
         return shaped_derivatives(np.stack(parts, axis=-1) / radius, field, shape)
 
     def _weighted(self, queries: Floats, names: Rows, count: int) -> Table:
-        simplex = self._inside(queries, names, count)
+        simplex, near = self._inside(queries, names, count)
         threads = as_workers(self._workers)
         found = self._mesh._locator.weights(self._kind, queries, simplex, False, threads)
         inner = (found.indptr, found.indices, found.weights, None)
         empty = np.flatnonzero(np.diff(found.indptr) == 0)
         if self._extrapolate != "nearest":
-            empty = empty[simplex[empty] >= 0]
+            empty = empty[(simplex[empty] >= 0) | near[empty]]
         if not empty.size:
             return inner
         return joined(inner, empty, self._completed(queries[empty], simplex[empty]))
@@ -479,6 +488,9 @@ class Linear(_Continuous):
         Real or complex values at the sites. Optional if each call passes its own values.
     extrapolate : {"nan", "nearest", "raise"}, optional
         Behavior outside of a hull: NaN; the value at the nearest point of the hull; an error.
+    tolerance : float, optional
+        Queries outside of a hull, at most this angle from its boundary, get the value at the
+        nearest point of it; in the unit of `degrees`, decided exactly. Gradients there are NaN.
     duplicates : {"raise", "mean", "first", "last", "min", "max"}, optional
         The value of sites that have the same direction but different values.
     nan : {"raise", "drop", "propagate"}, optional
@@ -546,7 +558,7 @@ class NaturalNeighbor(_Continuous):
     kind : {"sibson", "laplace"}, optional
         Sibson's weights by area, C1 except at the sites; or Laplace's by length, continuous and
         faster.
-    extrapolate, duplicates, nan, degrees, workers
+    extrapolate, tolerance, duplicates, nan, degrees, workers
         As in `Linear`.
 
     Raises
@@ -592,6 +604,7 @@ class NaturalNeighbor(_Continuous):
         *,
         kind: str = "sibson",
         extrapolate: str = "nan",
+        tolerance: float = 0.0,
         duplicates: str = "raise",
         nan: str = "raise",
         degrees: bool = True,
@@ -602,6 +615,7 @@ class NaturalNeighbor(_Continuous):
             points,
             values,
             extrapolate=extrapolate,
+            tolerance=tolerance,
             duplicates=duplicates,
             nan=nan,
             degrees=degrees,
@@ -620,7 +634,7 @@ class Nearest(_Interpolator):
         Real or complex values at the sites. Optional if each call passes its own values.
     extrapolate : {"nearest", "nan", "raise"}, optional
         Behavior outside of a hull: the value of the nearest site, as inside; NaN; an error.
-    duplicates, nan, degrees, workers
+    tolerance, duplicates, nan, degrees, workers
         As in `Linear`.
 
     Raises
@@ -653,6 +667,7 @@ class Nearest(_Interpolator):
         values: ArrayLike | None = None,
         *,
         extrapolate: str = "nearest",
+        tolerance: float = 0.0,
         duplicates: str = "raise",
         nan: str = "raise",
         degrees: bool = True,
@@ -662,6 +677,7 @@ class Nearest(_Interpolator):
             points,
             values,
             extrapolate=extrapolate,
+            tolerance=tolerance,
             duplicates=duplicates,
             nan=nan,
             degrees=degrees,
@@ -672,7 +688,8 @@ class Nearest(_Interpolator):
         rows = self._mesh.nearest(queries)[:, None]
         weights = np.ones(rows.shape)
         if self._extrapolate != "nearest":
-            weights[self._inside(queries, names, count) < 0] = np.nan
+            simplex, near = self._inside(queries, names, count)
+            weights[(simplex < 0) & ~near] = np.nan
         return rectangular(rows, weights)
 
 

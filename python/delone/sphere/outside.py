@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["arc_weights"]
+__all__ = ["arc_weights", "chords"]
 
 # Numbers in each temporary array.
 _BLOCK = 1 << 20
@@ -24,10 +26,8 @@ def arc_weights(points: Floats, arcs: Indices, queries: Floats) -> tuple[Indices
     Points and queries are unit vectors. All arcs are compared, in blocks of queries.
     """
     chosen = np.empty(len(queries), dtype=np.int64)
-    step = max(1, _BLOCK // max(1, len(arcs)))
-    for start in range(0, len(queries), step):
-        part = slice(start, start + step)
-        chosen[part] = _squares(points, arcs, queries[part]).argmin(axis=1)
+    for part, squares in chords(points, arcs, queries):
+        chosen[part] = squares.argmin(axis=1)
     ends = arcs[chosen]
     a, b = points[ends[:, 0]], points[ends[:, 1]]
     normal = _normals(a, b)
@@ -38,6 +38,14 @@ def arc_weights(points: Floats, arcs: Indices, queries: Floats) -> tuple[Indices
     shares[lost, 0] = _dots(a, queries)[lost] >= _dots(b, queries)[lost]
     shares[lost, 1] = 1.0 - shares[lost, 0]
     return ends, shares / shares.sum(axis=1, keepdims=True)
+
+
+def chords(points: Floats, arcs: Indices, queries: Floats) -> Iterator[tuple[slice, Floats]]:
+    """Yield blocks of queries, and the squared chords from these to all arcs, (k, h)."""
+    step = max(1, _BLOCK // max(1, len(arcs)))
+    for start in range(0, len(queries), step):
+        part = slice(start, min(start + step, len(queries)))
+        yield part, _squares(points, arcs, queries[part])
 
 
 def _squares(points: Floats, arcs: Indices, queries: Floats) -> Floats:
