@@ -35,6 +35,7 @@ SAVED = {
     "PeriodicDelaunay": lambda: delone.PeriodicDelaunay(FLAT, (9, 9)),
     "Voronoi": lambda: delone.Voronoi(FLAT, clip="box"),
     "ConvexHull": lambda: delone.ConvexHull(FLAT),
+    "Dynamic": lambda: delone.Dynamic(FLAT, [(0, 1)]),
 }
 READ = {
     "read_points": read_points,
@@ -111,3 +112,14 @@ def test_what_delone_saves_is_loaded(tmp_path: Path) -> None:
     assert np.array_equal(delone.Delaunay.load(tmp_path / "a.npz").simplices, mesh.simplices)
     np.savez_compressed(tmp_path / "b.npz", points=mesh.points, simplices=mesh.simplices)
     assert np.array_equal(read_mesh(tmp_path / "b.npz").simplices, mesh.simplices)
+
+
+def test_members_count_together(tmp_path: Path) -> None:
+    # Each may be as large as it is, all of them may not.
+    path = tmp_path / "many.npz"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for number in range(20):
+            archive.writestr(f"points{number}.npy", bytes(ALWAYS - 1))
+    assert path.stat().st_size * bounded.EXPANSION < 20 * ALWAYS
+    with pytest.raises(FileFormatError, match="times larger when decompressed"):
+        read_points(path)

@@ -341,13 +341,13 @@ def test_values_are_those_of_handles() -> None:
     assert live.arrays(np.ones((top + 1, 3))).values.shape == (len(live), 3)
     with pytest.raises(delone.ShapeError, match=f"{top + 1} rows or more"):
         live.arrays(np.ones(top))
-    rows = live.rows(live.handles[[5, 0, 5]])
+    rows = live.rows_of(live.handles[[5, 0, 5]])
     assert rows.tolist() == [5, 0, 5]
     gone = np.setdiff1d(np.arange(top), live.handles)
     with pytest.raises(delone.HandleError, match=f"handle {gone[0]} is not there"):
-        live.rows([live.handles[0], gone[0]])
+        live.rows_of([live.handles[0], gone[0]])
     with pytest.raises(delone.HandleError, match="are not there"):
-        live.rows([top + 1, top + 2])
+        live.rows_of([top + 1, top + 2])
 
 
 def test_values_of_handles_in_any_order_are_interpolated() -> None:

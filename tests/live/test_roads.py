@@ -72,13 +72,13 @@ class Network:
         elif kind == 1 and len(segments):
             # An end of a road moves, a little or across others.
             end = int(draw.choice(live.input_segments.ravel()))
-            place = live.points[live.rows([end])[0]]
+            place = live.points[live.rows_of([end])[0]]
             live.move([end], [place + draw.normal(0, draw.choice([0.1, 8.0]), 2)])
         elif kind == 2 and len(own) > 1:
             live.insert_segments([draw.choice(own, 2, replace=False)])
         elif kind == 3 and len(segments):
             # A point on a road.
-            a, b = live.points[live.rows(live.input_segments[0])]
+            a, b = live.points[live.rows_of(live.input_segments[0])]
             live.insert([a + draw.integers(1, 4) / 4 * (b - a)])
         elif kind == 4 and len(free):
             live.remove(draw.choice(free, 1))
@@ -98,14 +98,14 @@ class Network:
         assert set(live.handles.tolist()) - set(kept.tolist()) <= set(added.tolist())
         rows = np.searchsorted(kept, live.input_segments)
         fresh = ConstrainedDelaunay(
-            live.points[live.rows(kept)], rows, crossing="split", planar=True
+            live.points[live.rows_of(kept)], rows, crossing="split", planar=True
         )
         assert len(fresh.points) == len(live)
         assert placed(fresh.points, fresh.simplices) == placed(live.points, live.simplices)
         assert placed(fresh.points, fresh.segments) == placed(live.points, live.segments)
         one = fresh.report.crossings
         ours = np.column_stack(
-            (np.searchsorted(segments, crossings[:, :2]), live.rows(crossings[:, 2]))
+            (np.searchsorted(segments, crossings[:, :2]), live.rows_of(crossings[:, 2]))
         )
         assert met(fresh.points, one) == met(live.points, ours)
         assert live.validate()

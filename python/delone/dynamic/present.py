@@ -288,7 +288,7 @@ class Present(Segmented):
             own = given[made.handles]
         return DynamicArrays(made.handles, made.points, made.simplices, made.neighbors, own)
 
-    def rows(self, handles: ArrayLike) -> NDArray[np.int64]:
+    def rows_of(self, handles: ArrayLike) -> NDArray[np.int64]:
         """Return the rows of `points` that have these handles.
 
         Parameters
@@ -313,7 +313,7 @@ class Present(Segmented):
         >>> from delone import Dynamic
         >>> live = Dynamic([(0, 0), (4, 0), (4, 3), (0, 3)])
         >>> live.remove([1])
-        >>> live.rows([3, 0])
+        >>> live.rows_of([3, 0])
         array([2, 0])
         """
         wanted = as_handles(handles)
