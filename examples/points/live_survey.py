@@ -47,12 +47,13 @@ with live.edits() as draft:
 print(f"{len(live)} points, {len(live.segment_handles)} lines, {live.nsimplex} triangles")
 
 # %%
-# One shot was wrong: its line goes with it. A snapshot is kept first, so that the removal can be undone. A common
+# One shot was wrong: the lines that end there go with it. A snapshot is kept first, so that the removal can be undone. A common
 # mistake is to index heights with rows of ``points``, which change when points are removed; handles do not change.
 
 before = live.snapshot()
 wrong = kerbs[0][10]
-live.remove([wrong], segments="remove")
+lines = live.remove([wrong], segments="remove")
+assert len(lines) == 2
 assert wrong not in live
 assert np.array_equal(live.arrays(heights).values, heights[live.handles])
 live.restore(before)

@@ -44,12 +44,15 @@ fn edits(bytes: &mut Unstructured) -> Result<()> {
             }
             2 if !rows.is_empty() => {
                 let row = *bytes.choose(&rows)?;
+                given.points.remove(&row);
                 if ends.contains(&row) {
                     assert!(live.remove(&[row], 1, &watch).is_err());
-                    continue;
+                    let own = given.take_segments_at(row);
+                    let gone = live.remove_with_segments(&[row], 1, &watch);
+                    gone.map(|gone| assert_eq!(gone, own))
+                } else {
+                    live.remove(&[row], 1, &watch)
                 }
-                given.points.remove(&row);
-                live.remove(&[row], 1, &watch)
             }
             3 if !rows.is_empty() => {
                 let row = *bytes.choose(&rows)?;
@@ -112,6 +115,15 @@ struct Given {
 }
 
 impl Given {
+    /// Removes the segments that end at a row, and returns their numbers, ascending.
+    fn take_segments_at(&mut self, row: i64) -> Vec<i64> {
+        let all = std::mem::take(&mut self.segments);
+        let (own, others) = all.into_iter().partition(|(_, pair)| pair.contains(&row));
+        self.segments = others;
+        let own: BTreeMap<i64, [i64; 2]> = own;
+        own.into_keys().collect()
+    }
+
     /// Compares a triangulation with a fresh one.
     fn compare(&self, live: &Plane, split: bool, watch: &Watch) {
         let points: Vec<Point2> = self.points.values().copied().collect();

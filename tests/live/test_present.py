@@ -201,16 +201,27 @@ def test_points_go_with_their_segments() -> None:
     with pytest.raises(delone.HandleError, match="named twice"):
         live.remove([0, 0], segments="remove")
     assert state(live) == before
-    live.remove([0, 4], segments="remove")
+    assert live.remove([0, 4], segments="remove").tolist() == [0, 2]
     assert live.segment_handles.tolist() == [1]
     assert live.handles.tolist() == [1, 2, 3]
     assert not len(live.crossings)
     assert live.validate()
-    live.remove([1], segments="remove")
-    live.remove([2], segments="remove")
+    assert live.remove([1], segments="remove").tolist() == [1]
+    # Where no segment ends, and where there is none at all.
+    assert live.remove([2], segments="remove").dtype == np.int64
     assert live.handles.tolist() == [3]
     with pytest.raises(delone.InputError, match="segments must be"):
         live.remove([3], segments="keep")
+
+
+def test_points_of_solids_have_no_segments() -> None:
+    live = used(3, 9)
+    first = live.handles[:2]
+    assert live.remove(first[:1], segments="remove").tolist() == []
+    assert live.remove(first[1:]) is None
+    assert not np.isin(first, live.handles).any()
+    with pytest.raises(delone.HandleError, match="are not there"):
+        live.remove(first, segments="remove")
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -219,10 +230,15 @@ def test_what_is_left_is_that_of_the_remaining_input(seed: int) -> None:
     alone = used(2, seed, segments=True)
     ends = np.unique(live.input_segments)
     gone = ends[:: 2 + seed]
-    live.remove(gone, segments="remove")
-    alone.remove_segments(alone.segment_handles[np.isin(alone.input_segments, gone).any(axis=1)])
+    live.changes(), alone.changes()
+    lost = alone.segment_handles[np.isin(alone.input_segments, gone).any(axis=1)]
+    assert np.array_equal(live.remove(gone, segments="remove"), lost)
+    alone.remove_segments(lost)
     alone.remove(gone)
     assert state(live) == state(alone)
+    one, two = live.changes(), alone.changes()
+    assert np.array_equal(one.gone, two.gone)
+    assert np.array_equal(one.new, two.new)
     assert live.validate()
 
 

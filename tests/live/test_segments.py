@@ -62,6 +62,8 @@ class Twin:
 
     def __init__(self, draw: random.Random, place: Any, crossing: str) -> None:
         self.draw, self.place, self.crossing = draw, place, crossing
+        # How often points are removed with their segments.
+        self.cleared = 0.5
         start = [place(draw) for _ in range(draw.randrange(20))]
         self.live = Dynamic(np.array(start).reshape(-1, 2), crossing=crossing)
         self.points = dict(enumerate(start))
@@ -82,6 +84,12 @@ class Twin:
         if gone & ends:
             with pytest.raises(HandleError, match="is an end of segment"):
                 self.live.remove(sorted(gone))
+            if self.draw.random() < self.cleared:
+                own = [s for s, pair in sorted(self.segments.items()) if gone & {*pair}]
+                assert self.live.remove(sorted(gone), segments="remove").tolist() == own
+                self.segments = {s: p for s, p in self.segments.items() if s not in own}
+                self.points = {h: p for h, p in self.points.items() if h not in gone}
+                return
             gone -= ends
         self.live.remove(sorted(gone))
         self.points = {h: p for h, p in self.points.items() if h not in gone}

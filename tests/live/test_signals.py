@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 EDITS: dict[str, Callable[[Dynamic, Any], Any]] = {
     "insert": lambda live, _: live.insert([(0.5, 0.25), (0.125, 0.75)]),
     "remove": lambda live, _: live.remove(live.handles[4:6]),
+    "remove_with_segments": lambda live, _: live.remove([2], segments="remove"),
     "relocate": lambda live, _: live.move([5], [(0.9, 0.9)]),
     "insert_segments": lambda live, _: live.insert_segments([(0, 1)]),
     "remove_segments": lambda live, _: live.remove_segments([0]),

@@ -203,6 +203,20 @@ impl Live2 {
         })
     }
 
+    /// Removes points and the segments that end there, and returns the handles of these.
+    fn remove_with_segments(
+        &self,
+        py: Python<'_>,
+        handles: Handles<'_>,
+        workers: usize,
+    ) -> PyResult<Column<i64>> {
+        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+        let gone = self.edit(py, usize::MAX, |plane, watch| {
+            plane.remove_with_segments(handles, workers, watch)
+        })?;
+        Ok(column(py, gone))
+    }
+
     /// Moves points.
     fn relocate(
         &self,

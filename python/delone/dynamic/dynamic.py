@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Literal, Self, overload
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from delone.dynamic.given import as_ndim, given_points, own_points
 from delone.dynamic.measured import Measured
 from delone.dynamic.results import Changes, Snapshot
 from delone.dynamic.saving import State, require_few_handles
-from delone.dynamic.segments import FEW, as_handles, given_segments, refuse, refuse_crossings
+from delone.dynamic.segments import FEW, as_handles, given_segments, refuse
 from delone.errors import DtypeError, EditConflictError, InputError, ShapeError
 from delone.georeference import warn_of_degrees
 from delone.immutable import own_copy
@@ -266,7 +266,13 @@ class Dynamic(Measured):
         warn_of_degrees(points, array, planar=self._planar)
         return self._edited(self._live.insert, array, threads)
 
-    def remove(self, handles: ArrayLike, *, segments: str = "raise") -> None:
+    @overload
+    def remove(self, handles: ArrayLike, *, segments: Literal["raise"] = "raise") -> None: ...
+
+    @overload
+    def remove(self, handles: ArrayLike, *, segments: Literal["remove"]) -> Handles: ...
+
+    def remove(self, handles: ArrayLike, *, segments: str = "raise") -> Handles | None:
         """Remove points.
 
         Parameters
@@ -277,6 +283,12 @@ class Dynamic(Measured):
             Whether a point that is an end of segments is an error, or its segments are removed as
             well.
 
+        Returns
+        -------
+        ndarray of int64, shape (s,), or None
+            With ``segments="remove"`` the handles of the segments that were removed, ascending;
+            None otherwise.
+
         Raises
         ------
         HandleError
@@ -284,44 +296,35 @@ class Dynamic(Measured):
             removed, or is a crossing of segments; nothing has changed.
         DtypeError
             `handles` are not integers.
+        InputError
+            `segments` is something else.
 
         Notes
         -----
-        Ends of segments are removed with these in a copy, which then takes the place of this
-        triangulation: that compares all segments with the handles.
+        Points and their segments are removed in one edit, in time for what it changes, as in
+        `remove_segments`: segments that crossed them are inserted again.
 
         Examples
         --------
         >>> from delone import Dynamic
         >>> live = Dynamic([(0, 0), (1, 0), (0, 1), (1, 1)], [(0, 3)])
         >>> live.remove([0], segments="remove")
+        array([0])
         >>> live.simplices
         array([[0, 2, 1]], dtype=int32)
         """
         own = as_handles(handles)
         also = as_choice(segments, ("raise", "remove"), name="segments") == "remove"
-        if also and self._has_segments:
-            self._remove_with_segments(own)
-            return
+        core, threads = self._live, self._threads(own)
         try:
-            self._edited(self._live.remove, own, self._threads(own))
+            if also and isinstance(core, _core.Live2):
+                return self._edited(core.remove_with_segments, own, threads)
+            self._edited(core.remove, own, threads)
         except ShapeError:
             self._refuse(own)
-            self._refuse_held(own)
+            self._refuse_held(own, ends=not also)
             raise
-
-    def _remove_with_segments(self, handles: Handles) -> None:
-        while True:
-            known, draft = self._draft()
-            draft._refuse(handles)
-            plane = draft._plane()
-            refuse_crossings(plane, handles)
-            own = plane.segments()
-            draft.remove_segments(own.handles[np.isin(own.ends, handles).any(axis=1)])
-            draft.remove(handles)
-            # Otherwise another thread has edited meanwhile, and these edits are made in its state.
-            if self._take(draft, known):
-                return
+        return np.empty(0, dtype=np.int64) if also else None
 
     def move(self, handles: ArrayLike, points: ArrayLike) -> None:
         """Move points, all at once, with their segments.

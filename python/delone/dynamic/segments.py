@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-__all__ = ["FEW", "Segmented", "as_handles", "given_segments", "refuse", "refuse_crossings"]
+__all__ = ["FEW", "Segmented", "as_handles", "given_segments", "refuse"]
 
 # Fewer items are edited with the GIL, so that nobody can change them meanwhile.
 FEW = 16
@@ -118,7 +118,7 @@ class Segmented:
         flat = np.ascontiguousarray(own.reshape(-1))
         gone, _ = plane.faults(flat)
         refuse(gone, np.empty(0, dtype=np.int64), "handle")
-        refuse_crossings(plane, flat)
+        _refuse_crossings(plane, flat)
         return self._edited(plane.insert_segments, own, as_workers(self._workers))
 
     def remove_segments(self, segments: ArrayLike) -> None:
@@ -202,11 +202,13 @@ class Segmented:
         made, own = plane.arrays(), plane.segments()
         return validation.validate(made, own, split=split, workers=self._workers)
 
-    def _refuse_held(self, handles: Handles) -> None:
-        """Raise an error if points to be removed are ends of segments, or crossings."""
+    def _refuse_held(self, handles: Handles, *, ends: bool = True) -> None:
+        """Raise an error if some points are crossings, or `ends` of segments that stay."""
         if not self._has_segments:
             return
         held = self._plane().held(handles)
+        if not ends:
+            held = held[held[:, 1] < 0]
         for handle, segment in held[:1].tolist():
             if segment < 0:
                 message = f"handle {handle} is a crossing of segments: it goes with them"
@@ -279,7 +281,7 @@ def _marked(made: _core.LiveArrays2 | _core.LiveArrays3) -> NDArray[np.bool_]:
     return np.zeros(made.simplices.shape, dtype=bool) if marked is None else marked
 
 
-def refuse_crossings(plane: _core.Live2, handles: Handles) -> None:
+def _refuse_crossings(plane: _core.Live2, handles: Handles) -> None:
     """Raise an error if some of these handles are crossings."""
     held = plane.held(handles)
     crossed: Handles = held[held[:, 1] < 0, 0]

@@ -487,6 +487,66 @@ fn marks_and_links_agree_after_edits_of_segments() {
     );
 }
 
+#[test]
+fn points_that_go_with_their_segments_go_at_once_or_stay() {
+    let points = scattered(400, 5);
+    let mut live = Plane::new(&points, 1, &idle()).unwrap();
+    live.split_crossings(true);
+    let ends: Vec<[i64; 2]> = (0..150).map(|i| [i, (7 * i + 31) % 150 + 150]).collect();
+    live.insert_segments(&ends, 1, &idle()).unwrap();
+    let rows: Vec<i64> = (0..300).step_by(3).collect();
+    let is_gone = |s: &[i64; 2]| s.iter().any(|row| rows.contains(row));
+    let expected: Vec<i64> = (0..150).filter(|&i| is_gone(&ends[i as usize])).collect();
+    let all = |live: &Plane| {
+        let crossings = live.crossings().unwrap();
+        let triangles = triangles_of(live);
+        (marked(live), live.segments().unwrap(), crossings, triangles)
+    };
+    let before = all(&live);
+    let start = live.state(&idle()).unwrap();
+    let asked = AtomicUsize::new(0);
+    let mut interrupted = 0;
+    for after in 0..60 {
+        asked.store(0, Ordering::Relaxed);
+        let stop = || asked.fetch_add(1, Ordering::Relaxed) >= after;
+        // A third of all, and so many that all is triangulated again.
+        for rows in [&rows[..40], &rows] {
+            let result = live.remove_with_segments(rows, 1, &Watch::new(&stop));
+            if result.is_ok() {
+                live.check().unwrap();
+                live.restore(&start, &idle()).unwrap();
+            } else {
+                interrupted += 1;
+            }
+            live.check().unwrap();
+            assert_eq!(all(&live), before);
+        }
+    }
+    assert!(interrupted > 9, "{interrupted}");
+    assert!(live.remove_with_segments(&[0, 0], 1, &idle()).is_err());
+    let crossing = i64::from(live.crossing_rows()[0]);
+    assert!(
+        live.remove_with_segments(&[3, crossing], 1, &idle())
+            .is_err()
+    );
+    assert_eq!(all(&live), before);
+    let gone = live.remove_with_segments(&rows, 1, &idle()).unwrap();
+    assert_eq!(gone, expected);
+    live.check().unwrap();
+}
+
+/// The triangles of a triangulation, as ascending rows.
+fn triangles_of(live: &Plane) -> BTreeSet<[i64; 3]> {
+    let made = live.export(&idle()).unwrap();
+    let corner = |v: i32| made.rows[v as usize];
+    let sorted = |t: &[i32; 3]| {
+        let mut t = t.map(corner);
+        t.sort_unstable();
+        t
+    };
+    made.arrays.simplices.iter().map(sorted).collect()
+}
+
 /// The marked edges of a triangulation, by coordinates.
 fn marked(live: &Plane) -> BTreeSet<[[u64; 2]; 2]> {
     let made = live.export(&idle()).unwrap();

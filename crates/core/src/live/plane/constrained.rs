@@ -132,17 +132,11 @@ impl Plane {
             let mut loose = Loose::default();
             for &number in numbers {
                 pace.spend(1)?;
-                plane.room()?;
                 if plane.segments.ends(number).is_none() {
                     let message = format!("segment {number} is not there");
                     return Err(Error::Shape(message));
                 }
-                let segment = number as u32;
-                if outcome == Outcome::Done {
-                    outcome = plane.unlink_segment(segment, &mut loose)?;
-                }
-                loose.segments.remove(&segment);
-                plane.segments.remove(segment);
+                outcome = plane.take_segment(number as u32, outcome, &mut loose)?;
             }
             plane.finish(outcome, loose, None, workers, watch)
         })
@@ -213,21 +207,29 @@ impl Plane {
         Ok(first..first + input.len())
     }
 
-    /// Removes rows, each of which is there and named once, with their vertices.
+    /// Removes rows, each of which is there and named once, with their vertices, and if wanted with the
+    /// segments that end there, whose numbers are returned, ascending.
     pub(super) fn remove_among(
         &mut self,
         pairs: &[(u32, u32)],
+        also_segments: bool,
         whole: bool,
         workers: usize,
         watch: &Watch,
-    ) -> Result<()> {
+    ) -> Result<Vec<i64>> {
+        let mut numbers = Vec::new();
         for &(_, row) in pairs {
             self.require_point(i64::from(row))?;
-            if let Some((segment, _)) = self.segments.at(row).next() {
-                let message = format!("row {row} is an end of segment {segment}");
-                return Err(Error::Shape(message));
+            for (segment, _) in self.segments.at(row) {
+                if !also_segments {
+                    let message = format!("row {row} is an end of segment {segment}");
+                    return Err(Error::Shape(message));
+                }
+                push(&mut numbers, i64::from(segment))?;
             }
         }
+        sort(&mut numbers, watch)?;
+        numbers.dedup();
         self.atomically(|plane| {
             let mut pace = Pace::new(watch, LOT);
             let mut outcome = if whole {
@@ -235,6 +237,12 @@ impl Plane {
             } else {
                 Outcome::Done
             };
+            let mut loose = Loose::default();
+            // The segments first: a vertex goes only if no segment ends there.
+            for &number in &numbers {
+                pace.spend(1)?;
+                outcome = plane.take_segment(number as u32, outcome, &mut loose)?;
+            }
             for &(v, row) in pairs {
                 if outcome == Outcome::Rebuild {
                     break;
@@ -251,16 +259,38 @@ impl Plane {
                     plane.detach(row, v);
                 }
             }
+            // Those that crossed them go back last, when nothing is in the way that has gone.
+            if outcome == Outcome::Done && !loose.segments.is_empty() {
+                outcome = plane.weave(&mut loose, watch)?;
+            }
             if outcome == Outcome::Done {
-                return Ok(());
+                return plane.finish(outcome, loose, None, workers, watch);
             }
             let mut gone = with_room(pairs.len())?;
             gone.extend(pairs.iter().map(|pair| pair.1));
             sort(&mut gone, watch)?;
             let kept = |row: u32, p| gone.binary_search(&row).is_err().then_some(p);
             let after = plane.present(kept)?;
-            plane.finish(outcome, Loose::default(), Some(after), workers, watch)
-        })
+            plane.finish(outcome, loose, Some(after), workers, watch)
+        })?;
+        Ok(numbers)
+    }
+
+    /// Takes a segment that is there out of the mesh, if that still counts, and out of the list.
+    fn take_segment(
+        &mut self,
+        segment: u32,
+        so_far: Outcome,
+        loose: &mut Loose,
+    ) -> Result<Outcome> {
+        self.room()?;
+        let outcome = match so_far {
+            Outcome::Done => self.unlink_segment(segment, loose)?,
+            Outcome::Rebuild => Outcome::Rebuild,
+        };
+        loose.segments.remove(&segment);
+        self.segments.remove(segment);
+        Ok(outcome)
     }
 
     /// Moves rows: `moves` has the vertex, the row and the new point of each.

@@ -269,13 +269,36 @@ impl Plane {
         }
     }
 
-    /// Removes rows. On any error nothing has changed.
+    /// Removes rows, at which no segments end. On any error nothing has changed.
     pub fn remove(&mut self, rows: &[i64], workers: usize, watch: &Watch) -> Result<()> {
         let pairs = self.by_vertex(rows, watch)?;
         if self.has_segments() {
             let whole = !self.is_incremental(pairs.len(), SHARE_REMOVED_AMONG);
-            return self.remove_among(&pairs, whole, workers, watch);
+            self.remove_among(&pairs, false, whole, workers, watch)?;
+            return Ok(());
         }
+        self.remove_alone(&pairs, workers, watch)
+    }
+
+    /// Removes rows and the segments that end there, whose numbers are returned, ascending. On any
+    /// error nothing has changed.
+    pub fn remove_with_segments(
+        &mut self,
+        rows: &[i64],
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<Vec<i64>> {
+        let pairs = self.by_vertex(rows, watch)?;
+        if self.has_segments() {
+            let whole = !self.is_incremental(pairs.len(), SHARE_REMOVED_AMONG);
+            return self.remove_among(&pairs, true, whole, workers, watch);
+        }
+        self.remove_alone(&pairs, workers, watch)?;
+        Ok(Vec::new())
+    }
+
+    /// Removes rows where there are no segments, with their vertices.
+    fn remove_alone(&mut self, pairs: &[(u32, u32)], workers: usize, watch: &Watch) -> Result<()> {
         let mut lost = with_room(pairs.len())?;
         for group in pairs.chunk_by(|a, b| a.0 == b.0) {
             let v = group[0].0;
@@ -290,7 +313,7 @@ impl Plane {
             let mut done = 0;
             let outcome = match self.unlink_all(&lost, &mut done, watch) {
                 Ok(Outcome::Done) => {
-                    for &(v, row) in &pairs {
+                    for &(v, row) in pairs {
                         self.detach(row, v);
                     }
                     for &v in &lost {
@@ -298,7 +321,7 @@ impl Plane {
                     }
                     return Ok(());
                 }
-                Ok(Outcome::Rebuild) => self.rebuild_without(&pairs, workers, watch),
+                Ok(Outcome::Rebuild) => self.rebuild_without(pairs, workers, watch),
                 Err(error) => Err(error),
             };
             if outcome.is_err() {
@@ -308,7 +331,7 @@ impl Plane {
             }
             return outcome;
         }
-        self.rebuild_without(&pairs, workers, watch)
+        self.rebuild_without(pairs, workers, watch)
     }
 
     /// Removes vertices from the mesh, and counts those that are done.
