@@ -278,6 +278,86 @@ def test_a_snapshot_of_elsewhere_never_gives_handles_again() -> None:
         Dynamic(ndim=3).restore(kept)
 
 
+def parts(live: Dynamic) -> dict[str, Any]:
+    """What a pickle consists of."""
+    names = ("points", "handles", "total", "split", "segments", "ends", "segments_total", "added")
+    return dict(zip(names, live.__reduce__()[1][0], strict=True))
+
+
+class Parts:
+    """An object that is pickled as other parts of a class."""
+
+    def __init__(self, build: Any, *parts: Any) -> None:
+        self.reduced = build, parts
+
+    def __reduce__(self) -> Any:
+        return self.reduced
+
+
+CROSSED = Dynamic([(0, 0), (4, 0), (4, 4), (0, 4)], [(0, 2), (1, 3), (0, 1)], crossing="split")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"handles": np.array([0, 1, 2, 3, 9])},
+        {"handles": np.array([0, 1, 3, 2, 4])},
+        {"handles": np.arange(4)},
+        {"handles": np.arange(5, dtype=np.int32)},
+        {"handles": np.arange(-1, 4)},
+        {"handles": [0, 1, 2, 3, 4]},
+        {"total": 2**40},
+        {"total": -1},
+        {"total": 4},
+        {"total": "5"},
+        {"total": None},
+        {"segments_total": 2**40},
+        {"segments_total": 2},
+        {"segments_total": 3.0},
+        {"split": 1},
+        {"split": False},
+        {"segments": np.array([0, 0, 2])},
+        {"segments": np.array([0, 2])},
+        {"ends": np.array([[0, 2], [1, 3], [0, 9]])},
+        {"ends": np.array([[0, 2], [1, 3], [0, -1]])},
+        {"ends": np.array([[0, 2], [1, 4], [0, 1]])},
+        {"ends": np.array([[0, 1], [1, 2], [2, 3]])},
+        {"ends": np.array([0, 2, 1])},
+        {"added": np.array([3])},
+        {"added": np.array([7])},
+        {"added": np.array([4, 4])},
+        {"added": np.array(["4"])},
+        {"points": np.full((5, 2), np.nan)},
+        {"points": np.zeros((5, 4))},
+        {"points": np.zeros(5)},
+        {"points": np.zeros((5, 2), dtype=np.float32)},
+        {"points": np.zeros((5, 3))},
+        {"points": None},
+    ],
+    ids=str,
+)
+def test_pickles_that_contradict_themselves_are_refused(change: dict[str, Any]) -> None:
+    wrong = tuple((parts(CROSSED) | change).values())
+    live = Parts(Dynamic._again, wrong, (None, False))
+    snapshot = Parts(type(CROSSED.snapshot())._again, wrong)
+    for each in (live, snapshot):
+        data = pickle.dumps(each)
+        with pytest.raises(delone.InputError):
+            pickle.loads(data)
+
+
+def test_pickles_without_a_part_are_refused_and_others_read() -> None:
+    saved = tuple(parts(CROSSED).values())
+    for wrong in (saved[:-1], (*saved, 1), list(saved), None):
+        with pytest.raises(delone.InputError, match="a part is missing"):
+            Dynamic._again(wrong, (None, False))
+    # Orders in memory are no faults.
+    change = parts(CROSSED)
+    change["points"] = np.asfortranarray(change["points"])
+    change["handles"] = np.repeat(change["handles"], 2)[::2]
+    assert state(Dynamic._again(tuple(change.values()), (1, False))) == state(CROSSED)
+
+
 def damaged(path: Path, **changes: NDArray[Any]) -> Path:
     """Write a file again, with some arrays replaced."""
     with np.load(path) as file:

@@ -105,7 +105,7 @@ class Snapshot:
     @classmethod
     def _again(cls, saved: tuple[Any, ...]) -> Snapshot:
         """Return the snapshot of a pickle."""
-        return cls(State(*saved).opened(as_workers(None)).state())
+        return cls(State.unpickled(saved).opened(as_workers(None)).state())
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self)._again, (tuple(State.of(self._state.open())),)

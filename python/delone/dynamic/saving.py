@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone.errors import FileFormatError
+from delone.errors import FileFormatError, InputError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -44,6 +44,18 @@ class State(NamedTuple):
         own, (_, split) = core.segments(), core.constraints()
         return cls(points, handles, total, split, own.handles, own.ends, own.total, own.added)
 
+    @classmethod
+    def unpickled(cls, saved: Any) -> State:
+        """Return the state in a pickle, checked as that of a file is."""
+        from delone.archive.checks import ContradictionError, check_live
+
+        try:
+            state = _of_kinds(saved)
+            check_live(**state.arrays())
+        except ContradictionError as error:
+            raise InputError(f"the pickle is not one of a Dynamic, or damaged: {error}") from error
+        return state
+
     def opened(self, workers: int) -> _core.Live2 | _core.Live3:
         """Return a core in this state."""
         # Crossings come back with the segments, at the same places and with the same handles.
@@ -56,6 +68,8 @@ class State(NamedTuple):
             if len(self.segments) or self.segments_total:
                 known, places = (self.segments, self.ends), (self.added, self.points[crossed])
                 core.adopt_segments(known, self.segments_total, places, workers)
+                if not np.array_equal(core.points()[0], self.handles):
+                    raise InputError("its crossings are not those of its segments")
         return core
 
     def arrays(self) -> dict[str, NDArray[Any]]:
@@ -84,6 +98,34 @@ class State(NamedTuple):
             segments_total,
             arrays["added"],
         )
+
+
+def _of_kinds(saved: Any) -> State:
+    """Return the parts of a pickle, each of the kind that `State` says."""
+    from delone.archive.checks import require
+
+    require(isinstance(saved, tuple) and len(saved) == len(State._fields), "a part is missing")
+    state = State(*saved)
+    for name, part, columns in (
+        ("points", state.points, (2, 3)),
+        ("handles", state.handles, None),
+        ("segments", state.segments, None),
+        ("ends", state.ends, (2,)),
+        ("added", state.added, None),
+    ):
+        wanted = np.dtype(np.float64 if name == "points" else np.int64)
+        right = isinstance(part, np.ndarray) and part.dtype == wanted
+        if right and columns is not None:
+            right = part.ndim == 2 and part.shape[1] in columns
+        elif right:
+            right = part.ndim == 1
+        require(right, f"{name} is not an array of {wanted} of the right shape")
+    for name, number in (("total", state.total), ("segments_total", state.segments_total)):
+        require(type(number) is int and 0 <= number < 2**32 - 1, f"{name} is not a count")
+    require(isinstance(state.split, bool), "split is not a flag")
+    # The core reads arrays in C order.
+    parts: list[Any] = [np.ascontiguousarray(x) if isinstance(x, np.ndarray) else x for x in state]
+    return State(*parts)
 
 
 def require_few_handles(path: Any, state: State, most: int | None) -> None:
