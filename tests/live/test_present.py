@@ -12,6 +12,7 @@ import pytest
 
 import delone
 from delone import Dynamic
+from delone.dynamic.saving import State, require_few_handles
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -182,6 +183,31 @@ def test_threads_that_draft_take_turns() -> None:
     places = {(number + 0.5, k + 2.0) for number in range(4) for k in range(25)}
     assert set(map(tuple, live.points[50:].tolist())) == places
     assert live.validate()
+
+
+class Edited:
+    """A core that another thread edits as soon as its state has been taken."""
+
+    def __init__(self, core: Any) -> None:
+        self.core, self.pending = core, [(7.0, 7.0), (8.0, 8.0)]
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.core, name)
+
+    def state(self) -> Any:
+        made = self.core.state()
+        if self.pending:
+            self.core.insert(np.array([self.pending.pop()]), 1)
+        return made
+
+
+def test_a_draft_is_of_the_state_that_it_is_compared_with() -> None:
+    live = Dynamic([(0, 0), (1, 0), (0, 1)])
+    core = live._live
+    live._live = Edited(core)  # type: ignore[assignment]
+    known, draft = live._draft()
+    assert known == core.edits
+    assert len(draft) == 5
 
 
 # Points that go with their segments.
@@ -422,6 +448,16 @@ def test_few_points_cannot_claim_the_memory_of_many(tmp_path: Path) -> None:
         Dynamic.load(path, max_handles=2)
 
 
+def test_many_points_may_have_had_64_handles_each() -> None:
+    saved = State.of(Dynamic()._live)._replace(points=np.zeros((200_000, 2)))
+    require_few_handles("a.npz", saved._replace(total=12_800_000), None)
+    with pytest.raises(delone.FileFormatError, match="max_handles=12800001 takes them"):
+        require_few_handles("a.npz", saved._replace(total=12_800_001), None)
+    # The limit is for handles of segments as well.
+    with pytest.raises(delone.FileFormatError, match="max_handles=12800001 takes them"):
+        require_few_handles("a.npz", saved._replace(segments_total=12_800_001), None)
+
+
 # Values.
 
 
@@ -446,6 +482,25 @@ def test_values_are_those_of_handles() -> None:
         live.rows_of([top + 1, top + 2])
 
 
+class Busy(Dynamic):
+    """A triangulation that another thread edits as soon as its arrays have been made."""
+
+    def _arrays(self) -> Any:
+        made = super()._arrays()
+        self.insert([(0.5, 0.25)])
+        return made
+
+
+def test_arrays_are_those_of_one_look() -> None:
+    live = Busy([(0, 0), (1, 0), (0, 1)])
+    found = live.arrays(np.arange(99.0))
+    assert found.handles.tolist() == [0, 1, 2]
+    assert found.values.tolist() == [0, 1, 2]
+    assert len(found.points) == len(found.handles)
+    assert len(found.simplices) == len(found.neighbors)
+    assert live.rows_of([3]).tolist() == [3]
+
+
 def test_values_of_handles_in_any_order_are_interpolated() -> None:
     live = used(2, 8)
     draw = np.random.default_rng(0)
@@ -468,12 +523,15 @@ def test_values_of_handles_in_any_order_are_interpolated() -> None:
 
 def test_arrays_are_of_one_state_while_others_edit() -> None:
     live = Dynamic(np.random.default_rng(0).random((300, 2)))
-    values = np.arange(10_000.0)
+    values = np.arange(1_000_000.0)
     stop = threading.Event()
 
     def edit() -> None:
         draw = np.random.default_rng(1)
-        while not stop.is_set():
+        # As many edits as there are values for their handles.
+        for _ in range(190_000):
+            if stop.is_set():
+                break
             new = live.insert(draw.random((5, 2)))
             live.remove(new[:4])
             if len(live) > 800:
@@ -483,7 +541,7 @@ def test_arrays_are_of_one_state_while_others_edit() -> None:
     worker.start()
     try:
         for _ in range(100):
-            found = live.arrays(values[:10_000])
+            found = live.arrays(values)
             assert len(found.handles) == len(found.points) == len(found.values)
             assert found.simplices.max() < len(found.points)
             assert np.array_equal(found.values, found.handles)
