@@ -259,10 +259,7 @@ impl Plane {
                     plane.detach(row, v);
                 }
             }
-            // Those that crossed them go back last, when nothing is in the way that has gone.
-            if outcome == Outcome::Done && !loose.segments.is_empty() {
-                outcome = plane.weave(&mut loose, watch)?;
-            }
+            // Segments that crossed these go back last, when all that goes is out of the way.
             if outcome == Outcome::Done {
                 return plane.finish(outcome, loose, None, workers, watch);
             }
