@@ -41,7 +41,7 @@ class Measures(ReadOnly):
         -------
         dict
             For each measure ``min``, ``max``, ``mean`` and the percentiles ``p1``, ``p10``,
-            ``p50``, ``p90`` and ``p99``.
+            ``p50``, ``p90`` and ``p99``. All are NaN if there is no simplex.
 
         Examples
         --------
@@ -56,6 +56,10 @@ class Measures(ReadOnly):
         found = {}
         for each in fields(self):
             values = getattr(self, each.name)
+            if not len(values):
+                keys = ("min", "max", "mean", *(f"p{p}" for p in _PERCENTILES))
+                found[each.name] = dict.fromkeys(keys, np.nan)
+                continue
             at = _percentiles(values).tolist()
             named = {f"p{p}": value for p, value in zip(_PERCENTILES, at, strict=True)}
             ends = {"min": float(values.min()), "max": float(values.max())}

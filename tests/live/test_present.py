@@ -90,6 +90,10 @@ def test_without_simplices_measures_are_empty(points: Any) -> None:
     for name in (*NAMES, "hull", "areas" if live.ndim == 2 else "volumes"):
         assert len(getattr(live, name)) == 0, name
     assert live.hull.dtype == np.int64
+    summary = live.quality().summary()
+    assert np.isnan([list(each.values()) for each in summary.values()]).all()
+    noun = "triangles" if live.ndim == 2 else "tetrahedra"
+    assert str(live.quality()).startswith(f"0 {noun}")
 
 
 def test_pictures_show_the_present_state() -> None:
@@ -519,6 +523,38 @@ def test_values_of_handles_in_any_order_are_interpolated() -> None:
         live.interpolate(np.append(values, 1), xi, handles=np.append(live.handles, live.handles[0]))
     with pytest.raises(delone.ShapeError, match="one per handle"):
         live.interpolate(values[1:], xi, handles=live.handles)
+
+
+WRONG_VALUES: dict[str, tuple[Any, type[Exception], str]] = {
+    "text": (["a", "b", "c"], delone.DtypeError, "numbers, got dtype <U1"),
+    "dates": (np.zeros(3, dtype="M8[D]"), delone.DtypeError, "numbers, got dtype datetime64"),
+    "none": (None, delone.DtypeError, "numbers, got dtype object"),
+    "masked": (np.ma.masked_array([1, 2, 3], [0, 0, 1]), delone.DtypeError, "filled"),
+    "large": ([1, 2**53 + 1, 2], delone.DtypeError, "row 1 has a number"),
+    "small": ([[1, 1], [1, 1], [-(2**53) - 1, 2]], delone.DtypeError, "row 2 has a number"),
+    "uneven": ([[1], [1, 2], [3]], delone.ShapeError, "rows of unequal length"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG_VALUES)
+def test_values_that_are_no_numbers_are_refused(name: str) -> None:
+    live = Dynamic([(0, 0), (4, 0), (0, 4)])
+    values, kind, message = WRONG_VALUES[name]
+    with pytest.raises(kind, match=message):
+        live.interpolate(values, (1, 1))
+    if name in ("masked", "uneven"):
+        with pytest.raises(kind, match=message):
+            live.arrays(values)
+
+
+def test_values_of_other_kinds_are_taken() -> None:
+    live = Dynamic([(0, 0), (4, 0), (0, 4)])
+    assert live.interpolate([1j, 1, 3], (2, 0)) == 0.5 + 0.5j
+    assert live.interpolate(np.array([1, 2, 3], dtype=np.uint8), (2, 2)) == 2.5
+    assert live.interpolate([2**53, -(2**53), 1], (2, 0)) == 0
+    assert live.interpolate(np.ma.masked_array([1.0, 2, 3], mask=False), (2, 2)) == 2.5
+    assert live.interpolate(np.float32([1, np.nan, 3]), (0, 2)) != 2
+    assert live.arrays(["a", "b", "c"]).values.tolist() == ["a", "b", "c"]
 
 
 def test_arrays_are_of_one_state_while_others_edit() -> None:

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from delone._arrays import as_points
+import numpy as np
+
+from delone._arrays import as_plain_array, as_points
+from delone._masks import hides
 from delone.complex import Stored
 from delone.constrained import ConstrainedDelaunay
 from delone.delaunay import Delaunay
 from delone.dynamic.segments import FEW
-from delone.errors import InputError, ShapeError
+from delone.errors import DtypeError, InputError, ShapeError
 from delone.immutable import own_copy
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
 
-__all__ = ["as_ndim", "given_points", "own_points"]
+__all__ = ["as_any_values", "as_ndim", "as_values", "given_points", "own_points"]
+
+_LARGEST_EXACT_INTEGER = 2**53
 
 
 def given_points(points: Any) -> Any:
@@ -45,3 +49,30 @@ def own_points(points: ArrayLike, ndim: int) -> Floats:
     """Return points that nobody changes while the core runs."""
     array = as_points(points, ndim=ndim)
     return array if len(array) <= FEW else own_copy(points, ndim=ndim)
+
+
+def as_any_values(values: ArrayLike) -> NDArray[Any]:
+    """Return values of any dtype as an array, of which none is masked."""
+    if hides(values):
+        raise DtypeError("values is a masked array; fill it: values.filled(numpy.nan)")
+    return as_plain_array(values, "values")
+
+
+def as_values(values: ArrayLike) -> NDArray[Any]:
+    """Return values to be interpolated as doubles, or complex ones, without rounding."""
+    array = as_any_values(values)
+    if array.size and array.dtype.kind not in "iufc":
+        raise DtypeError(f"values must hold numbers, got dtype {array.dtype}")
+    if array.dtype in (np.float64, np.complex128):
+        return array
+    plain = array.astype(np.complex128 if array.dtype.kind == "c" else np.float64)
+    if array.dtype.kind in "iu" and array.size:
+        wrong = (array > _LARGEST_EXACT_INTEGER) | (array < -_LARGEST_EXACT_INTEGER)
+    else:
+        wrong = (array != plain) & ~np.isnan(plain)
+    if wrong.any():
+        row = int(np.argwhere(np.atleast_1d(wrong))[0, 0])
+        raise DtypeError(
+            f"values: row {row} has a number that float64 cannot represent; round it first"
+        )
+    return plain

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone import _core, location
 from delone._arrays import as_vectors
 from delone.delaunay import Delaunay
+from delone.dynamic.given import as_any_values, as_values
 from delone.dynamic.results import DynamicArrays
 from delone.dynamic.segments import Segmented, as_handles, refuse
 from delone.errors import HandleError, ShapeError
@@ -267,7 +268,9 @@ class Present(Segmented):
         Raises
         ------
         ShapeError
-            There are fewer values than the largest handle needs.
+            There are fewer values than the largest handle needs, or rows of unequal length.
+        DtypeError
+            Values are masked.
 
         Examples
         --------
@@ -280,7 +283,8 @@ class Present(Segmented):
         """
         made, own = self._arrays(), None
         if values is not None:
-            given, least = np.asarray(values), int(made.handles[-1]) + 1 if len(made.handles) else 0
+            given = as_any_values(values)
+            least = int(made.handles[-1]) + 1 if len(made.handles) else 0
             if given.ndim == 0 or len(given) < least:
                 raise ShapeError(
                     f"values must have {least} rows or more, one for each handle, got {given.shape}"
@@ -321,13 +325,14 @@ class Present(Segmented):
 
     def interpolate(
         self, values: ArrayLike, xi: ArrayLike, *, handles: ArrayLike | None = None
-    ) -> Floats:
+    ) -> NDArray[Any]:
         """Interpolate values linearly in the present simplices.
 
         Parameters
         ----------
         values : array_like, shape (n, ...)
-            A value for each row of `points`; of duplicates, that of the vertex counts.
+            A real or complex value for each row of `points`; of duplicates, that of the vertex
+            counts.
         xi : array_like, shape (..., d)
             Where to interpolate.
         handles : array_like of int, shape (n,), optional
@@ -336,13 +341,15 @@ class Present(Segmented):
 
         Returns
         -------
-        ndarray of float64, shape (..., ...)
+        ndarray of float64 or complex128, shape (..., ...)
             The values; NaN outside.
 
         Raises
         ------
         ShapeError
             There are not as many values as points, or as handles.
+        DtypeError
+            `values` are not numbers, are masked, or cannot be represented as float64.
         HandleError
             A point is not among `handles`, or one is named twice.
 
@@ -355,7 +362,7 @@ class Present(Segmented):
         >>> live.interpolate(live.points.sum(axis=1), (3, 3))
         array(6.)
         """
-        given = np.asarray(values, dtype=np.float64)
+        given = as_values(values)
         queries = as_vectors(xi, self.ndim, name="xi")
         flat = np.ascontiguousarray(queries.reshape(-1, self.ndim))
         # One call for all that must be of one state, whatever other threads do.
@@ -385,7 +392,7 @@ def _places(own: Handles, wanted: Handles) -> NDArray[np.int64]:
     return place
 
 
-def _of_handles(values: Floats, handles: Handles, own: Handles) -> Floats:
+def _of_handles(values: NDArray[Any], handles: Handles, own: Handles) -> NDArray[Any]:
     """Return the values of handles in the order of the present rows."""
     if values.ndim == 0 or len(values) != len(handles):
         raise ShapeError(
@@ -401,7 +408,7 @@ def _of_handles(values: Floats, handles: Handles, own: Handles) -> Floats:
             f"handle {missing[0]} is a point without a value: it is not among `handles`",
             handles=missing,
         )
-    found: Floats = values[order[_places(ascending, own)]]
+    found: NDArray[Any] = values[order[_places(ascending, own)]]
     return found
 
 
