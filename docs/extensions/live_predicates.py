@@ -62,7 +62,7 @@ def around() -> Points:
 
 
 def lattice() -> Points:
-    """Return the points of a square grid that is turned, rounded."""
+    """Return the points of a square grid that is rotated, rounded."""
     c, s = unit(TURN)
     found = []
     for row in ORDER:
@@ -85,7 +85,7 @@ def ring() -> dict[str, Any]:
 
 
 def turned() -> dict[str, Any]:
-    """Return the figure of a turned grid."""
+    """Return the figure of a rotated grid."""
     return prefixes(lattice())
 
 

@@ -65,7 +65,7 @@ print(
 assert abs(weights @ measured - truth) < abs(measured.mean() - truth)
 
 # %%
-# A usual mistake is to keep the weights when a gauge fails: the weights of the others no longer add up to 1. Either
+# A common mistake is to keep the weights when a gauge fails: the weights of the others no longer add up to 1. Either
 # divide by what is left, or compute the cells of the gauges that work, which gives the area to the neighbors.
 
 failed = measured.copy()

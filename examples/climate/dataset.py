@@ -44,7 +44,7 @@ print(f"on the worst day the gaps cover {float(holes.max()):.0%} of the map")
 
 # %%
 # To fill the gaps, triangulate the stations of that day: ``nan="drop"``. Because the triangles then differ from day to
-# day, the accessor does not do this. A usual mistake is to ask it:
+# day, the accessor does not do this. A common mistake is to ask it to:
 
 day = int(holes.values.argmax())
 try:

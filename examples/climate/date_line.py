@@ -48,7 +48,7 @@ print(
 assert np.isnan(planar).sum() > np.isnan(joined).sum()
 
 # %%
-# A usual mistake is a mixture of longitudes from -180 to 180 and from 0 to 360: the same stations lie twice on the plane,
+# A common mistake is a mixture of longitudes from -180 to 180 and from 0 to 360: the same stations lie twice on the plane,
 # or queries are outside. A period makes both the same place.
 
 assert np.allclose(around([(190.0, 5.0)]), around([(-170.0, 5.0)]), rtol=0, atol=1e-9)

@@ -57,7 +57,7 @@ assert mesh.validate()
 alone = delone.Delaunay(points)
 edges = {tuple(edge) for edge in np.sort(alone.edges, axis=1).tolist()}
 lost = sum(tuple(edge) not in edges for edge in np.sort(segments, axis=1).tolist())
-print(f"{lost} of {len(segments)} segments are no edges of the unconstrained triangulation")
+print(f"{lost} of {len(segments)} segments are not edges of the unconstrained triangulation")
 
 grid = np.stack(np.meshgrid(np.arange(5, 296, 0.5), np.arange(5, 146, 0.5)), axis=-1)
 truth = height(grid.reshape(-1, 2)).reshape(grid.shape[:2])
@@ -67,8 +67,8 @@ for name, surface in surfaces.items():
     print(f"{name}: rms {np.sqrt(np.nanmean(error**2)):.3f} m, worst {np.nanmax(abs(error)):.2f} m")
 
 # %%
-# A usual mistake: a vertex at a crossing of breaklines, which ``crossing="split"`` adds, has no height yet. Values
-# need one for each row of ``mesh.points``.
+# A common mistake is to forget the vertices that ``crossing="split"`` adds where breaklines cross. They have no height
+# yet, and ``values`` needs one for each row of ``mesh.points``.
 
 track = np.array([(152.0, 20.0), (157.0, 140.0)])
 ends = [(len(points), len(points) + 1)]

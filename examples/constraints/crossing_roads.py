@@ -64,7 +64,7 @@ while path[-1] != inside[row]:
 print(f"{distance[row, goal]:,.0f} m by road over {len(path) - 2} crossings and ends")
 
 # %%
-# A usual mistake is a road that ends a little before the one that it should join. A millimeter is enough: there is no
+# A common mistake is a road that ends a little before the one that it should join. A millimeter is enough: there is no
 # crossing, and no path. The distances of ends of roads to the other roads find such places. Bridges are the contrary:
 # their lines cross, but there is no junction; triangulate them apart.
 

@@ -31,7 +31,7 @@ left_out = cross_validate(kilometers, temperature, "sibson")
 print(left_out)
 
 # %%
-# A usual mistake is to flag everything beyond three standard deviations in one pass. A blunder inflates the standard
+# A common mistake is to flag everything beyond three standard deviations in one pass. A blunder inflates the standard
 # deviation, and spoils the predictions of its neighbors. So use the median absolute deviation, remove the worst
 # station, and repeat.
 

@@ -40,7 +40,7 @@ for name in names:
     print(f"{name:14} rmse {np.sqrt((error**2).mean()):.4f}   largest {np.abs(error).max():.3f}")
 
 # %%
-# A usual mistake is to compare at the sites. All methods return the values there, bit for bit, so the errors are zero
+# A common mistake is to compare at the sites. All methods return the values there, bit for bit, so the errors are zero
 # for each of them. Compare elsewhere, or leave sites out: :func:`delone.interpolate.cross_validate`.
 
 for name in names:

@@ -34,7 +34,7 @@ masked = inside(nodes, max_distance=25)
 assert np.nanmax(inside.distance(nodes)[np.isfinite(masked)]) <= 25
 
 # %%
-# ``extrapolate=`` is for points outside. A usual mistake is to take a trend for data: linear extrapolation leaves the
+# ``extrapolate=`` is for points outside. A common mistake is to take a trend for data: linear extrapolation leaves the
 # range of the values. With ``extrapolate="raise"`` a program stops instead.
 
 nearest = Linear(sites, salinity, extrapolate="nearest")(nodes)

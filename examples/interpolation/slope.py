@@ -45,7 +45,7 @@ for name, values in (("linear", facets), ("farin", surface)):
     )
 
 # %%
-# A usual mistake is a slope in meters per degree: with positions in degrees and depths in meters, everything is as
+# A common mistake is a slope in meters per degree: with positions in degrees and depths in meters, everything is as
 # steep as a wall.
 
 wrong = Linear(degrees, depth, duplicates="mean").gradient(nodes / per_degree + (249.75, 22.75))

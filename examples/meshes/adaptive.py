@@ -86,7 +86,7 @@ for name, rounds in (("adaptive", adaptive), ("even", even)):
     )
 
 # %%
-# A usual mistake is to pass the triangles that were marked on another mesh. Their numbers mean something else after
+# A common mistake is to pass the triangles that were marked on another mesh. Their numbers mean something else after
 # each refinement, and the number of values no longer fits; compute indicators again.
 
 try:

@@ -77,7 +77,7 @@ print(f"{flow[hot].sum():.1f} W leave the pipe, {-flow[cold].sum():.1f} W arrive
 assert np.isclose(flow[hot].sum(), -flow[cold].sum())
 
 # %%
-# A usual mistake is a seed that misses its region, here because the seed of the hole is not in the pipe. The mesh then
+# A common mistake is a seed that misses its region, here because the seed of the hole is not in the pipe. The mesh then
 # fills the pipe, and nothing fails: compare the area with what you expect.
 
 wrong = delone.mesh((points, segments), holes=[(0.8, 3)], regions=[(0.1, 1, 1)], size=0.15)

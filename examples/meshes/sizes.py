@@ -57,7 +57,7 @@ for _ in range(5):
 print(f"coarser: {uniform.nsimplex:,} to {coarse.nsimplex:,} triangles")
 
 # %%
-# A usual mistake is a size in the wrong unit, for example millimeters for a plate in meters. It is refused before any
+# A common mistake is a size in the wrong unit, for example millimeters for a plate in meters. It is refused before any
 # work is done.
 
 try:

@@ -2,7 +2,7 @@
 Separate buildings in a lidar cloud
 ===================================
 
-Points that can be reached from each other in small steps belong together. The minimum spanning tree knows all steps:
+Points that can be reached from each other in small steps belong together. The minimum spanning tree has all steps:
 without its long edges, each part is a building.
 
 Install: ``pip install "delone[plot]"``.

@@ -28,7 +28,7 @@ print(
 assert len(sizes) == 5
 
 # %%
-# A usual mistake is a distance that fits some of the data only. DBSCAN needs one; half a meter is more than most points
+# A common mistake is a distance that fits some of the data only. DBSCAN needs one; half a meter is more than most points
 # are apart, but scans leave gaps in roofs and walls, and buildings fall apart.
 
 short = DBSCAN(eps=0.5, min_samples=10).fit(xyz)

@@ -39,7 +39,7 @@ right.set(xlim=(low[0], low[0] + 6), ylim=(low[1], low[1] + 6))
 plt.show()
 
 # %%
-# A usual mistake is to pass all triangles to ``triplot``: it draws 600,000 edges, takes seconds, and shows a black
+# A common mistake is to pass all triangles to ``triplot``: it draws 600,000 edges, takes seconds, and shows a black
 # square. Another one is ``z`` of the wrong length; the error says how many values are needed:
 
 try:

@@ -65,6 +65,6 @@ right.set(xlim=(0, width - 1), ylim=(height - 1, 0))
 plt.show()
 
 # %%
-# A usual mistake is to draw faces without edges: white lines remain between them, because the renderer smooths each
+# A common mistake is to draw faces without edges: white lines remain between them, because the renderer smooths each
 # border on its own. Edges in the color of the face, 0.4 wide, close the gaps. Another one is the direction of y: rows
 # of an image count from the top, hence the reversed limits.

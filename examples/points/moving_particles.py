@@ -4,7 +4,7 @@ Moving particles: update fields from what changes
 
 Nine hundred particles relax under their neighbors' repulsion while a flow stirs them, for a thousand steps. Their
 triangulation follows in place (:class:`~delone.Dynamic`), and the number of neighbors of each particle is updated
-from the triangles that went and came, without looking at the others.
+from the triangles that were removed and added, without looking at the others.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -57,7 +57,7 @@ for _ in range(1000):
 print(f"{np.mean(replaced):.0f} of {live.nsimplex} triangles change in a step")
 
 # %%
-# The field that followed the changes is that of a count from nothing. A usual mistake is to expect *all* triangles
+# The field that followed the changes is that of a count from nothing. A common mistake is to expect *all* triangles
 # whose corners moved in ``changes``: it lists those that join other particles than before. What depends on
 # coordinates, such as areas, changes everywhere that particles move.
 

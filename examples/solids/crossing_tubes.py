@@ -2,7 +2,7 @@
 Faces that cross
 ================
 
-Two closed tubes that intersect are no boundary of a solid: :func:`delone.check_surface` finds every pair of faces that
+Two closed tubes that intersect do not bound a solid: :func:`delone.check_surface` finds every pair of faces that
 cross, exactly.
 
 Install: ``pip install "delone[plot]"``.

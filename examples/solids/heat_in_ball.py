@@ -31,7 +31,7 @@ lattice += np.random.default_rng(0).uniform(-0.2 * SIZE, 0.2 * SIZE, lattice.sha
 inside = lattice[np.linalg.norm(lattice, axis=1) < 1 - 0.6 * SIZE]
 
 # %%
-# A Delaunay triangulation of points has slivers, which are almost flat: a usual mistake is to solve on it as it is.
+# A Delaunay triangulation of points has slivers, which are almost flat: a common mistake is to solve on it as it is.
 # :func:`delone.improve` changes tetrahedra and moves interior points until no dihedral angle is below the goal.
 
 plain = delone.Delaunay(np.concatenate((sphere, inside)))

@@ -60,8 +60,8 @@ for name, label in {"block": BLOCK, "plug": PLUG}.items():
 
 # %%
 # Both surfaces in one: equal points are one vertex, and the common wall is one wall between two regions, which seeds
-# label. Without further points, a usual mistake, nearly all vertices are on the surface, and the solution has no values
-# inside. So a lattice is added. :func:`delone.improve` removes slivers.
+# label. A common mistake is to add no points: then nearly all vertices are on the surface, and the solution has no
+# values inside. So a lattice is added. :func:`delone.improve` removes slivers.
 
 files = [delone.io.read_mesh(folder / f"{name}.stl") for name in ("block", "plug")]
 first, second = (np.column_stack((file.points, file.z)) for file in files)
@@ -80,7 +80,7 @@ assert bare.nadded < 20
 assert mesh.validate()
 
 # %%
-# Heat is produced in the plug, and the sides of the block are kept at zero. Rows of points that are no vertices, such as
+# Heat is produced in the plug, and the sides of the block are kept at zero. Rows of points that are not vertices, such as
 # the duplicates, are left out of the system.
 
 basis = skfem.Basis(mesh.to_skfem(), skfem.ElementTetP1())

@@ -43,8 +43,8 @@ volume = before.volume(after)
 print(f"balanced at {middle:.3f} m: cut {volume.cut:.1f}, fill {volume.fill:.1f} cubic meters")
 
 # %%
-# A pad that is too close to the end of the survey cannot be built: the error has the place. The usual mistake is to
-# build a design on a clip that is as large as the pad.
+# A pad that is too close to the end of the survey cannot be built: the error says where. A common mistake is to build
+# a design on a clip that is as large as the pad.
 
 try:
     before.embank(pad + np.array([12, 0]), 8.0, slope=1 / 3)

@@ -24,7 +24,7 @@ print(profile)
 
 # %%
 # The profile has a point at each edge that the line crosses: it is the surface itself, not a sample of it. Where the
-# line leaves the surface, over the canal, there is a gap. A usual mistake is to triangulate without ``max_edge`` or a
+# line leaves the surface, over the canal, there is a gap. A common mistake is to triangulate without ``max_edge`` or a
 # boundary: then the surface spans the canal, and the profile has a bridge that does not exist.
 
 spanned = TIN.from_points(points).profile(line)

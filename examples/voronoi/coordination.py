@@ -63,7 +63,7 @@ ax.set(ylim=(-1, box[1] + 1), xticks=[], yticks=[])
 plt.show()
 
 # %%
-# A usual mistake is a triangulation without periods. Particles at the border then seem to be defects, and long, thin
+# A common mistake is a triangulation without periods. Particles at the border then seem to be defects, and long, thin
 # triangles along the hull connect particles that are far apart.
 
 open_mesh = Delaunay(particles)

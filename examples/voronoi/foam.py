@@ -69,7 +69,7 @@ for ax, diagram, title in zip(axes, (plain, power), ("Voronoi", "Power diagram")
 plt.show()
 
 # %%
-# A usual mistake is to pass radii instead of squared radii. Weights have the square of the unit of the points; where
+# A common mistake is to pass radii instead of squared radii. Weights have the square of the unit of the points; where
 # they are too large, small disks lose their cells: they are *hidden*.
 
 mistaken = Voronoi(centers, weights=radii, clip=box)

@@ -62,6 +62,6 @@ ax.set(title=f"Stippling: {len(dots):,} dots", aspect="equal", xticks=[], yticks
 plt.show()
 
 # %%
-# The number of dots per area follows the square root of the density, hence the square. A usual mistake is to begin with
+# The number of dots per area follows the square root of the density, hence the square. A common mistake is to begin with
 # sites that are spread evenly: each step moves a site by less than its cell, and after twenty steps dark places are still
 # too bright. So draw the first sites from the density.

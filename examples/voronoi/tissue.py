@@ -55,7 +55,7 @@ right.set(title="Lewis' law", xlabel="number of neighbors", ylabel="area in ÂµmÂ
 plt.show()
 
 # %%
-# A usual mistake is to forget the outline. Cells at the border then reach far out of the tissue or have no end, and
+# A common mistake is to forget the outline. Cells at the border then reach far out of the tissue or have no end, and
 # their areas, infinite or not, spoil every mean.
 
 whole_plane = Voronoi(nuclei).cell_areas

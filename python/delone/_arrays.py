@@ -103,7 +103,7 @@ def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np
 
 
 def require_finite(points: NDArray[np.float64], *, name: str = "points") -> None:
-    """Reject points, (n, d), with a NaN or infinite coordinate; the error has the first ten."""
+    """Reject points, (n, d), with a NaN or infinite coordinate; the error lists the first ten."""
     finite = np.isfinite(points)
     if finite.all():
         return
@@ -276,7 +276,7 @@ def as_plain_array(points: Any, name: str) -> NDArray[Any]:
 
 
 def _refuse_columns(points: Any, array: NDArray[Any], name: str) -> None:
-    """Reject a table of three columns that are named x and y, and a third that is no coordinate."""
+    """Reject a table with columns x and y, and a third column that is not a coordinate."""
     listed: Any = getattr(points, "columns", None)
     if array.ndim != 2 or array.shape[1] != 3 or not hasattr(listed, "__iter__"):
         return

@@ -66,7 +66,7 @@ F = TypeVar("F", bound="Callable[..., Any]")
 
 
 def only(ndim: int, instead: str) -> Callable[[F], F]:
-    """Give a method, or the getter of a property, to objects of one dimension.
+    """Give a method, or the getter of a property, to instances of one dimension.
 
     In others the attribute does not exist, also for ``hasattr``; the error says what to use
     `instead`.
@@ -80,7 +80,7 @@ def only(ndim: int, instead: str) -> Callable[[F], F]:
 
 
 class _Only:
-    """A method that objects of other dimensions do not have."""
+    """A method that instances of other dimensions do not have."""
 
     def __init__(self, method: Callable[..., Any], ndim: int, instead: str) -> None:
         functools.update_wrapper(self, method)

@@ -65,7 +65,7 @@ class ValidationReport(ReadOnly):
     Parameters
     ----------
     orientation : ndarray of int, shape (k,)
-        Triangles that are not counter-clockwise: flat or turned over.
+        Triangles that are not counter-clockwise: flat or clockwise.
     edges : ndarray of int, shape (k, 2)
         Directed edges that more than one triangle uses.
     neighbors : ndarray of int, shape (k,)

@@ -120,6 +120,15 @@ PHRASES = (
     "comes to nothing",
     "come to nothing",
     "the culprits",
+    "usual mistake",
+    "usual mistakes",
+    "tables of geopandas",
+    "the error has",
+    "went and came",
+    "has another length",
+    "for good",
+    "what there is",
+    "each so many",
 )
 BRITISH = (
     r"neighbour\w*",

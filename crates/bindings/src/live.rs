@@ -424,7 +424,7 @@ impl Live2 {
         Ok(column(py, found))
     }
 
-    /// The triangles that went and came since the last call, as handles.
+    /// The triangles that were removed and added since the last call, as handles.
     fn changes(&self, py: Python<'_>) -> PyResult<(Table<i64>, Table<i64>)> {
         let found = self.with(py, usize::MAX, |plane, watch| plane.changes(watch))?;
         Ok((table(py, found.gone)?, table(py, found.new)?))

@@ -222,7 +222,7 @@ impl Live3 {
         Ok(column(py, found))
     }
 
-    /// The tetrahedra that went and came since the last call, as handles.
+    /// The tetrahedra that were removed and added since the last call, as handles.
     fn changes(&self, py: Python<'_>) -> PyResult<(Table<i64>, Table<i64>)> {
         let found = self.with(py, usize::MAX, |space, watch| space.changes(watch))?;
         Ok((table(py, found.gone)?, table(py, found.new)?))

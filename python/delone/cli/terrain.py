@@ -69,7 +69,7 @@ def contours(
         str | None, typer.Option(help="The levels instead of an interval: 10,12.5,15.")
     ] = None,
     base: Annotated[float, typer.Option(help="A level from which the interval counts.")] = 0.0,
-    index: Annotated[int, typer.Option(help="Mark each so many levels as index contours.")] = 5,
+    index: Annotated[int, typer.Option(help="Mark every n-th level as an index contour.")] = 5,
     smooth: Annotated[int, typer.Option(help="Rounds of corner cutting, 0 to 5.")] = 0,
     min_length: Annotated[
         float, typer.Option(help="Leave out lines shorter than this, in units of the points.")

@@ -358,7 +358,7 @@ def _place(point: ArrayLike) -> Floats:
 
 
 def _refuse_quality(quality: bool, order: int, bgmesh: Any, others: dict[str, Any]) -> None:
-    """Refuse arguments that ask for what there is not."""
+    """Refuse arguments that ask for what is not supported."""
     if as_flag(quality, name="quality"):
         raise InputError(_QUALITY)
     if order != 1:

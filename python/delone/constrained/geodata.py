@@ -59,7 +59,7 @@ class Parts(NamedTuple):
 def parts_of(geometries: Any, *, name: str = "geometries") -> Parts:
     """Split geometries, in order, into parts; each row of a table or feature is a geometry.
 
-    They are geometries of shapely, tables and series of geopandas, objects with
+    They are shapely geometries, GeoDataFrames, GeoSeries, objects with
     ``__geo_interface__``, mappings of that form, None, or iterables of these.
     """
     found: list[Parts] = []

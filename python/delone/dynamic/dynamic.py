@@ -112,8 +112,8 @@ class Dynamic(Measured):
     points again where that is cheaper. A point that moves within its star stays in place: in 2-D
     flips (C. L. Lawson, 1977) restore the triangulation, in 3-D only if none is needed. Batches
     are sorted along a space-filling curve, and large ones triangulate all points again. Arrays
-    such as `simplices` are made on first use after an edit, in linear time. A handle takes 12
-    bytes for good.
+    such as `simplices` are made on first use after an edit, in linear time. Each handle takes
+    12 bytes, also after its point is removed.
 
     Examples
     --------
@@ -567,7 +567,7 @@ class Dynamic(Measured):
         self._edited(_restore, self._live, snapshot._state, None)
 
     def changes(self) -> Changes:
-        """Return the simplices that went and came since the last call.
+        """Return the simplices that were removed and added since the last call.
 
         Returns
         -------

@@ -17,7 +17,7 @@ __all__ = ["Changes", "DynamicArrays", "Snapshot"]
 
 
 class Changes(NamedTuple):
-    """The simplices that went and came.
+    """The simplices that were removed and added.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Tables of geopandas: triangles, edges and Voronoi cells as geometries of shapely."""
+"""GeoDataFrames: triangles, edges and Voronoi cells as shapely geometries."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ _COLLECTION = 7
 
 
 class HasSegments(Protocol):
-    """A triangulation that knows the segments it was made of."""
+    """A triangulation that stores the segments it was made of."""
 
     @property
     def points(self) -> Floats:

@@ -63,7 +63,7 @@ class PointSet:
     Notes
     -----
     A PointSet can be passed wherever points are expected; NumPy converts it to `points`. delone
-    then knows whether the coordinates are longitudes and latitudes: see `delone.GeographicWarning`.
+    can then tell whether they are longitudes and latitudes: see `delone.GeographicWarning`.
 
     Examples
     --------

@@ -45,7 +45,7 @@ class Shapes(NamedTuple):
 def shapes(points: Floats, simplices: Indices) -> Shapes:
     """Return which triangles are thin.
 
-    Triangles whose area is no double beside the largest coordinates are not thin.
+    Triangles whose area no double can represent beside the largest coordinates are not thin.
     """
     corners = points[simplices]
     # Units of the largest coordinate, without rounding: nothing overflows.

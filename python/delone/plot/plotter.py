@@ -37,7 +37,7 @@ def new_plotter(ax: Any, *, off_screen: bool | None) -> Any:
 
 
 def as_pyvista_cmap(cmap: Any) -> Any:
-    """Return a colormap that PyVista knows; its name is that in matplotlib or another library."""
+    """Return a colormap for PyVista; names are those of matplotlib or another library."""
     pyvista = require("pyvista", extra="pyvista", what="drawing in 3-D")
     if cmap is None or isinstance(cmap, pyvista.LookupTable):
         return cmap

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Sides", "cells", "directions", "is_odd", "sides"]
 
-# Whether the face opposite each corner of a positive tetrahedron, ascending, is turned outward.
+# Whether the face opposite each corner of a positive tetrahedron, ascending, faces outward.
 _OUTWARD = np.array([1, -1, 1, -1], dtype=np.int8)
 
 
@@ -73,7 +73,7 @@ def directions(simplices: Indices, faces: Indices, face: Indices) -> NDArray[np.
     tetrahedron, corner = np.nonzero(face >= 0)
     outward = simplices[tetrahedron[:, None], np.array(FACES)[corner]]
     given = faces[face[tetrahedron, corner]]
-    # Turned so that both begin with the same vertex.
+    # Rotated so that both begin with the same vertex.
     first = np.argmax(given == outward[:, :1], axis=1)
     same = given[np.arange(len(given)), (first + 1) % 3] == outward[:, 1]
     out = np.ones(simplices.shape, dtype=np.int8)

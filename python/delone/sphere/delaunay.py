@@ -537,7 +537,7 @@ class Delaunay(Stored):
         MissingExtraError
             matplotlib is not installed.
         InputError
-            `view` is no place, or `values` has another shape.
+            `view` is not a longitude and a latitude, or `values` has the wrong shape.
 
         Examples
         --------

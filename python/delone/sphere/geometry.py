@@ -39,7 +39,7 @@ def from_geometry(
     Parameters
     ----------
     geometries : geometry or iterable of geometries
-        As for `delone.from_geometry`: geometries of shapely, tables of geopandas, mappings in the
+        As for `delone.from_geometry`: shapely geometries, GeoDataFrames, mappings in the
         form of GeoJSON, or iterables of these. Each row of a table and each feature of a collection
         is a geometry. Longitudes come first. Other reference systems than geographic ones are
         transformed (extra ``geo``); without one, coordinates are taken as longitudes and latitudes.

@@ -64,7 +64,7 @@ def check_surface(
     with its kind:
 
     - ``"crossing"``: the interiors cross.
-    - ``"edge on edge"``: edges cross at a point that is no vertex.
+    - ``"edge on edge"``: edges cross at a point that is not a vertex.
     - ``"vertex in face"``: a vertex of one is in the interior of the other.
     - ``"vertex on edge"``: a vertex of one is inside an edge of the other, as at T-junctions.
     - ``"coplanar overlap"``: they overlap in one plane.

@@ -15,7 +15,7 @@ __all__ = ["Earthworks"]
 
 
 class Earthworks(HullTiling):
-    """What a surface with heights can be turned into."""
+    """The ways to reshape a surface with heights."""
 
     __slots__ = ()
 

@@ -41,7 +41,7 @@ class Ring(NamedTuple):
 def lines_of(given: Any, *, name: str, crs: str | None) -> list[Floats]:
     """Return lines as arrays (k, 3); heights are NaN where there are none, also in the input.
 
-    Taken are geometries of shapely, tables of them, a `GeometrySet`, arrays (k, 2) or (k, 3), and
+    Accepted are shapely geometries, GeoDataFrames, a `GeometrySet`, arrays (k, 2) or (k, 3), and
     sequences of these. Polygons become their rings, closed. Lines that declare another reference
     system than `crs` are transformed.
     """

@@ -98,7 +98,7 @@ def _slopes(slope: Any, cut: Any, fill: Any) -> tuple[float, float]:
 
 
 def _pad(tin: Surface, polygon: Any, z: Any) -> Pad:
-    """Return the pad, with coordinates whose products are no overflow."""
+    """Return the pad, with coordinates whose products do not overflow."""
     pad = pad_of(polygon, z, tin.crs)
     extents = [*np.ptp(tin.points, axis=0), *np.ptp(pad.points, axis=0)]
     given = (tin.points, tin.z, pad.points, pad.plane)

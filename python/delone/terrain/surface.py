@@ -119,7 +119,7 @@ class Surface(Protocol):
         """The arrays that the core takes."""
 
     def _left_out(self) -> Indices:
-        """Triangles of the hull that are no part of the surface."""
+        """Triangles of the hull that are not part of the surface."""
 
     def heights(self, xy: ArrayLike, *, tolerance: float = 0.0) -> Floats:
         """Heights at positions."""

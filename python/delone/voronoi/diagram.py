@@ -588,7 +588,7 @@ class Voronoi(Stored):
 
     @only(2, "`cell` has the faces of 3-D cells, `to_pyvista` the polyhedra")
     def polygons(self) -> NDArray[Any]:
-        """Return the clipped cells as geometries of shapely (extra ``geo``); 2-D only.
+        """Return the clipped cells as shapely geometries (extra ``geo``); 2-D only.
 
         Returns
         -------

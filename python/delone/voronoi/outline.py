@@ -1,4 +1,4 @@
-"""2-D clips: boxes and outlines, which are geometries of shapely, from what callers pass.
+"""2-D clips: boxes and outlines, converted to shapely geometries from what callers pass.
 
 GEOS computes squares and products of coordinates, which must neither overflow nor underflow: very
 large or small coordinates are multiplied by a power of two before they are passed to it.

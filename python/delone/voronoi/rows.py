@@ -67,8 +67,8 @@ def one_gap(starts: Indices, entries: Indices) -> tuple[Indices, Indices]:
 def from_the_gap(starts: Indices, entries: Indices) -> tuple[Indices, Indices]:
     """Return ridges with their vertices in order, an unbounded one beginning with a single -1.
 
-    `entries` are negative for rays and for vertices beyond the range of doubles. Each row is turned
-    to begin with its first negative entry, which becomes -1; other negative ones are left out.
+    `entries` are negative for rays and for vertices beyond the range of doubles. Each row is
+    rotated to begin with its first negative entry, which becomes -1; the others are left out.
     """
     negative = np.flatnonzero(entries < 0)
     if not len(negative):

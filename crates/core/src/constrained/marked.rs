@@ -114,7 +114,7 @@ impl<S: Sites> Marked<S> {
     }
 
     /// Legalizes: flips edges, starting from those on the stack, until all are legal. Terminates
-    /// because each flip lowers the lifted surface for good (see `delaunay2::lawson`; marked edges
+    /// because each flip lowers the lifted surface (see `delaunay2::lawson`; marked edges
     /// do not change that).
     pub fn legalize(&mut self) -> Result<()> {
         self.legalize_with(|_, _| {})

@@ -279,8 +279,8 @@ class Run:
     def _ask(self, begun: Summaries) -> tuple[int, int]:
         """Run rounds of queries until no tile has any; return the numbers of rounds and points.
 
-        Each query is settled for good: either its triangle is certain from then on, or another
-        point is known. Therefore there are no more rounds than points.
+        Each query is answered once and for all: either its triangle is certain from then on, or
+        another point is known. Therefore there are no more rounds than points.
         """
         asked = {key: s["asked"] for key, s in sorted(begun.items()) if s["asked"]}
         self._say(foreign=sum(s["foreign"] for s in begun.values()))

@@ -25,7 +25,7 @@ pub struct State {
     counts: Counts,
 }
 
-/// Triangles, as rows, that went and came. Each begins with its smallest row; lists are ascending.
+/// Triangles, as rows, that were removed and added. Each begins with its smallest row; lists are ascending.
 #[derive(Debug, Default)]
 pub struct Changes {
     /// Triangles that are not there anymore.
@@ -98,7 +98,7 @@ impl Plane {
         Ok(())
     }
 
-    /// The triangles that went and came since the last call; in the first call all are new.
+    /// The triangles that were removed and added since the last call; in the first call all are new.
     pub fn changes(&mut self, watch: &Watch) -> Result<Changes> {
         let state = self.state(watch)?;
         let found = match &self.seen {

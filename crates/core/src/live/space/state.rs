@@ -23,7 +23,7 @@ pub struct State {
     counts: Counts,
 }
 
-/// Tetrahedra, as rows, that went and came. Each begins with its two smallest rows; lists are ascending.
+/// Tetrahedra, as rows, that were removed and added. Each begins with its two smallest rows; lists are ascending.
 #[derive(Debug, Default)]
 pub struct Changes {
     /// Tetrahedra that are not there anymore.
@@ -91,7 +91,7 @@ impl Space {
         Ok(())
     }
 
-    /// The tetrahedra that went and came since the last call; in the first call all are new.
+    /// The tetrahedra that were removed and added since the last call; in the first call all are new.
     pub fn changes(&mut self, watch: &Watch) -> Result<Changes> {
         let state = self.state(watch)?;
         let found = match &self.seen {
