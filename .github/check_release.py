@@ -52,6 +52,9 @@ def faults(tag: str | None) -> list[str]:
     changelog = read("CHANGELOG.md")
     if not notes(changelog, version):
         found.append(f"CHANGELOG.md has no text under '## [{version}] - YYYY-MM-DD'")
+    released = re.search(r"^date-released: *(\S+)$", read("CITATION.cff"), re.MULTILINE)
+    if released is None or f"## [{version}] - {released[1]}\n" not in changelog:
+        found.append("date-released of CITATION.cff is not the date of the version in CHANGELOG.md")
     left = re.search(r"^## \[Unreleased\]\n(.*?)(?=^## |\Z)", changelog, re.MULTILINE | re.DOTALL)
     if left and left[1].strip():
         found.append("CHANGELOG.md has text under '## [Unreleased]'")

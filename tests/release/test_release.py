@@ -17,12 +17,17 @@ VERSION = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package
 RELEASED = f"# Changelog\n\n## [Unreleased]\n\n## [{VERSION}] - 2026-01-02\n\n### Added\n\n- All.\n"
 
 
-def check(folder: Path, changelog: str, tag: str) -> subprocess.CompletedProcess[str]:
+def check(
+    folder: Path, changelog: str, tag: str, date: str = "2026-01-02"
+) -> subprocess.CompletedProcess[str]:
     """The check that the release makes, in a copy with another changelog."""
     for name in FILES:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         if not (folder / name).exists():
             shutil.copy(ROOT / name, folder / name)
+    cite = folder / "CITATION.cff"
+    text = re.sub(r"date-released:.*\n", "", cite.read_text(encoding="utf-8"))
+    cite.write_text(f"{text.rstrip()}\ndate-released: {date}\n", encoding="utf-8")
     (folder / "CHANGELOG.md").write_text(changelog, encoding="utf-8")
     command = [sys.executable, folder / ".github/check_release.py", tag]
     return subprocess.run(command, capture_output=True, text=True, check=False)
@@ -50,6 +55,11 @@ def test_what_is_not_described_is_not_released(
 ) -> None:
     done = check(tmp_path, changelog, tag)
     assert done.returncode == 1 and said in done.stderr
+
+
+def test_the_citation_has_the_date_of_the_release(tmp_path: Path) -> None:
+    done = check(tmp_path, RELEASED, f"v{VERSION}", date="2026-01-03")
+    assert done.returncode == 1 and "date-released" in done.stderr
 
 
 @pytest.mark.parametrize("name", FILES[1:])
@@ -83,3 +93,18 @@ def test_actions_are_pinned_by_commit() -> None:
     used = [use for f in files for use in re.findall(r"uses: (\S+)", f.read_text(encoding="utf-8"))]
     pinned = [use for use in used if re.fullmatch(r"[\w./-]+@[0-9a-f]{40}", use)]
     assert set(used) - set(pinned) == {"./.github/workflows/wheels.yml"} and len(pinned) > 10
+
+
+def test_forms_of_issues_are_valid() -> None:
+    """Each has what GitHub requires: a name, a description, and fields with labels."""
+    yaml = pytest.importorskip("yaml")
+    folder = ROOT / ".github" / "ISSUE_TEMPLATE"
+    forms = {path.stem: yaml.safe_load(path.read_text("utf-8")) for path in folder.glob("*.yml")}
+    links = forms.pop("config")["contact_links"]
+    assert all(set(link) == {"name", "url", "about"} for link in links)
+    assert set(forms) == {"bug", "feature"}
+    for form in forms.values():
+        assert form["name"] and form["description"]
+        fields = [field for field in form["body"] if field["type"] != "markdown"]
+        assert len({field["id"] for field in fields}) == len(fields)
+        assert all(field["attributes"]["label"] for field in fields)
