@@ -33,8 +33,9 @@ CENTER = np.array([33.0, 47.5])
 CLOSE = 3.0
 BEYOND = 2.0
 COLORS = 128
-# The small pictures: inches, dots per inch, and the largest file.
-SIZE, DPI, LARGEST = (3.6, 3.6), 90, 60_000
+# The small pictures, and the largest file of one, in bytes.
+SMALL = {"figsize": (3.6, 3.6), "dpi": 90, "layout": "constrained"}
+LARGEST = 60_000
 
 
 def ahn3() -> None:
@@ -61,7 +62,7 @@ def terrain() -> None:
     ground = survey.attributes["classification"] == 2
     points = survey.points - survey.points.min(axis=0)
     tin = TIN.from_points(np.column_stack((points, survey.z))[ground])
-    _, ax = plt.subplots(figsize=SIZE, layout="constrained")
+    _, ax = plt.subplots(**SMALL)
     Delaunay(points[ground]).plot(ax, z=survey.z[ground], hull=False, colorbar=False)
     contours = tin.contours(interval=0.5, min_length=8, smooth=2)
     contours.plot(ax)
@@ -76,7 +77,7 @@ def mesh() -> None:
     kilometers = (ring - center) * 111.2 * (np.cos(np.radians(center[1])), 1)
     island = {"type": "Polygon", "coordinates": [kilometers.tolist()]}
     fine = delone.mesh(island, size=lambda xy: 1.5 + 0.12 * np.abs(xy[:, 1]))
-    _, ax = plt.subplots(figsize=SIZE, layout="constrained")
+    _, ax = plt.subplots(**SMALL)
     fine.plot(ax, vertices=False)
     ax.set_axis_off()
 
@@ -86,7 +87,7 @@ def globe() -> None:
     sites = np.random.default_rng(6).normal(size=(300, 3))
     cells = sphere.Voronoi(xyz=sites, clip=datasets.land())
     colors = np.random.default_rng(6).permutation(300) % 10
-    _, ax = plt.subplots(figsize=SIZE, layout="constrained")
+    _, ax = plt.subplots(**SMALL)
     cells.plot(ax, values=colors, view=(20, 20), cmap="tab10", colorbar=False, points=False)
     ax.set_axis_off()
 
@@ -94,7 +95,7 @@ def globe() -> None:
 def solid() -> None:
     """Draw a machine part filled with tetrahedra, cut open."""
     part = delone.tetrahedralize(*flange())
-    _, ax = plt.subplots(figsize=SIZE, layout="constrained")
+    _, ax = plt.subplots(**SMALL)
     low, high = np.percentile(part.volumes, (5, 95))
     picture = delone.plot.image(
         part, values=np.clip(part.volumes, low, high), cut="y", shrink=0.85, colorbar=False
@@ -114,7 +115,6 @@ def main() -> None:
     for name in sys.argv[1:] or PICTURES:
         PICTURES[name]()
         figure = plt.gcf()
-        figure.set_dpi(DPI)
         figure.canvas.draw()
         image = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
         plt.close(figure)
