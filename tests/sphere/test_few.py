@@ -172,3 +172,51 @@ def test_clusters_on_a_circle_share_the_sphere(width: float) -> None:
     middle = width / 2
     expected = [2 * np.pi - 0.7 * width, 2 * middle, 2 * np.pi - 0.3 * width]
     assert diagram.cell_areas == pytest.approx(expected, rel=1e-12, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    "lonlat",
+    [
+        [(0, 0), (20, 0), (100, 0)],
+        [(0, 0), (120, 0), (240, 0)],
+        [(70, -40), (70, 10), (70, 50), (70, 90)],
+        [(0, 60), (90, 60), (180, 60), (270, 60)],
+        [(0, 0), (90, 0), (0, 90)],
+    ],
+    ids=str,
+)
+def test_lunes_have_the_middles_of_their_ridges_as_corners(
+    lonlat: list[tuple[float, float]],
+) -> None:
+    diagram = sphere.Voronoi(lonlat=lonlat)
+    assert len(diagram.vertices) == 2
+    for row, (rings,) in enumerate(diagram.polygons()):
+        corners = sphere.Voronoi(lonlat=rings[0]).points
+        assert len(corners) == 4
+        # Not an arc is half a circle or more, and fans from the site have the area of the cell.
+        ahead = np.roll(corners, -1, axis=0)
+        assert (np.linalg.norm(corners - ahead, axis=1) < 1.5).all()
+        site = diagram.points[row]
+        triple = np.cross(corners, ahead) @ site
+        cosines = (corners @ site) + (ahead @ site) + np.einsum("ij,ij->i", corners, ahead)
+        area = 2 * np.arctan2(triple, 1 + cosines).sum()
+        assert area == pytest.approx(diagram.cell_areas[row])
+        # Corners are equally far from the site and a neighbor, and no other site is nearer.
+        cosines = corners @ diagram.points.T
+        assert np.allclose(cosines.max(axis=1), cosines[:, row])
+        assert ((cosines > cosines[:, [row]] - 1e-12).sum(axis=1) > 1).all()
+
+
+def test_the_axis_of_close_sites_on_a_great_circle_is_exact() -> None:
+    a, b = np.array([3.0, 5, 7]), np.array([2.0, -1, 4])
+    for bits, turned in ((12, 1), (30, 1), (30, -1), (48, 1)):
+        # Small multiples of powers of two: the vectors are on one circle, exactly.
+        sites = [a, a + b * 2.0**-bits, a + turned * b * 2.0 ** (1 - bits)]
+        diagram = sphere.Voronoi(xyz=np.array(sites))
+        assert diagram.triangulation is None
+        normal = np.cross(a, b) / np.linalg.norm(np.cross(a, b))
+        assert np.abs(np.abs(diagram.vertices) - np.abs(normal)).max() < 4e-16
+        # Seen from the first vertex, the cells are in order around it.
+        assert diagram.cell_areas.sum() == pytest.approx(ALL)
+        for row, ring in enumerate(diagram.regions):
+            assert sorted(ring) == [0, 1], row

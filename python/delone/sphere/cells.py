@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Cells", "around_circle", "cells_of", "lunes"]
+__all__ = ["Cells", "cells_of", "lunes"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -145,17 +145,3 @@ def _normal(vectors: Floats) -> Floats:
     """Return vectors, none of which is zero, with length 1."""
     found: Floats = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
     return found
-
-
-def around_circle(chain: Indices, points: Floats) -> Floats:
-    """Return the unit normal of a great circle from which sites in order are counter-clockwise."""
-    circle = points[chain]
-    normals = np.cross(circle[0], circle)
-    normal = normals[np.einsum("ij,ij->i", normals, normals).argmax()]
-    normal /= np.linalg.norm(normal)
-    ahead = np.roll(circle, -1, axis=0)
-    sines = np.cross(circle, ahead) @ normal
-    angles = np.arctan2(sines, np.einsum("ij,ij->i", circle, ahead)) % (2 * np.pi)
-    # Once around in this sense, or nearly once for each step in the other.
-    found: Floats = normal if angles.sum() < 3 * np.pi else -normal
-    return found + 0.0

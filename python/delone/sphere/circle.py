@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone.sphere.cells import Cells, around_circle, lunes
+from delone.sphere.cells import Cells, lunes
 from delone.sphere.exact import cross, dot, whole
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def cells_of_few(chain: Indices, vectors: Floats, points: Floats) -> Cells:
     `points` are the unit vectors of all rows.
     """
     if len(chain) > 2:
-        return lunes(chain, points, around_circle(chain, points), 0)
+        return lunes(chain, points, _around(chain, vectors, points), 0)
     if len(chain) == 2:
         return lunes(chain, points, _axis(*(whole(vectors[row].tolist()) for row in chain)), 0)
     # One cell, which is the whole sphere.
@@ -52,6 +52,25 @@ def cells_of_few(chain: Indices, vectors: Floats, points: Floats) -> Cells:
     )
 
 
+def _around(chain: Indices, vectors: Floats, points: Floats) -> Floats:
+    """Return the unit normal of a great circle from which sites in order are counter-clockwise."""
+    circle = points[chain]
+    sines = np.linalg.norm(np.cross(circle[0], circle), axis=1)
+    # Integers, whichever site it is; the one with the largest sine has the smallest error below.
+    first, far = (whole(vectors[chain[k]].tolist()) for k in (0, int(sines.argmax())))
+    normal = cross(first, far)
+    if not any(normal):
+        # The others are so close to the first site, or opposite to it, that units are the same.
+        others = (whole(vectors[row].tolist()) for row in chain[1:])
+        normal = next(n for n in (cross(first, other) for other in others) if any(n))
+    three = [whole(vectors[row].tolist()) for row in chain[:3]]
+    turns = [dot(normal, cross(three[k - 1], three[k])) for k in range(3)]
+    # Of the three angles once around, one at most is half a turn or more.
+    ahead = sum((turn > 0) - (turn < 0) for turn in turns) > 0
+    x, y, z = normal
+    return _rounded(normal if ahead else (-x, -y, -z))
+
+
 def _axis(a: Vector, b: Vector) -> Floats:
     """Return a unit vector with the shorter way from one direction to another around it."""
     normal = cross(a, b)
@@ -60,9 +79,14 @@ def _axis(a: Vector, b: Vector) -> Floats:
         least = min(range(3), key=lambda k: abs(a[k]))
         unit = (int(least == 0), int(least == 1), int(least == 2))
         normal = cross(a, unit)
-    size = max(map(abs, normal))
-    axis = np.array([x / size for x in normal])
-    found: Floats = axis / np.linalg.norm(axis) + 0.0
+    return _rounded(normal)
+
+
+def _rounded(vector: Vector) -> Floats:
+    """Return the unit vector of integers."""
+    size = max(map(abs, vector))
+    unit = np.array([x / size for x in vector])
+    found: Floats = unit / np.linalg.norm(unit) + 0.0
     return found
 
 

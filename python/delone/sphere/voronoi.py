@@ -497,10 +497,10 @@ class Voronoi(Stored):
 
         Notes
         -----
-        Without a clip each cell is one ring, its region; of two sites also the middles of their
-        ridges. The cell of one site, the whole sphere, is a part without rings. Longitudes are from
-        -180 to 180; a ring that crosses the date line jumps there. Rows with the same direction
-        have the same cell.
+        Without a clip each cell is one ring, its region; where all sites are on one circle, so that
+        ridges are half circles, also the middles of these. The cell of one site, the whole sphere,
+        is a part without rings. Longitudes are from -180 to 180; a ring that crosses the date line
+        jumps there. Rows with the same direction have the same cell.
 
         Examples
         --------
@@ -511,8 +511,9 @@ class Voronoi(Stored):
         >>> len(cells[0]), len(cells[1]), sorted(cells[1][0][0].round(6).tolist())
         (0, 1, [[-9.0, -9.0], [-9.0, 9.0], [9.0, -9.0], [9.0, 9.0]])
         """
-        few = len(self.ridge_points) < 3
-        if self._left is not None or few:
+        # Arcs of half a turn need their middles, which `_rings` adds.
+        lunes = self._cells.middles is not None or not len(self.ridge_points)
+        if self._left is not None or lunes:
             cells = self._rings() if self._left is None else self._left.polygons(self.npoints)
             found = [[[lonlat_of(ring) for ring in rings] for rings in parts] for parts in cells]
         else:
