@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 import delone
 import solids
 from delone import TetMesh, tetrahedralize
+from delone.tetrahedra import filling
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -165,6 +167,36 @@ def test_extra_points_are_vertices() -> None:
     assert mesh.nadded == 0
     assert bool(mesh.validate())
     assert solids.filled(mesh.points, mesh.simplices) == 64
+
+
+@pytest.mark.parametrize("kind", ["outside", "far", "corner", "edge", "face", "repeated"])
+def test_extra_points_that_are_wrong_among_many(kind: str) -> None:
+    """The core gets them together with the faces, unless they are far; the message is the same."""
+    inside = np.random.default_rng(4).uniform(0.1, 2.5, (40, 3))
+    wrong = {
+        "outside": (4, 4, 4),
+        "far": (1e300, -1e300, 1),
+        "corner": (0, 0, 0),
+        "edge": (0, 2.5, 0),
+        "face": (0.5, 0, 4),
+        "repeated": inside[7],
+    }
+    points = [(0, 0, 0), (8, 0, 0), (0, 8, 0), (0, 0, 8)]
+    faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    extra = np.insert(inside, 20, wrong[kind], axis=0)
+    message = {"repeated": "rows repeat others: 20", "outside": "1 point outside of all"}
+    message["far"] = message["outside"]
+    with pytest.raises(delone.InputError, match=message.get(kind, "1 point on a face .* row 20;")):
+        tetrahedralize(points, faces, extra_points=extra)
+
+
+def test_faces_are_recovered_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = []
+    recover = filling._core.recover_faces
+    spy = SimpleNamespace(recover_faces=lambda *given: calls.append(given) or recover(*given))
+    monkeypatch.setattr(filling, "_core", spy)
+    tetrahedralize(*CUBE, extra_points=[(1, 1, 1)])
+    assert len(calls) == 1
 
 
 def test_unused_rows_are_no_vertices() -> None:

@@ -20,7 +20,9 @@ from delone.errors import (
     BudgetExceededError,
     CrowdedFacesError,
     DanglingFacesError,
+    DeloneError,
     InputError,
+    InternalError,
     ShapeError,
 )
 from delone.space.locking import Sides, cells, directions
@@ -242,10 +244,7 @@ class _Stages(NamedTuple):
         if self.boundary == "surface":
             cut = recut(points, cut.parts, self.task.markers)
         parts = cut.parts
-        found = self._recovered(parts, np.empty((0, 3)))
-        if len(self.task.extra):
-            _require_inside(found.tiling, self.task.extra, workers)
-            found = self._recovered(parts, self.task.extra)
+        found = self._with_extra(parts)
         self._tell("select", 0.75)
         solid = _Solid.of(found)
         kept = self._inside(found.tiling, solid, parts)
@@ -253,6 +252,36 @@ class _Stages(NamedTuple):
         made = self._mesh(found, solid, kept, cut, check)
         self._tell("done", 1.0)
         return made
+
+    def _with_extra(self, parts: Parts) -> _Everything:
+        """Return all tetrahedra, with the extra points, which must be enclosed and not on a face.
+
+        The core proves that each face is whole, so no point is on one, and returns no tetrahedra
+        outside. Only to say what is wrong, the faces are recovered without the points.
+        """
+        extra = self.task.extra
+        if not len(extra):
+            return self._recovered(parts, extra)
+        failure = None
+        corners = self.task.points[parts.faces.ravel()]
+        # Points far away would make the core slow.
+        if ((extra > corners.min(axis=0)) & (extra < corners.max(axis=0))).all():
+            try:
+                found = self._recovered(parts, extra)
+                if not len(self._unused(found.tiling.simplices)):
+                    return found
+            except DeloneError as error:
+                failure = error
+        alone = self._recovered(parts, np.empty((0, 3)))
+        _require_inside(alone.tiling, extra, self.task.workers)
+        raise failure or InternalError("an extra point inside is not a vertex")
+
+    def _unused(self, simplices: Indices) -> NDArray[np.int64]:
+        """Return the extra points that are not vertices of these."""
+        used = np.zeros(len(self.task.extra), dtype=bool)
+        rows = simplices[simplices >= len(self.task.points)] - len(self.task.points)
+        used[rows[rows < len(used)]] = True
+        return np.flatnonzero(~used)
 
     def _recovered(self, parts: Parts, extra: Floats) -> _Everything:
         """Return all tetrahedra that the faces enclose, in rows of the result."""
@@ -303,8 +332,7 @@ class _Stages(NamedTuple):
 
     def _require_kept(self, tiling: Tiling, kept: Bools) -> None:
         """Require that no extra point is in a region that is left empty."""
-        rows = len(self.task.points) + np.arange(len(self.task.extra))
-        lost = np.flatnonzero(~np.isin(rows, tiling.simplices[kept]))
+        lost = self._unused(tiling.simplices[kept])
         if len(lost):
             raise InputError(
                 f"extra_points: {counted(len(lost), 'point')} in what is left empty, "
