@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 Scalar = TypeVar("Scalar", bound=np.generic)
 
 _FLOAT64 = np.dtype(np.float64)
+_INT32 = np.dtype(np.int32)
 # Every integer of at most this magnitude is a float64; the next one, 2**53 + 1, is not.
 _LARGEST_EXACT_INTEGER = 2**53
 _LARGEST_INDEX = 2**31 - 1
@@ -129,6 +130,16 @@ def as_simplices(
 
 def as_segments(segments: ArrayLike, npoints: int, *, name: str = "segments") -> NDArray[np.int32]:
     """Return pairs of points, (s, 2), as int32; the first ten rows out of range are named."""
+    if (
+        type(segments) is np.ndarray
+        and segments.dtype is _INT32
+        and segments.flags.carray
+        and segments.ndim == 2
+        and segments.shape[1] == 2
+        # The bits of negative numbers are those of the largest ones.
+        and segments.view(np.uint32).max(initial=0) < npoints
+    ):
+        return segments  # hot path for small inputs
     array = as_plain_array(segments, name)
     if array.shape in ((0,), (0, 2)):
         return np.empty((0, 2), dtype=np.int32)

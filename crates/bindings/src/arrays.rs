@@ -98,6 +98,23 @@ pub fn frozen<T: Element + Copy, const D: usize>(
     Ok(array.unbind())
 }
 
+/// A vector as a read-only array that cannot be made writeable: the owner of its memory is not an array.
+pub fn sealed<T: Element>(py: Python<'_>, values: Vec<T>) -> PyResult<Column<T>> {
+    let array = PyArray1::from_vec(py, values);
+    array.try_readwrite()?.make_nonwriteable();
+    Ok(array.unbind())
+}
+
+/// Rows as a read-only `(n, D)` array that cannot be made writeable.
+pub fn sealed_rows<T: Element, const D: usize>(
+    py: Python<'_>,
+    rows: Vec<[T; D]>,
+) -> PyResult<Table<T>> {
+    let shape = [rows.len(), D];
+    let array = sealed(py, rows.into_flattened())?;
+    Ok(array.bind(py).reshape(shape)?.unbind())
+}
+
 /// Up to this number of items a copy is cheaper than an array that owns a vector.
 const FEW: usize = 16;
 
@@ -136,6 +153,10 @@ pub fn numbers(py: Python<'_>, numbers: Vec<u32>) -> Column<i32> {
 
 /// Rows of numbers as an array.
 pub fn number_rows<const D: usize>(py: Python<'_>, rows: &[[u32; D]]) -> PyResult<Table<i32>> {
-    let signed: Vec<[i32; D]> = rows.iter().map(|row| row.map(|v| v as i32)).collect();
-    table(py, signed)
+    table(py, signed(rows))
+}
+
+/// Rows of numbers with a sign.
+pub fn signed<const D: usize>(rows: &[[u32; D]]) -> Vec<[i32; D]> {
+    rows.iter().map(|row| row.map(|v| v as i32)).collect()
 }

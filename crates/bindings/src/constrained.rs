@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::arrays::{
-    Column, Table, column, flat, frozen, in_range, number_rows, numbers, rows, table,
+    Column, Table, column, flat, frozen, in_range, rows, sealed, sealed_rows, signed, table,
 };
 use crate::errors::{attached, raise};
 use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
@@ -78,7 +78,8 @@ impl ConstrainedTriangulation {
     }
 }
 
-/// The constrained triangulation of points and segments, and the seconds of its stages.
+/// The constrained triangulation of points and segments, as arrays that cannot be made writeable,
+/// and the seconds of its stages.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "the options, one by one")]
 pub fn constrained2<'py>(
@@ -106,22 +107,23 @@ pub fn constrained2<'py>(
 
 fn arrays_of(py: Python<'_>, made: Constrained<'_>) -> PyResult<ConstrainedTriangulation> {
     let (tiling, constrained, segments) = made.into_parts();
-    let added = table(py, tiling.added().to_vec())?;
-    let duplicates = number_rows(py, tiling.duplicates())?;
+    let added = sealed_rows(py, tiling.added().to_vec())?;
+    let duplicates = sealed_rows(py, signed(tiling.duplicates()))?;
     let (simplices, neighbors) = tiling.into_arrays();
+    let zero = segments.zero.into_iter().map(|row| row as i32).collect();
     Ok(ConstrainedTriangulation {
         added,
-        simplices: table(py, simplices)?,
-        neighbors: table(py, neighbors)?,
-        constrained: table(py, constrained)?,
+        simplices: sealed_rows(py, simplices)?,
+        neighbors: sealed_rows(py, neighbors)?,
+        constrained: sealed_rows(py, constrained)?,
         duplicates,
-        segments: table(py, segments.ends)?,
-        source_start: column(py, segments.starts),
-        source: column(py, segments.sources),
-        forward: column(py, segments.forward),
-        zero: numbers(py, segments.zero),
-        through: number_rows(py, &segments.through)?,
-        crossings: number_rows(py, &segments.crossings)?,
+        segments: sealed_rows(py, segments.ends)?,
+        source_start: sealed(py, segments.starts)?,
+        source: sealed(py, segments.sources)?,
+        forward: sealed(py, segments.forward)?,
+        zero: sealed(py, zero)?,
+        through: sealed_rows(py, signed(&segments.through))?,
+        crossings: sealed_rows(py, signed(&segments.crossings))?,
     })
 }
 

@@ -29,7 +29,7 @@ from delone.constrained.validation import ConstrainedReport, validate
 from delone.counting import agreed, counted
 from delone.errors import InputError, InternalError
 from delone.georeference import warn_of_degrees
-from delone.immutable import kept, own_copy
+from delone.immutable import kept, own_copy, sealed
 from delone.plane import topology
 
 if TYPE_CHECKING:
@@ -48,6 +48,11 @@ _MOST_ADDED = 4_000_000
 # The third is for polygons only.
 _BOUNDARIES = ("hull", "outline", "polygons")
 _CROSSINGS = ("raise", "split")
+_METHODS = tuple(_core.methods2())
+# Fewer points are never shared among threads, and to count cores takes as long as some of them.
+_FEW = 1000
+_NO_SEEDS = sealed(np.empty((0, 2)))
+_NO_LABELS = sealed(np.empty(0, dtype=np.int32))
 
 
 class ConstrainedDelaunay(Segmented):
@@ -167,20 +172,18 @@ class ConstrainedDelaunay(Segmented):
         workers: int | None = None,
         planar: bool = False,
     ) -> None:
-        options = Options(
-            boundary=as_choice(boundary, _BOUNDARIES[:2], name="boundary"),
-            crossing=as_choice(crossing, _CROSSINGS, name="crossing"),
-            conforming=as_flag(conforming, name="conforming"),
-            max_points=_budget(max_points),
-            method=as_choice(method, tuple(_core.methods2()), name="method"),
-            workers=workers,
-            labeled=False,
-        )
+        as_choice(boundary, _BOUNDARIES[:2], name="boundary")
+        as_choice(crossing, _CROSSINGS, name="crossing")
+        conforming = as_flag(conforming, name="conforming")
+        most = _budget(max_points)
+        as_choice(method, _METHODS, name="method")
         own = own_copy(points)
         warn_of_degrees(points, own, planar=planar)
         rows = _own(as_segments(segments, len(own)), segments)
         given = _given(rows, Origin.of_arrays(len(rows)), holes, regions)
-        self._compute(own, given, options._replace(labeled=len(given.regions) > 0))
+        labeled = len(given.regions) > 0
+        options = Options(boundary, crossing, conforming, most, method, workers, labeled)
+        self._compute(own, given, options)
 
     @classmethod
     def _of_geometries(
@@ -196,15 +199,16 @@ class ConstrainedDelaunay(Segmented):
         """Triangulate private arrays, with the origin of each segment."""
         as_choice(choices["boundary"], _BOUNDARIES, name="boundary")
         as_choice(choices["crossing"], _CROSSINGS, name="crossing")
-        as_choice(choices["method"], tuple(_core.methods2()), name="method")
+        as_choice(choices["method"], _METHODS, name="method")
         choices["max_points"] = _budget(choices["max_points"])
         mesh = cls.__new__(cls)
-        given = _given(segments, origin, holes, regions)
+        given = _given(segments, Origin._make(map(sealed, origin)), holes, regions)
         mesh._compute(points, given, Options(labeled=len(given.regions) > 0, **choices))
         return mesh
 
     def _compute(self, points: Floats, given: Given, options: Options) -> None:
         """Let the core triangulate, and store the result with the input."""
+        few = options.workers is None and len(points) < _FEW
         try:
             made, stages = _core.constrained2(
                 points,
@@ -213,7 +217,7 @@ class ConstrainedDelaunay(Segmented):
                 options.conforming,
                 options.max_points,
                 options.method,
-                as_workers(options.workers),
+                1 if few else as_workers(options.workers),
             )
         except InternalError as error:
             error.points = points
@@ -459,15 +463,13 @@ def _given(
     holes: ArrayLike | None,
     regions: ArrayLike | None,
 ) -> Given:
-    """Return the caller's input other than points."""
+    """Return the caller's input other than points, read-only; `origin` is so already."""
+    segments = sealed(segments)
+    if holes is None and regions is None:
+        return Given(segments, origin, _NO_SEEDS, _NO_SEEDS, _NO_LABELS)
     seeds = as_seeds(regions, name="regions", columns=3)
-    return Given(
-        segments=segments,
-        origin=origin,
-        holes=as_seeds(holes, name="holes").copy(),
-        regions=seeds[:, :2].copy(),
-        labels=_labels(seeds),
-    )
+    places = sealed(as_seeds(holes, name="holes").copy())
+    return Given(segments, origin, places, sealed(seeds[:, :2].copy()), sealed(_labels(seeds)))
 
 
 def _budget(max_points: int | None) -> int:
@@ -477,6 +479,8 @@ def _budget(max_points: int | None) -> int:
 
 
 def _own(array: Indices, given: ArrayLike) -> Indices:
+    if array is given:
+        return array.copy()
     if isinstance(given, list | tuple) or not np.may_share_memory(array, np.asarray(given)):
         return array
     return array.copy()

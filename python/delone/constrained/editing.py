@@ -352,10 +352,9 @@ class Editing(Generic[M]):
 
     def _origins(self, count: int) -> Origin:
         """Return the origin of each segment; new ones have none."""
-        origin, old = Origin.of_arrays(count), self._mesh._given
-        for values, known in zip(origin, old.origin, strict=True):
-            values[: len(old.segments)] = known
-        return origin
+        old = self._mesh._given
+        new = Origin.of_arrays(count - len(old.segments))
+        return Origin._make(map(np.concatenate, zip(old.origin, new, strict=True)))
 
     def _require_ends(
         self, segments: Indices, keeps_point: NDArray[Any], keeps_segment: NDArray[Any]

@@ -30,6 +30,11 @@ if TYPE_CHECKING:
 __all__ = ["Given", "Options", "Origin", "Segmented"]
 
 
+# Origins of few segments.
+_NO_ROWS = sealed(np.full(1000, -1, dtype=np.int32))
+_NO_RINGS = sealed(np.zeros(1000, dtype=bool))
+
+
 class Options(NamedTuple):
     """The options of a constrained triangulation."""
 
@@ -56,9 +61,12 @@ class Origin(NamedTuple):
 
     @classmethod
     def of_arrays(cls, count: int) -> Origin:
-        """Return the origin of segments that did not come from geometries."""
-        none = np.full(count, -1, dtype=np.int32)
-        return cls(none, np.zeros(count, dtype=bool), none.copy())
+        """Return the origin of segments that did not come from geometries, read-only."""
+        if count <= len(_NO_ROWS):
+            none = _NO_ROWS[:count]
+            return cls(none, _NO_RINGS[:count], none)
+        none = sealed(np.full(count, -1, dtype=np.int32))
+        return cls(none, sealed(np.zeros(count, dtype=bool)), none)
 
 
 class Given(NamedTuple):
@@ -104,18 +112,13 @@ class Segmented(PointTriangulation):
         options: Options,
         stages: Any,
     ) -> None:
-        points, given = sealed(points), given.sealed()
-        made = _core.ConstrainedTriangulation(*map(sealed, made.arrays()))
-        object.__setattr__(self, "_given", given)
-        object.__setattr__(self, "_made", made)
-        object.__setattr__(self, "_options", options)
-        object.__setattr__(self, "_points", points)
-        arrays: dict[str, NDArray[Any]] = {"points": points, "duplicates": made.duplicates}
-        triangles: dict[str, NDArray[Any]] = {
-            "simplices": made.simplices,
-            "neighbors": made.neighbors,
-            "constrained": made.constrained,
-        }
+        """Set everything; the arrays other than the points cannot be made writeable."""
+        put = object.__setattr__
+        put(self, "_given", given)
+        put(self, "_made", made)
+        put(self, "_options", options)
+        put(self, "_points", sealed(points))
+        simplices, neighbors, constrained = made.simplices, made.neighbors, made.constrained
         removed = self._removed()
         number = None
         if removed is not None:
@@ -123,10 +126,17 @@ class Segmented(PointTriangulation):
             # The last entry is for the index -1.
             number = np.full(len(removed) + 1, -1, dtype=np.int32)
             number[rows] = np.arange(len(rows), dtype=np.int32)
-            triangles = {name: array[rows] for name, array in triangles.items()}
-            triangles["neighbors"] = number[triangles["neighbors"]]
-        object.__setattr__(self, "_number", number)
-        self._fill(arrays | triangles, stages, options.workers)
+            simplices, constrained = sealed(simplices[rows]), sealed(constrained[rows])
+            neighbors = sealed(number[neighbors[rows]])
+        self._hold(
+            number=number,
+            duplicates=made.duplicates,
+            simplices=simplices,
+            neighbors=neighbors,
+            constrained=constrained,
+            stages=stages,
+            workers=options.workers,
+        )
 
     def _removed(self) -> Bools | None:
         """Return which triangles of the hull are in holes or outside; None if all are kept."""
@@ -332,7 +342,8 @@ class Segmented(PointTriangulation):
         stages: Any,
     ) -> Self:
         mesh = cls.__new__(cls)
-        mesh._set(points, given, made, options, stages)
+        made = _core.ConstrainedTriangulation(*map(sealed, made.arrays()))
+        mesh._set(points, given.sealed(), made, options, stages)
         return mesh
 
     def __reduce__(self) -> tuple[Any, ...]:
