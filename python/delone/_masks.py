@@ -15,6 +15,10 @@ if TYPE_CHECKING:
 __all__ = ["hides", "is_masked", "refuse_masks"]
 
 
+# Items that are no arrays.
+_PLAIN = frozenset((int, float, list, tuple, np.float64, np.int64))
+
+
 def is_masked(value: Any) -> TypeGuard[np.ma.MaskedArray[Any, Any]]:
     """Return whether `value` is a masked array, without an import of `numpy.ma`.
 
@@ -35,7 +39,9 @@ def hides(value: Any) -> bool:
 def refuse_masks(given: Any, name: str) -> None:
     """Reject masked entries, also those of arrays in a list, before they are taken for numbers."""
     rows = given if isinstance(given, list | tuple) else ()
-    if hides(given) or any(map(hides, rows)):
+    # To look at the types alone is several times faster than to look at each item.
+    odd = not _PLAIN.issuperset(map(type, rows)) and any(map(hides, rows))
+    if odd or hides(given):
         count = int(np.ma.getmaskarray(given).sum()) if is_masked(given) else sum(map(hides, rows))
         raise DtypeError(
             f"{name} is a masked array, with {count} masked: pass only the valid rows, for example "

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 import sys
+from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -69,7 +70,7 @@ def parts_of(geometries: Any, *, name: str = "geometries") -> Parts:
             if isinstance(batch, np.ndarray):
                 parts, length = _split(batch), len(batch)
             else:
-                parts, length = _joined(_of_mapping(batch, name)), 1
+                parts, length = _of_runs(_of_mapping(batch, name)), 1
             found.append(parts._replace(geometries=parts.geometries + count))
             count += length
     except RecursionError:
@@ -238,8 +239,21 @@ def _closed(
     )
 
 
-def _of_mapping(mapping: Mapping[str, Any], name: str) -> Iterator[Parts]:
-    """Split a mapping in GeoJSON form into parts."""
+def _of_runs(runs: Iterable[tuple[Floats, int]]) -> Parts:
+    """Return the parts of one geometry, given as coordinates and kinds."""
+    rows = [np.empty((0, 2))]
+    kinds: list[int] = []
+    for coordinates, kind in runs:
+        rows.append(coordinates)
+        kinds.append(kind)
+    counts = np.array([len(each) for each in rows[1:]], dtype=np.int64)
+    part = np.repeat(np.arange(len(kinds)), counts)
+    none = np.zeros(len(kinds), dtype=np.int64)
+    return _closed(np.concatenate(rows), part, np.array(kinds, dtype=np.int64), none)
+
+
+def _of_mapping(mapping: Mapping[str, Any], name: str) -> Iterator[tuple[Floats, int]]:
+    """Split a mapping in GeoJSON form into runs of coordinates, and the kind of each."""
     kind = mapping.get("type")
     if kind == "GeometryCollection":
         for geometry in mapping["geometries"]:
@@ -251,24 +265,23 @@ def _of_mapping(mapping: Mapping[str, Any], name: str) -> Iterator[Parts]:
         raise InputError(f"{name}: {dict(mapping)!r:.80} is not a geometry")
     if kind in ("Point", "MultiPoint"):
         for point in [coordinates] if kind == "Point" else coordinates:
-            yield _run([point], POINTS, kind)
+            yield _run([point], kind), POINTS
     elif kind in ("LineString", "MultiLineString"):
         for line in [coordinates] if kind == "LineString" else coordinates:
-            yield _run(line, LINE, kind)
+            yield _run(line, kind), LINE
     elif kind in ("Polygon", "MultiPolygon"):
         for polygon in [coordinates] if kind == "Polygon" else coordinates:
             for i, ring in enumerate(polygon):
-                yield _run(ring, INTERIOR if i else EXTERIOR, kind)
+                yield _run(ring, kind), INTERIOR if i else EXTERIOR
     else:
         raise InputError(f"{name}: unknown geometry type {kind!r:.80}")
 
 
-def _run(coordinates: Any, kind: int, what: str) -> Parts:
+def _run(coordinates: Any, what: str) -> Floats:
     refuse_masks(coordinates, f"a {what}")
     try:
         pairs = [tuple(row)[:2] for row in coordinates if len(row)]
-        for pair in pairs:
-            refuse_masks(pair, f"a {what}")
+        refuse_masks(list(chain.from_iterable(pairs)), f"a {what}")
         rows = np.array(pairs, dtype=np.float64)
     except DtypeError:
         raise
@@ -281,11 +294,10 @@ def _run(coordinates: Any, kind: int, what: str) -> Parts:
             f"a {what} has a coordinate beyond the range of doubles: {error}"
         ) from error
     if rows.size == 0:
-        return _joined([])
+        return np.empty((0, 2))
     if rows.ndim != 2 or rows.shape[1] != 2:
         raise ShapeError(f"the coordinates of a {what} are not pairs of numbers")
-    part = np.zeros(len(rows), dtype=np.int64)
-    return _closed(rows, part, np.array([kind]), np.array([0]))
+    return rows
 
 
 def _joined(parts: Iterable[Parts]) -> Parts:
