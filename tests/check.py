@@ -67,6 +67,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "interpolate3": ("interpolate",),
     "interpolate_sphere": ("sphere",),
     "locate3": ("locate",),
+    "joins": ("validation",),
     "memory": ("delaunay",),
     "mesh2": ("delaunay", "constrained"),
     "mesh3": ("space",),

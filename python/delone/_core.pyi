@@ -97,6 +97,8 @@ __all__ = [
     "face_areas3",
     "face_normals3",
     "faces3",
+    "facet_neighbors",
+    "facet_rows",
     "fault2",
     "fault3",
     "find_simplex2",
@@ -1413,6 +1415,10 @@ def components2(
 def numbered_components(
     points: NDArray[np.float64], simplices: NDArray[np.int32], component: NDArray[np.int32]
 ) -> NDArray[np.int32]: ...
+def facet_rows(
+    facets: NDArray[np.int32], wanted: NDArray[np.int32], npoints: int, directed: bool
+) -> NDArray[np.int32]: ...
+def facet_neighbors(simplices: NDArray[np.int32], npoints: int) -> NDArray[np.int32]: ...
 def polygon2(
     points: NDArray[np.float64], starts: NDArray[np.int32], nonzero: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]: ...

@@ -17,6 +17,7 @@ mod graphs;
 mod hull;
 mod improve;
 mod interpolate;
+mod joins;
 mod lawson;
 mod live;
 mod live3;
@@ -121,6 +122,8 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(constrained::constrained2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::components2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::numbered_components, m)?)?;
+    m.add_function(wrap_pyfunction!(joins::facet_rows, m)?)?;
+    m.add_function(wrap_pyfunction!(joins::facet_neighbors, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::polygon2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::ring2, m)?)?;
     m.add_function(wrap_pyfunction!(distributed::disks2, m)?)?;

@@ -19,6 +19,7 @@ pub mod improve;
 pub mod interpolate;
 pub mod interpolate3;
 pub mod interpolate_sphere;
+pub mod joins;
 pub mod live;
 pub mod locate;
 pub mod locate3;

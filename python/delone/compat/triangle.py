@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone import _core
 from delone._arrays import LARGEST_LIMIT, as_points, as_segments
 from delone.compat.triangle_input import (
     Given,
@@ -286,11 +287,8 @@ def _segment_markers(found: Mesh) -> Indices:
 
 
 def _of_edges(found: Mesh, marks: Indices) -> Indices:
-    keys = keys_of(found.edges, found.npoints)
-    wanted = keys_of(found.segments, found.npoints)
-    order = np.argsort(keys)
-    of_edges = np.zeros(len(keys), dtype=np.int32)
-    of_edges[order[np.searchsorted(keys, wanted, sorter=order)]] = marks
+    of_edges = np.zeros(len(found.edges), dtype=np.int32)
+    of_edges[_core.facet_rows(found.edges, found.segments, found.npoints, False)] = marks
     return of_edges
 
 

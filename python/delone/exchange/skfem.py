@@ -60,7 +60,7 @@ def _facets(facets: NDArray[Any], pairs: NDArray[np.int32]) -> NDArray[np.int64]
     """Return the number of the facet that each pair or triple of points is."""
     both = np.sort(np.concatenate((np.asarray(facets).T, pairs)), axis=1)
     _, key = np.unique(both, axis=0, return_inverse=True)
-    keys, wanted = key[: facets.shape[1]], key[facets.shape[1] :]
-    order = np.argsort(keys)
-    found: NDArray[np.int64] = order[np.searchsorted(keys, wanted, sorter=order)]
-    return found
+    count = facets.shape[1]
+    number = np.zeros(len(both), dtype=np.int64)
+    number[key[:count]] = np.arange(count)
+    return number[key[count:]]

@@ -123,18 +123,12 @@ def vertex_neighbor_vertices(edges: Indices, npoints: int) -> tuple[Indices, Ind
 
 
 def neighbors(simplices: Indices, npoints: int) -> Indices:
-    """Return the triangle opposite each vertex, -1 if there is none. O(m log m).
+    """Return the triangle opposite each vertex, -1 if there is none.
 
     Triangles have the same orientation, and no directed edge is used twice.
     """
-    tail = simplices[:, _TAIL].ravel().astype(np.int64)
-    head = simplices[:, _HEAD].ravel().astype(np.int64)
-    keys, reverse = tail * npoints + head, head * npoints + tail
-    order = np.argsort(keys)
-    place = np.minimum(np.searchsorted(keys, reverse, sorter=order), max(len(keys) - 1, 0))
-    partner = order[place]
-    found = np.where(keys[partner] == reverse, partner // 3, -1)
-    return found.astype(np.int32).reshape(-1, 3)
+    found: Indices = _core.facet_neighbors(np.ascontiguousarray(simplices, np.int32), npoints)
+    return found
 
 
 def unjoined(simplices: Indices, neighbors: Indices) -> NDArray[np.int64]:

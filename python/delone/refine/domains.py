@@ -312,14 +312,9 @@ def labels_beside(
     simplices, neighbors, constrained = walls
     component = _core.components2(neighbors, constrained)
     t, k = np.nonzero(constrained)
-    n = np.int64(npoints)
-    tail, head = topology.half_edges(simplices, t, k)
-    keys = tail * n + head
-    known = edges[:, 0] * n + edges[:, 1]
-    order = np.argsort(known)
-    place = np.minimum(np.searchsorted(known, keys, sorter=order), len(known) - 1)
-    partner = order[place]
-    same = known[partner] == keys
+    sides = np.column_stack(topology.half_edges(simplices, t, k))
+    partner = _core.facet_rows(np.ascontiguousarray(edges, np.int32), sides, npoints, True)
+    same = partner >= 0
     of_component = np.full(int(component.max(initial=-1)) + 1, -1, dtype=np.int32)
     of_component[component[t[same]]] = labels[partner[same]]
     return of_component[component]
@@ -337,11 +332,10 @@ def sides_at(
     sides = np.full(simplices.shape, -1, dtype=np.int32)
     if not len(ends):
         return sides
-    n = int(simplices.max()) + 1
     t, k = np.nonzero(constrained)
-    tail, head = topology.half_edges(simplices, t, k)
-    keys = topology.edge_keys(ends[:, 0], ends[:, 1], n)
-    order = np.argsort(keys)
-    at = np.searchsorted(keys, topology.edge_keys(tail, head, n), sorter=order)
-    sides[t, k] = line[order[at]]
+    edges = np.column_stack(topology.half_edges(simplices, t, k))
+    npoints = max(int(simplices.max()), int(ends.max())) + 1
+    sides[t, k] = line[
+        _core.facet_rows(np.ascontiguousarray(ends, np.int32), edges, npoints, False)
+    ]
     return sides

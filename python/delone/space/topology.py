@@ -44,14 +44,10 @@ def boundary_faces(simplices: Indices, neighbors: Indices) -> Indices:
 
 
 def neighbors(simplices: Indices) -> Indices:
-    """Return the tetrahedron opposite each vertex, -1 if there is none. O(m log m).
+    """Return the tetrahedron opposite each vertex, -1 if there is none.
 
     Tetrahedra have the same orientation, and no face is used more than twice.
     """
-    sides = np.sort(simplices[:, FACES].reshape(-1, 3), axis=1)
-    order = np.lexsort(sides.T)
-    pair = np.flatnonzero((sides[order[1:]] == sides[order[:-1]]).all(axis=1))
-    found = np.full(4 * len(simplices), -1, dtype=np.int32)
-    one, other = order[pair], order[pair + 1]
-    found[one], found[other] = other // 4, one // 4
-    return found.reshape(-1, 4)
+    npoints = int(simplices.max(initial=-1)) + 1
+    found: Indices = _core.facet_neighbors(np.ascontiguousarray(simplices, np.int32), npoints)
+    return found

@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from delone import _core
 from delone.constrained import geodata
 from delone.counting import agreed, counted
+from delone.duplicates import first_rows
 from delone.errors import InputError
 from delone.georeference import caller_level
 
@@ -136,24 +138,19 @@ def _warn_of_long(tail: Floats, head: Floats, name: str) -> None:
 
 def whole_sphere(parts: Parts, vectors: Floats, ends: Indices, origin: Origin) -> int | None:
     """Return the first geometry whose sides cancel out although it has an area on the map."""
-    _, place = np.unique(_directions(vectors), axis=0, return_inverse=True)
-    sides = np.sort(place.reshape(-1)[ends], axis=1)
+    # Degrees are reduced exactly: all names of a place on a map have equal vectors.
+    sides = np.sort(first_rows(vectors)[ends], axis=1).astype(np.int32)
     rings = origin.rings & (sides[:, 0] != sides[:, 1])
-    keys = np.column_stack((origin.geometries[rings], sides[rings]))
-    found, times = np.unique(keys, axis=0, return_counts=True)
-    bounded = found[times % 2 == 1, 0]
+    sides = sides[rings]
+    # The first row of the same side, for each geometry one number.
+    side = _core.facet_rows(sides, sides, len(vectors), True)
+    keys = origin.geometries[rings].astype(np.int64) * max(len(side), 1) + side
+    found, times = np.unique(keys, return_counts=True)
+    bounded = found[times % 2 == 1] // max(len(side), 1)
     for geometry in np.setdiff1d(parts.geometries[parts.kinds == geodata.EXTERIOR], bounded):
         if _area(parts, geometry) != 0:
             return int(geometry)
     return None
-
-
-def _directions(vectors: Floats) -> Floats:
-    """Vectors of equal directions as equal rows: those of one place differ by no more than zeros.
-
-    Degrees are reduced exactly, so that all names of a place on a map have one vector.
-    """
-    return vectors + 0.0
 
 
 def _area(parts: Parts, geometry: np.integer) -> Fraction:
