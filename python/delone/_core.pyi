@@ -80,6 +80,8 @@ __all__ = [
     "circumcenters3",
     "combine2",
     "components2",
+    "components_beside2",
+    "components_inside2",
     "condensed2",
     "condensed3",
     "constrained2",
@@ -126,6 +128,7 @@ __all__ = [
     "not_longer2",
     "not_longer3",
     "numbered_components",
+    "odd_pairs2",
     "of_triangles2",
     "orient2d",
     "orient3d",
@@ -1415,6 +1418,19 @@ def components2(
 def numbered_components(
     points: NDArray[np.float64], simplices: NDArray[np.int32], component: NDArray[np.int32]
 ) -> NDArray[np.int32]: ...
+
+_Parts = tuple[
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.bool_],
+    NDArray[np.int32],
+    NDArray[np.int32],
+]
+_Covers = tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32]]
+
+def components_beside2(parts: _Parts) -> NDArray[np.int32]: ...
+def components_inside2(parts: _Parts, covers: _Covers, first: int) -> NDArray[np.int32]: ...
+def odd_pairs2(covers: _Covers) -> NDArray[np.int32]: ...
 def facet_rows(
     facets: NDArray[np.int32], wanted: NDArray[np.int32], npoints: int, directed: bool
 ) -> NDArray[np.int32]: ...

@@ -82,7 +82,7 @@ CORE: dict[str, set[str]] = {
     "joins": {"error", "memory", "watch"},
     "measure": {"parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "delaunay3": {"mesh3", "order", "points", "parallel", "proof", "delone_predicates"} | GROUND,
-    "constrained": {"delaunay2", "mesh2", "order", "points", "delone_predicates"} | GROUND,
+    "constrained": {"delaunay2", "joins", "mesh2", "order", "points", "delone_predicates"} | GROUND,
     "refine": {"constrained", "delaunay2", "measure", "mesh2", "wide", "delone_predicates"}
     | GROUND,
     "improve": {"delone_predicates"} | GROUND,
@@ -183,6 +183,7 @@ BINDINGS = {
     "cluster",
     "consistency",
     "constrained::components",
+    "constrained::nesting",
     "constrained::numbered_by_smallest",
     "constrained::simple_ring",
     "contour",

@@ -2,15 +2,18 @@
 
 use delone::arrays::Rule;
 use delone::{Constrained, Error, Options, Point2, Result};
+use delone_core::constrained::nesting::{Covers, Parts, odd_pairs};
 use delone_core::constrained::{components, numbered_by_smallest, simple_ring};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::arrays::{
-    Column, Table, column, flat, frozen, in_range, rows, sealed, sealed_rows, signed, table,
+    Column, Table, column, each_in_range, flat, frozen, in_range, rows, sealed, sealed_rows,
+    signed, table,
 };
 use crate::errors::{attached, raise};
+use crate::given::unequal;
 use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
 use crate::signals::{optioned, watched};
 use crate::triangulation::{method_of, seconds};
@@ -179,6 +182,101 @@ pub fn numbered_components(
         watched(py, |watch| numbered_by_smallest(points, corners, of, watch))?
     };
     Ok(column(py, found))
+}
+
+/// `(simplices, neighbors, constrained, component, segments)`, all of the whole hull.
+#[derive(FromPyObject)]
+pub struct PartArrays<'py>(
+    PyReadonlyArray2<'py, i32>,
+    PyReadonlyArray2<'py, i32>,
+    PyReadonlyArray2<'py, bool>,
+    PyReadonlyArray1<'py, i32>,
+    PyReadonlyArray2<'py, i32>,
+);
+
+impl PartArrays<'_> {
+    /// Borrowed and checked.
+    fn checked(&self) -> Result<(Parts<'_>, &[[i32; 2]])> {
+        let parts = Parts {
+            simplices: rows(&self.0, "simplices")?,
+            neighbors: rows(&self.1, "neighbors")?,
+            walls: rows(&self.2, "constrained")?,
+            component: flat(&self.3, "component")?,
+        };
+        let segments = rows(&self.4, "segments")?;
+        let count = parts.simplices.len();
+        if [
+            parts.neighbors.len(),
+            parts.walls.len(),
+            parts.component.len(),
+        ] != [count; 3]
+        {
+            return Err(unequal());
+        }
+        each_in_range(parts.component, 0, count, "component")?;
+        in_range(parts.simplices, 0, i32::MAX as usize, "simplices")?;
+        let points = parts.simplices.as_flattened().iter().max();
+        let points = points.map_or(0, |&last| last as usize + 1);
+        in_range(segments, 0, points, "segments")?;
+        Ok((parts, segments))
+    }
+}
+
+/// `(source_start, source, polygons)`.
+#[derive(FromPyObject)]
+pub struct CoverArrays<'py>(
+    PyReadonlyArray1<'py, i64>,
+    PyReadonlyArray1<'py, i32>,
+    PyReadonlyArray1<'py, i32>,
+);
+
+impl CoverArrays<'_> {
+    /// Borrowed and checked.
+    fn checked(&self) -> Result<Covers<'_>> {
+        let covers = Covers {
+            starts: flat(&self.0, "source_start")?,
+            source: flat(&self.1, "source")?,
+            polygons: flat(&self.2, "polygons")?,
+        };
+        let ends = (covers.starts.first(), covers.starts.last());
+        let all = (Some(&0), Some(&(covers.source.len() as i64)));
+        if ends != all || !covers.starts.is_sorted() {
+            return Err(Error::Shape("source_start must partition source".into()));
+        }
+        each_in_range(covers.source, 0, covers.polygons.len(), "source")?;
+        Ok(covers)
+    }
+}
+
+/// The components to the left and right of each subsegment, (q, 2).
+#[pyfunction]
+pub fn components_beside2(py: Python<'_>, parts: PartArrays<'_>) -> PyResult<Table<i32>> {
+    let (parts, segments) = attached(py, || parts.checked())?;
+    table(py, watched(py, |watch| parts.beside(segments, watch))?)
+}
+
+/// Pairs of a component and a polygon whose rings contain it, ascending, (k, 2); `first` is in none.
+#[pyfunction]
+pub fn components_inside2(
+    py: Python<'_>,
+    parts: PartArrays<'_>,
+    covers: CoverArrays<'_>,
+    first: usize,
+) -> PyResult<Table<i32>> {
+    let (parts, segments) = attached(py, || parts.checked())?;
+    let covers = attached(py, || covers.checked())?;
+    if covers.starts.len() != segments.len() + 1 {
+        return Err(raise(py, &unequal()));
+    }
+    let found = watched(py, |watch| parts.containing(segments, covers, first, watch))?;
+    table(py, found)
+}
+
+/// Pairs of a subsegment and a polygon of which an odd number of sides cover it, ascending, (k, 2).
+#[pyfunction]
+pub fn odd_pairs2(py: Python<'_>, covers: CoverArrays<'_>) -> PyResult<Table<i32>> {
+    let covers = attached(py, || covers.checked())?;
+    table(py, watched(py, |watch| odd_pairs(covers, watch))?)
 }
 
 /// The triangles inside rings, and the vertices added where they cross.

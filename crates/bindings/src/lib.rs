@@ -122,6 +122,9 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(constrained::constrained2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::components2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::numbered_components, m)?)?;
+    m.add_function(wrap_pyfunction!(constrained::components_beside2, m)?)?;
+    m.add_function(wrap_pyfunction!(constrained::components_inside2, m)?)?;
+    m.add_function(wrap_pyfunction!(constrained::odd_pairs2, m)?)?;
     m.add_function(wrap_pyfunction!(joins::facet_rows, m)?)?;
     m.add_function(wrap_pyfunction!(joins::facet_neighbors, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::polygon2, m)?)?;

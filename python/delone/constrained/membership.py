@@ -29,13 +29,9 @@ def containing(mesh: Segmented, polygons: Indices) -> Rows:
     component = mesh._component()
     region = np.empty(int(component.max()) + 1, dtype=np.int64)
     region[component] = mesh.region
-    found = coverage.containing(mesh._made, mesh.npoints, polygons, component)
-    pairs = [
-        (at, polygon)
-        for at, polygons in zip(region.tolist(), found, strict=True)
-        for polygon in polygons
-    ]
-    return np.array(sorted(pairs), dtype=np.int64).reshape(-1, 2)
+    within, polygon = coverage.containing(mesh._made, polygons, component).T
+    pairs = np.column_stack((region[within], polygon))
+    return pairs[np.lexsort(pairs.T[::-1])]
 
 
 def inside(mesh: Segmented, polygons: Indices) -> Bools:
@@ -47,6 +43,7 @@ def inside(mesh: Segmented, polygons: Indices) -> Bools:
     if not (polygons >= 0).any():
         return np.zeros(len(mesh._made.simplices), dtype=bool)
     component = mesh._component()
-    within = coverage.containing(mesh._made, mesh.npoints, polygons, component)
-    found: Bools = np.array([bool(each) for each in within])[component]
+    within = np.zeros(int(component.max()) + 1, dtype=bool)
+    within[coverage.containing(mesh._made, polygons, component)[:, 0]] = True
+    found: Bools = within[component]
     return found

@@ -159,7 +159,7 @@ class Segmented(PointTriangulation):
         origin, npoints = self._given.origin, len(self._points)
         ends = _vertices(self._made.duplicates, npoints)[self._given.segments]
         sides = coverage.closed_rings(ends, origin.geometries, origin.rings)
-        return coverage.first_polygon(self._made, npoints, origin.geometries, component, sides)
+        return coverage.first_polygon(self._made, origin.geometries, component, sides)
 
     def _tiles(self) -> regions.Tiling:
         made = self._made

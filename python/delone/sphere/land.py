@@ -9,17 +9,15 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections import defaultdict, deque
-from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from delone.constrained.coverage import closed_rings
+from delone.constrained.coverage import beside, closed_rings, containing
 from delone.counting import agreed, counted
 from delone.errors import InputError
 from delone.georeference import caller_level
-from delone.plane.topology import edge_keys, half_edges
+from delone.plane import topology
 from delone.sphere.sides import Origin, PolygonWarning
 
 if TYPE_CHECKING:
@@ -31,7 +29,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
     Rows = NDArray[np.int64]
-    Walls = list[tuple[int, int, frozenset[int]]]
 
 __all__ = ["Origin", "Rings", "first_polygon"]
 
@@ -58,144 +55,109 @@ def first_polygon(
 ) -> Indices:
     """Return the first geometry whose rings contain each component (even-odd rule), or -1.
 
-    Takes O(m log m), plus for each component time in proportion to the polygons that overlap in it.
+    Takes linear time, plus for each component time in proportion to the polygons that overlap
+    there.
     """
     origin, ends, winding = rings
     count = int(component.max(initial=-1)) + 1
     closed = closed_rings(ends, origin.geometries, origin.rings)
     if not closed.any():
         return np.full(count, -1, dtype=np.int32)
+    sides = beside(made, component)
     # The last component is what no triangle covers.
-    left, right = _beside(made, component, count)
-    crossed = _odd(made, origin.geometries, closed)
-    walls: Walls = list(zip(left.tolist(), right.tolist(), crossed, strict=True))
-    rim = component[((made.neighbors < 0) & ~made.constrained).any(axis=1)]
-    walls += [(c, count, frozenset()) for c in np.unique(rim).tolist()]
-    inside = _toggled(walls, count + 1)
+    inside = containing(
+        made, np.where(closed, origin.geometries, -1), component, from_outside=False
+    )
     size: Floats = np.bincount(component, weights=areas, minlength=count + 1).astype(np.float64)
     size[count] = max(4 * math.pi - float(areas.sum()), 0.0)
     outer = _outer(made, origin, closed)
     if winding == "smaller":
-        area = _areas(inside, size)
-        half = {each for each, own in area.items() if abs(own - 2 * math.pi) < _HALF}
-        turned = frozenset(each for each, own in area.items() if own > 2 * math.pi) - half
-        turned |= _turned(inside, left, right, [each for each in outer if each[1] in half], "ccw")
+        area = _areas(inside, size, int(origin.geometries.max()) + 1)
+        half = np.abs(area - 2 * math.pi) < _HALF
+        large = (area > 2 * math.pi) & ~half
+        turned = np.union1d(
+            np.flatnonzero(large),
+            _turned(inside, sides, outer[half[outer[:, 1]]], "ccw"),
+        )
+        inside = _toggled(inside, turned, count)
     else:
-        turned = _turned(inside, left, right, outer, winding)
-        _warn_of_large([geometries ^ turned for geometries in inside], size)
-    first = [min(inside[c] ^ turned, default=-1) for c in range(count)]
-    return np.array(first, dtype=np.int32)
+        inside = _toggled(inside, _turned(inside, sides, outer, winding), count)
+        _warn_of_large(_areas(inside, size))
+    # If an index is repeated, the last value assigned remains.
+    first = np.full(count + 1, -1, dtype=np.int32)
+    order = np.argsort(-inside[:, 1], kind="stable")
+    first[inside[order, 0]] = inside[order, 1]
+    return first[:count]
 
 
-def _beside(
-    made: ConstrainedTriangulation, component: Indices, outside: int
-) -> tuple[Indices, Indices]:
-    """Return the components to the left and right of each subsegment."""
-    triangle, corner = np.nonzero(made.constrained)
-    tail, head = half_edges(made.simplices, triangle, corner)
-    npoints = int(made.simplices.max(initial=0)) + 1
-    keys = edge_keys(made.segments[:, 0], made.segments[:, 1], npoints)
-    order = np.argsort(keys)
-    row = order[np.searchsorted(keys[order], edge_keys(tail, head, npoints))]
-    ahead = made.segments[row, 0] == tail
-    left = np.full(len(keys), outside, dtype=np.int32)
-    right = left.copy()
-    left[row[ahead]] = component[triangle[ahead]]
-    right[row[~ahead]] = component[triangle[~ahead]]
-    return left, right
+def _toggled(inside: Indices, turned: Rows, count: int) -> Indices:
+    """Return the pairs in which some geometries contain what they did not contain, and only that.
+
+    For each geometry, components ascend.
+    """
+    if not len(turned):
+        return inside
+    stays = ~np.isin(inside[:, 1], turned)
+    component, geometry = inside[~stays].T
+    outside = np.ones((len(turned), count + 1), dtype=bool)
+    outside[np.searchsorted(turned, geometry), component] = False
+    row, component = np.nonzero(outside)
+    entered = np.column_stack((component, turned[row])).astype(np.int32)
+    return np.concatenate((inside[stays], entered))
 
 
-def _odd(
-    made: ConstrainedTriangulation, geometries: Indices, closed: Bools
-) -> list[frozenset[int]]:
-    """Return for each subsegment the geometries with an odd number of sides there."""
-    found: list[frozenset[int]] = []
-    source, start = made.source, made.source_start.tolist()
-    of = np.where(closed, geometries, -1)[source].tolist()
-    for first, end in pairwise(start):
-        odd: set[int] = set()
-        for geometry in of[first:end]:
-            odd ^= {geometry}
-        found.append(frozenset(odd - {-1}))
-    return found
-
-
-def _toggled(walls: Walls, count: int) -> list[frozenset[int]]:
-    """Return the geometries whose rings are crossed on the way from the first component to each."""
-    beyond: dict[int, list[tuple[int, frozenset[int]]]] = defaultdict(list)
-    for one, other, geometries in walls:
-        beyond[one].append((other, geometries))
-        beyond[other].append((one, geometries))
-    nothing: frozenset[int] = frozenset()
-    inside = [nothing] * count
-    seen = [False] * count
-    for start in range(count):
-        queue = deque([] if seen[start] else [start])
-        seen[start] = True
-        while queue:
-            here = queue.popleft()
-            for there, geometries in beyond[here]:
-                if not seen[there]:
-                    seen[there] = True
-                    inside[there] = inside[here] ^ geometries
-                    queue.append(there)
-    return inside
-
-
-def _outer(
-    made: ConstrainedTriangulation, origin: Origin, closed: Bools
-) -> list[tuple[int, int, bool]]:
-    """Return the subsegments that an outer ring covers once: the geometry, and the direction."""
+def _outer(made: ConstrainedTriangulation, origin: Origin, closed: Bools) -> Rows:
+    """Return the subsegments that an outer ring covers once, the geometry, and the direction."""
     count = np.diff(made.source_start)
     row = np.repeat(np.arange(len(count)), count)
     wanted = np.flatnonzero(closed[made.source] & origin.outer[made.source])
-    geometry = origin.geometries[made.source[wanted]]
+    geometry = origin.geometries[made.source[wanted]].astype(np.int64)
     # A side that a geometry has twice, such as a cut along the date line, tells nothing.
-    pairs = np.column_stack((row[wanted], geometry))
-    _, first, times = np.unique(pairs, axis=0, return_index=True, return_counts=True)
+    keys = row[wanted] * (int(geometry.max(initial=0)) + 1) + geometry
+    _, first, times = np.unique(keys, return_index=True, return_counts=True)
     at = wanted[first[times == 1]]
-    forward, of = made.forward[at], origin.geometries[made.source[at]]
-    return list(zip(row[at].tolist(), of.tolist(), forward.tolist(), strict=True))
+    return np.column_stack((row[at], origin.geometries[made.source[at]], made.forward[at]))
 
 
-def _turned(
-    inside: list[frozenset[int]],
-    left: Indices,
-    right: Indices,
-    outer: list[tuple[int, int, bool]],
-    winding: str,
-) -> frozenset[int]:
-    """Return the geometries whose inside is what `inside` takes for their outside.
+def _turned(inside: Indices, sides: Indices, outer: Rows, winding: str) -> Rows:
+    """Return the geometries whose inside is what `inside` takes for their outside, ascending.
 
     Most sides decide: a border that crosses itself has loops that run the other way.
     """
-    votes: dict[int, int] = defaultdict(int)
-    for row, geometry, forward in outer:
-        within = left[row] if forward == (winding == "ccw") else right[row]
-        votes[geometry] += -1 if geometry in inside[within] else 1
-    torn = sorted(geometry for geometry, count in votes.items() if count == 0)
+    row, geometry, forward = outer.T
+    within = np.where((forward != 0) == (winding == "ccw"), sides[row, 0], sides[row, 1])
+    count = int(geometry.max(initial=-1)) + 1
+    here = topology.among(within * np.int64(count) + geometry, _keys(inside, count))
+    votes = np.bincount(geometry, minlength=count) - 2 * np.bincount(
+        geometry[here], minlength=count
+    )
+    is_known = np.bincount(geometry, minlength=count) > 0
+    torn = np.flatnonzero(is_known & (votes == 0)).tolist()
     if torn:
         first = ", ".join(map(str, torn[:10]))
         raise InputError(
             f"outer rings of {len(torn)} {agreed(len(torn), 'geometry', 'geometries')} run in both "
             f'directions, first {first}: turn rings, or pass winding="smaller"'
         )
-    return frozenset(geometry for geometry, count in votes.items() if count > 0)
+    return np.flatnonzero(votes > 0).astype(np.int64)
 
 
-def _areas(inside: list[frozenset[int]], size: Floats) -> dict[int, float]:
-    """Return the area of each geometry, rounded."""
-    area: dict[int, float] = defaultdict(float)
-    for geometries, own in zip(inside, size.tolist(), strict=True):
-        for geometry in geometries:
-            area[geometry] += own
-    return area
+def _keys(inside: Indices, count: int) -> Rows:
+    """Return a number for each pair of a component and a geometry below `count`."""
+    component, geometry = inside[inside[:, 1] < count].T.astype(np.int64)
+    keys: Rows = component * count + geometry
+    return keys
 
 
-def _warn_of_large(inside: list[frozenset[int]], size: Floats) -> None:
+def _areas(inside: Indices, size: Floats, count: int = 0) -> Floats:
+    """Return the area of each geometry, rounded; of at least so many."""
+    component, geometry = inside.T
+    return np.bincount(geometry, weights=size[component], minlength=count).astype(np.float64)
+
+
+def _warn_of_large(area: Floats) -> None:
     """Warn of geometries that cover more than half of the sphere, because of their winding."""
-    area = _areas(inside, size)
-    large = sorted(each for each, own in area.items() if own > 2 * math.pi + _HALF)
+    large = np.flatnonzero(area > 2 * math.pi + _HALF).tolist()
     if large:
         share = area[large[0]] / (4 * math.pi)
         warnings.warn(

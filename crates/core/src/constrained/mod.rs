@@ -14,6 +14,7 @@ pub(crate) mod inserted;
 pub mod intersection;
 pub(crate) mod marked;
 mod near;
+pub mod nesting;
 pub mod pairs;
 mod polygon;
 mod present;
