@@ -73,9 +73,17 @@ pub fn numbered_by_smallest<const D: usize>(
     };
     // The smallest triangle of each component, its corners in order; -1 where there is none yet.
     let mut least = filled(count, [-1; 3])?;
+    // Its smallest coordinate: few triangles reach it, so that few corners are sorted.
+    let mut reached = filled(count, f64::INFINITY)?;
     let mut pace = Pace::new(watch, LOT);
     for (corners, &at) in simplices.iter().zip(component) {
         pace.spend(1)?;
+        let [a, b, c] = corners.map(|v| points[v as usize][0]);
+        let x = a.min(b).min(c);
+        if x > reached[at as usize] {
+            continue;
+        }
+        reached[at as usize] = x;
         let best = &mut least[at as usize];
         let corners = ordered(*corners);
         if best[0] < 0 || smaller(&corners, best) == Ordering::Less {
