@@ -120,6 +120,7 @@ PHRASES = (
     "comes to nothing",
     "come to nothing",
     "the culprits",
+    "geometries of shapely",
     "usual mistake",
     "usual mistakes",
     "tables of geopandas",

@@ -374,7 +374,7 @@ def _switched(switches: str) -> tuple[int | None, bool, bool, bool]:
     """Return the limit on points, whether regions and all faces are wanted, and all are kept."""
     rest = _SWITCH.sub("", switches)
     if rest:
-        raise InputError(f"switches has {rest!r:.80}, which is no switch")
+        raise InputError(f"switches has {rest!r:.80}, which is not a switch")
     limit, known = None, []
     for letter, number in _SWITCH.findall(switches):
         known.append(letter)

@@ -81,7 +81,7 @@ class DynamicReport(ConstrainedReport):
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {
         **ConstrainedReport._SENTENCES,
         "uncovered": ("segment is not covered", "segments are not covered"),
-        "surplus": ("point is no crossing of segments", "points are no crossings of segments"),
+        "surplus": ("point is not a crossing of segments", "points are not crossings of segments"),
         "crossings": ("crossing is wrong", "crossings are wrong"),
     }
 

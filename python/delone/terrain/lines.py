@@ -100,7 +100,7 @@ def _each(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
             yield from _each(item, name, number)
     else:
         raise InputError(
-            f"{name}: {given!r:.60} is not a line: give geometries of shapely, or arrays of shape "
+            f"{name}: {given!r:.60} is not a line: give shapely geometries, or arrays of shape "
             "(k, 2) or (k, 3)"
         )
 
