@@ -43,7 +43,9 @@ PYTEST := $(VENV)/bin/pytest -n auto --dist worksteal
 DOCTEST = $(PYTEST) -p no:randomly --doctest-modules --doctest-glob='*.rst' \
 	$(addprefix --ignore-glob=,docs/*.py docs/*/*.py docs/*/*/*.py) python/delone docs
 
-VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
+# As Python writes it: 0.1.0a1 where Cargo has 0.1.0-alpha.1.
+VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1 | \
+	sed 's/-alpha\./a/; s/-beta\./b/; s/-rc\./rc/')
 
 # What each environment needs, as extras (-E) and dependency groups (-G) of pyproject.toml.
 NEEDS_build :=
@@ -56,7 +58,7 @@ NEEDS_bench := --release -E $(EXTRAS) -G bench
 # Tests and lint use the environment of the documentation where there is one: it has all that they need.
 ENVIRONMENT ?= $(if $(wildcard $(STAMPS)/docs),docs,test)
 
-.PHONY: help need need-python build demo demo-says wheel web check test test-deep lint docs linkcheck bench counts fuzz mutants map clean
+.PHONY: help need need-python build demo demo-says wheel release-check web site check test test-deep lint docs linkcheck bench counts fuzz mutants map clean
 .DEFAULT_GOAL := help
 
 help:
@@ -66,12 +68,14 @@ help:
 	@echo 'make test-deep  before a release, and every night: all seeds, sizes, combinations, examples; an hour'
 	@echo 'make lint    clippy, rustdoc, rustfmt, ruff, mypy, codespell, and the stub against the built module'
 	@echo 'make docs    the documentation, into docs/_build/html'
+	@echo 'make site    the same with the core for its figures, as it is published'
 	@echo 'make linkcheck  the links of the documentation to other sites (needs a network)'
 	@echo 'make bench   the tables of benchmarks/README.md (BENCH="--n 100000 --runs 3")'
 	@echo 'make counts  instructions of fixed jobs beside the stored counts (COUNTS=--update stores them)'
 	@echo 'make fuzz    each fuzz target for FUZZ_SECONDS ($(FUZZ_SECONDS)) seconds'
 	@echo 'make mutants seed bugs, each of which the tests must find (MUTANTS="proof-*" for some)'
 	@echo 'make wheel   a wheel for this machine, optimized as in a release, into dist'
+	@echo 'make release-check  sdist and wheels for Linux as published, installed and tested; 15 minutes'
 	@echo 'make web     the core as a module for pages, into target/web (crates/web/build.sh says how)'
 	@echo 'make map     the charts and tables of modules in ARCHITECTURE.md'
 	@echo 'make build   the package alone, installed into .venv in development mode'
@@ -107,7 +111,8 @@ need:
 # uv installs in seconds what takes pip minutes; where it has no wheel, pip does it.
 $(STAMPS)/tools: | need-python
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' 'maturin>=1.9,<2'
+	@.ci/patiently 'Installing pip and maturin' \
+		$(BIN)/python -m pip install --upgrade 'pip>=25.1' 'maturin>=1.9,<2'
 	-@$(BIN)/python -m pip install --quiet --only-binary uv uv
 	@mkdir -p $(STAMPS) && touch $@
 
@@ -139,6 +144,13 @@ wheel: $(STAMPS)/tools | need
 		$(BIN)/maturin build --release --out dist --interpreter $(abspath $(BIN))/python; \
 	fi
 
+# What would be published for Linux is built, installed without a compiler and tested; nothing is
+# published. TAG=vX.Y.Z judges changelog and pages as those of a release.
+TAG ?=
+release-check: $(STAMPS)/tools | need
+	-@$(BIN)/python -m pip install --quiet ziglang abi3audit
+	$(BIN)/python .github/rehearse.py $(if $(TAG),--tag $(TAG))
+
 # A module of JavaScript over the core in WebAssembly. Without a compiler for it the tests of the
 # module are skipped.
 web: need
@@ -164,7 +176,7 @@ $(STAMPS)/demo: $(SOURCES) $(PYTHON_SOURCES) | demo-says need-python
 		$(BIN)/python -m pip install --quiet --only-binary delone 'delone[$(DEMO_EXTRAS)]==$(VERSION)'; \
 	else false; fi || { \
 		$(MAKE) --no-print-directory need && \
-		$(MATURIN) $(UV) $(NEEDS_demo); }
+		.ci/patiently 'Compiling and installing delone' env $(MATURIN) $(UV) $(NEEDS_demo); }
 	@touch $@
 
 demo: $(STAMPS)/demo
@@ -206,11 +218,19 @@ lint: environment
 	$(BIN)/mypy
 	cd python && ../$(BIN)/python -m mypy.stubtest delone._core
 
+# With a core for the figures, all of them must have it.
+WEB_CORE := target/web/delone_web_bg.wasm
+
 docs: $(STAMPS)/docs
 	@$(MAKE) --no-print-directory $(STAMPS)/core
 	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
-	$(BIN)/python docs/check_site.py docs/_build/html
+	$(BIN)/python docs/check_site.py docs/_build/html $(if $(wildcard $(WEB_CORE)),--live)
 	@echo 'The documentation: $(abspath docs/_build/html/index.html)'
+
+# What is published: the documentation with the core for its figures. The workflow `docs` runs this.
+site: web
+	@$(MAKE) --no-print-directory docs
+	$(BIN)/python docs/check_site.py docs/_build/html --live
 
 # Needs a network: lists the links to other sites, and fails where one is broken.
 linkcheck: $(STAMPS)/docs

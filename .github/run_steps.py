@@ -25,13 +25,14 @@ import yaml
 
 ROOT = Path(__file__).parents[1]
 WORKFLOWS = ROOT / ".github" / "workflows"
-ORDER = ("checks.yml", "nightly.yml", "wheels.yml", "release.yml")
+ORDER = ("checks.yml", "nightly.yml", "docs.yml", "wheels.yml", "release.yml")
 # File, job and step: why it does not run here.
 ELSEWHERE = {
     "checks.yml/minimum-rust/*": "fetches another Rust toolchain",
     "nightly.yml/*": "takes hours; make test-deep and make mutants are its steps",
     "wheels.yml/wheels/Build the wheels and run the quick tests in each": "needs containers",
     "release.yml/page/*": "publishes",
+    "docs.yml/publish/*": "publishes",
 }
 # What runs in place of a step that does not: its output is needed by later ones.
 INSTEAD = {

@@ -89,6 +89,7 @@ ABSENCES: dict[tuple[str, str], str] = {
         "coming_from/tetgen.rst",
         "``o2``: not there",
     ): "tetrahedralize has no min_angle and no max_volume",
+    ("releasing.rst", "no release"): "the sentence says what the check looks for",
     ("coming_from/triangle.rst", "``X``: none"): "arithmetic is always exact",
     ("guide/compat.rst", "``QbB``"): "nothing is scaled",
     ("guide/compat.rst", "``C-0``, ``A-1``"): "there is no tolerance to merge facets",

@@ -2,19 +2,47 @@
 
 from __future__ import annotations
 
+import importlib
+import importlib.metadata
 import re
 import shutil
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
+import delone
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
 ROOT = Path(__file__).parents[2]
-FILES = (".github/check_release.py", "Cargo.toml", "CITATION.cff", "recipe/recipe.yaml")
-VERSION = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["version"]
+FILES = (
+    ".github/check_release.py",
+    "Cargo.toml",
+    "CITATION.cff",
+    "recipe/recipe.yaml",
+    "Cargo.lock",
+    "fuzz/Cargo.lock",
+    "benchmarks/peers/Cargo.lock",
+    "crates/web/Cargo.lock",
+)
+WRITTEN = tomllib.loads((ROOT / "Cargo.toml").read_text("utf-8"))["workspace"]["package"]["version"]
+VERSION = WRITTEN.replace("-alpha.", "a").replace("-beta.", "b").replace("-rc.", "rc")
 RELEASED = f"# Changelog\n\n## [Unreleased]\n\n## [{VERSION}] - 2026-01-02\n\n### Added\n\n- All.\n"
+
+
+def script(name: str) -> ModuleType:
+    """A program of the folder .github as a module."""
+    folder = str(ROOT / ".github")
+    sys.path.insert(0, folder)
+    try:
+        return importlib.import_module(name)
+    finally:
+        sys.path.remove(folder)
 
 
 def check(
@@ -47,8 +75,9 @@ def test_a_described_version_is_released_with_its_notes(tmp_path: Path) -> None:
         (RELEASED.replace(" - 2026-01-02", ""), f"v{VERSION}", "no text under"),
         (RELEASED.replace("### Added\n\n- All.\n", ""), f"v{VERSION}", "no text under"),
         (RELEASED.replace("sed]\n", "sed]\n\n- Late.\n"), f"v{VERSION}", "## [Unreleased]"),
+        (RELEASED, f"v{WRITTEN}-rc.1", "the tag is"),
     ],
-    ids=["other tag", "tag without v", "other version", "no date", "no text", "unreleased"],
+    ids=["other tag", "no v", "other version", "no date", "no text", "unreleased", "of Cargo"],
 )
 def test_what_is_not_described_is_not_released(
     changelog: str, tag: str, said: str, tmp_path: Path
@@ -62,13 +91,127 @@ def test_the_citation_has_the_date_of_the_release(tmp_path: Path) -> None:
     assert done.returncode == 1 and "date-released" in done.stderr
 
 
+def test_empty_headings_may_stay(tmp_path: Path) -> None:
+    changelog = RELEASED.replace("sed]\n", "sed]\n\n### Added\n\n### Fixed\n", 1)
+    assert check(tmp_path, changelog, f"v{VERSION}").returncode == 0
+
+
 @pytest.mark.parametrize("name", FILES[1:])
 def test_files_with_other_versions_are_named(name: str, tmp_path: Path) -> None:
     check(tmp_path, RELEASED, f"v{VERSION}")
     text = (tmp_path / name).read_text(encoding="utf-8")
-    (tmp_path / name).write_text(text.replace(VERSION, "9.9.9", 1), encoding="utf-8")
+    stated = VERSION if name in ("CITATION.cff", "recipe/recipe.yaml") else WRITTEN
+    assert stated in text
+    (tmp_path / name).write_text(text.replace(stated, "9.9.9", 1), encoding="utf-8")
     done = check(tmp_path, RELEASED, f"v{VERSION}")
     assert done.returncode == 1 and name in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("page", "text"),
+    [
+        ("README.md", "There is no release yet, so you build."),
+        ("docs/getting_started.rst", "Before the first\nrelease, build."),
+        ("docs/guide/io.rst", "From the first release on, install."),
+        ("crates/delone/README.md", "It is not yet released."),
+    ],
+)
+def test_pages_that_deny_the_release_are_named(page: str, text: str, tmp_path: Path) -> None:
+    """With a tag only, and not on the page about releasing."""
+    for name in (page, "docs/releasing.rst"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(f"Title\n\n{text}\n", encoding="utf-8")
+    done = check(tmp_path, RELEASED, f"v{VERSION}")
+    assert done.returncode == 1 and f"{page}:3 says" in done.stderr
+    assert "releasing" not in done.stderr
+    command = [sys.executable, tmp_path / ".github/check_release.py"]
+    assert subprocess.run(command, check=False).returncode == 0
+
+
+def test_python_states_the_same_version() -> None:
+    assert delone.__version__ == importlib.metadata.version("delone") == VERSION
+
+
+GOOD = f"""\
+Metadata-Version: 2.4
+Name: delone
+Version: {VERSION}
+Requires-Dist: numpy>=1.26
+Requires-Dist: typer>=0.15 ; extra == 'cli'
+Summary: Triangulation
+Keywords: delaunay
+Author: The delone developers
+License-Expression: MIT OR Apache-2.0
+Requires-Python: >=3.11
+Description-Content-Type: text/markdown; charset=UTF-8; variant=GFM
+Project-URL: Homepage, https://example.org
+Project-URL: Documentation, https://example.org
+Project-URL: Changelog, https://example.org
+Project-URL: Repository, https://example.org
+Project-URL: Issues, https://example.org
+
+{"# delone " * 200}
+"""
+
+
+def test_good_metadata_have_no_fault() -> None:
+    assert script("check_wheels").metadata_faults(GOOD) == []
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        ("Author: The delone developers\n", "", "no Author"),
+        ("Project-URL: Changelog, https://example.org\n", "", "no link Changelog"),
+        ("Project-URL: Homepage,", "Project-URL: Home,", "no link Homepage"),
+        (f"Version: {VERSION}\n", "Version: 9.9.9\n", "not delone"),
+        ("numpy>=1.26", "numpy>=2", "requires"),
+        ("# delone " * 2, "", "README"),
+        ("text/markdown", "text/plain", "Markdown"),
+    ],
+)
+def test_a_fault_of_metadata_is_named(before: str, after: str, said: str) -> None:
+    assert before in GOOD
+    [fault] = script("check_wheels").metadata_faults(GOOD.replace(before, after))
+    assert said in fault
+
+
+@pytest.mark.parametrize(
+    ("tag", "inside", "fit"),
+    [
+        ("cp311-abi3-manylinux_2_28_x86_64", "cp311-abi3-manylinux_2_28_x86_64", True),
+        ("cp314-cp314t-win_arm64", "cp314-cp314t-win_arm64", True),
+        ("cp311-abi3-macosx_11_0_arm64", "cp311-abi3-macosx_11_0_arm64", True),
+        ("cp311-abi3-linux_x86_64", "cp311-abi3-linux_x86_64", False),
+        ("cp311-abi3-manylinux_2_28_x86_64", "cp311-abi3-linux_x86_64", False),
+        ("py3-none-any", "py3-none-any", False),
+    ],
+)
+def test_tags_are_those_that_an_index_takes(tag: str, inside: str, fit: bool) -> None:
+    wheel = Path(f"delone-{VERSION}-{tag}.whl")
+    found = script("check_wheels").tag_faults(wheel, f"Wheel-Version: 1.0\nTag: {inside}\n")
+    assert (found == []) is fit
+
+
+def test_what_is_missing_in_an_sdist_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rehearse = script("rehearse")
+    tracked = ["tests/conftest.py", "python/delone/__init__.py", "Cargo.lock", "CHANGELOG.md"]
+    tracked += ["LICENSE-MIT", "LICENSE-APACHE", "LICENSE-THIRD-PARTY", "docs/index.rst"]
+    monkeypatch.setattr(rehearse, "said_by", lambda *_: "\n".join(tracked))
+    folder = tmp_path / f"delone-{VERSION}"
+    for name in [name for name in tracked if "docs" not in name]:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).touch()
+    (folder / "PKG-INFO").write_text(GOOD, encoding="utf-8")
+    assert rehearse.sdist_faults(folder) == []
+    (folder / "tests/conftest.py").unlink()
+    (folder / "tests/notes.txt").touch()
+    assert rehearse.sdist_faults(folder) == [
+        "tests/notes.txt is in no commit",
+        "tests/conftest.py is missing",
+    ]
 
 
 def test_versions_of_this_tree_agree() -> None:

@@ -42,10 +42,19 @@ mod voronoi3;
 
 use pyo3::prelude::*;
 
+/// The version of the package as Python writes it: 0.1.0a1 where Cargo has 0.1.0-alpha.1.
+fn version() -> String {
+    let mut written = env!("CARGO_PKG_VERSION").to_owned();
+    for (long, short) in [("-alpha.", "a"), ("-beta.", "b"), ("-rc.", "rc")] {
+        written = written.replace(long, short);
+    }
+    written
+}
+
 /// The compiled core of delone.
 #[pymodule(gil_used = false)]
 fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
-    m.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    m.add("__version__", version())?;
     m.add_function(wrap_pyfunction!(predicates::orient2d, m)?)?;
     m.add_function(wrap_pyfunction!(predicates::incircle, m)?)?;
     m.add_function(wrap_pyfunction!(predicates::orient3d, m)?)?;
