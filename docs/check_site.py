@@ -1,17 +1,22 @@
-"""Checks the built pages: no request leaves them, and each picture has a text.
+"""Checks the built pages: no request leaves them, pictures have texts, and the search finds words.
 
 Run it after a build: ``python docs/check_site.py docs/_build/html``. Links to other sites are fine;
 what a browser loads by itself (scripts, styles, fonts, pictures, frames) must be a file of the
-site. Scripts are searched for calls that load a literal address of another site.
+site. Scripts are searched for calls that load a literal address of another site. The words that
+users search for are in `TERMS`: the index of the search must have each.
+
+With ``--live`` each figure that readers can change must have the compiled core beside it: nothing
+half-alive is published.
 """
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import unquote, urlsplit
 
 if TYPE_CHECKING:
@@ -57,6 +62,35 @@ IN_SCRIPT = re.compile(
 )
 FILE_NAME = re.compile(r"\S+\.(png|jpe?g|svg|gif|webp)", re.IGNORECASE)
 
+# What users search for, and the page that has it.
+TERMS = {
+    "delaunayn": "coming_from/matlab",
+    "natural neighbour": "howto",
+    "marching cubes": "howto",
+    "blue noise": "howto",
+    "hexahedral": "howto",
+    "medial axis": "howto",
+    "straight skeleton": "howto",
+    "watershed": "howto",
+    "flow accumulation": "howto",
+    "cite": "howto",
+    "changelog": "howto",
+    "GPU": "howto",
+    "conda": "howto",
+    "convex decomposition": "howto",
+    "simplify": "howto",
+    "remesh": "howto",
+    "geodesic": "howto",
+    "zarr": "howto",
+    "JavaScript": "howto",
+    "isosurface": "howto",
+}
+# The compiled core, where figures load it.
+CORE = Path("_static/learn/core/delone_web_bg.wasm")
+# Of a word the index has the stem: "geodes" for "geodesic", "accumul" for "accumulation".
+ENDING = 5
+SHORTEST = 3
+
 
 class Fault(NamedTuple):
     """What is wrong in a file."""
@@ -73,6 +107,7 @@ class Page(HTMLParser):
         super().__init__()
         self.loads: list[tuple[int, str]] = []
         self.without_text: list[tuple[int, str]] = []
+        self.cores: list[tuple[int, str]] = []
         self._style = False
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
@@ -80,6 +115,8 @@ class Page(HTMLParser):
         line = self.getpos()[0]
         values = {name: value or "" for name, value in attrs}
         self._style = tag == "style"
+        if "data-core" in values:
+            self.cores.append((line, values["data-core"]))
         names = ADDRESSES.get(tag, ())
         if tag == "link" and LOADED & set(values.get("rel", "").lower().split()):
             names = ("href",)
@@ -162,6 +199,54 @@ def pages(root: Path) -> list[Path]:
     return [file for file in sorted(root.rglob("*.html")) if file.name != "webpack-macros.html"]
 
 
+def _is_stem(stem: str, word: str) -> bool:
+    """Whether a term of the index is, or may be, what is left of a word without its ending."""
+    return word.startswith(stem) and len(stem) >= max(SHORTEST, len(word) - ENDING)
+
+
+def found(index: dict[str, Any], term: str) -> set[str]:
+    """Return the pages that a search finds: those with all words, or with an entry of the index."""
+    names, pages = index["docnames"], set(range(len(index["docnames"])))
+    for word in term.lower().split():
+        hits: set[int] = set()
+        for kind in ("terms", "titleterms"):
+            for stem, places in index[kind].items():
+                if _is_stem(stem, word):
+                    hits |= {places} if isinstance(places, int) else set(places)
+        pages &= hits
+    for entry, places in index["indexentries"].items():
+        if term.lower() in entry:
+            pages |= {place[0] for place in places}
+    return {names[page] for page in pages}
+
+
+def check_search(root: Path) -> Iterator[Fault]:
+    """Yield the words that the search does not find on their page."""
+    file = root / "searchindex.js"
+    text = file.read_text(encoding="utf-8")
+    index = json.loads(text[text.index("(") + 1 : text.rindex(")")])
+    for term, page in TERMS.items():
+        if page not in found(index, term):
+            yield Fault(file, 1, f"does not lead from {term!r} to {page}")
+
+
+def check_live(root: Path) -> Iterator[Fault]:
+    """Yield the figures without the compiled core; a site without such figures is a fault, too."""
+    number = 0
+    for file in pages(root):
+        page = Page()
+        page.feed(file.read_text(encoding="utf-8"))
+        number += len(page.cores)
+        for line, there in page.cores:
+            if there != "yes":
+                yield Fault(file, line, "has a figure without the core: `make web` brings it")
+    core = root / CORE
+    if not number:
+        yield Fault(root / "index.html", 1, "no page has a figure that readers can change")
+    elif not core.is_file() or not core.stat().st_size:
+        yield Fault(core, 1, "is missing: `make web` brings it")
+
+
 def check(root: Path) -> Iterator[Fault]:
     """Yield all faults of a site."""
     for file in pages(root):
@@ -174,12 +259,15 @@ def check(root: Path) -> Iterator[Fault]:
 
 def main() -> int:
     """Print the faults of a site; the exit code is 1 if there are any."""
-    root = Path(sys.argv[1] if len(sys.argv) > 1 else "docs/_build/html")
+    named = [argument for argument in sys.argv[1:] if argument != "--live"]
+    root = Path(named[0] if named else "docs/_build/html")
     number = len(pages(root))
     if not number:
         print(f"{root} has no pages: build the site first", file=sys.stderr)
         return 2
-    faults = list(check(root))
+    faults = [*check(root), *check_search(root)]
+    if "--live" in sys.argv:
+        faults += check_live(root)
     for fault in faults:
         print(f"{fault.file.relative_to(root)}:{fault.line}: {fault.text}", file=sys.stderr)
     print(f"{root}: {number} pages, {len(faults)} faults")

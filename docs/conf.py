@@ -17,6 +17,7 @@ release = installed_version("delone")
 version = release
 
 SITE = "https://delone.readthedocs.io/en/latest/"
+REPOSITORY = "https://github.com/delone/delone"
 DESCRIPTION = "Exact, canonical and fast Delaunay triangulation: a Python package on a Rust core."
 
 # MathJax comes with the pages, so that they can be read without a network.
@@ -33,20 +34,25 @@ extensions = [
     "sphinxcontrib.bibtex",
     "sphinxext.opengraph",
     "live",
+    "member_tables",
     "picture_texts",
+    "questions",
     "try_page",
 ]
 templates_path = ["_templates"]
 # The folder `gallery` also receives notebooks and scripts, which are not pages.
 exclude_patterns = ["_build", "gallery/**/*.ipynb", "gallery/**/*.py"]
 # Where `make web` puts the core for figures that readers can change; without it they show stored
-# steps.
-live_core = str(ROOT / "target" / "web")
+# steps. All pages are written again when it comes.
+WEB = ROOT / "target" / "web"
+live_core = str(WEB) if (WEB / "delone_web_bg.wasm").exists() else None
 default_role = "py:obj"
 # Roles must lead somewhere. Single backticks alone, which docstrings put around names of arguments,
 # are links where a name is public.
 nitpicky = True
-suppress_warnings = example_files.suppressed()
+# Files in Markdown that pages include link to their own headings, which remain text. The parser is
+# used without its extension, for which each README.md would be a page.
+suppress_warnings = [*example_files.suppressed(), "ref.myst", "myst.header"]
 nitpick_ignore_regex = [("py:obj", r".*")]
 
 html_theme = "pydata_sphinx_theme"
@@ -55,8 +61,10 @@ html_baseurl = SITE
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_show_sourcelink = False
+html_favicon = "_static/favicon.svg"
 html_theme_options = {
-    "icon_links": [],
+    "icon_links": [{"name": "Repository", "url": REPOSITORY, "icon": "fa-brands fa-github"}],
+    "navbar_start": ["navbar-logo", "site-version"],
     "navigation_with_keys": False,
     "show_toc_level": 2,
     "header_links_before_dropdown": 8,
@@ -65,9 +73,10 @@ html_theme_options = {
     "footer_end": [],
 }
 # Pages without others beside them.
-html_sidebars = {"index": [], "howto": []}
+html_sidebars = {name: [] for name in ("index", "howto", "compared", "benchmarks", "changelog")}
 
 autosummary_generate = True
+toc_object_entries_show_parents = "hide"
 autodoc_typehints = "none"
 numpydoc_show_class_members = False
 numpydoc_class_members_toctree = False

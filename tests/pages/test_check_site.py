@@ -78,3 +78,27 @@ def test_styles_and_scripts_are_read(
     (site / "index.html").write_text("text")
     (site / name).write_text(text)
     assert [fault.file.name for fault in check_site.check(site)] == [name]
+
+
+FIGURE = '<div class="live-figure" data-core="{}"></div>'
+
+
+@pytest.mark.parametrize(
+    ("there", "wasm", "said"),
+    [
+        ("yes", b"code", []),
+        ("no", b"code", ["has a figure without the core: `make web` brings it"]),
+        ("yes", b"", ["is missing: `make web` brings it"]),
+        ("yes", None, ["is missing: `make web` brings it"]),
+        (None, b"code", ["no page has a figure that readers can change"]),
+    ],
+)
+def test_a_figure_without_its_core_is_not_published(
+    check_site: ModuleType, site: Path, there: str | None, wasm: bytes | None, said: list[str]
+) -> None:
+    (site / "index.html").write_text("text" if there is None else FIGURE.format(there))
+    if wasm is not None:
+        core = site / check_site.CORE
+        core.parent.mkdir(parents=True)
+        core.write_bytes(wasm)
+    assert [fault.text for fault in check_site.check_live(site)] == said

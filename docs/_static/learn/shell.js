@@ -19,7 +19,8 @@ import { NotStored, StoredCore } from "./stored.js";
 import { colorsOf, watchTheme } from "./theme.js";
 
 const WITHOUT_CORE =
-  "This copy of the site comes without the compiled core: here only the stored steps can be shown.";
+  "This copy of the site comes without the compiled core: here only the stored steps can be shown. " +
+  "In a clone of delone, `make site` builds one with it.";
 const NARROW = 520;
 
 export class Figure {

@@ -217,7 +217,8 @@ async function start(found) {
   const before = found.querySelector(".try-before");
   if (found.dataset.core !== "yes") {
     before.textContent =
-      "This copy of the site comes without the compiled core, so this page cannot triangulate.";
+      "This copy of the site comes without the compiled core, so this page cannot triangulate. " +
+      "In a clone of delone, `make site` builds one with it.";
     return null;
   }
   before.remove();
