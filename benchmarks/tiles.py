@@ -130,7 +130,7 @@ def kinds(n: int, tiles: int, folder: Path) -> None:
 
 def row(name: str, tin: Any, points: Any) -> None:
     """Print what tiles exchanged, and whether the triangles are the same."""
-    same = np.array_equal(canonical(tin.simplices()), canonical(Delaunay(points).simplices))
+    same = np.array_equal(canonical(tin.read_simplices()), canonical(Delaunay(points).simplices))
     given, rounds = tin.manifest["given"], tin.manifest["rounds"]
     share = given / tin.npoints
     print(f"{name:16}{tin.npoints:10,}{rounds:8}{given:10,}{share:9.3%}  {same}", flush=True)
@@ -166,7 +166,7 @@ def lidar(file: Path, size: int, folder: Path) -> None:
     right = canonical(Delaunay(read_points(file).points).simplices)
     for kill in (False, True):
         tin, seconds = on_dask(file, folder / f"lidar{kill}", size, kill=kill)
-        same = np.array_equal(canonical(tin.simplices()), right)
+        same = np.array_equal(canonical(tin.read_simplices()), right)
         figures = tin.manifest
         print(
             f"{'one killed' if kill else 'undisturbed':12} {tin.npoints:,} points, "

@@ -50,6 +50,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "extras": ("errors",),
     "flips": ("lawson",),
     "immutable": ("delaunay", "parallel"),
+    "renames": ("classes",),
     "location": ("locate",),
     "measures": ("measure",),
     "plane": ("delaunay", "measure"),

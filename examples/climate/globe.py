@@ -62,7 +62,7 @@ for name, field in (("plane", plane), ("sphere", found)):
 # Weights serve any number of fields: here one for each month, with one product. The gradient is towards east and north,
 # per meter with the radius of the Earth.
 
-table = globe.weights(nodes)
+table = globe.weights_at(nodes)
 months = values[:, None] + 5 * np.sin(np.radians(latitude))[:, None] * np.cos(
     np.arange(12) / 6 * np.pi
 )

@@ -21,7 +21,7 @@ land = datasets.land()
 random = np.random.default_rng(8)
 places = sphere.Delaunay(xyz=random.normal(size=(12000, 3))).lonlat
 coast = sphere.from_geometry(land)
-on_land = coast.polygon[coast.find_simplex(places)] >= 0
+on_land = coast.polygon_of_simplex[coast.find_simplex(places)] >= 0
 east, north = places.T
 crowded = (north > 30) & (north < 62) & ((np.abs(east + 95) < 35) | (np.abs(east - 15) < 30))
 stations = places[on_land & (crowded | (random.uniform(size=12000) < 0.05))]
@@ -31,7 +31,7 @@ stations = places[on_land & (crowded | (random.uniform(size=12000) < 0.05))]
 
 cells = sphere.Voronoi(lonlat=stations, clip=land, radius=6371)
 total = cells.cell_areas.sum()
-whole = coast.areas[coast.polygon >= 0].sum() * 6371**2
+whole = coast.areas[coast.polygon_of_simplex >= 0].sum() * 6371**2
 assert np.isclose(total, whole)
 parts = np.array([len(polygons) for polygons in cells.polygons()])
 print(
@@ -49,7 +49,7 @@ def temperature(latitude):
 
 
 grid = sphere.Delaunay(xyz=random.normal(size=(200_000, 3))).lonlat
-truth = temperature(grid[coast.polygon[coast.find_simplex(grid)] >= 0, 1]).mean()
+truth = temperature(grid[coast.polygon_of_simplex[coast.find_simplex(grid)] >= 0, 1]).mean()
 values = temperature(stations[:, 1])
 weighted = np.average(values, weights=cells.cell_areas)
 print(f"true mean {truth:.1f} C, weighted {weighted:.1f} C, plain {values.mean():.1f} C")

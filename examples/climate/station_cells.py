@@ -18,7 +18,7 @@ from delone import datasets, sphere
 random = np.random.default_rng(4)
 places = sphere.Delaunay(xyz=random.normal(size=(3000, 3))).lonlat
 coast = sphere.from_geometry(datasets.land())
-on_land = coast.polygon[coast.find_simplex(places)] >= 0
+on_land = coast.polygon_of_simplex[coast.find_simplex(places)] >= 0
 stations = places[on_land | (random.uniform(size=3000) < 0.1)]
 
 # %%

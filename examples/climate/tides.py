@@ -16,7 +16,7 @@ from delone.interpolate import NaturalNeighbor
 
 gauges = 100 * uniform(300, seed=8)
 x, y = np.meshgrid(np.arange(5.0, 95.0, 2.0), np.arange(5.0, 95.0, 2.0))
-weights = NaturalNeighbor(gauges).weights(np.stack((x, y), axis=-1))
+weights = NaturalNeighbor(gauges).weights_at(np.stack((x, y), axis=-1))
 print(weights)
 
 # %%

@@ -31,7 +31,7 @@ print(f"{tin.manifest['rounds']} rounds, {tin.manifest['given']:,} points exchan
 # %%
 # The triangles are the same as those computed in memory, and each tile is proven correct.
 
-assert same_triangles(tin.simplices(), Delaunay(survey.points).simplices)
+assert same_triangles(tin.read_simplices(), Delaunay(survey.points).simplices)
 assert tin.validate()
 
 # %%

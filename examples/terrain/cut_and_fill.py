@@ -26,7 +26,7 @@ before = TIN.from_points(points, max_edge=6)
 
 pad = np.array([(64.0, 32), (79, 28), (84, 46), (69, 50)])
 after = before.embank(pad, 1.6, cut=1 / 2, fill=1 / 3)
-volume = before.volume(after)
+volume = before.volume_to(after)
 print(after)
 print(volume)
 
@@ -36,10 +36,10 @@ print(volume)
 low, high = 1.0, 2.5
 for _ in range(8):
     middle = (low + high) / 2
-    balance = before.volume(before.embank(pad, middle, cut=1 / 2, fill=1 / 3)).net
+    balance = before.volume_to(before.embank(pad, middle, cut=1 / 2, fill=1 / 3)).net
     low, high = (low, middle) if balance > 0 else (middle, high)
 after = before.embank(pad, middle, cut=1 / 2, fill=1 / 3)
-volume = before.volume(after)
+volume = before.volume_to(after)
 print(f"balanced at {middle:.3f} m: cut {volume.cut:.1f}, fill {volume.fill:.1f} cubic meters")
 
 # %%

@@ -17,6 +17,7 @@ import numpy as np
 from delone._arrays import as_number, as_vectors, as_workers, require_finite
 from delone.blocks import blocks
 from delone.errors import InputError, ShapeError
+from delone.renames import renamed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,6 +36,7 @@ __all__ = ["Location"]
 _DOUBT = 2.0**-30
 
 
+@renamed(nearest="closest")
 @dataclass(frozen=True, eq=False)
 class Location:
     """Where points lie.
@@ -47,7 +49,7 @@ class Location:
     barycentric : ndarray of float64, shape (..., d + 1)
         Weights of the corners of that simplex: none below 0, of sum 1 up to rounding, exactly 1 at
         a corner. NaN outside.
-    nearest : ndarray of float64, shape (..., d)
+    closest : ndarray of float64, shape (..., d)
         The point itself inside; outside, the nearest point of the boundary, rounded. NaN where the
         query is not finite.
     beside : ndarray of int32, shape (...)
@@ -66,16 +68,16 @@ class Location:
     >>> place = Delaunay([(0, 0), (4, 0), (0, 4)]).locate([(1, 2), (3, 3)])
     >>> place.simplex.tolist(), sorted(place.barycentric[0].tolist())
     ([0, -1], [0.25, 0.25, 0.5])
-    >>> place.facet[1].tolist(), place.weights[1].tolist(), place.nearest[1].tolist()
+    >>> place.facet[1].tolist(), place.weights[1].tolist(), place.closest[1].tolist()
     ([1, 2], [0.5, 0.5], [2.0, 2.0])
     >>> place = Delaunay([(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4)]).locate((1, 1, -3))
-    >>> int(place.simplex), place.nearest.tolist(), sorted(place.facet.tolist())
+    >>> int(place.simplex), place.closest.tolist(), sorted(place.facet.tolist())
     (-1, [1.0, 1.0, 0.0], [0, 1, 2])
     """
 
     simplex: Indices
     barycentric: Floats
-    nearest: Floats
+    closest: Floats
     beside: Indices
     facet: Indices
     weights: Floats
@@ -170,7 +172,7 @@ def locate_near(
     outside = np.flatnonzero(beside >= 0)
     rows = outside[
         _are_near(
-            points, facet[outside], place.nearest.reshape(-1, d)[outside], flat[outside], limit
+            points, facet[outside], place.closest.reshape(-1, d)[outside], flat[outside], limit
         )
     ]
     simplex, barycentric = place.simplex.reshape(-1), place.barycentric.reshape(-1, d + 1)
@@ -186,7 +188,7 @@ def locate_near(
     return Location(
         simplex.reshape(leading),
         barycentric.reshape((*leading, d + 1)),
-        place.nearest,
+        place.closest,
         beside.reshape(leading),
         facet.reshape((*leading, d)),
         shares.reshape((*leading, d)),

@@ -217,24 +217,13 @@ class Triangulation(Complex):
         sites = self._points[rows]
         return self._dimension.locator(sites, *triangulate(sites, as_workers(self._workers))), rows
 
-    def find_simplex(
-        self,
-        xi: ArrayLike,
-        bruteforce: bool = False,
-        tol: float | None = None,
-        *,
-        tolerance: float = 0.0,
-    ) -> Indices:
+    def find_simplex(self, xi: ArrayLike, *, tolerance: float = 0.0) -> Indices:
         """Find the simplices that contain points.
 
         Parameters
         ----------
         xi : array_like, shape (..., d)
             Points to locate. NaN and infinity are outside.
-        bruteforce : bool, optional
-            Accepted as in SciPy, but has no effect: the walk cannot fail.
-        tol : float, optional
-            Accepted as in SciPy, but has no effect: the result is exact.
         tolerance : float, optional
             Points outside at most this far away, in the unit of the points, are in the simplex at
             the nearest point of the boundary, such as points that lie on a side but for rounding.
@@ -334,7 +323,7 @@ class Triangulation(Complex):
         Returns
         -------
         Location
-            With fields `simplex`, `barycentric`, `nearest`, `beside`, `facet` and `weights`.
+            With fields `simplex`, `barycentric`, `closest`, `beside`, `facet` and `weights`.
 
         Raises
         ------
@@ -360,7 +349,7 @@ class Triangulation(Complex):
         array([ 0, -1], dtype=int32)
         >>> place.barycentric[0] @ mesh.points[mesh.simplices[0]]
         array([1., 2.])
-        >>> place.nearest
+        >>> place.closest
         array([[1., 2.],
                [2., 2.]])
         >>> mesh.locate((3, 3), tolerance=1.5).barycentric @ mesh.points[mesh.simplices[0]]
@@ -418,11 +407,14 @@ class Triangulation(Complex):
         return along(self._whole_locator, tiling, self._number, start, end)
 
     @only(2, "geopandas has no polyhedra")
-    def to_geopandas(self, *, crs: Any = None) -> Any:
+    def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
         """Convert to a table of polygons (extra ``geo``); 2-D only.
 
         Parameters
         ----------
+        data : DataFrame or mapping, optional
+            Columns to include, with one row for each triangle. The geometry of a GeoDataFrame is
+            replaced, its reference system and index are kept.
         crs : optional
             Reference system of the coordinates, anything that geopandas takes; by default that of
             the geometries that were triangulated, if any.
@@ -437,6 +429,8 @@ class Triangulation(Complex):
         ------
         MissingExtraError
             geopandas or shapely is not installed.
+        InputError
+            `data` does not have one row for each triangle.
 
         Examples
         --------
@@ -450,7 +444,7 @@ class Triangulation(Complex):
         parts, heights = self._parts(), getattr(self, "z", None)
         if heights is not None:
             parts = parts._replace(points=np.column_stack((parts.points, heights)))
-        return to_geopandas(parts, crs)
+        return to_geopandas(parts, crs, data)
 
     @only(2, "matplotlib has no tetrahedral meshes")
     def to_matplotlib(self) -> Any:

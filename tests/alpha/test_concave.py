@@ -117,7 +117,7 @@ def test_solids_keep_every_point():
         assert other.volume == hull.volume
     assert hull.is_manifold
     assert hull.volume == pytest.approx(delone.ConvexHull(points).volume)
-    faces = points[delone.concave_hull(points, ratio=0.3).boundary()]
+    faces = points[delone.concave_hull(points, ratio=0.3).boundary]
     assert np.linalg.det(faces).sum() / 6 == pytest.approx(
         delone.concave_hull(points, ratio=0.3).volume
     )
@@ -130,7 +130,7 @@ def test_solids_keep_every_point():
 )
 def test_points_without_an_area_have_an_empty_hull(points):
     hull = delone.concave_hull(points, ratio=0.5)
-    assert (hull.area, len(hull.simplices), len(hull.boundary())) == (0, 0, 0)
+    assert (hull.area, len(hull.simplices), len(hull.boundary)) == (0, 0, 0)
     assert hull.polygon().is_empty
 
 

@@ -29,7 +29,7 @@ _SETS = {
 @pytest.mark.sampled(3)
 def test_polygons_are_valid_for_every_alpha(name):
     complex = delone.AlphaComplex(_SETS[name])
-    corners = complex.points[complex.simplices(2)]
+    corners = complex.points[complex.simplices_of(2)]
     for alpha in (*complex.spectrum, np.inf):
         shape = complex.shape(alpha)
         polygons = shape.polygons()
@@ -42,7 +42,7 @@ def test_polygons_are_valid_for_every_alpha(name):
             assert shapely.union_all(polygons).symmetric_difference(union).area < 1e-9
             assert sum(shapely.length(polygons)) == pytest.approx(shape.perimeter)
             rings = [ring for p in polygons for ring in (p.exterior, *p.interiors)]
-            assert sum(len(ring.coords) - 1 for ring in rings) == len(shape.boundary())
+            assert sum(len(ring.coords) - 1 for ring in rings) == len(shape.boundary)
             assert all(p.exterior.is_ccw for p in polygons)
             assert not any(ring.is_ccw for p in polygons for ring in p.interiors)
         holes = sum(len(p.interiors) for p in polygons)
@@ -90,8 +90,8 @@ def test_numbers_of_components_and_holes(name):
     complex = delone.AlphaComplex(_SETS[name])
     for alpha in complex.spectrum[::3]:
         shape = complex.shape(alpha)
-        parts = _ncomponents(shape.simplices(0)[:, 0].tolist(), shape.simplices(1).tolist())
-        sizes = [len(shape.simplices(k)) for k in range(3)]
+        parts = _ncomponents(shape.simplices_of(0)[:, 0].tolist(), shape.simplices_of(1).tolist())
+        sizes = [len(shape.simplices_of(k)) for k in range(3)]
         assert shape.euler_characteristic == sizes[0] - sizes[1] + sizes[2]
         assert shape.ncomponents == parts
         assert shape.betti == (parts, parts - shape.euler_characteristic)
@@ -121,7 +121,7 @@ def test_voids_of_a_shell():
     grid = np.array(list(product(range(6), repeat=3)), dtype=float)
     thick = delone.AlphaComplex(grid[((grid < 2) | (grid > 3)).any(axis=1)])
     assert thick.optimal(holes=True) == 0.75
-    assert thick.optimal() == thick.values(3).max() > 0.75
+    assert thick.optimal() == thick.values_of(3).max() > 0.75
     assert thick.shape(0.75).betti == (1, 0, 1)
 
 
@@ -130,11 +130,11 @@ def test_voids_of_a_shell():
 @pytest.mark.parametrize("components", [1, 2, 4])
 def test_optimal_is_the_smallest_that_fits(name, components, holes):
     complex = delone.AlphaComplex(_SETS[name])
-    corners = complex.points[complex.simplices(2)]
+    corners = complex.points[complex.simplices_of(2)]
 
     def fits(alpha):
-        is_kept = complex.values(2) <= alpha
-        if len(np.unique(complex.simplices(2)[is_kept])) < len(complex.simplices(0)):
+        is_kept = complex.values_of(2) <= alpha
+        if len(np.unique(complex.simplices_of(2)[is_kept])) < len(complex.simplices_of(0)):
             return False
         shape = complex.shape(alpha)
         polygons = shape.polygons()
@@ -143,7 +143,7 @@ def test_optimal_is_the_smallest_that_fits(name, components, holes):
         gaps = [p for p in rest if p.area > 1e-9 and p.intersection(whole.boundary).length < 1e-9]
         return len(polygons) <= components and (holes or not gaps)
 
-    expected = next(alpha for alpha in np.unique(complex.values(2)) if fits(alpha))
+    expected = next(alpha for alpha in np.unique(complex.values_of(2)) if fits(alpha))
     assert complex.optimal(components, holes=holes) == expected
 
 
@@ -152,10 +152,10 @@ def test_boundary_of_a_solid_is_closed():
     complex = delone.AlphaComplex(points)
     for alpha in np.quantile(complex.spectrum, [0.3, 0.6, 0.9, 1]):
         shape = complex.shape(alpha)
-        faces = points[shape.boundary()]
+        faces = points[shape.boundary]
         # The divergence theorem, for faces that are counter-clockwise from outside.
         assert np.linalg.det(faces).sum() / 6 == pytest.approx(shape.volume)
-        sides = shape.boundary()[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+        sides = shape.boundary[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
         _, uses = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
         assert (uses % 2 == 0).all()
         if not (uses == 2).all():
@@ -175,7 +175,7 @@ def test_complexes_on_the_torus(n, weighted):
     torus = complex.shape(np.inf)
     assert (torus.euler_characteristic, torus.betti) == (0, (1, 2, 1))
     assert torus.area == pytest.approx(256)
-    assert len(torus.boundary()) == 0
+    assert len(torus.boundary) == 0
     mesh = delone.PeriodicDelaunay(points, (16, 16), weights=weights)
     heavy = [Fraction(0)] * len(points) if weights is None else list(map(Fraction, weights))
     copies = [
@@ -183,7 +183,7 @@ def test_complexes_on_the_torus(n, weighted):
         for p, w in zip(points.tolist(), heavy, strict=True)
         for i, j in product((-3, -2, -1, 0, 1, 2, 3), repeat=2)
     ]
-    for t, value in zip(range(len(mesh.simplices)), complex.values(2), strict=True):
+    for t, value in zip(range(len(mesh.simplices)), complex.values_of(2), strict=True):
         rows, moved = mesh.simplices[t], mesh.offsets[t]
         at = [
             [Fraction(points[r, k]) + 16 * int(o[k]) for k in range(2)]
@@ -192,7 +192,7 @@ def test_complexes_on_the_torus(n, weighted):
         assert value == float(ball(at, [heavy[r] for r in rows])[1])
     # Edges: own value if no copy is inside the ball, otherwise that of a triangle.
     for (a, b), moved, value in list(
-        zip(complex.simplices(1), _moves(complex), complex.values(1), strict=True)
+        zip(complex.simplices_of(1), _moves(complex), complex.values_of(1), strict=True)
     )[:40]:
         ends = [
             [Fraction(points[a, k]) for k in range(2)],
@@ -204,7 +204,7 @@ def test_complexes_on_the_torus(n, weighted):
             for p, w in copies
         )
         assert (value > float(square)) if met else (value == float(square))
-    for (row,), value in zip(complex.simplices(0), complex.values(0), strict=True):
+    for (row,), value in zip(complex.simplices_of(0), complex.values_of(0), strict=True):
         center, square = ball([[Fraction(x) for x in points[row].tolist()]], [heavy[row]])
         met = any(
             p != center and sum((x - y) ** 2 for x, y in zip(p, center, strict=True)) - w < square
@@ -232,7 +232,7 @@ def test_a_strip_and_its_files(tmp_path):
     complex.save(tmp_path / "strip.npz")
     loaded = delone.AlphaComplex.load(tmp_path / "strip.npz")
     assert loaded.periods == (1.0, None)
-    assert np.array_equal(loaded.values(1), complex.values(1))
+    assert np.array_equal(loaded.values_of(1), complex.values_of(1))
     with pytest.raises(delone.DegenerateInputError):
         delone.AlphaComplex([(0, 0), (0.5, 0)], periodic=(1, None))
     with pytest.raises(delone.DegenerateInputError):
@@ -242,5 +242,5 @@ def test_a_strip_and_its_files(tmp_path):
 def test_without_an_outside_the_last_hole_is_filled_by_the_last_triangle():
     points = np.random.default_rng(5).random((60, 2))
     complex = delone.AlphaComplex(points, periodic=(1, 1))
-    assert complex.optimal() == complex.values(2).max()
+    assert complex.optimal() == complex.values_of(2).max()
     assert complex.optimal(holes=True) < complex.optimal()

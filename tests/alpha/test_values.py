@@ -51,7 +51,7 @@ def test_values_are_those_of_the_definition_rounded_once(name, weighted):
     points = _SETS[name]
     weights = _weights(points) if weighted else None
     complex = delone.AlphaComplex(points, weights)
-    expected = values(points, complex.simplices(complex.dimension), weights)
+    expected = values(points, complex.simplices_of(complex.dimension), weights)
     found = listed(complex)
     assert found.keys() == expected.keys()
     for face, value in expected.items():
@@ -87,7 +87,7 @@ def test_rows_scales_and_workers_change_nothing(name, weighted):
     assert as_coordinates(other, listed(other)) == expected
     assert len(other.order) == len(complex.order)
     for (k, i), (m, j) in zip(complex.order, other.order, strict=True):
-        one, two = points[complex.simplices(k)[i]], other.points[other.simplices(m)[j]]
+        one, two = points[complex.simplices_of(k)[i]], other.points[other.simplices_of(m)[j]]
         assert sorted(one.tolist()) == sorted(two.tolist())
     for e in (-60, 9):
         scaled = delone.AlphaComplex(points * 2.0**e, None if weights is None else weights * 4.0**e)
@@ -100,11 +100,11 @@ def test_many_tasks_are_as_one(ndim):
     points = np.random.default_rng(8).random((9000, ndim))
     one, many = (delone.AlphaComplex(points, workers=w) for w in (1, 3))
     for k in range(ndim + 1):
-        assert np.array_equal(one.simplices(k), many.simplices(k))
-        assert np.array_equal(one.values(k), many.values(k))
+        assert np.array_equal(one.simplices_of(k), many.simplices_of(k))
+        assert np.array_equal(one.values_of(k), many.values_of(k))
     at = exact(points)
     for k in range(1, ndim + 1):
-        rows, values_ = one.simplices(k), one.values(k)
+        rows, values_ = one.simplices_of(k), one.values_of(k)
         for i in np.random.default_rng(k).choice(len(rows), 60, replace=False):
             _, square = ball([at[j] for j in rows[i]], [0] * (k + 1))
             assert values_[i] >= float(square)
@@ -135,12 +135,12 @@ def test_gudhi_has_the_same(ndim, weighted, precision):
 
 def test_order_and_spectrum():
     complex = delone.AlphaComplex(lattice(4, 3))
-    at = [complex.values(k)[i] for k, i in complex.order]
+    at = [complex.values_of(k)[i] for k, i in complex.order]
     assert at == sorted(at)
-    assert len(complex.order) == sum(len(complex.simplices(k)) for k in range(3))
+    assert len(complex.order) == sum(len(complex.simplices_of(k)) for k in range(3))
     place = {}
     for n, (k, i) in enumerate(complex.order):
-        face = frozenset(complex.simplices(k)[i].tolist())
+        face = frozenset(complex.simplices_of(k)[i].tolist())
         place[face] = n
         assert all(place[face - {v}] < n for v in face if len(face) > 1)
     assert complex.spectrum.tolist() == [0.0, 0.25, 0.5]
@@ -148,26 +148,29 @@ def test_order_and_spectrum():
 
 def test_points_that_span_less():
     empty = delone.AlphaComplex(np.empty((0, 2)))
-    assert (empty.dimension, len(empty.simplices(0)), len(empty.order)) == (-1, 0, 0)
+    assert (empty.dimension, len(empty.simplices_of(0)), len(empty.order)) == (-1, 0, 0)
     for points in ([(1, 2)], [(1, 2)] * 4, [(1, 2, 3)]):
         single = delone.AlphaComplex(points)
-        assert (single.dimension, single.simplices(0).tolist()) == (0, [[0]])
+        assert (single.dimension, single.simplices_of(0).tolist()) == (0, [[0]])
         assert single.spectrum.tolist() == [0.0]
         assert single.optimal() == 0
-        assert single.shape(0).boundary().shape == (0, single.ndim)
+        assert single.shape(0).boundary.shape == (0, single.ndim)
     pair = delone.AlphaComplex([(0, 0), (0, 6)])
-    assert (pair.values(1).tolist(), pair.optimal()) == ([9.0], 9.0)
+    assert (pair.values_of(1).tolist(), pair.optimal()) == ([9.0], 9.0)
     path = delone.AlphaComplex([(2, 2), (0, 0), (6, 6), (0, 0)])
-    assert path.simplices(1).tolist() == [[0, 1], [0, 2]]
+    assert path.simplices_of(1).tolist() == [[0, 1], [0, 2]]
     assert path.shape(2).ncomponents == 2
     assert path.shape(2).betti == (2, 0)
     assert path.shape(8).area == 0
     heavy = delone.AlphaComplex([(0, 0), (1, 0), (2, 0)], [0, -5, 0])
-    assert (heavy.simplices(0).tolist(), heavy.simplices(1).tolist()) == ([[0], [2]], [[0, 2]])
+    assert (heavy.simplices_of(0).tolist(), heavy.simplices_of(1).tolist()) == (
+        [[0], [2]],
+        [[0, 2]],
+    )
     flat = delone.AlphaComplex([(0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)])
-    assert (flat.dimension, flat.values(2).tolist()) == (2, [0.5, 0.5])
+    assert (flat.dimension, flat.values_of(2).tolist()) == (2, [0.5, 0.5])
     heavy = delone.AlphaComplex([(0, 0, 0), (1, 1, 1), (2, 2, 2), (1, 1, 1)], [0, -9, 0, 0])
-    assert heavy.simplices(1).tolist() == [[0, 3], [2, 3]]
+    assert heavy.simplices_of(1).tolist() == [[0, 3], [2, 3]]
 
 
 def test_wrong_input():
@@ -179,11 +182,11 @@ def test_wrong_input():
     for alpha in (np.nan, -1e-300):
         with pytest.raises(delone.InputError, match="at least 0"):
             complex.shape(alpha)
-    assert len(delone.AlphaComplex([(0, 0)], [4]).shape(-4).simplices(0)) == 1
+    assert len(delone.AlphaComplex([(0, 0)], [4]).shape(-4).simplices_of(0)) == 1
     with pytest.raises(delone.InputError, match="not NaN"):
         delone.AlphaComplex([(0, 0)], [4]).shape(np.nan)
     with pytest.raises(delone.InputError, match="from 0 to 2"):
-        complex.simplices(3)
+        complex.simplices_of(3)
     with pytest.raises(delone.InputError, match="at least 1"):
         complex.optimal(0)
     with pytest.raises(delone.InputError, match="no points"):

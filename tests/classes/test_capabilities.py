@@ -98,7 +98,7 @@ def exercise(made: Any, capability: str, tmp_path: Path) -> None:
     elif capability in ("find_simplex", "nearest"):
         assert (getattr(made, capability)(made.points[:3]) >= 0).all()
     elif capability == "locate":
-        assert np.allclose(made.locate(made.points[:3]).nearest, made.points[:3])
+        assert np.allclose(made.locate(made.points[:3]).closest, made.points[:3])
     elif capability in ("edges", "boundary", "circumcenters"):
         found = getattr(made, capability)
         assert found.ndim == 2

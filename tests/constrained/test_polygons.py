@@ -184,12 +184,12 @@ class TestInside:
         line = shapely.LineString([(-3, 3), (9, 3)])
         mesh = from_geometry([line, FRAME, shapely.Point(20, 20)], boundary="polygons")
         assert mesh.areas.sum() == 32
-        assert set(mesh.polygon.tolist()) == {1}
+        assert set(mesh.polygon_of_simplex.tolist()) == {1}
         assert mesh.validate()
 
     def test_the_first_of_overlapping_polygons_counts(self) -> None:
         mesh = from_geometry([shapely.box(0, 0, 4, 4), shapely.box(2, 2, 6, 6), FRAME])
-        areas = [mesh.areas[mesh.polygon == number].sum() for number in (-1, 0, 1, 2)]
+        areas = [mesh.areas[mesh.polygon_of_simplex == number].sum() for number in (-1, 0, 1, 2)]
         assert areas == [0, 16, 12, 8]
 
     def test_islands_in_holes_are_inside(self) -> None:
@@ -201,7 +201,7 @@ class TestInside:
         assert from_geometry(halves, boundary="polygons").areas.sum() == 36
 
     def test_arrays_have_no_polygons(self) -> None:
-        assert set(ConstrainedDelaunay(RING, [(0, 2)]).polygon.tolist()) == {-1}
+        assert set(ConstrainedDelaunay(RING, [(0, 2)]).polygon_of_simplex.tolist()) == {-1}
         with pytest.raises(errors.InputError, match="boundary"):
             ConstrainedDelaunay(RING, [(0, 2)], boundary="polygons")
 
@@ -209,14 +209,14 @@ class TestInside:
         mesh = from_geometry([FRAME, shapely.box(10, 0, 11, 1)], boundary="polygons")
         with mesh.edit() as edit:
             edit.remove_segment(5)
-        assert set(edit.result.polygon.tolist()) == {1}
+        assert set(edit.result.polygon_of_simplex.tolist()) == {1}
         assert edit.result.areas.sum() == 1
 
     def test_a_file_keeps_polygons(self, tmp_path: Path) -> None:
         mesh = from_geometry([FRAME, shapely.box(10, 0, 11, 1)], boundary="polygons")
         mesh.save(tmp_path / "mesh.npz")
         loaded = ConstrainedDelaunay.load(tmp_path / "mesh.npz")
-        assert np.array_equal(loaded.polygon, mesh.polygon)
+        assert np.array_equal(loaded.polygon_of_simplex, mesh.polygon_of_simplex)
         assert np.array_equal(loaded.simplices, mesh.simplices)
 
     @given(
@@ -233,9 +233,9 @@ class TestInside:
             only = from_geometry(
                 [*[None] * number, geometries[number - 1], shapely.box(-1, -1, 6, 6)]
             )
-            found = only.areas[only.polygon == number].sum()
+            found = only.areas[only.polygon_of_simplex == number].sum()
             assert found == pytest.approx(winding_area([rings[number - 1]], "even-odd"), abs=1e-9)
-        inside = mesh.polygon >= 1
+        inside = mesh.polygon_of_simplex >= 1
         centre = mesh.points[mesh.simplices].mean(axis=1)
         for (x, y), label in zip(centre.tolist(), inside.tolist(), strict=True):
             assert label == any(is_inside(ring, x, y) for ring in rings)

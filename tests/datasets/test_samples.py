@@ -78,5 +78,5 @@ def test_land_is_the_land_of_the_earth() -> None:
 
 def test_land_is_triangulated_on_the_sphere() -> None:
     mesh = sphere.from_geometry(datasets.land())
-    share = mesh.areas[mesh.polygon >= 0].sum() / mesh.areas.sum()
+    share = mesh.areas[mesh.polygon_of_simplex >= 0].sum() / mesh.areas.sum()
     assert abs(share - 0.29) < 0.01

@@ -116,7 +116,7 @@ def test_arguments_of_what_is_read_back(tmp_path: Path) -> None:
             tin.tile(number)  # type: ignore[arg-type]
     for value in (5, None, ["z"], "depth"):
         with pytest.raises(InputError, match="it has z"):
-            tin.interpolate([0.5, 0.5], value=value)  # type: ignore[arg-type]
+            tin.interpolate([0.5, 0.5], values=value)  # type: ignore[arg-type]
     for table in (5, None, ["triangles"], "edges"):
         with pytest.raises(InputError, match="table must be"):
             tin.to_dask_dataframe(table)  # type: ignore[arg-type]

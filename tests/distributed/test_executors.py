@@ -24,7 +24,7 @@ POINTS = datasets.gaussian_clusters(3000)
 
 def test_processes_agree_with_memory(tmp_path: Path, canonical: Callable[[Any], Any]) -> None:
     tin = distributed.triangulate(POINTS, tmp_path / "tin", tile_points=800, executor="processes")
-    assert np.array_equal(canonical(tin.simplices()), canonical(Delaunay(POINTS).simplices))
+    assert np.array_equal(canonical(tin.read_simplices()), canonical(Delaunay(POINTS).simplices))
 
 
 @pytest.fixture
@@ -52,7 +52,7 @@ def test_a_process_that_dies_changes_nothing(
     )
     assert started[0].returncode not in (None, 0)
     assert all(worker.returncode == 0 for worker in started[1:])
-    assert np.array_equal(canonical(tin.simplices()), canonical(Delaunay(POINTS).simplices))
+    assert np.array_equal(canonical(tin.read_simplices()), canonical(Delaunay(POINTS).simplices))
 
 
 @pytest.mark.deep
@@ -147,7 +147,7 @@ def test_a_killed_worker_changes_nothing(
         client.wait_for_workers(2)
     assert killed and killed[0] in before
     assert tin.ntiles == 10
-    assert np.array_equal(canonical(tin.simplices()), canonical(Delaunay(POINTS).simplices))
+    assert np.array_equal(canonical(tin.read_simplices()), canonical(Delaunay(POINTS).simplices))
     assert tin.validate()
 
 
@@ -203,7 +203,7 @@ def test_a_scheduler_that_goes_away_is_named(
     finally:
         client.close()
     tin = distributed.triangulate(POINTS, tmp_path / "tin", tile_points=300)
-    assert np.array_equal(canonical(tin.simplices()), canonical(Delaunay(POINTS).simplices))
+    assert np.array_equal(canonical(tin.read_simplices()), canonical(Delaunay(POINTS).simplices))
 
 
 @pytest.mark.parametrize("executor", ["threads", 2, None])

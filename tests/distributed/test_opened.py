@@ -52,7 +52,7 @@ def test_find_simplex(tin: distributed.TiledDelaunay) -> None:
     found = tin.find_simplex(asked)
     right = Delaunay(SURVEY.points)
     assert np.array_equal(found < 0, right.find_simplex(asked) < 0)
-    corners = tin.simplices()[found[found >= 0]]
+    corners = tin.read_simplices()[found[found >= 0]]
     inside = asked[found >= 0]
     from delone.predicates import orient2d
 
@@ -69,7 +69,7 @@ def test_a_relative_folder_stays_where_it_is(
     monkeypatch.chdir(tin.path.parent)
     again = distributed.open(tin.path.name)
     monkeypatch.chdir("/")
-    assert np.array_equal(again.simplices(), tin.simplices())
+    assert np.array_equal(again.read_simplices(), tin.read_simplices())
 
 
 def test_interpolate(tin: distributed.TiledDelaunay) -> None:
@@ -77,7 +77,7 @@ def test_interpolate(tin: distributed.TiledDelaunay) -> None:
     right = Linear(SURVEY.points, SURVEY.z, duplicates="first")(asked)
     np.testing.assert_allclose(tin.interpolate(asked), right, rtol=1e-12)
     with pytest.raises(InputError, match="has no 'depth'; it has z"):
-        tin.interpolate(asked, value="depth")
+        tin.interpolate(asked, values="depth")
 
 
 def test_raster_without_seams(tin: distributed.TiledDelaunay, tmp_path: Path) -> None:
@@ -174,7 +174,7 @@ def test_dask_data_frames(tin: distributed.TiledDelaunay, canonical: Callable[[A
     frame = tin.to_dask_dataframe()
     assert frame.npartitions == tin.ntiles
     triangles = frame.compute(scheduler="synchronous")[["a", "b", "c"]].to_numpy()
-    assert np.array_equal(triangles, tin.simplices())
+    assert np.array_equal(triangles, tin.read_simplices())
     vertices = tin.to_dask_dataframe("vertices").compute(scheduler="synchronous").sort_index()
     assert np.array_equal(vertices.index, np.arange(tin.npoints))
     assert np.array_equal(vertices[["x", "y"]].to_numpy(), SURVEY.points)
@@ -290,7 +290,7 @@ def test_what_is_wrong_is_found(
     assert not report
     assert "is not the file that was written" in str(report)
     assert words in str(report)
-    for use in (spoilt.simplices, lambda: spoilt.find_simplex(SURVEY.points)):
+    for use in (spoilt.read_simplices, lambda: spoilt.find_simplex(SURVEY.points)):
         try:
             use()
         except FileFormatError as error:
@@ -304,7 +304,7 @@ def test_rows_are_as_many_as_the_manifest_says(
         shutil.copytree(tin.path, tmp_path / change.__name__)
         spoil(tmp_path / change.__name__, "triangles", change)
         with pytest.raises(FileFormatError, match=r"tile=000000\.parquet has \d+ rows; the manif"):
-            distributed.open(tmp_path / change.__name__).simplices()
+            distributed.open(tmp_path / change.__name__).read_simplices()
 
 
 def absent(name: str) -> Callable[[dict[str, Any]], None]:
@@ -353,7 +353,7 @@ def test_tables_of_another_kind_are_refused_by_name(
     spoil(tmp_path / "tin", table, change)
     spoilt = distributed.open(tmp_path / "tin")
     with pytest.raises(FileFormatError, match=words) as caught:
-        spoilt.simplices()
+        spoilt.read_simplices()
     assert f"{table}/tile=000000.parquet" in caught.value.args[0].replace("\\", "/")
     assert words in str(spoilt.validate())
 
@@ -400,7 +400,7 @@ def test_torn_outputs(tin: distributed.TiledDelaunay, tmp_path: Path) -> None:
     path.write_bytes(path.read_bytes()[:-9])
     torn = distributed.open(tmp_path / "tin")
     with pytest.raises(FileFormatError, match="truncated"):
-        torn.simplices()
+        torn.read_simplices()
     assert "cannot be read" in str(torn.validate())
     path.unlink()
     with pytest.raises(FileFormatError, match="is missing"):

@@ -81,7 +81,7 @@ def test_a_crash_between_any_two_changes_is_survived(
             run(folder)
         monkeypatch.setattr(files, "step", lambda what: None)
         tin = run(folder)
-        assert np.array_equal(canonical(tin.simplices()), right), at
+        assert np.array_equal(canonical(tin.read_simplices()), right), at
         assert not (folder / "tin" / "work").exists()
 
 
@@ -99,7 +99,7 @@ def test_a_killed_process_leaves_what_can_be_gone_on_from(
             os._exit(0)
         assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGKILL
         tin = run(folder)
-        assert np.array_equal(canonical(tin.simplices()), right), at
+        assert np.array_equal(canonical(tin.read_simplices()), right), at
         assert not list((folder / "tin").rglob(".*"))
 
 
@@ -139,7 +139,7 @@ def test_a_full_disk_is_a_clean_stop(
     assert not list((tmp_path / "tin").rglob(".*"))
     monkeypatch.setattr(files, "step", lambda what: None)
     right = canonical(Delaunay(POINTS).simplices)
-    assert np.array_equal(canonical(run(tmp_path).simplices()), right)
+    assert np.array_equal(canonical(run(tmp_path).read_simplices()), right)
 
 
 def test_outputs_are_never_mixed(tmp_path: Path) -> None:

@@ -72,7 +72,7 @@ def test_parquet_in_several_files(
     for number, source in enumerate([folder, str(folder / "*.parquet"), sorted(folder.iterdir())]):
         out = tmp_path / f"tin{number}"
         tin = distributed.triangulate(source, out, tile_points=200, attributes=["kind"])
-        assert np.array_equal(canonical(tin.simplices()), right)
+        assert np.array_equal(canonical(tin.read_simplices()), right)
         tile = tin.tile(0)
         assert np.array_equal(tile.attributes["kind"], tile.ids)
         assert tile.attributes["kind"].dtype == np.int16
@@ -86,7 +86,7 @@ def test_other_files(tmp_path: Path, canonical: Callable[[Any], Any]) -> None:
     right = canonical(Delaunay(POINTS).simplices)
     for name in ("points.npy", "points.csv"):
         tin = distributed.triangulate(tmp_path / name, tmp_path / f"{name}.tin", tile_points=300)
-        assert np.array_equal(canonical(tin.simplices()), right)
+        assert np.array_equal(canonical(tin.read_simplices()), right)
 
 
 @pytest.fixture
@@ -107,7 +107,7 @@ def test_lidar(
     )
     assert tin.crs == lidar.crs
     right = Delaunay(lidar.points)
-    assert np.array_equal(canonical(tin.simplices()), canonical(right.simplices))
+    assert np.array_equal(canonical(tin.read_simplices()), canonical(right.simplices))
     assert tin.tile(0).attributes["classification"].dtype == np.uint8
 
 
@@ -148,7 +148,7 @@ def test_copc_in_pieces(
     monkeypatch.setattr(sources, "PIECE", 3001)
     tin = distributed.triangulate(path, tmp_path / "tin", tile_points=9000)
     right = Delaunay(read_points(path).points)
-    assert np.array_equal(canonical(tin.simplices()), canonical(right.simplices))
+    assert np.array_equal(canonical(tin.read_simplices()), canonical(right.simplices))
 
 
 def test_classes_are_chosen(lidar: Any, tmp_path: Path, canonical: Callable[[Any], Any]) -> None:
@@ -158,7 +158,7 @@ def test_classes_are_chosen(lidar: Any, tmp_path: Path, canonical: Callable[[Any
     ground = np.flatnonzero(whole.attributes["classification"] == 2)
     tin = distributed.triangulate(LIDAR, tmp_path / "tin", tile_points=4000, classes=[2])
     right = ground[Delaunay(whole.points[ground]).simplices]
-    assert np.array_equal(canonical(tin.simplices()), canonical(right))
+    assert np.array_equal(canonical(tin.read_simplices()), canonical(right))
 
 
 def test_torn_and_lying_lidar_files(lidar: Any, tmp_path: Path) -> None:
@@ -249,7 +249,7 @@ def test_rows_that_are_not_finite(tmp_path: Path, canonical: Callable[[Any], Any
     assert tin.manifest["dropped"] == 3
     kept = np.flatnonzero(np.isfinite(points).all(axis=1))
     right = kept[Delaunay(points[kept]).simplices]
-    assert np.array_equal(canonical(tin.simplices()), canonical(right))
+    assert np.array_equal(canonical(tin.read_simplices()), canonical(right))
     with pytest.raises(InputError, match="nan must be"):
         distributed.triangulate(points, tmp_path / "third", nan="ignore")
 
@@ -356,7 +356,7 @@ def test_heights_that_are_not_finite_are_no_points(
     assert (tin.manifest["dropped"], tin.npoints) == (3, 897)
     kept = np.flatnonzero(np.isfinite(z))
     assert np.array_equal(
-        canonical(tin.simplices()), canonical(kept[Delaunay(POINTS[kept]).simplices])
+        canonical(tin.read_simplices()), canonical(kept[Delaunay(POINTS[kept]).simplices])
     )
     inside = POINTS[kept][tin.find_simplex(POINTS[kept]) >= 0]
     assert np.isfinite(tin.interpolate(inside)).all()
@@ -373,12 +373,12 @@ def test_attributes_that_are_not_finite_are_carried(
     tin = distributed.triangulate(
         path, tmp_path / "tin", tile_points=300, attributes=["value", "height"], columns=["x", "y"]
     )
-    assert np.array_equal(canonical(tin.simplices()), canonical(Delaunay(POINTS).simplices))
+    assert np.array_equal(canonical(tin.read_simplices()), canonical(Delaunay(POINTS).simplices))
     for tile in tin.tiles():
         assert np.array_equal(tile.attributes["value"], value[tile.ids], equal_nan=True)
         assert np.array_equal(tile.attributes["height"], value[tile.ids], equal_nan=True)
     # In triangles with such a corner there is no value.
-    assert np.isnan(tin.interpolate(POINTS[[5, 600]], value="value")).all()
+    assert np.isnan(tin.interpolate(POINTS[[5, 600]], values="value")).all()
     assert tin.validate(), str(tin.validate())
 
 

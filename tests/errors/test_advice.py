@@ -112,7 +112,7 @@ def test_libraries_that_are_missing(monkeypatch):
     with pytest.raises(delone.MissingExtraError, match=r"delone\[gudhi\]"):
         delone.AlphaComplex(POINTS).to_gudhi()
     with pytest.raises(delone.MissingExtraError) as caught:
-        interpolate.Linear(POINTS, POINTS[:, 0]).weights(POINTS).csr()
+        interpolate.Linear(POINTS, POINTS[:, 0]).weights_at(POINTS).csr()
     assert caught.value.extra == "graph"
 
 

@@ -43,7 +43,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "Contours": lambda: TIN.from_points(HILL).contours(interval=1),
     "Bands": lambda: TIN.from_points(HILL).bands(interval=1),
     "Profile": lambda: TIN.from_points(HILL).profile([(0, 1), (4, 1)]),
-    "Volume": lambda: TIN.from_points(HILL).volume(1),
+    "Volume": lambda: TIN.from_points(HILL).volume_to(1),
     "Voronoi": lambda: delone.Voronoi(FLAT),
     "RegularTriangulation": lambda: delone.RegularTriangulation(FLAT, np.full(30, 0.01)),
     "PeriodicDelaunay": lambda: delone.PeriodicDelaunay(FLAT, (1.0, 1.0)),

@@ -82,7 +82,7 @@ def test_without_a_triangle_everything_is_outside(method: str, count: int) -> No
     made = interpolator(method, mesh, values, respect_constraints=True)
     assert np.isnan(made(queries)).all()
     assert np.isnan(made.gradient(queries)).all()
-    table = made.weights(queries)
+    table = made.weights_at(queries)
     assert np.isnan(table @ values).all()
 
 
@@ -103,7 +103,7 @@ def test_infinity_is_outside_and_nan_is_nowhere(method: str, count: int) -> None
     assert (made(queries) == 0).all()
     for far in (np.inf, -np.inf):
         queries[0] = (1, far)
-        for call in (made, made.gradient, made.weights):
+        for call in (made, made.gradient, made.weights_at):
             with pytest.raises(ValueError, match=f"1 of {count} (query|queries) is outside"):
                 call(queries)
     queries[0] = (np.nan, np.inf)

@@ -37,8 +37,8 @@ def test_one_side_does_not_show_on_the_other(method: str) -> None:
     np.testing.assert_allclose(made(queries), queries[:, 1], atol=1e-5)
     values[right] *= -1e3
     np.testing.assert_array_equal(made(queries, values=values), made(queries))
-    np.testing.assert_allclose(made.weights(queries) @ values, made(queries), rtol=1e-12)
-    assert not right[made.weights(queries).indices].any()
+    np.testing.assert_allclose(made.weights_at(queries) @ values, made(queries), rtol=1e-12)
+    assert not right[made.weights_at(queries).indices].any()
 
 
 def test_matrices_share_duplicates_on_both_sides() -> None:
@@ -48,7 +48,7 @@ def test_matrices_share_duplicates_on_both_sides() -> None:
     mesh = ConstrainedDelaunay(points, segments)
     made = NaturalNeighbor(mesh, values, duplicates="mean", respect_constraints=True)
     queries = np.concatenate((np.random.default_rng(5).random((300, 2)), FAULT))
-    np.testing.assert_allclose(made.weights(queries).csr() @ values, made(queries), rtol=1e-10)
+    np.testing.assert_allclose(made.weights_at(queries).csr() @ values, made(queries), rtol=1e-10)
 
 
 def test_without_respect_it_shows() -> None:
@@ -127,7 +127,7 @@ def test_sites_without_a_value_are_left_out(method: str) -> None:
     queries = np.random.default_rng(4).random((500, 2))
     made = interpolator(method, mesh, gaps, nan="drop", respect_constraints=True)
     np.testing.assert_array_equal(made(queries), expected(queries))
-    table = made.weights(queries)
+    table = made.weights_at(queries)
     assert np.isin(table.indices, kept).all()
     np.testing.assert_allclose(table @ gaps, expected(queries), rtol=1e-12)
     whole = interpolator(method, mesh, values, respect_constraints=True)
@@ -164,6 +164,6 @@ def test_on_meshes_with_holes(method: str) -> None:
     assert np.array_equal(np.isnan(found), within)
     expected = (1 + 2 * queries[:, 0] - 3 * queries[:, 1])[~within]
     np.testing.assert_allclose(found[~within], expected, atol=1e-4)
-    np.testing.assert_allclose(made.weights(queries) @ values, found, rtol=1e-12)
+    np.testing.assert_allclose(made.weights_at(queries) @ values, found, rtol=1e-12)
     slopes = made.gradient(queries[~within])
     np.testing.assert_allclose(slopes, np.tile((2.0, -3.0), (len(slopes), 1)), atol=1e-2)

@@ -47,6 +47,6 @@ def test_on_the_corpus(corpus_case: Any, method: str) -> None:
         if method == "clough-tocher" and np.abs(made.site_gradients()).max() > 1e12:
             # Triangles as thin as a rounding: what slopes add cancels to the last digit.
             return
-        again = made.weights(queries) @ values
+        again = made.weights_at(queries) @ values
         scale = 1 + np.abs(found)
         np.testing.assert_allclose(again / scale, found / scale, atol=1e-9)

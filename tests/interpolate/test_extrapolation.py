@@ -47,7 +47,7 @@ def check(points: Floats, queries: Floats, scale: int = 0, gap: float = np.inf) 
         NaturalNeighbor(mesh, values, kind="laplace", extrapolate="linear"),
     ):
         np.testing.assert_allclose(interpolator(queries), wanted, rtol=0, atol=tolerance * size)
-        table = interpolator.weights(queries)
+        table = interpolator.weights_at(queries)
         np.testing.assert_allclose(table @ values, wanted, rtol=0, atol=tolerance * size)
 
 

@@ -50,7 +50,9 @@ def test_sites_come_back_bit_for_bit(method: str, points: str) -> None:
     values = values[mesh.duplicate_of]
     found = interpolator(method, mesh, values)(mesh.points)
     assert found.tobytes() == values.tobytes()
-    assert (interpolator(method, mesh).weights(mesh.points) @ values).tobytes() == values.tobytes()
+    assert (
+        interpolator(method, mesh).weights_at(mesh.points) @ values
+    ).tobytes() == values.tobytes()
 
 
 @pytest.mark.parametrize("points", SETS)
@@ -99,7 +101,7 @@ def test_weights_say_the_same_as_calls(method: str, extrapolate: str) -> None:
     points, queries = rng.random((80, 2)), rng.random((200, 2)) * 1.8 - 0.4
     values = rng.normal(size=(80, 3)) + 1j * rng.normal(size=(80, 3))
     made = interpolator(method, points, values, extrapolate=extrapolate)
-    table = made.weights(queries)
+    table = made.weights_at(queries)
     np.testing.assert_allclose(table.apply(values), made(queries), rtol=1e-12, atol=1e-12)
     assert len(table) == 200 and table.indices.max() < 80
     sums = np.add.reduceat(table.weights, table.indptr[:-1][np.diff(table.indptr) > 0])
@@ -163,7 +165,7 @@ def test_beyond_a_hull_that_spans_the_range_of_doubles(method: str, extrapolate:
     found = vast(queries * 1.7e308)
     # Estimated gradients converge at different rates.
     np.testing.assert_allclose(found, plain(queries), atol=0.02)
-    np.testing.assert_allclose(vast.weights(queries * 1.7e308) @ values, found, rtol=1e-12)
+    np.testing.assert_allclose(vast.weights_at(queries * 1.7e308) @ values, found, rtol=1e-12)
 
 
 @pytest.mark.parametrize("method", ALL)
@@ -186,7 +188,7 @@ def test_extrapolation(method: str) -> None:
         refused([(9, 9), (2, 2), (-1, 0)])
     assert np.isfinite(refused([(2, 2), (4, 4)])).all()
     with pytest.raises(InputError, match="outside"):
-        refused.weights([(9, 9)])
+        refused.weights_at([(9, 9)])
 
 
 @pytest.mark.parametrize("method", ALL)
@@ -208,7 +210,7 @@ def test_duplicates(method: str) -> None:
         made = interpolator(method, twice, values, duplicates=policy)
         assert made(points[3]) == value
         assert made(points[5]) == values[5]
-        assert made.weights(points[[3]]).apply(values)[0] == value
+        assert made.weights_at(points[[3]]).apply(values)[0] == value
     same = values.copy()
     same[20:22] = first
     assert interpolator(method, twice, same)(points[3]) == first
@@ -229,14 +231,14 @@ def test_matrices_share_duplicates(method: str, drop: bool) -> None:
         made = interpolator(
             method, points, values, duplicates=policy, nan="drop" if drop else "raise"
         )
-        matrix = made.weights(queries).csr()
+        matrix = made.weights_at(queries).csr()
         assert matrix.shape == (136, 36)
         found = matrix[:, ~np.isnan(values)] @ values[~np.isnan(values)]
         np.testing.assert_allclose(found, made(queries), rtol=1e-12, atol=1e-14)
     for policy in ("min", "max"):
         with pytest.raises(InputError, match="use apply"):
-            interpolator(method, points, duplicates=policy).weights(queries).csr()
-        interpolator(method, points[2:32], duplicates=policy).weights(queries).csr()
+            interpolator(method, points, duplicates=policy).weights_at(queries).csr()
+        interpolator(method, points[2:32], duplicates=policy).weights_at(queries).csr()
 
 
 def test_a_mean_of_equal_values_is_that_value() -> None:
@@ -263,8 +265,8 @@ def test_nan_among_values(method: str) -> None:
         without(queries, values=linear(points)),
         interpolator(method, points, linear(points))(queries),
     )
-    assert not np.isin(without.weights(queries).indices, (4, 11)).any()
-    np.testing.assert_allclose(without.weights(queries) @ values, plain(queries), rtol=1e-12)
+    assert not np.isin(without.weights_at(queries).indices, (4, 11)).any()
+    np.testing.assert_allclose(without.weights_at(queries) @ values, plain(queries), rtol=1e-12)
     through = interpolator(method, points, values, nan="propagate")
     near = through(points[4])
     assert np.isnan(near) and through(points[11]) == np.inf
@@ -280,7 +282,7 @@ def test_gaps_stay_where_they_are(method: str, gradients: str) -> None:
     made = interpolator(method, points, values, nan="propagate", gradients=gradients)
     found = made(queries)
     # Gradients come from the values that are there; they reproduce what is linear.
-    weights = made.weights(queries)
+    weights = made.weights_at(queries)
     owner = np.repeat(np.arange(1000), np.diff(weights.indptr))
     touched = np.isin(np.arange(1000), owner[weights.indices == 50])
     inside = np.isfinite(found[:, 0])
@@ -359,7 +361,7 @@ def test_pickles(method: str) -> None:
     expected = made(queries)
     again = pickle.loads(pickle.dumps(made))
     np.testing.assert_array_equal(again(queries), expected)
-    table = pickle.loads(pickle.dumps(made.weights(queries)))
+    table = pickle.loads(pickle.dumps(made.weights_at(queries)))
     np.testing.assert_allclose(table @ linear(points), expected, rtol=1e-12)
 
 
@@ -377,7 +379,7 @@ def test_weights_are_a_mean_that_is_the_query(
         return
     query = np.array(quarters) / 4
     for made in (Linear(mesh), NaturalNeighbor(mesh), NaturalNeighbor(mesh, kind="laplace")):
-        table = made.weights(query)
+        table = made.weights_at(query)
         if int(mesh.find_simplex(query)) < 0:
             assert table.weights.size == 0 and np.isnan(table @ points[:, 0])
             continue
@@ -394,7 +396,7 @@ def test_pickled_tables_of_weights_have_no_triangulation(method: str, duplicates
     values = linear(points)
     values[[0, 5]] = 7.0, np.nan
     made = interpolator(method, points, values, duplicates=duplicates, nan="drop")
-    table = made.weights([(0.3, 0.4), points[0], (0.6, 0.1)])
+    table = made.weights_at([(0.3, 0.4), points[0], (0.6, 0.1)])
     data = pickle.dumps(table)
     # The rows that are kept and those that coincide: 12 bytes a site.
     assert len(data) < 300_000
@@ -405,12 +407,12 @@ def test_pickled_tables_of_weights_have_no_triangulation(method: str, duplicates
     assert repr(pickle.loads(pickle.dumps(again)) @ values) == repr(again @ values)
     if duplicates != "max":
         np.testing.assert_allclose(again.csr() @ np.nan_to_num(values), table @ values)
-    plain = interpolator(method, datasets.uniform(20_000)).weights((0.5, 0.5))
+    plain = interpolator(method, datasets.uniform(20_000)).weights_at((0.5, 0.5))
     assert len(pickle.dumps(plain)) < 2_000
 
 
 def test_pickled_tables_with_gradients_keep_what_these_need() -> None:
     points = datasets.uniform(500)
     made = interpolator("clough-tocher", points, linear(points))
-    again = pickle.loads(pickle.dumps(made.weights((0.5, 0.5))))
+    again = pickle.loads(pickle.dumps(made.weights_at((0.5, 0.5))))
     np.testing.assert_allclose(again @ (3 * linear(points)), 3 * made((0.5, 0.5)), rtol=1e-9)

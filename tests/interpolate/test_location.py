@@ -29,7 +29,7 @@ def test_weights_are_those_of_a_mean(name: str) -> None:
     means = np.einsum("kv,kvj->kj", weights, mesh.points[mesh.simplices[place.simplex[inside]]])
     size = np.abs(mesh.points).max()
     np.testing.assert_allclose(means, queries[inside], rtol=0, atol=1e-13 * size)
-    assert np.array_equal(place.nearest[inside], queries[inside])
+    assert np.array_equal(place.closest[inside], queries[inside])
     assert (place.beside[inside] == -1).all() and np.isnan(place.weights[inside]).all()
 
 
@@ -51,7 +51,7 @@ def test_outside_the_nearest_point_of_the_hull() -> None:
     edges = list(zip(ring, ring[1:] + ring[:1], strict=True))
     for i in np.flatnonzero(place.simplex < 0):
         best = min(squared_distance(queries[i], u, v) for u, v in edges)
-        gap = queries[i] - place.nearest[i]
+        gap = queries[i] - place.closest[i]
         assert float(gap @ gap) == pytest.approx(float(best), rel=1e-12)
         u, v = place.facet[i]
         assert {u, v} <= set(mesh.simplices[place.beside[i]].tolist())
@@ -71,7 +71,7 @@ def test_what_is_no_number_is_nowhere() -> None:
     mesh = Delaunay(datasets.uniform(50))
     place = mesh.locate([(np.nan, 0.5), (np.inf, 0.5)])
     assert place.simplex.tolist() == place.beside.tolist() == [-1, -1]
-    assert np.isnan(place.barycentric).all() and np.isnan(place.nearest).all()
+    assert np.isnan(place.barycentric).all() and np.isnan(place.closest).all()
     assert mesh.nearest([(np.nan, 0.5), (0.5, -np.inf)]).tolist() == [-1, -1]
 
 
@@ -82,7 +82,7 @@ def test_any_leading_shape(shape: tuple[int, ...]) -> None:
     place = mesh.locate(queries)
     assert place.simplex.shape == place.beside.shape == shape[:-1]
     assert place.barycentric.shape == (*shape[:-1], 3)
-    assert place.nearest.shape == place.facet.shape == shape
+    assert place.closest.shape == place.facet.shape == shape
     assert mesh.nearest(queries).shape == shape[:-1]
 
 
@@ -173,7 +173,7 @@ def test_location_with_holes(kind: str) -> None:
         share = ((queries[row] - tail) * way).sum(axis=1) / (way * way).sum(axis=1)
         near = tail + np.clip(share, 0, 1)[:, None] * way
         least = np.hypot(*(near - queries[row]).T).min()
-        assert np.hypot(*(place.nearest[row] - queries[row])) == pytest.approx(least, abs=1e-12)
+        assert np.hypot(*(place.closest[row] - queries[row])) == pytest.approx(least, abs=1e-12)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -261,7 +261,7 @@ def test_the_nearest_point_of_an_outline_that_spans_the_range_of_doubles(scale: 
     queries = np.array([(0.2, 1), (0.9, 1.9), (2.01, 0), (-2, 2.01), (-0.5, 1)])
     plain = ConstrainedDelaunay(corners, ring, boundary="outline").locate(queries)
     vast = ConstrainedDelaunay(corners * scale, ring, boundary="outline").locate(queries * scale)
-    np.testing.assert_allclose(vast.nearest / scale, plain.nearest, rtol=1e-14)
+    np.testing.assert_allclose(vast.closest / scale, plain.closest, rtol=1e-14)
 
 
 def nearest_exactly(corners: Any, query: Any) -> tuple[Fraction, list[Fraction]]:
@@ -290,7 +290,7 @@ def test_the_nearest_point_keeps_its_digits_far_away(exponent: int) -> None:
         [corners + 0.5 * ways + out, rng.normal(size=(40, 2)) * np.abs(out).max()]
     )
     queries = queries[mesh.find_simplex(queries) < 0]
-    found = mesh.locate(queries).nearest
+    found = mesh.locate(queries).closest
     for query, point in zip(queries.tolist(), found, strict=True):
         _, right = nearest_exactly(corners, query)
         assert np.abs(point - np.array([float(x) for x in right])).max() <= 2e-11

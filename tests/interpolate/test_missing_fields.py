@@ -94,7 +94,7 @@ def test_hessians_and_cross_validation() -> None:
 def test_what_has_one_set_of_sites_is_refused(method: str) -> None:
     both = made(method, FIELDS)
     queries = VECTORS[:2] if method.startswith("sphere") else POINTS[:2]
-    for ask in (both.weights, both.distance, lambda _: both.triangulation):
+    for ask in (both.weights_at, both.distance, lambda _: both.triangulation):
         with pytest.raises(InputError, match="removes different sites from 5 groups of fields"):
             ask(queries)
     assert "Linear on <Delaunay of 60" in repr(both)

@@ -22,7 +22,7 @@ KINDS = ["sibson", "laplace"]
 def compare(points: Any, queries: Any, kind: str) -> int:
     """Compare with the definition where the query is strictly inside; return how often."""
     mesh = Delaunay(points)
-    table = NaturalNeighbor(mesh, kind=kind).weights(queries)
+    table = NaturalNeighbor(mesh, kind=kind).weights_at(queries)
     ring = mesh.points[mesh.hull]
     count = 0
     for i, query in enumerate(queries):

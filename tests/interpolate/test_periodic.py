@@ -122,7 +122,7 @@ def test_weights_name_the_sites() -> None:
     _, where = queries((360, 40))
     for kind, options in METHODS:
         made = kind(periodic, values, **options)
-        table = made.weights(where)
+        table = made.weights_at(where)
         assert table.indices.min() >= 0 and table.indices.max() < 40
         np.testing.assert_allclose(table @ values, made(where), rtol=0, atol=1e-12)
         np.testing.assert_allclose(made(where, values=2 * values), 2 * made(where), atol=1e-12)
@@ -148,7 +148,7 @@ def test_policies_for_values() -> None:
     plain = Linear(PeriodicDelaunay(points, periods=(360, None)), means)
     made = Linear(mesh, more, duplicates="mean")
     np.testing.assert_allclose(made(given), plain(given), atol=1e-12)
-    np.testing.assert_allclose(made.weights(given) @ more, plain(given), atol=1e-12)
+    np.testing.assert_allclose(made.weights_at(given) @ more, plain(given), atol=1e-12)
     gaps = np.where(np.arange(50) % 7 == 0, np.nan, values)
     periodic = PeriodicDelaunay(points, periods=(360, None))
     with pytest.raises(NonFiniteError):

@@ -21,7 +21,7 @@ def test_nodes_are_centres_of_cells() -> None:
     found = grid(SQUARE, VALUES, resolution=1)
     assert found.x.tolist() == [0.5, 1.5, 2.5, 3.5] and found.y.tolist() == [0.5, 1.5]
     assert found.values.tolist() == [[1, 2, 3, 4], [2, 3, 4, 5]]
-    assert found.extent == (0, 4, 0, 2) and found.cell == (1, 1)
+    assert found.extent == (0, 4, 0, 2) and found.cell_size == (1, 1)
     assert grid(SQUARE, VALUES, shape=(4, 2)).x.tolist() == found.x.tolist()
     assert grid(SQUARE, VALUES, resolution=(2, 0.5)).values.shape == (4, 2)
     # No whole number of cells: one more, and no more than that for a rounding error.
@@ -140,7 +140,7 @@ def test_a_box_wider_than_any_double() -> None:
     np.testing.assert_allclose(
         found.values, [[0.375, 0.625, 0.875, 1.125], [0.875, 1.125, 1.375, 1.625]]
     )
-    assert np.isfinite(found.cell).all() and np.isfinite(found.extent).all()
+    assert np.isfinite(found.cell_size).all() and np.isfinite(found.extent).all()
     again = grid(corners, [0.0, 1, 2, 1], resolution=(0.85e308, 1.7e308))
     np.testing.assert_array_equal(again.x, found.x)
     with pytest.raises(InputError, match="range of doubles"):
@@ -208,7 +208,7 @@ def test_rasters_at_large_offsets_have_no_extra_row_and_decimal_nodes(shift, res
         want = [float(start + step * (2 * k + 1) / 2) for k in range(cells)]
         assert found.x.tolist() == want and found.y.tolist() == want
         if cells > 1:
-            assert found.cell == (resolution, resolution)
+            assert found.cell_size == (resolution, resolution)
             end = float(start + step * cells)
             assert found.extent == (shift, end, shift, end)
 

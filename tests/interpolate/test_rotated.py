@@ -103,7 +103,7 @@ def test_tables_of_weights_say_the_same(
 ) -> None:
     made = method(rotated(SITES, 25), waves(SITES), extrapolate=extrapolate, **options)
     queries = np.vstack((rotated(BEYOND, 25), rotated(INSIDE[:300], 25)))
-    table = made.weights(queries)
+    table = made.weights_at(queries)
     np.testing.assert_allclose(table.apply(waves(SITES)), made(queries), rtol=1e-11, atol=1e-11)
 
 

@@ -79,7 +79,7 @@ def test_linear_functions_are_reproduced(method: str, name: str) -> None:
 def test_laplace_weights_are_those_of_a_convex_mean(name: str) -> None:
     points = SETS[name]
     queries = inside(points, 6, 1000)
-    table = NaturalNeighbor(points, kind="laplace").weights(queries)
+    table = NaturalNeighbor(points, kind="laplace").weights_at(queries)
     assert table.weights.min() > 0
     owner = np.repeat(np.arange(len(queries)), np.diff(table.indptr))
     sums = np.bincount(owner, table.weights)
@@ -93,7 +93,7 @@ def test_laplace_weights_are_those_of_a_convex_mean(name: str) -> None:
 def test_laplace_weights_are_areas_over_distances_of_the_cell_of_the_query() -> None:
     points = uniform(200, 7)
     queries = 0.3 + 0.4 * uniform(20, 8)
-    table = NaturalNeighbor(points, kind="laplace").weights(queries)
+    table = NaturalNeighbor(points, kind="laplace").weights_at(queries)
     for i, query in enumerate(queries):
         cell = Voronoi(np.vstack((points, query))).cell(len(points))
         distance = np.linalg.norm(points[cell.neighbors] - query, axis=1)
@@ -105,7 +105,7 @@ def test_laplace_weights_are_areas_over_distances_of_the_cell_of_the_query() -> 
 
 
 def test_laplace_weights_on_a_grid_by_hand() -> None:
-    table = NaturalNeighbor(GRID, kind="laplace").weights(
+    table = NaturalNeighbor(GRID, kind="laplace").weights_at(
         [(1.5, 1.5, 1.5), (1.5, 1.5, 0), (1.5, 0, 0), (1.25, 1.25, 0), (1, 2, 1.5)]
     )
     rows = [table.weights[a:b] for a, b in itertools.pairwise(table.indptr)]
@@ -145,7 +145,7 @@ def test_what_lies_beyond_the_hull() -> None:
         assert np.array_equal(np.isnan(interpolator(method, points, values)(queries)), outside)
         on = interpolator(method, points, values, extrapolate="linear")
         assert on(queries) == pytest.approx(plane(queries), abs=1e-11)
-        assert on.weights(queries).apply(values) == pytest.approx(plane(queries), abs=1e-11)
+        assert on.weights_at(queries).apply(values) == pytest.approx(plane(queries), abs=1e-11)
         near = interpolator(method, points, values, extrapolate="nearest")(queries)
         assert not np.isnan(near).any()
         assert near.min() >= values.min() - 1e-12
@@ -211,7 +211,7 @@ def test_other_tilings_are_used_as_they_are(name: str) -> None:
     corners = values[mesh.simplices[place.simplex]]
     wanted = np.einsum("ki,kij->kj", place.barycentric, corners)
     assert np.abs(found - wanted)[~outside].max() < 1e-8
-    assert np.abs(height.weights(queries).apply(values) - found)[~outside].max() < 1e-8
+    assert np.abs(height.weights_at(queries).apply(values) - found)[~outside].max() < 1e-8
 
 
 @pytest.mark.parametrize("name", TILINGS)
@@ -224,7 +224,7 @@ def test_linear_functions_are_reproduced_on_other_tilings(name: str) -> None:
     slopes = height.gradient(queries[~outside])
     assert np.abs(slopes - [1, -2, 3]).max() < 1e-6
     near = Linear(mesh, plane(mesh.points), extrapolate="nearest")(queries[outside])
-    assert near == pytest.approx(plane(mesh.locate(queries[outside]).nearest), abs=1e-12)
+    assert near == pytest.approx(plane(mesh.locate(queries[outside]).closest), abs=1e-12)
     with pytest.raises(InputError, match="outside the hull"):
         Linear(mesh, plane(mesh.points), extrapolate="raise")(queries)
 
@@ -279,7 +279,7 @@ def test_shapes_policies_and_fields() -> None:
         last = interpolator(method, points, values, duplicates="last")
         assert last(points[:3]).tolist() == [50, 51, 52]
         assert last(points[:4].reshape(2, 2, 3)).shape == (2, 2)
-        table = last.weights(points[:3])
+        table = last.weights_at(points[:3])
         assert table.apply(values).tolist() == [50, 51, 52]
         odd = np.where(values == 7, np.nan, values)
         dropped = interpolator(method, points, odd, duplicates="last", nan="drop")

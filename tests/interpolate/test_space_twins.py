@@ -25,7 +25,7 @@ SITES = (
 
 
 def weights(points: Any, query: Any) -> Any:
-    table = NaturalNeighbor(points, kind="laplace").weights(query)
+    table = NaturalNeighbor(points, kind="laplace").weights_at(query)
     assert np.min(table.weights, initial=0) >= 0
     full = np.zeros(len(points))
     full[table.indices] = table.weights
@@ -194,7 +194,7 @@ def test_on_faces_of_the_hull_the_areas_in_their_planes_count() -> None:
     turn = np.array([(2, -2, 1), (1, 2, 2), (2, 1, -2)], dtype=float)  # thrice an isometry
     sibson = NaturalNeighbor(np.array(square, dtype=float)[:, :2], kind="sibson")
     for place in ((2.0, 2.0, 0.0), (3.0, 2**-30, 0.0), (2**-40, 1.0, 0.0), (1.0, 2 + 2**-50, 0.0)):
-        table = sibson.weights(place[:2])
+        table = sibson.weights_at(place[:2])
         wanted = np.zeros(6)
         wanted[table.indices] = table.weights
         query = np.array(place)

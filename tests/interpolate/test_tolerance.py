@@ -45,7 +45,7 @@ def test_places_on_sides_have_values(
     assert np.isnan(method(mesh, plane(mesh.points), **options)(places)).mean() > 0.2
     made = method(mesh, plane(mesh.points), extrapolate=extrapolate, tolerance=1e-14, **options)
     np.testing.assert_allclose(made(places), plane(places), atol=1e-12)
-    table = made.weights(places)
+    table = made.weights_at(places)
     np.testing.assert_allclose(table.apply(plane(mesh.points)), plane(places), atol=1e-12)
     np.testing.assert_allclose(made.gradient(places), np.tile((2.0, 3.0), (len(places), 1)), 1e-6)
 
@@ -98,7 +98,7 @@ def test_places_are_those_of_the_nearest_points(kind: Any, ndim: int) -> None:
     mesh = kind(points)
     queries = np.random.default_rng(1).uniform(-1, 2, (300, ndim))
     exact = mesh.locate(queries)
-    away = np.linalg.norm(queries - exact.nearest, axis=1)
+    away = np.linalg.norm(queries - exact.closest, axis=1)
     found = mesh.locate(queries, tolerance=0.25)
     assert np.array_equal(found.simplex >= 0, away <= 0.25)
     moved = (exact.simplex < 0) & (away <= 0.25)
@@ -106,8 +106,8 @@ def test_places_are_those_of_the_nearest_points(kind: Any, ndim: int) -> None:
     assert np.array_equal(found.simplex[moved], exact.beside[moved])
     corners = mesh.points[mesh.simplices[found.simplex[moved]]]
     places = np.einsum("kj,kjd->kd", found.barycentric[moved], corners)
-    np.testing.assert_allclose(places, exact.nearest[moved], atol=1e-14)
-    assert np.array_equal(found.nearest, exact.nearest)
+    np.testing.assert_allclose(places, exact.closest[moved], atol=1e-14)
+    assert np.array_equal(found.closest, exact.closest)
     assert (found.beside[moved] == -1).all() and (found.facet[moved] == -1).all()
     assert np.isnan(found.weights[moved]).all()
     rest = ~moved

@@ -20,7 +20,7 @@ SITES = np.array([(0.06, 0.3), (0.15, 0.86), (0.97, 0.85), (0.98, 0.02), (0.01, 
 
 
 def weights(points: Any, query: Any, kind: str) -> Any:
-    table = NaturalNeighbor(points, kind=kind).weights(query)
+    table = NaturalNeighbor(points, kind=kind).weights_at(query)
     full = np.zeros(len(points))
     full[table.indices] = table.weights
     return full

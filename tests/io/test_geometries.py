@@ -34,12 +34,12 @@ def test_all_kinds(tmp_path, suffix):
     data.to_parquet(file) if suffix == ".parquet" else data.to_file(file)
     found = read_geometries(file, columns=["height"])
     assert shapely.equals_exact(found.geometries, SHAPES).all()
-    assert found.heights.tolist() == [1.5, 2.5, 3.5]
+    assert found.feature_heights.tolist() == [1.5, 2.5, 3.5]
     assert (found.crs, found.source, len(found)) == ("EPSG:28992", str(file), 3)
     assert not found.only_points
     assert found.areas.tolist() == [SHAPES[0]]
-    assert len(found.coordinates()) == 5 + 4 + 2 + 1
-    assert read_geometries(file).heights is None
+    assert len(found.all_points()) == 5 + 4 + 2 + 1
+    assert read_geometries(file).feature_heights is None
     with pytest.raises(FileFormatError, match="feature 0 is Polygon"):
         read_points(file)
     with pytest.raises(FileFormatError, match="no column 'depth'"):
@@ -162,7 +162,7 @@ def test_the_polygon_of_each_triangle_is_written(tmp_path):
     mesh = from_geometry(SHAPES)
     write_mesh(tmp_path / "a.vtu", mesh)
     polygon = meshio.read(tmp_path / "a.vtu").cell_data["polygon"][0]
-    assert np.array_equal(polygon, mesh.polygon)
+    assert np.array_equal(polygon, mesh.polygon_of_simplex)
     assert set(polygon.tolist()) == {-1, 0}
     assert mesh.areas[polygon == 0].sum() == SHAPES[0].area
 

@@ -204,7 +204,7 @@ def test_interpolation_is_of_one_state() -> None:
 
     def read() -> None:
         for _ in range(4000):
-            found.add(tuple(live.interpolate([10, 20, 30, 40], [(0, 0), (1, 0)]).tolist()))
+            found.add(tuple(live.interpolate([(0, 0), (1, 0)], [10, 20, 30, 40]).tolist()))
         is_over.set()
 
     before = sys.getswitchinterval()
@@ -289,14 +289,14 @@ def test_queries_need_no_arrays() -> None:
     live.remove([3, 4])
     live.insert(rng.random((20, 2)))
     queries = rng.random((200, 2)) * 1.4 - 0.2
-    handles, weights = live.corners(queries)
+    handles, weights = live.corners_at(queries)
     inside = live.find_simplex(queries) >= 0
     assert np.array_equal(handles[:, 0] >= 0, inside)
     assert np.isnan(weights[~inside]).all()
-    values = live.interpolate(live.points @ [2.0, -3.0], queries)
+    values = live.interpolate(queries, live.points @ [2.0, -3.0])
     assert np.allclose(values[inside], queries[inside] @ [2.0, -3.0])
     assert np.isnan(values[~inside]).all()
-    both = live.interpolate(live.points, queries[inside])
+    both = live.interpolate(queries[inside], live.points)
     assert np.allclose(both, queries[inside])
     frozen = live.freeze()
     assert np.array_equal(live.nearest(queries), live.handles[frozen.nearest(queries)])

@@ -510,19 +510,19 @@ def test_values_of_handles_in_any_order_are_interpolated() -> None:
     draw = np.random.default_rng(0)
     values = draw.random(len(live))
     xi = draw.random((40, 2)) * 60
-    expected = live.interpolate(values, xi)
+    expected = live.interpolate(xi, values)
     order = draw.permutation(len(live))
-    found = live.interpolate(values[order], xi, handles=live.handles[order])
+    found = live.interpolate(xi, values[order], handles=live.handles[order])
     assert np.array_equal(found, expected, equal_nan=True)
     more = np.append(live.handles[order], 10**9)
-    found = live.interpolate(np.append(values[order], np.nan), xi, handles=more)
+    found = live.interpolate(xi, np.append(values[order], np.nan), handles=more)
     assert np.array_equal(found, expected, equal_nan=True)
     with pytest.raises(delone.HandleError, match="a point without a value"):
-        live.interpolate(values[1:], xi, handles=live.handles[1:])
+        live.interpolate(xi, values[1:], handles=live.handles[1:])
     with pytest.raises(delone.HandleError, match="named twice"):
-        live.interpolate(np.append(values, 1), xi, handles=np.append(live.handles, live.handles[0]))
+        live.interpolate(xi, np.append(values, 1), handles=np.append(live.handles, live.handles[0]))
     with pytest.raises(delone.ShapeError, match="one per handle"):
-        live.interpolate(values[1:], xi, handles=live.handles)
+        live.interpolate(xi, values[1:], handles=live.handles)
 
 
 WRONG_VALUES: dict[str, tuple[Any, type[Exception], str]] = {
@@ -541,7 +541,7 @@ def test_values_that_are_no_numbers_are_refused(name: str) -> None:
     live = Dynamic([(0, 0), (4, 0), (0, 4)])
     values, kind, message = WRONG_VALUES[name]
     with pytest.raises(kind, match=message):
-        live.interpolate(values, (1, 1))
+        live.interpolate((1, 1), values)
     if name in ("masked", "uneven"):
         with pytest.raises(kind, match=message):
             live.arrays(values)
@@ -549,11 +549,11 @@ def test_values_that_are_no_numbers_are_refused(name: str) -> None:
 
 def test_values_of_other_kinds_are_taken() -> None:
     live = Dynamic([(0, 0), (4, 0), (0, 4)])
-    assert live.interpolate([1j, 1, 3], (2, 0)) == 0.5 + 0.5j
-    assert live.interpolate(np.array([1, 2, 3], dtype=np.uint8), (2, 2)) == 2.5
-    assert live.interpolate([2**53, -(2**53), 1], (2, 0)) == 0
-    assert live.interpolate(np.ma.masked_array([1.0, 2, 3], mask=False), (2, 2)) == 2.5
-    assert live.interpolate(np.float32([1, np.nan, 3]), (0, 2)) != 2
+    assert live.interpolate((2, 0), [1j, 1, 3]) == 0.5 + 0.5j
+    assert live.interpolate((2, 2), np.array([1, 2, 3], dtype=np.uint8)) == 2.5
+    assert live.interpolate((2, 0), [2**53, -(2**53), 1]) == 0
+    assert live.interpolate((2, 2), np.ma.masked_array([1.0, 2, 3], mask=False)) == 2.5
+    assert live.interpolate((0, 2), np.float32([1, np.nan, 3])) != 2
     assert live.arrays(["a", "b", "c"]).values.tolist() == ["a", "b", "c"]
 
 

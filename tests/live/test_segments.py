@@ -333,7 +333,7 @@ def test_points_are_located_in_the_present_triangles() -> None:
     assert np.array_equal(place.simplex, live.find_simplex(queries))
     inside = place.simplex >= 0
     assert 300 < inside.sum() < 400
-    handles, _ = live.corners(queries)
+    handles, _ = live.corners_at(queries)
     found = live.handles[live.simplices[place.simplex[inside]]]
     assert np.array_equal(np.sort(found, axis=1), np.sort(handles[inside], axis=1))
     assert (handles[~inside] == -1).all()

@@ -268,11 +268,11 @@ def test_queries_need_no_arrays() -> None:
     live.remove([3, 4])
     live.insert(rng.random((20, 3)))
     queries = rng.random((200, 3)) * 1.2 - 0.1
-    handles, weights = live.corners(queries)
+    handles, weights = live.corners_at(queries)
     inside = live.find_simplex(queries) >= 0
     assert np.array_equal(handles[:, 0] >= 0, inside)
     assert np.isnan(weights[~inside]).all()
-    values = live.interpolate(live.points @ [2.0, -3.0, 1.0], queries)
+    values = live.interpolate(queries, live.points @ [2.0, -3.0, 1.0])
     assert np.allclose(values[inside], queries[inside] @ [2.0, -3.0, 1.0])
     assert np.isnan(values[~inside]).all()
     assert np.array_equal(live.nearest(queries), live.handles[live.freeze().nearest(queries)])

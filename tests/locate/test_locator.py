@@ -301,7 +301,7 @@ class TestWeightsOnEdges:
         weights = dict(zip(mesh.simplices[found.simplex[0]], found.barycentric[0], strict=True))
         assert weights == {0: 0.5, 1: 0.0, 2: 0.5}
         assert Linear(points, [1.0, 5.0, 3.0])(middle) == 2.0
-        assert Dynamic(points).interpolate([1.0, 5.0, 3.0], middle) == 2.0
+        assert Dynamic(points).interpolate(middle, [1.0, 5.0, 3.0]) == 2.0
 
     @pytest.mark.parametrize("dimension", [2, 3])
     @pytest.mark.parametrize("seed", seeds(2, deep=8))

@@ -82,7 +82,7 @@ def listed(complex):
         tuple(sorted(row)): value
         for k in range(complex.dimension + 1)
         for row, value in zip(
-            complex.simplices(k).tolist(), complex.values(k).tolist(), strict=True
+            complex.simplices_of(k).tolist(), complex.values_of(k).tolist(), strict=True
         )
     }
 

@@ -101,7 +101,7 @@ def test_linear_fields_come_back(kind: Any, options: dict[str, str], order: str)
     for workers in (1, 3):
         made = kind(points, field(points), workers=workers, **options)
         np.testing.assert_allclose(made(asked), right, rtol=1e-9)
-        np.testing.assert_allclose(made.weights(asked).apply(field(points)), right, rtol=1e-9)
+        np.testing.assert_allclose(made.weights_at(asked).apply(field(points)), right, rtol=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,7 @@ def check(points: Any, queries: NDArray[np.float64]) -> None:
     sites = exact(mesh.points)
     size = max(abs(x) for p in sites for x in p)
     for row in np.flatnonzero(place.simplex < 0):
-        q, found = exact([queries[row], place.nearest[row]])
+        q, found = exact([queries[row], place.closest[row]])
         faces = mesh.convex_hull.tolist()
         _, nearest = min(from_triangle(q, [sites[v] for v in face]) for face in faces)
         assert max(map(abs, minus(found, nearest))) <= size * Fraction(1, 2**51)
@@ -61,7 +61,7 @@ def check_part(points: Any, kept: Any, queries: NDArray[np.float64]) -> None:
     used = [sites[v] for v in np.unique(mesh.simplices)]
     size = max(abs(x) for p in used for x in p)
     for row in np.flatnonzero(place.simplex < 0):
-        q, found = exact([queries[row], place.nearest[row]])
+        q, found = exact([queries[row], place.closest[row]])
         faces = mesh.boundary.tolist()
         feet = [from_triangle(q, [sites[v] for v in face]) for face in faces]
         first = min(range(len(faces)), key=lambda i: feet[i][0])

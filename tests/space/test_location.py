@@ -26,7 +26,7 @@ def check_outside(mesh: Any, queries: Any) -> int:
     faces = [[points[v] for v in face] for face in corners]
     rows = np.flatnonzero(place.simplex < 0)
     for i in rows:
-        query, nearest = exact([queries[i], place.nearest[i]])
+        query, nearest = exact([queries[i], place.closest[i]])
         least = min(from_triangle(query, face)[0] for face in faces)
         away = minus(query, nearest)
         # The point is rounded: to about a unit in the last place of its coordinates.
@@ -40,7 +40,7 @@ def check_outside(mesh: Any, queries: Any) -> int:
         assert (place.weights[i] >= 0).all()
         assert place.weights[i].sum() == pytest.approx(1, rel=1e-15)
     inside = place.simplex >= 0
-    assert np.array_equal(place.nearest[inside], queries[inside])
+    assert np.array_equal(place.closest[inside], queries[inside])
     assert (place.beside[inside] == -1).all() and (place.facet[inside] == -1).all()
     assert np.isnan(place.weights[inside]).all()
     return len(rows)
@@ -92,7 +92,7 @@ def test_what_is_no_number_is_nowhere() -> None:
     for mesh in (Delaunay(datasets.uniform(50, ndim=3)), with_a_hole(0)):
         place = mesh.locate([(np.nan, 0.5, 0.5), (0.5, np.inf, 0.5)])
         assert place.simplex.tolist() == place.beside.tolist() == [-1, -1]
-        assert np.isnan(place.nearest).all() and np.isnan(place.weights).all()
+        assert np.isnan(place.closest).all() and np.isnan(place.weights).all()
 
 
 @pytest.mark.parametrize("shape", [(3,), (0, 3), (3, 4, 3), (2, 0, 3)])
@@ -102,7 +102,7 @@ def test_any_leading_shape(shape: tuple[int, ...]) -> None:
         place = mesh.locate(queries)
         assert place.simplex.shape == place.beside.shape == shape[:-1]
         assert place.barycentric.shape == (*shape[:-1], 4)
-        assert place.nearest.shape == place.facet.shape == place.weights.shape == shape
+        assert place.closest.shape == place.facet.shape == place.weights.shape == shape
         assert place.at(np.array([], dtype=int)).facet.size == 0 if shape[:-1] else True
 
 

@@ -201,7 +201,7 @@ def test_rounded_ridges_make_no_slivers(seed: int) -> None:
     box = polygon([(west, south), (east, south), (east, north), (west, north)])
     diagram = sphere.Voronoi(lonlat=grid, clip=box)
     region = sphere.from_geometry(box)
-    assert np.isclose(diagram.cell_areas.sum(), region.areas[region.polygon >= 0].sum())
+    assert np.isclose(diagram.cell_areas.sum(), region.areas[region.polygon_of_simplex >= 0].sum())
     lon = np.array(grid)[diagram.cell_areas > 0, 0]
     assert (lon > west).all()
     assert (lon < east).all()
@@ -248,11 +248,11 @@ def test_polygons_are_the_cells() -> None:
                     {"type": "MultiPoint", "coordinates": AXES},
                 ]
             )
-            area += float(mesh.areas[mesh.polygon == 0].sum())
+            area += float(mesh.areas[mesh.polygon_of_simplex == 0].sum())
         again.append(area)
     assert np.allclose(again, diagram.cell_areas, atol=1e-9)
     land = sphere.from_geometry(datasets.land())
-    total = land.areas[land.polygon >= 0].sum()
+    total = land.areas[land.polygon_of_simplex >= 0].sum()
     assert np.isclose(diagram.cell_areas.sum(), total, rtol=1e-13)
     whole = sphere.Voronoi(lonlat=AXES).polygons()
     assert [len(rings[0]) for parts in whole for rings in parts] == [4] * 6

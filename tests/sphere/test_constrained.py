@@ -264,7 +264,7 @@ def test_no_segments_give_the_plain_triangulation_and_a_report_lists_odd_ones():
     assert mesh.segment_forward.tolist() == [True, False, True, True, False, True]
     assert mesh.input_segments.tolist() == [[0, 4], [0, 1], [5, 1], [1, 4], [2, 0]]
     assert mesh.geometry_of_segment.tolist() == [-1] * 5
-    assert (mesh.polygon == -1).all()
+    assert (mesh.polygon_of_simplex == -1).all()
     assert repr(mesh) == (
         "<ConstrainedDelaunay of 6 directions (1 duplicate) and 5 segments: 5 triangles>"
     )

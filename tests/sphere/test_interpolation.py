@@ -51,7 +51,7 @@ def test_weights_are_those_of_rational_determinants():
     sites = scattered(60)
     mesh = sphere.Delaunay(xyz=sites)
     queries = scattered(100, seed=5)
-    table = sphere.Linear(mesh).weights(queries)
+    table = sphere.Linear(mesh).weights_at(queries)
     exact = [[Fraction(x) for x in p] for p in sites.tolist()]
 
     def det(a, b, c):
@@ -194,7 +194,7 @@ def test_shapes_units_and_complex_values():
 def test_weights_serve_other_fields(kind):
     sites, queries = scattered(100), scattered(50, seed=2).reshape(5, 10, 3)
     interpolant = kind(sites)
-    table = interpolant.weights(queries)
+    table = interpolant.weights_at(queries)
     for seed in (1, 2):
         field = np.random.default_rng(seed).normal(size=(100, 3))
         found = interpolant(queries, values=field)
@@ -221,8 +221,8 @@ def test_duplicates():
         for kind in (sphere.Linear, sphere.Nearest):
             interpolant = kind(mesh, values, duplicates=policy)
             assert interpolant((10, 10)) == value
-            assert interpolant.weights((10, 10)).apply(values) == value
-    last = sphere.Linear(mesh, duplicates="last").weights((10, 10))
+            assert interpolant.weights_at((10, 10)).apply(values) == value
+    last = sphere.Linear(mesh, duplicates="last").weights_at((10, 10))
     assert last.indices.tolist() == [5]
 
 
@@ -230,7 +230,7 @@ def test_the_matrix_of_duplicates():
     pytest.importorskip("scipy")
     mesh = sphere.Delaunay(xyz=[(1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 2, 0)])
     values = [3.0, 4.0, 5.0, 8.0]
-    table = sphere.Linear(mesh, duplicates="mean").weights([(1, 2, 1), (0, 3, 0), (-1, 0, 0)])
+    table = sphere.Linear(mesh, duplicates="mean").weights_at([(1, 2, 1), (0, 3, 0), (-1, 0, 0)])
     found = table.csr() @ values
     np.testing.assert_allclose(found, table @ values, rtol=1e-15)
     assert found[1] == 6.0
@@ -252,7 +252,7 @@ def test_values_that_are_not_finite():
     some = np.delete(np.arange(len(sites)), [3, 40])
     assert (dropped(sites[some]) == values[some]).all()
     # The rows of a table are the caller's; another field has other gaps.
-    table = dropped.weights(sites[some])
+    table = dropped.weights_at(sites[some])
     assert table.indices.tolist() == some.tolist()
     whole = dropped(sites, values=sites[:, 1])
     assert (whole == sites[:, 1]).all()
@@ -348,5 +348,5 @@ def test_corners_whose_areas_underflow(kind):
     made = kind(sites, values)
     assert (made(sites) == values).all()
     assert made([first, second]).tolist() == [15.0**2, 16.0**2]
-    table = made.weights([first, second])
+    table = made.weights_at([first, second])
     assert (table.indices.tolist(), table.weights.tolist()) == ([5, 6], [1.0, 1.0])

@@ -30,13 +30,13 @@ def box(west, south, east, north):
 
 
 def area(mesh, number):
-    return float(mesh.areas[mesh.polygon == number].sum())
+    return float(mesh.areas[mesh.polygon_of_simplex == number].sum())
 
 
 def at(mesh, *lonlat):
     found = mesh.find_simplex(lonlat)
     assert (found >= 0).all()
-    return mesh.polygon[found].tolist()
+    return mesh.polygon_of_simplex[found].tolist()
 
 
 def cap(latitude, count):
@@ -122,7 +122,7 @@ def test_rings_that_run_in_different_directions_are_refused():
     with pytest.raises(
         delone.InputError, match=r"outer rings of 1 geometry run in both .* first 1"
     ):
-        _ = mesh.polygon
+        _ = mesh.polygon_of_simplex
     mesh = sphere.from_geometry([POINTS, two], winding="smaller")
     assert at(mesh, (4, 4), (25, 4), (15, 4)) == [1, 1, -1]
 
@@ -176,4 +176,4 @@ def test_the_countries_of_the_world():
     assert area(mesh, names.index("Russia")) * earth == pytest.approx(16.9e6, rel=0.03)
     assert 1 - area(mesh, -1) / (4 * np.pi) == pytest.approx(0.29, abs=0.01)
     smaller = sphere.from_geometry(world, winding="smaller", crossing="split")
-    assert smaller.polygon.tolist() == mesh.polygon.tolist()
+    assert smaller.polygon_of_simplex.tolist() == mesh.polygon_of_simplex.tolist()

@@ -91,7 +91,7 @@ def rows_of(table, count):
 @pytest.mark.parametrize("kind", KINDS)
 def test_weights_are_those_of_clipped_cells(kind):
     sites, queries = scattered(40), scattered(60, seed=5)
-    table = sphere.NaturalNeighbor(sites, kind=kind).weights(queries)
+    table = sphere.NaturalNeighbor(sites, kind=kind).weights_at(queries)
     want = [cell_weights(sites, query, kind) for query in queries]
     np.testing.assert_allclose(rows_of(table, 40), want, atol=1e-8)
 
@@ -108,7 +108,7 @@ def test_weights_are_positive_and_center_on_the_query(kind, spacing):
         places = np.column_stack((flat, np.ones(3500)))
         sites, queries = places[:500], 0.7 * places[500:]
     mesh = sphere.Delaunay(xyz=sites)
-    table = sphere.NaturalNeighbor(mesh, kind=kind).weights(queries)
+    table = sphere.NaturalNeighbor(mesh, kind=kind).weights_at(queries)
     inside = mesh.find_simplex(queries) >= 0
     assert inside.sum() > 2500
     assert (table.weights > 0).all()

@@ -42,7 +42,9 @@ def test_either_direction_of_rings_is_the_smaller_side() -> None:
         warnings.simplefilter("error")
         assert area(country) == pytest.approx(area(turned(country)), rel=1e-12)
         mesh = sphere.from_geometry([turned(country)])
-        assert set(mesh.polygon.tolist()) == {-1, 0} or mesh.polygon.max() == 0
+        assert (
+            set(mesh.polygon_of_simplex.tolist()) == {-1, 0} or mesh.polygon_of_simplex.max() == 0
+        )
     for winding, given in (("ccw", turned(country)), ("cw", country)):
         with pytest.warns(
             sphere.PolygonWarning, match=r"1 geometry covers more than half .* 9"

@@ -79,7 +79,7 @@ def test_threads_do_not_matter(name):
     one, three = (KINDS[name](sites, values, workers=count) for count in (1, 3))
     np.testing.assert_array_equal(one(queries), three(queries))
     np.testing.assert_array_equal(one.distance(queries), three.distance(queries))
-    first, second = one.weights(queries), three.weights(queries)
+    first, second = one.weights_at(queries), three.weights_at(queries)
     np.testing.assert_array_equal(first.indptr, second.indptr)
     np.testing.assert_array_equal(first.indices, second.indices)
     np.testing.assert_array_equal(first.weights, second.weights)

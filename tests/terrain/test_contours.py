@@ -109,7 +109,7 @@ def test_open_contours_end_at_the_outline(tin):
 def test_bands_tile_the_surface_by_their_shared_vertices(tin):
     found = tin.bands(LEVELS)
     assert shapely.is_valid(found.to_shapely()).all()
-    sides = Counter(segments_of(found.points, found.rings))
+    sides = Counter(segments_of(found.points, found.ring_starts))
     assert set(sides.values()) == {1}
     # A side without a reverse is on the outline. What the rings enclose is what these enclose.
     rim = [s for s in sides if s[::-1] not in sides]
@@ -250,7 +250,7 @@ def test_rotated_rasters_have_contours(kind, degrees):
         assert np.abs(x + 2 * y - every).max() < 1e-6
     bands = tin.bands(levels)
     assert shapely.is_valid(bands.to_shapely()).all()
-    sides = Counter(segments_of(bands.points, bands.rings))
+    sides = Counter(segments_of(bands.points, bands.ring_starts))
     assert set(sides.values()) == {1}
     assert shapely.area(bands.to_shapely()).sum() == pytest.approx(tin.areas.sum(), rel=1e-9)
     assert 0 <= bands.left_out <= 4 * 49

@@ -73,7 +73,7 @@ def test_a_profile_is_the_surface(tin):
     profile = tin.profile(line)
     assert len(profile) > 300 and not np.isnan(profile.z).any()
     assert np.abs(tin.heights(profile.points) - profile.z).max() < 1e-6
-    assert profile.distance[-1] == pytest.approx(np.hypot(100, 100))
+    assert profile.distances[-1] == pytest.approx(np.hypot(100, 100))
 
 
 @pytest.mark.deep
@@ -83,12 +83,12 @@ def test_a_pad_has_the_volume_of_its_parts(tin):
     z = float(np.nanmean(tin.heights(pad)))
     design = tin.embank(pad, z, cut=1 / 2, fill=1 / 3)
     assert design.validate() and design.crs == tin.crs
-    found = tin.volume(design)
+    found = tin.volume_to(design)
     assert found.cut > 1 and found.fill > 1
-    within = tin.volume(z, region=[pad])
-    assert within.cut == pytest.approx(tin.volume(design, region=[pad]).cut, rel=1e-6)
+    within = tin.volume_to(z, region=[pad])
+    assert within.cut == pytest.approx(tin.volume_to(design, region=[pad]).cut, rel=1e-6)
     assert within.cut <= found.cut + 1e-6 and within.fill <= found.fill + 1e-6
-    back = design.volume(tin)
+    back = design.volume_to(tin)
     assert (back.cut, back.fill) == pytest.approx((found.fill, found.cut), rel=1e-9)
     # A sum over a raster of 10 cm.
     x = np.arange(-30, 30, 0.1) + 0.05

@@ -36,7 +36,7 @@ def rough(seed: int, shift: float = 0.0, lattice: float = 0.0, **options) -> TIN
         xy = np.concatenate((rng.random((400, 2)) * 100, [(0, 0), (100, 0), (100, 100), (0, 100)]))
     u = xy / rng.uniform(8, 20)
     z = 5 * np.sin(u[:, 0]) + 4 * np.cos(u[:, 1] + u[:, 0] / 3)
-    steepest = np.hypot(*TIN.from_points(np.column_stack((xy, z))).gradient.T).max()
+    steepest = np.hypot(*TIN.from_points(np.column_stack((xy, z))).gradients.T).max()
     return TIN.from_points(
         np.column_stack((xy + shift, z * 0.4 / max(0.4, steepest))), planar=True, **options
     )
@@ -76,14 +76,14 @@ def test_a_square_pad_on_level_ground_is_a_frustum(z, slope, corners):
     run = 1 / slope
     volume = 900 * abs(z) + 120 * run * z**2 / 2 + CORNERS[corners] * run**2 * abs(z) ** 3 / 3
     area = 900 + 120 * run * abs(z) + CORNERS[corners] * run**2 * z**2
-    found = level().volume(design)
+    found = level().volume_to(design)
     assert (found.fill if z > 0 else found.cut) == pytest.approx(volume, rel=1e-12)
     assert (found.cut if z > 0 else found.fill) == pytest.approx(0, abs=1e-9)
-    back = design.volume(level())
+    back = design.volume_to(level())
     changed = np.abs(back.mean_height) > 1e-9
     assert back.of_triangles[changed, 4].sum() == pytest.approx(area, rel=1e-12)
     assert design.validate()
-    steep = np.hypot(*design.gradient.T)
+    steep = np.hypot(*design.gradients.T)
     assert np.abs(steep[steep > 1e-9] - slope).max() < 1e-9
 
 
@@ -95,7 +95,7 @@ def test_slopes_meet_in_a_line_at_reflex_corners(z):
     for x, y in [(41, 43), (43, 41), (45, 45), (44, 60), (60, 44)]:
         assert design.heights((x, y)) == pytest.approx(sign * (3 - 0.5 * min(x - 40, y - 40)))
     # An edge has the area 9 in section; six corners: five pyramids more, and one less.
-    found = level().volume(design)
+    found = level().volume_to(design)
     volume = 1600 * 3 + 200 * 9 + (5 - 1) * 36
     assert (found.fill if z > 0 else found.cut) == pytest.approx(volume, rel=1e-12)
     assert set(design.z.tolist()) == {0.0, z}
@@ -129,7 +129,7 @@ def test_slopes_run_down_in_fill_and_up_in_cut():
 def test_a_pad_partly_in_cut_and_partly_in_fill():
     ground = TIN.from_points([(0, 0, -9), (90, 0, 9), (90, 90, 9), (0, 90, -9)])
     design = ground.embank(SQUARE, 0.0, slope=0.5, corners="miter")
-    found = ground.volume(design)
+    found = ground.volume_to(design)
     assert found.cut == pytest.approx(found.fill, rel=1e-12)
     assert found.cut_area == pytest.approx(found.fill_area, rel=1e-12)
     # West of the pad the slope and the ground, 0.2 (x - 45), meet at x = 20.
@@ -163,7 +163,7 @@ def test_designs_are_between_cones(seed, lattice, shift):
     far = ground.points[(distances(ground.points, ring) > 40)]
     assert np.array_equal(design.heights(far), ground.heights(far))
     again = design.embank(ring, z, cut=cut, fill=fill)
-    twice = design.volume(again)
+    twice = design.volume_to(again)
     assert twice.cut + twice.fill < 1e4 * slack
 
 
@@ -269,7 +269,7 @@ def test_pads_on_lattice_lines_and_vertices():
     outside = distances(ground.points, np.array(SQUARE, dtype=float)) > 0
     assert np.array_equal(design.heights(ground.points[outside]), ground.z[outside])
     flush = level().embank(SQUARE, 0.0, slope=1)
-    assert level().volume(flush).cut_area == level().volume(flush).fill_area == 0
+    assert level().volume_to(flush).cut_area == level().volume_to(flush).fill_area == 0
 
 
 def test_pads_that_touch_lattice_lines_from_one_side():
@@ -318,7 +318,7 @@ def test_holes_of_pads():
     assert deep.heights((45, 45)) == pytest.approx(0.75)
     shapely = pytest.importorskip("shapely")
     again = ground.embank(shapely.Polygon(SQUARE, [inner]), 2.0, slope=0.25)
-    assert again.volume(deep).cut == again.volume(deep).fill == 0
+    assert again.volume_to(deep).cut == again.volume_to(deep).fill == 0
 
 
 def test_parts_that_touch_at_a_corner():
@@ -332,10 +332,10 @@ def test_pads_at_the_outline():
     ground = level()
     side = ground.embank([(0, 30), (30, 30), (30, 60), (0, 60)], 3.0, slope=0.5, corners="miter")
     assert side.heights([(0, 45), (0, 28), (15, 28), (0, 20)]) == pytest.approx([3, 2, 2, 0])
-    found = ground.volume(side)
+    found = ground.volume_to(side)
     assert found.fill == pytest.approx(900 * 3 + 90 * 9 + 2 * 4 * 27 / 3, rel=1e-12)
     everything = ground.embank([(0, 0), (90, 0), (90, 90), (0, 90)], 3.0, slope=0.5)
-    assert ground.volume(everything).fill == 3 * 8100
+    assert ground.volume_to(everything).fill == 3 * 8100
     assert ground.flatten([(0, 0), (90, 0), (90, 90), (0, 90)], 3.0).z.tolist() == [3] * 4
     with pytest.raises(OutsideError, match=r"fill leaves the surface at \(.*steeper") as caught:
         ground.embank([(3, 30), (30, 30), (30, 60), (3, 60)], 3.0, slope=0.5)
@@ -358,9 +358,9 @@ def test_pads_at_outlines_that_are_straight_up_to_rounding(degrees, shift):
     ground = TIN.from_points(np.column_stack((turned, np.zeros(len(xy)))), planar=True)
     pad = np.array([(0, 30), (30, 30), (30, 60), (0, 60)]) @ matrix + shift
     design = ground.embank(pad, 3.0, slope=0.5, corners="miter")
-    volume = ground.volume(design).fill
+    volume = ground.volume_to(design).fill
     assert volume == pytest.approx(900 * 3 + 90 * 9 + 2 * 4 * 27 / 3, rel=1e-9)
-    assert ground.volume(ground.flatten(pad, 3.0)).fill > 2700
+    assert ground.volume_to(ground.flatten(pad, 3.0)).fill > 2700
     assert design.areas.sum() == pytest.approx(8100, rel=1e-9)
 
 
@@ -454,7 +454,7 @@ def test_the_number_of_threads_and_the_start_of_a_ring_change_nothing():
     design = ground.embank(ring, 1.0, slope=0.8)
     for other in (np.roll(ring, 3, axis=0), ring[::-1]):
         found = ground.embank(other, 1.0, slope=0.8)
-        twice = found.volume(design)
+        twice = found.volume_to(design)
         assert twice.cut + twice.fill < 1e-9
     alone = rough(11, workers=1).embank(ring, 1.0, slope=0.8)
     assert np.array_equal(alone.xyz, design.xyz)

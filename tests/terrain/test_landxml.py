@@ -80,7 +80,7 @@ def test_round_trips_of_holes_and_outlines(tmp_path, seed):
         of_tin, of_again = (corners(t, t.breaklines[t.soft == soft]) for t in (tin, again))
         sides = corners(tin, tin.edges)
         assert of_tin & sides == of_again
-    assert again.volume(-2.0).cut == pytest.approx(tin.volume(-2.0).cut, rel=1e-12)
+    assert again.volume_to(-2.0).cut == pytest.approx(tin.volume_to(-2.0).cut, rel=1e-12)
     # Without the faces, the boundary and the hole are the extent.
     afresh = TIN.from_file(tmp_path / "a.xml", faces=False)
     assert afresh.areas.sum() == pytest.approx(tin.areas.sum(), rel=1e-9)
@@ -132,7 +132,7 @@ def test_a_file_as_civil_3d_writes_it():
         frozenset({(1000000.0, 200000.0, 10.0), (1000004.0, 200004.0, 14.0)})
     }
     assert tin.units == "us-ft" == tin.contours([12]).units == tin.bands([12]).units
-    assert tin.volume(10).units == "us-ft" and tin.volume(10).crs == "EPSG:2263"
+    assert tin.volume_to(10).units == "us-ft" and tin.volume_to(10).crs == "EPSG:2263"
 
 
 def test_a_file_as_12d_writes_it(tmp_path):
@@ -281,8 +281,8 @@ def test_units_are_written_and_never_mixed(tmp_path):
     with pytest.raises(
         InputError, match=r"heights are in ft and in m: multiply those in m by 3\.28"
     ):
-        feet.volume(meters)
-    assert feet.volume(unknown).area == 16
+        feet.volume_to(meters)
+    assert feet.volume_to(unknown).area == 16
     with pytest.warns(delone.UnitsWarning, match="names none"):
         write_mesh(tmp_path / "b.xml", unknown)
     assert TIN.from_file(tmp_path / "b.xml").units is None

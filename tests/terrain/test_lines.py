@@ -87,7 +87,7 @@ def test_profiles_of_needles_start_and_end_on_the_surface(degrees):
         found = tin.profile(line)
         assert not np.isnan(found.z).any()
         assert (found.points[[0, -1]] == line).all()
-        assert (np.diff(found.distance) >= 0).all()
+        assert (np.diff(found.distances) >= 0).all()
         assert found.z.min() >= z.min() and found.z.max() <= z.max()
         assert found.z[[0, -1]] == pytest.approx(tin.heights(line))
 
@@ -99,7 +99,7 @@ def test_heights_where_a_line_crosses_needles():
     found = tin.profile(line)
     # It enters, crosses two needles and leaves.
     assert len(want) == 4
-    assert (found.distance / np.hypot(*(line[1] - line[0]))).tolist() == pytest.approx(
+    assert (found.distances / np.hypot(*(line[1] - line[0]))).tolist() == pytest.approx(
         [share for share, _ in want], rel=1e-12
     )
     assert found.z.tolist() == pytest.approx([z for _, z in want], rel=1e-9)

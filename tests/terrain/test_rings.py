@@ -75,8 +75,8 @@ def test_polygons_are_a_union_each_with_its_own_holes():
     ]:
         assert TIN.from_points(BOX, boundary=polygons).areas.sum() == want
         assert TIN.from_points(BOX, holes=polygons).areas.sum() == 144 - want
-        assert tin.volume(0.0, region=polygons).area == want
-        assert tin.volume(tin.flatten(polygons, 0.0), region=polygons).cut == pytest.approx(want)
+        assert tin.volume_to(0.0, region=polygons).area == want
+        assert tin.volume_to(tin.flatten(polygons, 0.0), region=polygons).cut == pytest.approx(want)
     # A hole across the boundary.
     assert TIN.from_points(BOX, boundary=first, holes=[aslant]).areas.sum() == 36 - 9
     bowtie = shapely.Polygon([(1, 1), (7, 7), (7, 1), (1, 7)])
@@ -89,8 +89,8 @@ def test_arrays_of_rings_are_odd_even():
     tin = TIN.from_points(BOX)
     assert TIN.from_points(BOX, boundary=rings).areas.sum() == 100 - 36 + 4
     assert TIN.from_points(BOX, holes=rings).areas.sum() == 144 - 68
-    assert tin.volume(0.0, region=rings).area == 68
-    assert tin.volume(tin.flatten(rings, 0.0), region=rings).cut == pytest.approx(68)
+    assert tin.volume_to(0.0, region=rings).area == 68
+    assert tin.volume_to(tin.flatten(rings, 0.0), region=rings).cut == pytest.approx(68)
     kept = TIN.from_points(BOX, boundary=rings[0], holes=rings[1], islands=rings[2])
     assert kept.areas.sum() == 68 and kept.heights((5, 5)) == 1
 
@@ -172,8 +172,8 @@ def test_tables_of_geometries(kind):
     assert TIN.from_points(BOX, holes=area_).areas.sum() == 140
     assert tin.flatten(area_, 5).heights((3, 3)) == 5
     assert tin.embank(area_, 2, slope=1).heights((3, 3)) == 2
-    assert tin.volume(0.0, region=area_).area == 4
-    assert tin.profile(line).distance[-1] == 7
+    assert tin.volume_to(0.0, region=area_).area == 4
+    assert tin.profile(line).distances[-1] == 7
 
 
 @pytest.mark.parametrize("degrees", [10, 37, 72])
@@ -186,12 +186,12 @@ def test_pads_along_the_rows_of_a_turned_grid(degrees):
     ground = TIN.from_points(points)
     flat = ground.flatten(pad, 1.0)
     assert flat.validate()
-    assert ground.volume(flat, region=[pad]).fill == pytest.approx(16, rel=1e-6)
+    assert ground.volume_to(flat, region=[pad]).fill == pytest.approx(16, rel=1e-6)
     # One row of cells around the pad is inclined.
-    assert ground.volume(flat).fill == pytest.approx(16 + 16 / 2 + 4 / 3, rel=0.1)
+    assert ground.volume_to(flat).fill == pytest.approx(16 + 16 / 2 + 4 / 3, rel=0.1)
     hill = ground.embank(pad, 1.0, slope=1, corners="miter")
     assert hill.validate()
-    assert ground.volume(hill).fill == pytest.approx(16 + 8 + 4 / 3, rel=1e-6)
+    assert ground.volume_to(hill).fill == pytest.approx(16 + 8 + 4 / 3, rel=1e-6)
 
 
 def test_a_pad_of_many_edges_is_compared_with_what_is_near(monkeypatch):
@@ -205,7 +205,7 @@ def test_a_pad_of_many_edges_is_compared_with_what_is_near(monkeypatch):
     angle = np.linspace(0, 2 * np.pi, 400, endpoint=False)
     pad = 500 + 50 * np.column_stack((np.cos(angle), np.sin(angle)))
     flat = ground.flatten(pad, 2.0)
-    assert ground.volume(flat, region=[pad]).fill == pytest.approx(
+    assert ground.volume_to(flat, region=[pad]).fill == pytest.approx(
         200 * 1250 * np.sin(angle[1]) * 4
     )
     # Each with each would be 400 edges with all vertices, and all edges with 400 corners.

@@ -111,7 +111,7 @@ def test_slopes_of_planes():
     for a, b in [(0.0, 0.0), (1.0, 0.0), (0.0, -2.0), (-0.5, 0.25)]:
         xy = np.random.default_rng(1).random((50, 2))
         tin = TIN.from_points(np.column_stack((xy, a * xy[:, 0] + b * xy[:, 1])))
-        assert tin.gradient == pytest.approx(np.tile([a, b], (tin.nsimplex, 1)), abs=1e-9)
+        assert tin.gradients == pytest.approx(np.tile([a, b], (tin.nsimplex, 1)), abs=1e-9)
         assert tin.slope == pytest.approx(np.degrees(np.arctan(np.hypot(a, b))), abs=1e-7)
         if (a, b) == (0, 0):
             assert np.isnan(tin.aspect).all()
@@ -125,7 +125,7 @@ def test_slopes_of_planes():
 def test_hillshade_is_that_of_gdal(azimuth, altitude, z_factor):
     tin = random_tin()
     # The formula of gdaldem: cos(zenith) cos(slope) + sin(zenith) sin(slope) cos(azimuth - aspect).
-    x, y = (tin.gradient * z_factor).T
+    x, y = (tin.gradients * z_factor).T
     zenith, slope = np.radians(90 - altitude), np.arctan(np.hypot(x, y))
     aspect = np.arctan2(-x, -y)
     shade = np.cos(zenith) * np.cos(slope)
@@ -139,9 +139,9 @@ def test_slivers_of_a_rotated_grid_are_shaded():
     c, s = np.cos(np.radians(25)), np.sin(np.radians(25))
     z = 5 * np.sin(x / 3) + 4 * np.cos(y / 4)
     tin = TIN.from_points(np.column_stack((x * c - y * s, x * s + y * c, z)))
-    steep = np.abs(tin.gradient).max(axis=1) > 1e12
+    steep = np.abs(tin.gradients).max(axis=1) > 1e12
     assert 20 < steep.sum() < 200
-    assert np.isfinite(tin.gradient).all()
+    assert np.isfinite(tin.gradients).all()
     for factor in (1.0, 1e300):
         shade = tin.hillshade(z_factor=factor)
         assert (shade >= 0).all() and (shade <= 1).all()
@@ -156,7 +156,7 @@ def test_slivers_of_a_rotated_grid_are_shaded():
 @pytest.mark.parametrize("unit", [1e-200, 2.0**-700, 1.0, 1e200])
 def test_gradients_of_any_size_have_normals(unit):
     tin = TIN.from_points([(0, 0, 0), (unit, 0, 1), (0, unit, 2)])
-    assert tin.gradient * unit == pytest.approx(np.array([(1.0, 2.0)]))
+    assert tin.gradients * unit == pytest.approx(np.array([(1.0, 2.0)]))
     length = np.hypot(np.sqrt(5.0), unit) if unit < 1e100 else unit
     expected = np.array([(-1.0, -2.0, unit)]) / length
     assert tin.normals == pytest.approx(expected, rel=1e-12, abs=0)
@@ -218,7 +218,7 @@ def test_profiles_have_every_crossing(seed):
     found = tin.profile([a, b])
     expected = exact_profile(tin, a.tolist(), b.tolist())
     length = float(np.hypot(*(b - a)))
-    assert found.distance[1:-1] == pytest.approx([float(s) * length for s, _ in expected])
+    assert found.distances[1:-1] == pytest.approx([float(s) * length for s, _ in expected])
     assert found.z[1:-1] == pytest.approx([float(z) for _, z in expected], abs=1e-9)
     assert found.z[[0, -1]] == pytest.approx(tin.heights([a, b]))
 
@@ -227,21 +227,21 @@ def test_profiles_through_vertices_along_edges_and_over_holes():
     x = np.arange(7.0)
     grid = np.array([(i, j, i * i + j) for i in x for j in x])
     along = TIN.from_points(grid).profile([(0, 3), (6, 3)])
-    assert along.distance.tolist() == x.tolist()
+    assert along.distances.tolist() == x.tolist()
     assert along.z.tolist() == (x * x + 3).tolist()
     hole = [(1.5, 1.5), (4.5, 1.5), (4.5, 4.5), (1.5, 4.5)]
     tin = TIN.from_points(grid, holes=[hole])
     found = tin.profile([(-1, 3), (8, 3)])
     assert np.isnan(found.z).sum() == 1
     gap = int(np.flatnonzero(np.isnan(found.z))[0])
-    assert found.distance[[0, gap - 1, gap + 1, -1]].tolist() == [1, 2.5, 5.5, 7]
+    assert found.distances[[0, gap - 1, gap + 1, -1]].tolist() == [1, 2.5, 5.5, 7]
     assert len(tin.profile([(10, 10), (11, 10)])) == 0
 
 
 def test_bent_lines_have_no_repeated_points():
     found = TIN.from_points(SQUARE).profile([(1, 0.5), (3, 0.5), (3, 2)])
-    assert (np.diff(found.distance) > 0).all()
-    assert found.distance[-1] == 3.5
+    assert (np.diff(found.distances) > 0).all()
+    assert found.distances[-1] == 3.5
 
 
 def test_geometries_on_the_surface():

@@ -102,8 +102,8 @@ def test_volumes_between_surfaces_are_sums_of_prisms(seed):
     one, other = surface(seed, 12), surface(seed + 100, 12)
     expected = exact(one, other)
     # Where surfaces coincide, rounding decides whether they are above or below each other.
-    assert numbers(one.volume(other))[:2] == pytest.approx(expected[:2], rel=1e-12)
-    assert one.volume(other).area == pytest.approx(64, rel=1e-14)
+    assert numbers(one.volume_to(other))[:2] == pytest.approx(expected[:2], rel=1e-12)
+    assert one.volume_to(other).area == pytest.approx(64, rel=1e-14)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -111,13 +111,13 @@ def test_volumes_to_a_plane_are_sums_of_prisms(seed):
     tin = surface(seed)
     a, b, c = 0.3125, -0.1875, 0.71875
     height = lambda p: Fraction(c) + Fraction(a) * p[0] + Fraction(b) * p[1]  # noqa: E731
-    assert numbers(tin.volume((a, b, c))) == pytest.approx(exact(tin, height), rel=1e-12)
+    assert numbers(tin.volume_to((a, b, c))) == pytest.approx(exact(tin, height), rel=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_there_and_back_is_the_same(seed):
     one, other = surface(seed, 400), surface(seed + 50, 300)
-    there, back = one.volume(other), other.volume(one)
+    there, back = one.volume_to(other), other.volume_to(one)
     assert there.cut == pytest.approx(back.fill, rel=1e-12)
     assert there.fill == pytest.approx(back.cut, rel=1e-12)
     assert there.net == pytest.approx(-back.net, rel=1e-11)
@@ -125,8 +125,8 @@ def test_there_and_back_is_the_same(seed):
 
 def test_large_coordinates_lose_nothing():
     shift = (500_000.0, 5_400_000.0)
-    near = surface(1).volume(surface(2))
-    far = surface(1, shift=shift).volume(surface(2, shift=shift))
+    near = surface(1).volume_to(surface(2))
+    far = surface(1, shift=shift).volume_to(surface(2, shift=shift))
     assert numbers(far)[:2] == pytest.approx(numbers(near)[:2], rel=1e-12)
 
 
@@ -139,7 +139,7 @@ def test_the_number_of_threads_changes_no_bit():
             TIN.from_points(rng.random((20_000, 3)), workers=workers),
             TIN.from_points(rng.random((20_000, 3)), workers=workers),
         ]
-        sheets.append(pair[0].volume(pair[1]).of_triangles)
+        sheets.append(pair[0].volume_to(pair[1]).of_triangles)
     assert np.array_equal(sheets[0], sheets[1])
     assert np.array_equal(sheets[0], sheets[2])
 
@@ -150,7 +150,7 @@ def test_many_groups_and_tasks_cover_everything():
     square = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
     one = TIN.from_points(np.concatenate((ground, square)))
     other = TIN.from_points([(x, y, x + 2 * y + 3) for x, y, _ in square])
-    found = one.volume(other)
+    found = one.volume_to(other)
     assert found.fill == pytest.approx(0.5 + 1 + 3, rel=1e-12)
     assert found.of_triangles[:, 4] == pytest.approx(one.areas, rel=1e-9, abs=1e-15)
     assert found.mean_height.min() > 3
@@ -159,31 +159,31 @@ def test_many_groups_and_tasks_cover_everything():
 def test_regions_and_holes():
     tin = surface(3)
     flat = TIN.from_points([(0, 0, 9), (8, 0, 9), (8, 8, 9), (0, 8, 9)])
-    whole = tin.volume(flat)
-    left = tin.volume(flat, region=[[(0, 0), (3, 0), (3, 8), (0, 8)]])
-    right = tin.volume(9.0, region=[[(3, 0), (8, 0), (8, 8), (3, 8)]])
+    whole = tin.volume_to(flat)
+    left = tin.volume_to(flat, region=[[(0, 0), (3, 0), (3, 8), (0, 8)]])
+    right = tin.volume_to(9.0, region=[[(3, 0), (8, 0), (8, 8), (3, 8)]])
     assert left.fill + right.fill == pytest.approx(whole.fill, rel=1e-12)
     assert left.area == pytest.approx(24) and right.area == pytest.approx(40)
     holed = TIN.from_points(tin.xyz, holes=[[(2, 2), (4, 2), (4, 5), (2, 5)]])
-    assert holed.volume(flat).area == pytest.approx(64 - 6)
+    assert holed.volume_to(flat).area == pytest.approx(64 - 6)
     apart = TIN.from_points([(20, 0, 0), (21, 0, 0), (20, 1, 0)])
     with pytest.warns(UserWarning, match="no area in common"):
-        assert numbers(tin.volume(apart)) == [0.0] * 5
+        assert numbers(tin.volume_to(apart)) == [0.0] * 5
 
 
 def test_regions_of_shapely():
     shapely = pytest.importorskip("shapely")
     tin = surface(3)
     ring = shapely.box(1, 1, 7, 7) - shapely.box(2, 2, 4, 4)
-    assert tin.volume(0.0, region=ring).area == pytest.approx(32)
-    assert tin.volume(0.0, region=[ring, shapely.box(2, 2, 4, 4)]).area == pytest.approx(36)
+    assert tin.volume_to(0.0, region=ring).area == pytest.approx(32)
+    assert tin.volume_to(0.0, region=[ring, shapely.box(2, 2, 4, 4)]).area == pytest.approx(36)
 
 
 def test_other_systems_and_values_are_refused():
     meters = TIN.from_points([(0, 0, 0), (1, 0, 0), (0, 1, 0)], crs="EPSG:28992")
     feet = TIN.from_points([(0, 0, 0), (1, 0, 0), (0, 1, 0)], crs="EPSG:2269")
     with pytest.raises(InputError, match="EPSG:28992 and in EPSG:2269"):
-        meters.volume(feet)
+        meters.volume_to(feet)
     for wrong in (np.nan, (1, 2), (1, 2, np.inf)):
         with pytest.raises(InputError, match="other must be"):
-            meters.volume(wrong)
+            meters.volume_to(wrong)

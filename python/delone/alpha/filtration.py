@@ -99,7 +99,7 @@ class AlphaComplex(Stored):
     >>> complex = delone.AlphaComplex([(0, 0), (4, 0), (0, 3), (4, 3), (9, 9)])
     >>> complex
     <AlphaComplex of 5 points: 5 vertices, 8 edges, 4 triangles>
-    >>> complex.values(1).tolist()
+    >>> complex.values_of(1).tolist()
     [4.0, 2.25, 6.25, 2.25, 64.66, 4.0, 49.5625, 15.25]
     >>> complex.shape(6.25).area
     12.0
@@ -210,7 +210,14 @@ class AlphaComplex(Stored):
         found = self._valued.simplices
         return len(found) - 1 if len(found[0]) else -1
 
-    def simplices(self, k: int) -> Indices:
+    @property
+    def simplices(self) -> Indices:
+        """The triangles, in 3-D tetrahedra, of the triangulation, (m, d + 1)."""
+        if self.dimension == self.ndim:
+            return simplices_of(self._valued, self.ndim, self.ndim)[0]
+        return sealed(np.empty((0, self.ndim + 1), dtype=np.int32))
+
+    def simplices_of(self, k: int) -> Indices:
         """Return the simplices of one dimension.
 
         Parameters
@@ -233,13 +240,13 @@ class AlphaComplex(Stored):
         Examples
         --------
         >>> import delone
-        >>> delone.AlphaComplex([(0, 0), (4, 0), (0, 3)]).simplices(1).tolist()
+        >>> delone.AlphaComplex([(0, 0), (4, 0), (0, 3)]).simplices_of(1).tolist()
         [[0, 1], [0, 2], [1, 2]]
         """
         return simplices_of(self._valued, k, self.ndim)[0]
 
-    def values(self, k: int) -> Floats:
-        """Return the values of the simplices of one dimension, in the order of `simplices`.
+    def values_of(self, k: int) -> Floats:
+        """Return the values of the simplices of one dimension, in the order of `simplices_of`.
 
         Parameters
         ----------
@@ -260,7 +267,7 @@ class AlphaComplex(Stored):
         Examples
         --------
         >>> import delone
-        >>> delone.AlphaComplex([(0, 0), (4, 0), (0, 3)]).values(1)
+        >>> delone.AlphaComplex([(0, 0), (4, 0), (0, 3)]).values_of(1)
         array([4.  , 2.25, 6.25])
         """
         return simplices_of(self._valued, k, self.ndim)[1]

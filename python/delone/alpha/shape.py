@@ -61,6 +61,12 @@ class Kept(Immutable):
         return self._flags
 
     @property
+    @kept
+    def simplices(self) -> Indices:
+        """The triangles, in 3-D tetrahedra, that are kept, (k, d + 1)."""
+        return sealed(self._solid.copy())
+
+    @property
     def _is_full(self) -> bool:
         return int(self._tops.shape[1]) == self.ndim + 1
 
@@ -84,6 +90,7 @@ class Kept(Immutable):
         """Number of parts: triangles with a common edge (tetrahedra with a face) are in one."""
         return int(self._labels.max(initial=-1)) + 1 if self._is_full else 0
 
+    @property
     @kept
     def boundary(self) -> Indices:
         """Return the edges (in 3-D triangles) with a triangle (tetrahedron) on one side only.
@@ -97,7 +104,7 @@ class Kept(Immutable):
         Examples
         --------
         >>> import delone
-        >>> delone.AlphaComplex([(0, 0), (4, 0), (0, 3)]).shape(6.25).boundary().tolist()
+        >>> delone.AlphaComplex([(0, 0), (4, 0), (0, 3)]).shape(6.25).boundary.tolist()
         [[0, 1], [1, 2], [2, 0]]
         """
         if not self._is_full:
@@ -150,7 +157,7 @@ class Kept(Immutable):
         """The area of the triangles; in 3-D that of the boundary."""
         if self.ndim == 2:
             return plane.total(self._areas())
-        return plane.total(space.face_areas(self._points, self.boundary(), self._workers))
+        return plane.total(space.face_areas(self._points, self.boundary, self._workers))
 
     def _areas(self) -> Floats:
         """The areas of the triangles that are kept."""
@@ -164,7 +171,7 @@ class Kept(Immutable):
             raise InputError("a perimeter is only available in 2-D: `area` is that of the boundary")
         self._require_plane()
         with np.errstate(over="ignore"):
-            along = np.subtract(*self._points[self.boundary().T])
+            along = np.subtract(*self._points[self.boundary.T])
             return plane.total(np.hypot(*along.T))
 
     @property
@@ -183,7 +190,7 @@ class Kept(Immutable):
         In 2-D, whether its rings are disjoint; in 3-D, whether it is a surface without points or
         edges where it touches itself. True without a boundary.
         """
-        sides = self.boundary()
+        sides = self.boundary
         if self.ndim == 2:
             return bool((np.bincount(sides.ravel()) <= 2).all())
         corners = sides[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2)
@@ -214,14 +221,16 @@ class AlphaShape(Kept):
         The squared radius.
     points : ndarray of float64, shape (n, d)
         The coordinates.
+    simplices : ndarray of int32, shape (k, d + 1)
+        The triangles, in 3-D tetrahedra, that are kept.
     is_kept : ndarray of bool, shape (m,)
         Whether each simplex of the highest dimension of the complex is kept.
 
     Notes
     -----
-    A shape may have edges and points that belong to no triangle. `simplices` and the numbers of
-    components and holes have these; `boundary`, `polygons` and the measures have the triangles (in
-    3-D the tetrahedra) only.
+    A shape may have edges and points that belong to no triangle. `simplices_of` and the numbers of
+    components and holes have these; `simplices`, `boundary`, `polygons` and the measures have the
+    triangles (in 3-D the tetrahedra) only.
 
     Examples
     --------
@@ -255,7 +264,7 @@ class AlphaShape(Kept):
         """The squared radius."""
         return self._alpha
 
-    def simplices(self, k: int) -> Indices:
+    def simplices_of(self, k: int) -> Indices:
         """Return the simplices of one dimension that are kept.
 
         Parameters
@@ -266,7 +275,7 @@ class AlphaShape(Kept):
         Returns
         -------
         ndarray of int32, shape (m, k + 1)
-            Rows of `points`, in the order of ``AlphaComplex.simplices``.
+            Rows of `points`, in the order of ``AlphaComplex.simplices_of``.
 
         Raises
         ------
@@ -276,7 +285,7 @@ class AlphaShape(Kept):
         Examples
         --------
         >>> import delone
-        >>> delone.AlphaComplex([(0, 0), (4, 0), (0, 3)]).shape(4).simplices(1).tolist()
+        >>> delone.AlphaComplex([(0, 0), (4, 0), (0, 3)]).shape(4).simplices_of(1).tolist()
         [[0, 1], [0, 2]]
         """
         rows, values = simplices_of(self._valued, k, self.ndim)
@@ -296,8 +305,8 @@ class AlphaShape(Kept):
     @kept
     def ncomponents(self) -> int:
         """Number of connected components, single points and edges included."""
-        rows = self.simplices(0)[:, 0]
-        edges = np.ascontiguousarray(self.simplices(1))
+        rows = self.simplices_of(0)[:, 0]
+        edges = np.ascontiguousarray(self.simplices_of(1))
         found = _core.graph_components(edges, len(self._points))
         return len(np.unique(found[rows]))
 
@@ -329,7 +338,7 @@ class AlphaShape(Kept):
             found: NDArray[np.int64] = (u * size + v) * size + w
             return found
 
-        barred = np.isin(keys(self._tops[:, opposite]), keys(self.simplices(2))).reshape(-1, 4)
+        barred = np.isin(keys(self._tops[:, opposite]), keys(self.simplices_of(2))).reshape(-1, 4)
         is_open = ~barred & ~self._flags[:, None]
         t, k = np.nonzero(is_open)
         other = self._neighbors[t, k]
@@ -403,12 +412,6 @@ class ConcaveHull(Kept):
         )
         return found
 
-    @property
-    @kept
-    def simplices(self) -> Indices:
-        """The triangles, in 3-D tetrahedra, that are kept, (k, d + 1)."""
-        return sealed(self._solid.copy())
-
     def polygon(self) -> Any:
         """Return the hull as one polygon of shapely (extra ``geo``); 2-D only.
 
@@ -442,7 +445,7 @@ class ConcaveHull(Kept):
             return "<ConcaveHull of nothing yet>"
         whole = ("triangle", "edge") if self.ndim == 2 else ("tetrahedron", "triangle")
         many = ("triangles", "edges") if self.ndim == 2 else ("tetrahedra", "triangles")
-        sizes = len(self._solid), len(self.boundary())
+        sizes = len(self._solid), len(self.boundary)
         listed = (
             f"{size} {one if size == 1 else more}"
             for size, one, more in zip(sizes, whole, many, strict=True)

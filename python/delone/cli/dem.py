@@ -195,7 +195,7 @@ def _of_tiles(
         found = distributed.open(folder)
     with spinner(quiet or as_json) as say, writing():
         say(f"interpolating {found.ntiles:,} tiles")
-        found.to_raster(cells, output, value=value, crs=crs)
+        found.to_raster(cells, output, values=value, crs=crs)
     if as_json:
         print_json({"delone": __version__, "input": str(folder), "outputs": [str(output)]})
     elif not quiet:

@@ -308,7 +308,7 @@ def _figures(
         "method": method,
         "columns": len(found.x),
         "rows": len(found.y),
-        "cell": list(found.cell),
+        "cell": list(found.cell_size),
         "extent": list(found.extent),
         "without_value": int(found.values.size - known.size),
         "least": float(known.min()) if known.size else None,

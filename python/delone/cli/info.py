@@ -112,7 +112,7 @@ def _described(
         solid = is_space(source, space, survey)
     survey = referenced(survey, crs, planar=True, quiet=False)
     if isinstance(survey, GeometrySet):
-        figures = _figures(survey.coordinates()) | _of_geometries(survey)
+        figures = _figures(survey.all_points()) | _of_geometries(survey)
     else:
         figures = _figures(survey, solid=solid) | header
     figures["file_bytes"] = source.stat().st_size

@@ -105,7 +105,7 @@ def hull(
         "points": mesh.npoints,
         "outside": outside,
         "polygons": found.nparts,
-        "edges": len(found.boundary()),
+        "edges": len(found.boundary),
         "area": finite_or_none(found.area),
         "length": finite_or_none(found.perimeter),
         "alpha": getattr(found, "alpha", None),

@@ -74,7 +74,7 @@ def referenced(
         survey = replace(survey, crs=crs)
     by = degrees_in(survey)
     if by is not None and not planar:
-        found = survey.coordinates() if isinstance(survey, GeometrySet) else survey
+        found = survey.all_points() if isinstance(survey, GeometrySet) else survey
         note_degrees(survey.source, by, found.points, quiet=quiet)
     return survey
 

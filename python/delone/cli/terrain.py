@@ -192,7 +192,7 @@ def profile(
             with writing(), replacing(output) as target, watch.stage(f"write {output.name}"):
                 _write_profile(found, target)
     figures = figures_of(source, tin, [] if output is None else [output]) | {
-        "length": float(found.distance[-1]) if len(found) else 0.0,
+        "length": float(found.distances[-1]) if len(found) else 0.0,
         "profile_points": len(found),
         "lowest": float(np.nanmin(found.z)) if np.isfinite(found.z).any() else None,
         "highest": float(np.nanmax(found.z)) if np.isfinite(found.z).any() else None,
@@ -250,7 +250,7 @@ def volume(
         goal = _goal(other, within_other, watch, say)
         say("computing volumes")
         with watch.stage("volume"), noting(quiet=quiet):
-            found = tin.volume(goal, region=within)
+            found = tin.volume_to(goal, region=within)
     figures = figures_of(source, tin, []) | {
         "cut": found.cut,
         "fill": found.fill,
@@ -312,7 +312,7 @@ def _write(table: Callable[[], Any], output: list[Path], watch: Stopwatch, layer
 
 def _write_profile(found: Any, path: Path) -> None:
     if path.suffix.lower() == ".csv":
-        table = np.column_stack((found.distance, found.z, found.points))
+        table = np.column_stack((found.distances, found.z, found.points))
         np.savetxt(path, table, fmt="%.17g", delimiter=",", header="distance,z,x,y", comments="")
         return
     pyplot = require("matplotlib.pyplot", extra="plot", what="drawing")

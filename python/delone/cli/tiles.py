@@ -194,7 +194,7 @@ def _words(progress: Progress) -> tuple[str, str]:
     said = _STAGES.get(stage, "beginning")
     if stage in ("answer", "proceed"):
         said += f", round {progress.turn}"
-    parts = [f"{progress.tiles:,} tiles"] if progress.tiles else []
+    parts = [f"{progress.ntiles:,} tiles"] if progress.ntiles else []
     if progress.open:
         parts.append(f"{progress.open:,} open")
     if progress.foreign:
@@ -221,7 +221,7 @@ def _print_plan(plan: Plan, as_json: bool) -> None:
         return
     rows = [
         ("points", f"{plan.points:,}"),
-        ("tiles", f"{plan.tiles:,}"),
+        ("tiles", f"{plan.ntiles:,}"),
         ("tasks", f"{plan.tasks:,}"),
         ("foreign points", f"{plan.foreign:,} per tile"),
         ("memory", f"{memory_text(plan.worker_memory)} per worker"),

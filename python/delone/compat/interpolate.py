@@ -263,10 +263,10 @@ class _GivenGradients(CloughTocher):
     given: NDArray[Any] | None = None
     _floor = 1.0
 
-    def gradients(self, columns: Floats) -> Floats:
+    def _gradients(self, columns: Floats) -> Floats:
         """Return the gradients given, or the estimated ones if there are none."""
         if self.given is None:
-            return super().gradients(columns)
+            return super()._gradients(columns)
         if self.given.dtype.kind != "c":
             return np.ascontiguousarray(self.given, dtype=np.float64)
         parts = np.stack((self.given.real, self.given.imag), axis=2)

@@ -380,7 +380,7 @@ class ConstrainedDelaunay(Segmented):
 
         values = {"region": self.region}
         if self._given.origin.rings.any():
-            values["polygon"] = self.polygon
+            values["polygon"] = self.polygon_of_simplex
         return Parts(
             self._points,
             self._simplices,

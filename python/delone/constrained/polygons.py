@@ -99,8 +99,9 @@ def from_geometry(
     Open rings are closed. Missing and empty geometries are skipped, and third coordinates are
     dropped. Equal coordinates are one point, so adjacent polygons share vertices. Polygons need not
     be valid: by the even-odd rule, a point is inside if the rings of a geometry wind around it an
-    odd number of times, and ``mesh.polygon`` has the first geometry that contains each triangle.
-    With ``boundary="outline"`` holes of polygons remain, with ``"polygons"`` they are removed.
+    odd number of times, and ``mesh.polygon_of_simplex`` has the first geometry that contains
+    each triangle. With ``boundary="outline"`` holes of polygons remain, with ``"polygons"`` they
+    are removed.
 
     Examples
     --------
@@ -113,7 +114,7 @@ def from_geometry(
     <ConstrainedDelaunay of 8 points (2 added) and 5 segments: 8 triangles>
     >>> mesh.geometry_of_segment.tolist()
     [0, 0, 0, 0, 1]
-    >>> delone.from_geometry([square, line], boundary="polygons").polygon.tolist()
+    >>> delone.from_geometry([square, line], boundary="polygons").polygon_of_simplex.tolist()
     [0, 0, 0, 0]
     """
     parts, system = _read(geometries, crs, planar=planar)
@@ -205,11 +206,14 @@ class PolygonTriangles(NamedTuple):
         # NumPy does not pickle the writeable flag of arrays.
         return _read_only, (self.points, self.simplices)
 
-    def to_geopandas(self, *, crs: Any = None) -> Any:
+    def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
         """Return the triangles as a table of polygons (extra ``geo``).
 
         Parameters
         ----------
+        data : DataFrame or mapping, optional
+            Columns to include, with one row for each triangle. The geometry of a GeoDataFrame is
+            replaced, its reference system and index are kept.
         crs : optional
             Coordinate reference system, anything that geopandas accepts.
 
@@ -222,6 +226,8 @@ class PolygonTriangles(NamedTuple):
         ------
         MissingExtraError
             geopandas or shapely is not installed.
+        InputError
+            `data` does not have one row for each triangle.
 
         Examples
         --------
@@ -232,7 +238,7 @@ class PolygonTriangles(NamedTuple):
         """
         from delone.exchange.geopandas import to_geopandas
 
-        return to_geopandas(Parts(self.points, self.simplices), crs)
+        return to_geopandas(Parts(self.points, self.simplices), crs, data)
 
 
 def triangulate_polygon(polygon: Any, *, rule: str = "even-odd") -> PolygonTriangles:

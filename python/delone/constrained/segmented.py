@@ -16,6 +16,7 @@ from delone import _core
 from delone._arrays import as_workers
 from delone.constrained import coverage, regions, segments
 from delone.immutable import kept, sealed
+from delone.renames import renamed
 from delone.triangulation import PointTriangulation
 
 if TYPE_CHECKING:
@@ -93,6 +94,7 @@ class Given(NamedTuple):
         )
 
 
+@renamed(polygon="polygon_of_simplex")
 class Segmented(PointTriangulation):
     """A triangulation whose edges include segments, with regions between them."""
 
@@ -234,7 +236,7 @@ class Segmented(PointTriangulation):
 
     @property
     @kept
-    def polygon(self) -> Indices:
+    def polygon_of_simplex(self) -> Indices:
         """The first polygon that contains each triangle, (m,), as the number of its geometry.
 
         -1 if there is none, and in triangulations of arrays. A point is inside if the rings of the

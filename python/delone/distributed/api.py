@@ -135,7 +135,7 @@ def triangulate(
     >>> points = datasets.uniform(1000)
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     tin = distributed.triangulate(points, folder + "/tin", tile_points=250)
-    ...     same_triangles(tin.simplices(), Delaunay(points).simplices)
+    ...     same_triangles(tin.read_simplices(), Delaunay(points).simplices)
     True
     """
     nan = as_choice(nan, ("raise", "drop"), name="nan")
@@ -198,7 +198,7 @@ def plan(
     Examples
     --------
     >>> from delone import distributed
-    >>> distributed.plan(10**12).tiles
+    >>> distributed.plan(10**12).ntiles
     500000
     """
     size = _tile_points(tile_points)

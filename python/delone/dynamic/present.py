@@ -15,6 +15,7 @@ from delone.dynamic.segments import Segmented, as_handles, refuse
 from delone.errors import HandleError, ShapeError
 from delone.immutable import sealed
 from delone.plane.dimension import PLANE
+from delone.renames import renamed
 from delone.space.dimension import SPACE
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["Present"]
 
 
+@renamed(corners="corners_at")
 class Present(Segmented):
     """What a `Dynamic` tells about its present state."""
 
@@ -190,7 +192,7 @@ class Present(Segmented):
             self._index = index
         return index
 
-    def corners(self, xi: ArrayLike) -> tuple[Handles, Floats]:
+    def corners_at(self, xi: ArrayLike) -> tuple[Handles, Floats]:
         """Return corners and weights of the simplices that contain points.
 
         Parameters
@@ -213,7 +215,7 @@ class Present(Segmented):
         Examples
         --------
         >>> from delone import Dynamic
-        >>> handles, weights = Dynamic([(0, 0), (4, 0), (0, 4)]).corners((1, 2))
+        >>> handles, weights = Dynamic([(0, 0), (4, 0), (0, 4)]).corners_at((1, 2))
         >>> sorted(zip(handles.tolist(), weights.tolist(), strict=True))
         [(0, 0.25), (1, 0.25), (2, 0.5)]
         """
@@ -324,17 +326,17 @@ class Present(Segmented):
         return _places(self._arrays().handles, wanted)
 
     def interpolate(
-        self, values: ArrayLike, xi: ArrayLike, *, handles: ArrayLike | None = None
+        self, xi: ArrayLike, values: ArrayLike, *, handles: ArrayLike | None = None
     ) -> NDArray[Any]:
         """Interpolate values linearly in the present simplices.
 
         Parameters
         ----------
+        xi : array_like, shape (..., d)
+            Where to interpolate.
         values : array_like, shape (n, ...)
             A real or complex value for each row of `points`; of duplicates, that of the vertex
             counts.
-        xi : array_like, shape (..., d)
-            Where to interpolate.
         handles : array_like of int, shape (n,), optional
             The handles that the values belong to, in any order, each once. All points must be
             among them; others are not used. By default those of the present rows.
@@ -359,7 +361,7 @@ class Present(Segmented):
         >>> live = Dynamic([(0, 0), (4, 0), (0, 4)])
         >>> live.remove([0])
         >>> _ = live.insert([(4, 4)])
-        >>> live.interpolate(live.points.sum(axis=1), (3, 3))
+        >>> live.interpolate((3, 3), live.points.sum(axis=1))
         array(6.)
         """
         given = as_values(values)

@@ -72,12 +72,12 @@ class Segmented:
     def _has_segments(self) -> bool:
         return isinstance(self._live, _core.Live2) and self._live.constraints()[0]
 
-    def insert_segments(self, ends: ArrayLike) -> Handles:
+    def insert_segments(self, segments: ArrayLike) -> Handles:
         """Insert segments: edges that the triangulation must contain.
 
         Parameters
         ----------
-        ends : array_like of int, shape (s, 2)
+        segments : array_like of int, shape (s, 2)
             Handles of the points that each segment joins. Segments may repeat, overlap, pass
             through points, and have zero length.
 
@@ -114,7 +114,7 @@ class Segmented:
         >>> live.segments
         array([[1, 3]], dtype=int32)
         """
-        plane, own = self._plane(), _as_ends(ends)
+        plane, own = self._plane(), _as_ends(segments)
         flat = np.ascontiguousarray(own.reshape(-1))
         gone, _ = plane.faults(flat)
         refuse(gone, np.empty(0, dtype=np.int64), "handle")

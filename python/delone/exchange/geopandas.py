@@ -12,19 +12,20 @@ from delone.exchange.parts import parts_of
 from delone.extras import require
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from delone.exchange.parts import Given
 
-__all__ = ["by_region", "cells_to_geopandas", "shapely_or_say", "to_geopandas"]
+__all__ = ["beside", "by_region", "shapely_or_say", "to_geopandas"]
 
 
-def to_geopandas(mesh: Given, crs: Any = None) -> Any:
+def to_geopandas(mesh: Given, crs: Any = None, data: Any = None) -> Any:
     """Return a GeoDataFrame of triangles or edges; `crs` is by default that of the mesh.
 
     A row has the vertices ``v0``, ``v1`` (and ``v2``), the values, and a polygon or a line.
     """
-    geopandas = require("geopandas", extra="geo", what="a table of geometries")
     shapely = require("shapely", extra="geo", what="a table of geometries")
     parts = parts_of(mesh)
     rows = parts.simplices
@@ -35,11 +36,10 @@ def to_geopandas(mesh: Given, crs: Any = None) -> Any:
     shapes = np.empty(len(rows), dtype=object)
     for block in blocks(len(rows)):
         shapes[block] = make(parts.points[rows[block]])
-    return geopandas.GeoDataFrame(
-        columns | dict(parts.of_simplices),
-        geometry=shapes,
-        crs=parts.crs if crs is None else crs,
-    )
+    columns |= dict(parts.of_simplices)
+    own = parts.crs if crs is None else crs
+    of = "triangles" if rows.shape[1] == 3 else "edges"
+    return beside(shapes, data, own, columns=columns, of=of)
 
 
 def shapely_or_say() -> Any:
@@ -53,20 +53,32 @@ def by_region(polygons: NDArray[Any], regions: NDArray[np.int32]) -> NDArray[Any
     return found
 
 
-def cells_to_geopandas(polygons: NDArray[Any], data: Any = None, crs: Any = None) -> Any:
-    """Return a GeoDataFrame of cells beside the columns of their sites, in their `crs` if any."""
-    geopandas = require("geopandas", extra="geo", what="a table of cells")
+def beside(
+    shapes: NDArray[Any],
+    data: Any = None,
+    crs: Any = None,
+    *,
+    columns: Mapping[str, Any] | None = None,
+    of: str = "points",
+) -> Any:
+    """Return a GeoDataFrame of geometries beside `columns` and those of `data`.
+
+    The index, and without `crs` the reference system, are those of `data`. `of` says in errors what
+    each row is.
+    """
+    geopandas = require("geopandas", extra="geo", what="a table of geometries")
+    own = dict(columns or {})
     if data is None:
-        return geopandas.GeoDataFrame(geometry=polygons, crs=crs)
+        return geopandas.GeoDataFrame(own, geometry=shapes, crs=crs)
     if hasattr(data, "geometry") and hasattr(data, "crs"):
         crs = data.crs if crs is None else crs
         data = data.drop(columns=data.geometry.name)
-    frame = (
-        data
-        if hasattr(data, "index")
-        else require("pandas", extra="geo", what="a table of cells").DataFrame(data)
-    )
-    if len(frame) != len(polygons):
-        raise InputError(f"data has {len(frame)} rows for {len(polygons)} points")
-    geometry = geopandas.GeoSeries(polygons, index=frame.index, crs=crs)
-    return geopandas.GeoDataFrame(frame.copy(), geometry=geometry)
+    pandas = require("pandas", extra="geo", what="a table of geometries")
+    frame = pandas.DataFrame(data)
+    if len(frame) != len(shapes):
+        raise InputError(f"data has {len(frame)} rows for {len(shapes)} {of}")
+    if taken := [name for name in frame.columns if name in own or name == "geometry"]:
+        raise InputError(f"data has a column {taken[0]!r:.60}, as the table itself: rename it")
+    geometry = geopandas.GeoSeries(shapes, index=frame.index, crs=crs)
+    whole = pandas.concat([pandas.DataFrame(own, index=frame.index), frame], axis=1)
+    return geopandas.GeoDataFrame(whole, geometry=geometry)

@@ -495,11 +495,14 @@ class Graph(Stored):
             nodes = np.setdiff1d(nodes, rows)
         return to_libpysal(graph._links(weights), nodes)
 
-    def to_geopandas(self, *, crs: Any = None) -> Any:
+    def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
         """Convert to a table of lines (extra ``geo``).
 
         Parameters
         ----------
+        data : DataFrame or mapping, optional
+            Columns to include, with one row for each edge. The geometry of a GeoDataFrame is
+            replaced, its reference system and index are kept.
         crs : optional
             Reference system of the coordinates, anything that geopandas takes.
 
@@ -513,6 +516,8 @@ class Graph(Stored):
         ------
         MissingExtraError
             geopandas or shapely is not installed.
+        InputError
+            `data` does not have one row for each edge.
 
         Examples
         --------
@@ -523,7 +528,7 @@ class Graph(Stored):
         """
         from delone.exchange.geopandas import to_geopandas
 
-        return to_geopandas(self._parts(), crs)
+        return to_geopandas(self._parts(), crs, data)
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Draw with matplotlib (extra ``plot``) or, in 3-D, with PyVista (extra ``pyvista``).

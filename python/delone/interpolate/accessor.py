@@ -432,7 +432,7 @@ def _interpolated(data: Any, sites: _Sites, target: tuple[Any, Any]) -> Any:
     if sites.globe is not None:
         queries = sites.globe.directions(queries, degrees=degrees)
     near = None if sites.limit is None else sites.made.distance(queries) <= sites.limit
-    geometry = _Geometry(sites.made.weights(queries), dims, target, near, sites.rows)
+    geometry = _Geometry(sites.made.weights_at(queries), dims, target, near, sites.rows)
     # Coordinates of the points are not coordinates of the result.
     gone = [name for name, part in data.coords.items() if set(part.dims) & set(dims)]
     plain = data.drop_vars(gone)
@@ -551,6 +551,6 @@ def _last_axes(
     leading = values.shape[: values.ndim - count]
     fields = np.moveaxis(values.reshape(*leading, -1), -1, 0)
     found = table.apply(fields if rows is None else fields[rows])
-    width = len(table.shape)
+    width = len(table.query_shape)
     order = (*range(width, found.ndim), *range(width))
     return np.ascontiguousarray(found.transpose(order), dtype=kind)

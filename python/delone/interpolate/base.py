@@ -37,6 +37,7 @@ from delone.interpolate.values import (
 from delone.interpolate.weights import joined
 from delone.periodic import PeriodicDelaunay
 from delone.plane import slivers, topology
+from delone.renames import renamed
 from delone.triangulation import Triangulation
 
 if TYPE_CHECKING:
@@ -76,6 +77,7 @@ class Sheet(NamedTuple):
     source: Indices | None = None
 
 
+@renamed(weights="weights_at")
 class Interpolator:
     """Interpolation of scattered data; the base of the public classes.
 
@@ -143,7 +145,7 @@ class Interpolator:
         if field is not None and several:
             self._field, self._parts = None, (field, self._narrowed(field))
         else:
-            self._field = None if field is None else (field, self.settled(field))
+            self._field = None if field is None else (field, self._settled(field))
 
     @property
     def _ndim(self) -> int:
@@ -310,7 +312,7 @@ class Interpolator:
         queries, shape = interpolator._queries(xi)
         return shaped_derivatives(interpolator._sloped(queries, columns), field, shape)
 
-    def weights(self, xi: ArrayLike) -> Weights:
+    def weights_at(self, xi: ArrayLike) -> Weights:
         """Return the sites that contribute to each query, with their weights.
 
         Parameters
@@ -333,7 +335,7 @@ class Interpolator:
         Examples
         --------
         >>> from delone.interpolate import Linear
-        >>> table = Linear([(0, 0), (4, 0), (0, 4)]).weights([(1, 1), (2, 2)])
+        >>> table = Linear([(0, 0), (4, 0), (0, 4)]).weights_at([(1, 1), (2, 2)])
         >>> table @ [1.0, 5.0, 9.0], table @ [0.0, 0.0, 8.0]
         (array([4., 7.]), array([2., 4.]))
         """
@@ -357,7 +359,7 @@ class Interpolator:
         """Weights for the rows of `settled`."""
         raise NotImplementedError
 
-    def gradients(self, columns: Floats) -> Floats | None:
+    def _gradients(self, columns: Floats) -> Floats | None:
         """Return gradients at the sites, or None if the interpolant needs none.
 
         Parameters
@@ -390,7 +392,7 @@ class Interpolator:
         return self._workers
 
     @property
-    def policies(self) -> Policies:
+    def _policies(self) -> Policies:
         """What becomes of values, and which of the caller's rows are those of a table."""
         if "policies" not in self._cache:
             again = self._repeated
@@ -416,7 +418,7 @@ class Interpolator:
         """The vertex for each row of a table; None if they are the same."""
         return None
 
-    def settled(self, field: Field) -> Floats:
+    def _settled(self, field: Field) -> Floats:
         """Apply the policies and return values for the rows of a table.
 
         Parameters
@@ -434,14 +436,14 @@ class Interpolator:
         InputError
             A policy rejects them.
         """
-        return self.policies.settled(field)
+        return self._policies._settled(field)
 
     def _interpolated(self, queries: Floats, columns: Floats) -> Floats:
         found = self._derived(queries, columns, 0)
         rows, place, _ = self._left(queries, found)
         if rows.size:
             terms = self._terms_beyond(queries[rows], place)
-            found[rows] = summed(terms, columns, self.gradients(columns))
+            found[rows] = summed(terms, columns, self._gradients(columns))
         return found
 
     def _sloped(self, queries: Floats, columns: Floats) -> Floats:
@@ -453,7 +455,7 @@ class Interpolator:
             return found
         for axis, step in enumerate(np.eye(self._ndim)) if rows.size else ():
             terms = self._terms(place, np.tile(step, (len(rows), 1)), False)
-            found[rows, :, axis] = summed(terms, columns, self.gradients(columns))
+            found[rows, :, axis] = summed(terms, columns, self._gradients(columns))
         return found
 
     def _fill_beside(
@@ -464,11 +466,11 @@ class Interpolator:
             sheet = self._sheet
             corners = sheet.points[sheet.simplices[place.beside]]
             middle = (corners / corners.shape[1]).sum(axis=1)
-            way = middle - place.nearest
+            way = middle - place.closest
             # Far enough that rounding does not bring it back.
             unit = np.spacing(np.abs(middle).max(axis=1)) / np.abs(way).max(axis=1)
             share = np.clip(_CLEAR * unit, _BEHIND, 0.5)
-            behind = place.nearest + share[:, None] * way
+            behind = place.closest + share[:, None] * way
             found[rows] = self._derived(behind, columns, order)
 
     def _completed(self, table: Table, queries: Floats, known: Floats) -> Table:
@@ -477,7 +479,7 @@ class Interpolator:
         return joined(table, rows, self._terms_beyond(queries[rows], place)) if rows.size else table
 
     def _terms_beyond(self, queries: Floats, place: Any) -> Terms:
-        step = queries - place.nearest
+        step = queries - place.closest
         if self._extrapolate != "linear":
             step = np.zeros_like(step)
         return self._terms(place, step, True)
@@ -606,10 +608,10 @@ class Interpolator:
         field = self.field_of(values)
         kept = self._kept_rows(field)
         if self._nan != "drop" or _same(kept, self._kept):
-            return self, field, self.settled(field)
+            return self, field, self._settled(field)
         other = self._without(kept)
         self._others = {_key(kept): other}
-        return other, field, other.settled(field)
+        return other, field, other._settled(field)
 
     def _several(self, values: ArrayLike | None) -> Parts | None:
         """Parts of a field whose sites differ by ``nan="drop"``; None if all have the same."""
@@ -631,7 +633,7 @@ class Interpolator:
                 narrow = copy.copy(owner)
                 # Gradients are those of a field.
                 narrow._cache = {k: v for k, v in owner._cache.items() if k != "gradients"}
-                narrow._field = part, narrow.settled(part)
+                narrow._field = part, narrow._settled(part)
             except InputError as error:
                 error.add_note(f"of the fields among values, number {which[0]}")
                 raise

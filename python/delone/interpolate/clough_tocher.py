@@ -135,7 +135,7 @@ class CloughTocher(Smooth):
         sheet = self._sheet
         found: Floats = sheet.locator.clough_tocher(
             columns,
-            self.gradients(columns),
+            self._gradients(columns),
             queries,
             sheet.barrier,
             order,

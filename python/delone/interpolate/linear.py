@@ -122,7 +122,7 @@ class Linear(Interpolator):
             return face_terms(place, step, base=base)
         return edge_terms(self._mesh.points, place, step, cubic=False, base=base)
 
-    def gradients(self, columns: Floats) -> Floats | None:
+    def _gradients(self, columns: Floats) -> Floats | None:
         """Return gradients at the sites, which are used only beyond the hull."""
         if self._extrapolate != "linear":
             return None

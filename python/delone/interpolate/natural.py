@@ -93,7 +93,7 @@ class NaturalNeighbor(Smooth):
     >>> area = NaturalNeighbor(sites, [0.0, 4.0, 8.0, 4.0, 5.0])
     >>> area([(2, 1), (2, 3), (3, 0)]).round(12)
     array([3., 5., 3.])
-    >>> table = area.weights((2, 1))
+    >>> table = area.weights_at((2, 1))
     >>> (table.weights @ sites[table.indices]).round(12)
     array([2., 1.])
     """
@@ -155,10 +155,10 @@ class NaturalNeighbor(Smooth):
         """The kind of weights."""
         return self._kind
 
-    def gradients(self, columns: Floats) -> Floats | None:  # type: ignore[override]
+    def _gradients(self, columns: Floats) -> Floats | None:  # type: ignore[override]
         """Return gradients at the sites, or None if the kind needs none."""
         if self._kind in _WITH_GRADIENTS:
-            return super().gradients(columns)
+            return super()._gradients(columns)
         if self._extrapolate != "linear":
             return None
         threads = as_workers(self._workers)
@@ -184,7 +184,7 @@ class NaturalNeighbor(Smooth):
         found: Floats = sheet.locator.natural_values(
             self._kind,
             columns,
-            self.gradients(columns) if self._kind in _WITH_GRADIENTS else None,
+            self._gradients(columns) if self._kind in _WITH_GRADIENTS else None,
             queries,
             sheet.barrier,
             order,

@@ -44,14 +44,14 @@ class Policies:
     source: Indices | None = None  # the site of each row of a table; None if they are the same
 
     @property
-    def policies(self) -> Self:
+    def _policies(self) -> Self:
         """These, as those of an interpolator."""
         return self
 
-    def gradients(self, columns: Floats) -> None:
+    def _gradients(self, columns: Floats) -> None:
         """Return None: without triangles there are none."""
 
-    def settled(self, field: Field) -> Floats:
+    def _settled(self, field: Field) -> Floats:
         """Return values for the rows of a table, after the policies; raise if one rejects them."""
         if self.kept is not None:
             field = field.at(self.kept)

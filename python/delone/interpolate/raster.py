@@ -25,6 +25,7 @@ from delone.errors import DtypeError, InputError, ShapeError
 from delone.interpolate.base import Interpolator, as_max_distance
 from delone.interpolate.methods import interpolator
 from delone.interpolate.space import SPACE, refuse
+from delone.renames import renamed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -46,6 +47,7 @@ _SPARE = 1 << 26
 _ROUNDINGS = 4
 
 
+@renamed(cell="cell_size")
 @dataclass(frozen=True, eq=False)
 class Grid:
     """Values on the nodes of a regular grid.
@@ -75,7 +77,7 @@ class Grid:
     y: Floats
 
     @property
-    def cell(self) -> tuple[float, float]:
+    def cell_size(self) -> tuple[float, float]:
         """Width and height of a cell; 0 if there is only one."""
         return float(spacing(self.x)), float(spacing(self.y))
 

@@ -135,7 +135,7 @@ class Smooth(Interpolator):
         self._require_gradients()
         self._require_one(values)
         interpolator, field, columns = self._with(values)
-        found = interpolator.gradients(columns)
+        found = interpolator._gradients(columns)
         return shaped_derivatives(found, field, found.shape[:1])
 
     def _needed(self) -> dict[str, bool]:
@@ -144,7 +144,7 @@ class Smooth(Interpolator):
     def _require_gradients(self) -> None:
         """Raise if the interpolant does not use gradients at the sites."""
 
-    def gradients(self, columns: Floats) -> Floats:
+    def _gradients(self, columns: Floats) -> Floats:
         """Return gradients at the sites; see `Interpolator.gradients`."""
         own = self._field is not None and columns is self._field[1]
         if own and "gradients" in self._cache:

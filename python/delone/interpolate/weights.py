@@ -17,6 +17,7 @@ from delone._arrays import as_workers
 from delone.errors import InputError
 from delone.extras import require
 from delone.interpolate.values import as_field
+from delone.renames import renamed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -45,13 +46,14 @@ class Sites(Protocol):
         """Number of threads."""
 
     @property
-    def policies(self) -> Policies:
+    def _policies(self) -> Policies:
         """What becomes of values, and which of the caller's rows are those of a table."""
 
-    def gradients(self, columns: Floats) -> Floats | None:
+    def _gradients(self, columns: Floats) -> Floats | None:
         """Gradients (n, c, 2) of these columns, if the interpolant needs them."""
 
 
+@renamed(shape="query_shape")
 @dataclass(frozen=True, eq=False)
 class Weights:
     """The sites that contribute to each query, with their weights.
@@ -67,7 +69,7 @@ class Weights:
         Their weights; they sum to 1 for each query, up to rounding.
     slopes : ndarray of float64, shape (nnz, d), or None
         Weights of their gradients, if the interpolant uses them.
-    shape : tuple of int
+    query_shape : tuple of int
         Shape of the queries, without their last axis.
     sites : Interpolator
         The interpolator that made the table. Without `slopes`, a pickled table has its policies
@@ -76,7 +78,7 @@ class Weights:
     Examples
     --------
     >>> from delone.interpolate import Linear
-    >>> table = Linear([(0, 0), (1, 0), (0, 1)]).weights([(0.25, 0.25), (1, 0)])
+    >>> table = Linear([(0, 0), (1, 0), (0, 1)]).weights_at([(0.25, 0.25), (1, 0)])
     >>> table.apply([0.0, 4.0, 8.0])
     array([3., 4.])
     >>> table.indptr.tolist()
@@ -87,7 +89,7 @@ class Weights:
     rows: Indices
     weights: Floats
     slopes: Floats | None
-    shape: tuple[int, ...]
+    query_shape: tuple[int, ...]
     sites: Sites
 
     def __len__(self) -> int:
@@ -95,8 +97,15 @@ class Weights:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Only gradients need triangles.
-        sites = self.sites if self.slopes is not None else self.sites.policies
-        return type(self), (self.indptr, self.rows, self.weights, self.slopes, self.shape, sites)
+        sites = self.sites if self.slopes is not None else self.sites._policies
+        return type(self), (
+            self.indptr,
+            self.rows,
+            self.weights,
+            self.slopes,
+            self.query_shape,
+            sites,
+        )
 
     @property
     def indices(self) -> Indices:
@@ -104,7 +113,7 @@ class Weights:
 
         If duplicates take their mean, least or greatest value, it is the first of them.
         """
-        found: Indices = self.sites.policies.caller_rows()[self.rows]
+        found: Indices = self.sites._policies.caller_rows()[self.rows]
         return found
 
     def apply(self, values: ArrayLike) -> NDArray[Any]:
@@ -135,14 +144,14 @@ class Weights:
         Examples
         --------
         >>> from delone.interpolate import Linear
-        >>> table = Linear([(0, 0), (1, 0), (0, 1)]).weights((0.5, 0.5))
+        >>> table = Linear([(0, 0), (1, 0), (0, 1)]).weights_at((0.5, 0.5))
         >>> [float(table.apply(month)) for month in ([0, 1, 2], [0, 3, 5])]
         [1.5, 4.0]
         """
         field = as_field(values, self.sites.npoints)
-        columns = self.sites.policies.settled(field)
+        columns = self.sites._policies._settled(field)
         slopes, threads = self.slopes, as_workers(self.sites.workers)
-        gradients = None if slopes is None else self.sites.gradients(columns)
+        gradients = None if slopes is None else self.sites._gradients(columns)
         plane = slopes if slopes is not None and slopes.shape[1] == _PLANE else None
         found = _core.combine2(
             self.indptr,
@@ -155,7 +164,7 @@ class Weights:
         )
         if slopes is not None and plane is None and gradients is not None:
             self._add_gradients(found, slopes, gradients)
-        return field.shaped(found, self.shape)
+        return field.shaped(found, self.query_shape)
 
     def _add_gradients(self, found: Floats, slopes: Floats, gradients: Floats) -> None:
         """Add the contribution of gradients in 3-D, which only affects queries beyond the hull."""
@@ -188,7 +197,7 @@ class Weights:
         Examples
         --------
         >>> from delone.interpolate import Linear
-        >>> table = Linear([(0, 0), (1, 0), (0, 1)]).weights([(0.25, 0.25), (1, 0)])
+        >>> table = Linear([(0, 0), (1, 0), (0, 1)]).weights_at([(0.25, 0.25), (1, 0)])
         >>> (table.csr() @ [0.0, 4.0, 8.0]).tolist()
         [3.0, 4.0]
         """
@@ -197,7 +206,7 @@ class Weights:
                 "this interpolant needs gradients, which a matrix cannot represent; use apply"
             )
         csr_array = require("scipy.sparse", extra="graph", what="a sparse matrix").csr_array
-        groups = self.sites.policies.mixed_rows()
+        groups = self.sites._policies.mixed_rows()
         empty = np.flatnonzero(np.diff(self.indptr) == 0)
         ends = self.indptr[empty]
         indptr = self.indptr + np.concatenate(([0], np.cumsum(np.diff(self.indptr) == 0)))

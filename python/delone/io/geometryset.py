@@ -14,6 +14,7 @@ from delone.errors import FileFormatError
 from delone.extras import require
 from delone.io.pointset import PointSet
 from delone.io.systems import check_system
+from delone.renames import renamed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -57,6 +58,7 @@ class HasSegments(Protocol):
         """The rows that cover subsegments as compressed rows (indptr, indices)."""
 
 
+@renamed(coordinates="all_points", heights="feature_heights")
 @dataclass(frozen=True, eq=False, kw_only=True)
 class GeometrySet:
     """The geometries of a file, one for each feature.
@@ -65,7 +67,7 @@ class GeometrySet:
     ----------
     geometries : ndarray of shapely geometries, shape (g,)
         None for a feature without a geometry.
-    heights : ndarray of float64, shape (g,), optional
+    feature_heights : ndarray of float64, shape (g,), optional
         The height of each feature, from a column; None if the heights are those of the coordinates,
         if any.
     crs : str, optional
@@ -84,7 +86,7 @@ class GeometrySet:
     """
 
     geometries: NDArray[Any]
-    heights: Floats | None = None
+    feature_heights: Floats | None = None
     crs: str | None = None
     source: str = ""
 
@@ -150,9 +152,9 @@ class GeometrySet:
                 f"{int(other.sum())} of {counted(len(other), 'feature')} "
                 f"{agreed(int(other.sum()), 'is', 'are')} not points"
             )
-        return self.coordinates()
+        return self.all_points()
 
-    def coordinates(self) -> PointSet:
+    def all_points(self) -> PointSet:
         """Return all coordinates, those of lines and rings included.
 
         Returns
@@ -165,7 +167,7 @@ class GeometrySet:
         >>> import numpy as np, shapely
         >>> from delone.io import GeometrySet
         >>> square = GeometrySet(geometries=np.array([shapely.box(0, 0, 1, 1)]))
-        >>> len(square.coordinates())
+        >>> len(square.all_points())
         5
         """
         points, z = self._coordinates()
@@ -213,8 +215,8 @@ class GeometrySet:
             self.geometries, include_z=True, return_index=True
         )
         z: Any = coordinates[:, 2]
-        if self.heights is not None:
-            z = self.heights[feature]
+        if self.feature_heights is not None:
+            z = self.feature_heights[feature]
         elif not shapely.has_z(self.geometries).any():
             z = None
         return np.ascontiguousarray(coordinates[:, :2]), as_values(z, len(coordinates))

@@ -164,7 +164,7 @@ def geometries_of(frame: Any, *, columns: Sequence[str | int] | None, source: st
         heights = np.asarray(frame[_same(frame, name, source)], dtype=np.float64)
     return GeometrySet(
         geometries=np.asarray(frame.geometry.values),
-        heights=heights,
+        feature_heights=heights,
         crs=None if frame.crs is None else str(frame.crs.to_string()),
         source=source,
     )

@@ -303,7 +303,7 @@ def _base(
     else:
         _refuse_points(domain)
         base = inside_of(domain, crossing=crossing or "split", workers=workers, planar=planar)
-        region = base.polygon if base._options.boundary == "polygons" else base.region
+        region = base.polygon_of_simplex if base._options.boundary == "polygons" else base.region
     return base, region
 
 

@@ -226,7 +226,7 @@ def clipped(whole: Whole, region: Region, workers: int | None) -> Clipped:
     order = np.lexsort((-mesh.areas, component))
     first = order[np.searchsorted(component[order], np.arange(component.max() + 1))]
     cell = whole.nearest(mesh.points[mesh.simplices[first]].sum(axis=1))
-    cell[mesh.polygon[first] < 0] = -1
+    cell[mesh.polygon_of_simplex[first] < 0] = -1
     if not (cell >= 0).any():
         raise InputError("clip has no area")
     cell = _without_slivers(mesh, component, cell)[component]

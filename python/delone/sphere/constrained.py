@@ -12,6 +12,7 @@ from delone.constrained import segments
 from delone.counting import counted
 from delone.errors import CrossingSegmentsError, DirectionError, InternalError
 from delone.immutable import kept, sealed
+from delone.renames import renamed
 from delone.sphere.coordinates import directions_of, lonlat_of
 from delone.sphere.crossings import split
 from delone.sphere.delaunay import Delaunay
@@ -53,6 +54,7 @@ class Given(NamedTuple):
         return self._replace(segments=sealed(self.segments), origin=origin)
 
 
+@renamed(polygon="polygon_of_simplex")
 class ConstrainedDelaunay(Delaunay):
     """The constrained Delaunay triangulation of directions and arcs: coastlines on the sphere.
 
@@ -347,7 +349,7 @@ class ConstrainedDelaunay(Delaunay):
 
     @property
     @kept
-    def polygon(self) -> Indices:
+    def polygon_of_simplex(self) -> Indices:
         """The first polygon that contains each triangle, (m,), as the number of its geometry.
 
         -1 if there is none: the sea, where polygons are land; and in triangulations of arrays. See

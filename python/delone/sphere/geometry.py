@@ -106,7 +106,7 @@ def from_geometry(
     >>> land = [{"type": "Polygon", "coordinates": [ring]} for ring in (cap, island)]
     >>> points = {"type": "MultiPoint", "coordinates": [(10, -70), (130, -70), (-110, -70)]}
     >>> mesh = sphere.from_geometry([*land, points])
-    >>> [round(float(mesh.areas[mesh.polygon == k].sum()), 3) for k in (-1, 0, 1)]
+    >>> [round(float(mesh.areas[mesh.polygon_of_simplex == k].sum()), 3) for k in (-1, 0, 1)]
     [12.287, 0.249, 0.03]
     """
     as_flag(degrees, name="degrees")

@@ -22,6 +22,7 @@ from delone.interpolate.policies import Policies
 from delone.interpolate.values import DUPLICATES, NAN, as_field, chosen
 from delone.interpolate.weights import Weights, joined, rectangular
 from delone.location import as_tolerance
+from delone.renames import renamed
 from delone.sphere.coordinates import queries_of
 from delone.sphere.delaunay import Delaunay
 from delone.sphere.outside import arc_weights
@@ -44,6 +45,7 @@ __all__ = ["Linear", "NaturalNeighbor", "Nearest"]
 _NAMED = 5
 
 
+@renamed(weights="weights_at")
 class _Interpolator:
     """Sites, fields and policies; the base of the public classes."""
 
@@ -83,7 +85,7 @@ class _Interpolator:
             self._parts = self._narrowed(field) if self._differ(field) else None
             if self._parts is None:
                 owner = self._for(field)
-                self._field = (field, owner, owner.settled(field))
+                self._field = (field, owner, owner._settled(field))
 
     @property
     def npoints(self) -> int:
@@ -163,7 +165,7 @@ class _Interpolator:
         )
         if limit is not None:
             found[~(owner._distance(xi) <= limit).ravel()] = np.nan
-        return field.shaped(found, table.shape)
+        return field.shaped(found, table.query_shape)
 
     def distance(self, xi: ArrayLike) -> Floats:
         """Return the angle from each query to the nearest site.
@@ -211,7 +213,7 @@ class _Interpolator:
         found[known] = np.degrees(angle) if self._degrees else angle
         return found.reshape(shape)
 
-    def weights(self, xi: ArrayLike) -> Weights:
+    def weights_at(self, xi: ArrayLike) -> Weights:
         """Return the sites that contribute to each query, with their weights.
 
         Parameters
@@ -234,7 +236,7 @@ class _Interpolator:
         Examples
         --------
         >>> from delone import sphere
-        >>> table = sphere.Linear([(170, 0), (-170, 0), (180, 10)]).weights([(180, 0), (170, 0)])
+        >>> table = sphere.Linear([(170, 0), (-170, 0), (180, 10)]).weights_at([(180, 0), (170, 0)])
         >>> (table @ [1.0, 3.0, 9.0]).round(9), (table @ [0.0, 8.0, 9.0]).round(9)
         (array([2., 1.]), array([4., 0.]))
         """
@@ -242,7 +244,7 @@ class _Interpolator:
         return (self if self._field is None else self._field[1])._table(xi)
 
     @property
-    def policies(self) -> Policies:
+    def _policies(self) -> Policies:
         """What becomes of values, and which of the caller's rows are those of a table."""
         mesh = self._mesh
         return Policies(
@@ -255,11 +257,11 @@ class _Interpolator:
             count=mesh.npoints,
         )
 
-    def settled(self, field: Field) -> Floats:
+    def _settled(self, field: Field) -> Floats:
         """Return values for the vertices, after the policies."""
-        return self.policies.settled(field)
+        return self._policies._settled(field)
 
-    def gradients(self, columns: Floats) -> None:
+    def _gradients(self, columns: Floats) -> None:
         """Return None: no method here needs gradients."""
 
     def _with(self, values: ArrayLike | None) -> tuple[Field, _Interpolator, Floats]:
@@ -267,7 +269,7 @@ class _Interpolator:
         if values is not None:
             field = as_field(values, self.npoints)
             owner = self._for(field)
-            return field, owner, owner.settled(field)
+            return field, owner, owner._settled(field)
         if self._field is None:
             raise InputError("no values: pass them to the constructor or to the call")
         return self._field
@@ -315,7 +317,7 @@ class _Interpolator:
                 if dropped.size:
                     kept = np.delete(np.arange(self.npoints), dropped)
                     owner = used[kept.tobytes()] = self._without(kept)
-                narrow._field = part, owner, owner.settled(part)
+                narrow._field = part, owner, owner._settled(part)
             except InputError as error:
                 error.add_note(f"of the fields among values, number {which[0]}")
                 raise

@@ -523,7 +523,7 @@ class Voronoi(Stored):
                 found[row] = [[corners[self.regions[self._cells.cell[row]]]]]
         return [found[row] for row in self.duplicate_of.tolist()]
 
-    def to_geopandas(self, data: Any = None, *, crs: Any = "EPSG:4326", step: float = 1.0) -> Any:
+    def to_geopandas(self, data: Any = None, *, crs: Any = None, step: float = 1.0) -> Any:
         """Convert the clipped cells to a table of geopandas (extra ``geo``).
 
         Parameters
@@ -532,7 +532,7 @@ class Voronoi(Stored):
             Columns to include, with one row for each site. The cells replace the geometry of a
             GeoDataFrame.
         crs : any, optional
-            Coordinate reference system of longitudes and latitudes.
+            Coordinate reference system of longitudes and latitudes, by default EPSG:4326.
         step : float, optional
             Degrees between the corners that show arcs of great circles, at most.
 
@@ -564,7 +564,7 @@ class Voronoi(Stored):
         >>> table.geometry.bounds.round(1).iloc[3].tolist(), table.geom_type[3]
         ([-180.0, -45.0, 180.0, 45.0], 'MultiPolygon')
         """
-        from delone.exchange.geopandas import cells_to_geopandas, shapely_or_say
+        from delone.exchange.geopandas import beside, shapely_or_say
         from delone.sphere.flat import flat_polygon
 
         width = as_number(step, name="step")
@@ -581,7 +581,7 @@ class Voronoi(Stored):
         if hasattr(data, "geometry") and hasattr(data, "crs"):
             data = data.drop(columns=data.geometry.name)
             data = require("pandas", extra="geo", what="a table of cells").DataFrame(data)
-        return cells_to_geopandas(shapes[self.duplicate_of], data, crs)
+        return beside(shapes[self.duplicate_of], data, "EPSG:4326" if crs is None else crs)
 
     def _rings(self) -> list[list[list[Floats]]]:
         """Return the parts of whole cells as rings of unit vectors; one site has a part without."""

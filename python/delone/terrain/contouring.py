@@ -16,6 +16,7 @@ from delone.decimals import exact, multiples
 from delone.errors import BudgetExceededError, DtypeError, InputError
 from delone.extras import require
 from delone.immutable import ReadOnly, sealed
+from delone.renames import renamed
 from delone.terrain.slivers import drawn
 from delone.terrain.surface import on_surface
 
@@ -142,11 +143,14 @@ class Contours(ReadOnly):
         )
         return found
 
-    def to_geopandas(self, *, crs: Any = None) -> Any:
+    def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
         """Return a table of the lines (extra ``geo``).
 
         Parameters
         ----------
+        data : DataFrame or mapping, optional
+            Columns to include, with one row for each line. The geometry of a GeoDataFrame is
+            replaced, its reference system and index are kept.
         crs : optional
             Reference system; by default that of the surface.
 
@@ -159,6 +163,8 @@ class Contours(ReadOnly):
         ------
         MissingExtraError
             geopandas is not installed.
+        InputError
+            `data` does not have one row for each line.
 
         Examples
         --------
@@ -167,12 +173,11 @@ class Contours(ReadOnly):
         >>> tin.contours(interval=2).to_geopandas().level.tolist()
         [2.0, 4.0, 6.0, 8.0]
         """
-        geopandas = require("geopandas", extra="geo", what="a GeoDataFrame")
-        return geopandas.GeoDataFrame(
-            {"level": self.level, "index": self.index},
-            geometry=self.to_shapely(),
-            crs=crs if crs is not None else self.crs,
-        )
+        from delone.exchange.geopandas import beside
+
+        own = self.crs if crs is None else crs
+        columns = {"level": self.level, "index": self.index}
+        return beside(self.to_shapely(), data, own, columns=columns, of="lines")
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Plot the lines, index contours wider (extra ``plot``).
@@ -206,6 +211,7 @@ class Contours(ReadOnly):
         return plot_lines(runs, np.where(self.index, 1.2, 0.5), ax, **options)
 
 
+@renamed(rings="ring_starts", polygons="polygon_starts")
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Bands(ReadOnly):
     """The areas between contours, in the order of their heights.
@@ -214,9 +220,9 @@ class Bands(ReadOnly):
     ----------
     points : ndarray of float64, shape (p, 2)
         The points of all rings, one ring after the other. Each ring ends with its first point.
-    rings : ndarray of int64, shape (r + 1,)
+    ring_starts : ndarray of int64, shape (r + 1,)
         The start of each ring in `points`, and the end of the last.
-    polygons : ndarray of int64, shape (k + 1,)
+    polygon_starts : ndarray of int64, shape (k + 1,)
         The start of each polygon in the rings: its outer ring, counter-clockwise, then its holes.
     low, high : ndarray of float64, shape (k,)
         The heights between which the surface is there; those of the whole surface below the first
@@ -239,8 +245,8 @@ class Bands(ReadOnly):
     """
 
     points: Floats
-    rings: Rows
-    polygons: Rows
+    ring_starts: Rows
+    polygon_starts: Rows
     low: Floats
     high: Floats
     left_out: int = 0
@@ -276,15 +282,18 @@ class Bands(ReadOnly):
         """
         shapely = require("shapely", extra="geo", what="geometries")
         found: NDArray[Any] = shapely.from_ragged_array(
-            shapely.GeometryType.POLYGON, self.points, (self.rings, self.polygons)
+            shapely.GeometryType.POLYGON, self.points, (self.ring_starts, self.polygon_starts)
         )
         return found
 
-    def to_geopandas(self, *, crs: Any = None) -> Any:
+    def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
         """Return a table of the polygons (extra ``geo``).
 
         Parameters
         ----------
+        data : DataFrame or mapping, optional
+            Columns to include, with one row for each polygon. The geometry of a GeoDataFrame is
+            replaced, its reference system and index are kept.
         crs : optional
             Reference system; by default that of the surface.
 
@@ -297,6 +306,8 @@ class Bands(ReadOnly):
         ------
         MissingExtraError
             geopandas is not installed.
+        InputError
+            `data` does not have one row for each polygon.
 
         Examples
         --------
@@ -305,12 +316,11 @@ class Bands(ReadOnly):
         >>> tin.bands([2.0]).to_geopandas().high.tolist()
         [2.0, 8.0]
         """
-        geopandas = require("geopandas", extra="geo", what="a GeoDataFrame")
-        return geopandas.GeoDataFrame(
-            {"low": self.low, "high": self.high},
-            geometry=self.to_shapely(),
-            crs=crs if crs is not None else self.crs,
-        )
+        from delone.exchange.geopandas import beside
+
+        own = self.crs if crs is None else crs
+        columns = {"low": self.low, "high": self.high}
+        return beside(self.to_shapely(), data, own, columns=columns, of="polygons")
 
 
 def levels_of(
@@ -440,8 +450,8 @@ def bands(tin: Surface, levels: Floats, max_points: int) -> Bands:
     ends = np.concatenate(([used.min()], levels, [used.max()]))
     return Bands(
         points=made.points,
-        rings=made.rings,
-        polygons=made.polygons,
+        ring_starts=made.rings,
+        polygon_starts=made.polygons,
         low=ends[made.bands],
         high=ends[made.bands + 1],
         left_out=left_out,

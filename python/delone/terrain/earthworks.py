@@ -39,7 +39,7 @@ class Earthworks(HullTiling):
         -------
         TIN
             The new surface, with the edges of the polygon as hard breaklines. Cut and fill are
-            those of ``self.volume(new)``.
+            those of ``self.volume_to(new)``.
 
         Raises
         ------
@@ -109,7 +109,7 @@ class Earthworks(HullTiling):
         TIN
             The new surface. Its edges at the pad, where slopes meet, and where they meet the ground
             (the daylight line) are hard breaklines; the edges at which triangles of the ground are
-            cut are soft ones. Cut and fill are those of ``self.volume(new)``.
+            cut are soft ones. Cut and fill are those of ``self.volume_to(new)``.
 
         Raises
         ------
@@ -152,7 +152,7 @@ class Earthworks(HullTiling):
         >>> design = ground.embank(pad, 3.0, slope=0.5, corners="miter")
         >>> design.heights([(45, 45), (45, 28), (45, 10)]).tolist()
         [3.0, 2.0, 0.0]
-        >>> ground.volume(design)
+        >>> ground.volume_to(design)
         <Volume: cut 0, fill 3924, net 3924, area 8100>
         """
         made = reshaping.embanked(cast("Surface", self), polygon, z, slope, cut, fill, corners)

@@ -87,7 +87,7 @@ def _each(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
         yield given._replace(polygon=next(number))
     elif is_shapely(given):
         yield from _of_geometry(given, name, number)
-    elif hasattr(given, "geometries") and hasattr(given, "heights"):  # a GeometrySet
+    elif hasattr(given, "geometries") and hasattr(given, "feature_heights"):  # a GeometrySet
         yield from _of_set(given, name, number)
     elif hasattr(given, "geometry") and hasattr(given.geometry, "values"):
         yield from _each(list(given.geometry.values), name, number)
@@ -109,8 +109,8 @@ def _of_set(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
     """Yield the lines of a GeometrySet; heights in a column are those of whole lines."""
     for row, geometry in enumerate(given.geometries):
         for line in _each(geometry, name, number):
-            if given.heights is not None:
-                line.points[:, 2] = given.heights[row]
+            if given.feature_heights is not None:
+                line.points[:, 2] = given.feature_heights[row]
             yield line
 
 

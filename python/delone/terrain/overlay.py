@@ -277,7 +277,7 @@ def _ground(tin: Surface, mesh: ConstrainedDelaunay, cells: _Cells, used: Rows) 
 
 def _slack(tin: Surface, pad: Pad, facets: Facets, near: Bools) -> float:
     """Return the difference of heights that may come from rounding."""
-    steepness = np.hypot(*tin.gradient[near].T).max()
+    steepness = np.hypot(*tin.gradients[near].T).max()
     steepness = min(float(steepness), _STEEPEST) + float(np.hypot(*facets.gradient.T).max())
     span = max(float(np.abs(tin.min_bound).max()), float(np.abs(tin.max_bound).max()))
     rise = max(float(np.abs(tin.z).max()), float(np.abs(plane_at(pad.plane, pad.points)).max()))

@@ -13,6 +13,7 @@ from delone.errors import InputError, ShapeError
 from delone.extras import require
 from delone.immutable import ReadOnly
 from delone.plane.geometry import areas
+from delone.renames import renamed
 from delone.terrain.lines import line_of
 
 if TYPE_CHECKING:
@@ -30,13 +31,14 @@ __all__ = ["Profile", "Sight", "drape", "parts_of", "profile", "sight"]
 _ROUNDING = 1e-12
 
 
+@renamed(distance="distances")
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Profile(ReadOnly):
     """Heights along a line.
 
     Parameters
     ----------
-    distance : ndarray of float64, shape (k,)
+    distances : ndarray of float64, shape (k,)
         Distances from the start of the line, horizontally.
     z : ndarray of float64, shape (k,)
         Heights there. Between two parts of the line that are on the surface there is a NaN, as
@@ -52,7 +54,7 @@ class Profile(ReadOnly):
     <Profile of 2 points over 2: heights 2 to 2>
     """
 
-    distance: Floats
+    distances: Floats
     z: Floats
     points: Floats
 
@@ -62,7 +64,7 @@ class Profile(ReadOnly):
     def __repr__(self) -> str:
         low, high = np.fmin.reduce(self.z, initial=np.nan), np.fmax.reduce(self.z, initial=np.nan)
         span = "no heights" if np.isnan(low) else f"heights {low:.6g} to {high:.6g}"
-        length = float(self.distance[-1]) if len(self) else 0.0
+        length = float(self.distances[-1]) if len(self) else 0.0
         return f"<Profile of {len(self)} points over {length:.6g}: {span}>"
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
@@ -94,7 +96,7 @@ class Profile(ReadOnly):
         """
         from delone.plot.lines import plot_profile
 
-        return plot_profile(self.distance, self.z, ax, **options)
+        return plot_profile(self.distances, self.z, ax, **options)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -151,7 +153,7 @@ def profile(tin: Surface, line: Any) -> Profile:
     again[1:] = (table[1:, [0, 2, 3]] == table[:-1, [0, 2, 3]]).all(axis=1)
     again[1:] &= (table[1:, 1] == table[:-1, 1]) & ~np.isnan(table[1:, 1])
     table = table[~again]
-    return Profile(distance=table[:, 0].copy(), z=table[:, 1].copy(), points=table[:, 2:].copy())
+    return Profile(distances=table[:, 0].copy(), z=table[:, 1].copy(), points=table[:, 2:].copy())
 
 
 def parts_of(tin: Surface, a: Floats, b: Floats) -> list[_Part]:
@@ -189,7 +191,7 @@ def _height(tin: Surface, triangle: int, place: Floats) -> Floats:
         return z
     corner = tin.simplices[triangle, 0]
     apart = place - tin.points[corner]
-    return np.atleast_1d(tin.z[corner] + tin.gradient[triangle] @ apart)
+    return np.atleast_1d(tin.z[corner] + tin.gradients[triangle] @ apart)
 
 
 def _opening(tin: Surface, corners: Indices, a: Floats, b: Floats) -> Indices | None:
@@ -294,7 +296,7 @@ def sight(tin: Surface, a: ArrayLike, b: ArrayLike, height: float, target: float
     if (places[0] == places[1]).all():
         return Sight(visible=True, obstruction=None)
     found = profile(tin, places)
-    share = found.distance / np.hypot(*(places[1] - places[0]))
+    share = found.distances / np.hypot(*(places[1] - places[0]))
     line = z[0] + share * (z[1] - z[0])
     largest = np.fmax.reduce(np.abs(np.concatenate((found.z, z))))
     slack = _ROUNDING * float(largest)

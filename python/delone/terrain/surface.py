@@ -104,7 +104,7 @@ class Surface(Protocol):
         """The triangle opposite each vertex, (m, 3)."""
 
     @property
-    def gradient(self) -> Floats:
+    def gradients(self) -> Floats:
         """Gradients of the triangles, (m, 2)."""
 
     @property

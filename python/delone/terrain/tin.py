@@ -12,6 +12,7 @@ from delone.errors import DtypeError, InputError
 from delone.immutable import kept, sealed
 from delone.plane import topology
 from delone.refine.validation import MeshValidation, validate
+from delone.renames import renamed
 from delone.terrain import building, contouring, profiles, slopes, volumes
 from delone.terrain import faces as faces_
 from delone.terrain.earthworks import Earthworks
@@ -40,6 +41,7 @@ class _Sheet(NamedTuple):
     heights: Floats
 
 
+@renamed(volume="volume_to", gradient="gradients")
 class TIN(Surveyed, Earthworks):
     """A triangulated irregular network: a surface over triangles, linear in each.
 
@@ -65,9 +67,7 @@ class TIN(Surveyed, Earthworks):
     Notes
     -----
     The triangles are those of a `ConstrainedDelaunay` of points and lines: exact and canonical.
-    Objects are immutable; `save` and `load`, location, measures and exports are those of the other
-    classes. The tiles of ``delone tile`` are for point sets that exceed memory and have no lines: a
-    TIN is one surface in memory.
+    A TIN is one surface in memory; the tiles of ``delone tile`` are for point sets that exceed it.
 
     Examples
     --------
@@ -420,7 +420,7 @@ class TIN(Surveyed, Earthworks):
 
     @property
     @kept
-    def gradient(self) -> Floats:
+    def gradients(self) -> Floats:
         """The change of height per unit in x and in y of each triangle, (m, 2)."""
         return sealed(slopes.gradient(self._points, self._z, self._simplices))
 
@@ -428,13 +428,13 @@ class TIN(Surveyed, Earthworks):
     @kept
     def normals(self) -> Floats:
         """Upward unit normals of the triangles, (m, 3)."""
-        return sealed(slopes.normals(self.gradient))
+        return sealed(slopes.normals(self.gradients))
 
     @property
     @kept
     def slope(self) -> Floats:
         """Slope of each triangle in degrees, (m,): 0 is level, 90 vertical."""
-        return sealed(slopes.slope(self.gradient))
+        return sealed(slopes.slope(self.gradients))
 
     @property
     @kept
@@ -443,7 +443,7 @@ class TIN(Surveyed, Earthworks):
 
         North is the direction of y. NaN where the triangle is level.
         """
-        return sealed(slopes.aspect(self.gradient))
+        return sealed(slopes.aspect(self.gradients))
 
     def hillshade(
         self, *, azimuth: float = 315.0, altitude: float = 45.0, z_factor: float = 1.0
@@ -480,7 +480,7 @@ class TIN(Surveyed, Earthworks):
         >>> TIN.from_points([(0, 0, 0), (1, 0, 0), (0, 1, 0)]).hillshade(altitude=90)
         array([1.])
         """
-        return slopes.hillshade(self.gradient, azimuth, altitude, z_factor)
+        return slopes.hillshade(self.gradients, azimuth, altitude, z_factor)
 
     def heights(self, xy: ArrayLike, *, tolerance: float = 0.0) -> Floats:
         """Return heights of the surface.
@@ -634,7 +634,7 @@ class TIN(Surveyed, Earthworks):
         >>> from delone.terrain import TIN
         >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
         >>> found = tin.profile([(2, 1), (2, 4)])
-        >>> found.distance.tolist(), found.z.tolist()
+        >>> found.distances.tolist(), found.z.tolist()
         ([0.0, 1.0, 3.0], [2.0, 4.0, 8.0])
         """
         return profiles.profile(self, line)
@@ -704,7 +704,7 @@ class TIN(Surveyed, Earthworks):
         """
         return profiles.sight(self, a, b, height, target)
 
-    def volume(self, other: Any, *, region: Any = None) -> volumes.Volume:
+    def volume_to(self, other: Any, *, region: Any = None) -> volumes.Volume:
         """Compute the volume between this surface and a plane or another surface.
 
         Parameters
@@ -740,7 +740,7 @@ class TIN(Surveyed, Earthworks):
         --------
         >>> from delone.terrain import TIN
         >>> ground = TIN.from_points([(0, 0, 2), (4, 0, 2), (4, 4, 2), (0, 4, 2)])
-        >>> found = ground.volume(1.0, region=[[(0, 0), (2, 0), (2, 2), (0, 2)]])
+        >>> found = ground.volume_to(1.0, region=[[(0, 0), (2, 0), (2, 2), (0, 2)]])
         >>> found.cut, found.fill, found.area
         (4.0, 0.0, 4.0)
         """

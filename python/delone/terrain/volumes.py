@@ -61,7 +61,7 @@ class Volume(ReadOnly):
     --------
     >>> from delone.terrain import TIN
     >>> slope = TIN.from_points([(0, 0, 0), (4, 0, 4), (4, 2, 4), (0, 2, 0)])
-    >>> slope.volume(2)
+    >>> slope.volume_to(2)
     <Volume: cut 4, fill 4, net 0, area 8>
     """
 

@@ -644,9 +644,9 @@ class Voronoi(Stored):
         >>> table.columns.tolist(), table.area.tolist()
         (['name', 'geometry'], [4.0, 4.0])
         """
-        from delone.exchange.geopandas import cells_to_geopandas
+        from delone.exchange.geopandas import beside
 
-        return cells_to_geopandas(self.polygons(), data, crs)
+        return beside(self.polygons(), data, crs)
 
     def to_pyvista(self) -> Any:
         """Convert the bounded or clipped cells to a mesh of PyVista (extra ``pyvista``).

@@ -49,7 +49,7 @@ def write_dem(
 ) -> Path:
     """Write a GeoTIFF; see `TiledDelaunay.to_raster`."""
     require("rasterio", extra="raster", what="writing GeoTIFF files")
-    tin.require(value)
+    tin._require(value)
     target = as_path(out, name="out")
     if target.suffix.lower() not in (".tif", ".tiff"):
         raise FileFormatError(f"{target}: rasters of tiles can only be written as .tif")
@@ -66,7 +66,7 @@ def write_dem(
         for number, known in enumerate(tin.manifest["tiles"]):
             if known["extent"] is not None:
                 tile = tin.tile(number)
-                _fill(tin.locator(tile), tile, known["extent"], x, y, values, value)
+                _fill(tin._locator(tile), tile, known["extent"], x, y, values, value)
         corner = (float(x[0]) - sides[0] / 2, float(y[-1]) + sides[1] / 2)
         cell = sides[0], sides[1]
         write_geotiff(beside, values, corner=corner, cell=cell, name=value, crs=crs)

@@ -35,7 +35,7 @@ class TileFolder:
         self.starts = np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
 
     @classmethod
-    def at(cls, output: str | os.PathLike[str]) -> Self:
+    def _at(cls, output: str | os.PathLike[str]) -> Self:
         """Open a finished output; see `delone.distributed.open`."""
         # Tiles are read later, when the working directory may be different.
         folder = as_path(output, name="output").absolute()
@@ -81,7 +81,7 @@ class TileFolder:
         """The folder."""
         return self.store.root
 
-    def tree(self) -> Tiles:
+    def _tree(self) -> Tiles:
         """The cells of the tiles, without their boxes."""
         tree = self.manifest["tree"]
         return Tiles(
@@ -136,10 +136,10 @@ class TileFolder:
                 )
         return tile
 
-    def locator(self, tile: Tile) -> _core.Locator2:
+    def _locator(self, tile: Tile) -> _core.Locator2:
         """Return the point location index of a tile; raise an error with its file if invalid."""
         try:
-            return tile.locator()
+            return tile._locator()
         except InputError as error:
             path = self.store.path(tile_names(tile.number)[1])
             raise FileFormatError(f"{path} does not contain a mesh: {error}") from error
@@ -163,7 +163,7 @@ class TileFolder:
         """
         return (self.tile(number) for number in range(self.ntiles))
 
-    def require(self, value: str) -> None:
+    def _require(self, value: str) -> None:
         """Reject a value that vertices do not have."""
         has = ["z"] if self.manifest["heights"] else []
         has += self.manifest["attributes"]

@@ -13,6 +13,7 @@ from delone.distributed.read.proof import prove
 from delone.distributed.read.tables import dask_frame, write_geoparquet
 from delone.distributed.read.tile import Tile
 from delone.georeference import as_crs
+from delone.renames import renamed
 
 if TYPE_CHECKING:
     import os
@@ -59,9 +60,10 @@ def open(output: str | os.PathLike[str]) -> TiledDelaunay:
     ...     distributed.open(folder + "/tin")
     <TiledDelaunay of 400 points: 722 triangles in 4 tiles>
     """
-    return TiledDelaunay.at(output)
+    return TiledDelaunay._at(output)
 
 
+@renamed(simplices="read_simplices")
 class TiledDelaunay(TileFolder):
     """A tiled triangulation on disk, returned by `open`.
 
@@ -99,7 +101,7 @@ class TiledDelaunay(TileFolder):
             f"{self.ntiles} tiles>"
         )
 
-    def simplices(self) -> Numbers:
+    def read_simplices(self) -> Numbers:
         """Return all triangles, (m, 3), as rows of the source; they must fit into memory.
 
         Returns
@@ -117,7 +119,7 @@ class TiledDelaunay(TileFolder):
         >>> from delone import datasets, distributed
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     tin = distributed.triangulate(datasets.grid(400), folder + "/tin", tile_points=100)
-        ...     tin.simplices().shape
+        ...     tin.read_simplices().shape
         (722, 3)
         """
         found = np.empty((self.nsimplex, 3), dtype=np.int64)
@@ -171,19 +173,19 @@ class TiledDelaunay(TileFolder):
         for number, rows in self._near(queries):
             left = rows[found[rows] < 0]
             if len(left):
-                here = self.locator(self.tile(number)).find(queries[left].copy(), 1)
+                here = self._locator(self.tile(number)).find(queries[left].copy(), 1)
                 found[left[here >= 0]] = self.starts[number] + here[here >= 0]
         return found.reshape(shape)
 
-    def interpolate(self, xi: ArrayLike, *, value: str = "z") -> Floats:
+    def interpolate(self, xi: ArrayLike, values: str = "z") -> Floats:
         """Interpolate linearly, reading only the tiles that may contain the points.
 
         Parameters
         ----------
         xi : array_like, shape (..., 2)
             Query points.
-        value : str, optional
-            The attribute; by default heights.
+        values : str, optional
+            The name of the attribute; by default heights.
 
         Returns
         -------
@@ -213,7 +215,7 @@ class TiledDelaunay(TileFolder):
         ...     tin.interpolate([(3.25, 4.5), (-1, 0)])
         array([7.75,  nan])
         """
-        self.require(value)
+        self._require(values)
         queries, shape = _queries(xi)
         found = np.full(len(queries), np.nan)
         left = np.ones(len(queries), dtype=bool)
@@ -221,8 +223,8 @@ class TiledDelaunay(TileFolder):
             some = rows[left[rows]]
             if len(some):
                 tile = self.tile(number)
-                values, held = _linear(self.locator(tile), tile, queries[some], value)
-                found[some[held]] = values[held]
+                here, held = _linear(self._locator(tile), tile, queries[some], values)
+                found[some[held]] = here[held]
                 left[some[held]] = False
         return found.reshape(shape)
 
@@ -314,8 +316,8 @@ class TiledDelaunay(TileFolder):
         self,
         resolution: float | tuple[float, float],
         out: str | os.PathLike[str] = "dem.tif",
+        values: str = "z",
         *,
-        value: str = "z",
         crs: Any = None,
     ) -> Path:
         """Interpolate linearly to a GeoTIFF, tile by tile, without seams.
@@ -326,8 +328,8 @@ class TiledDelaunay(TileFolder):
             Width and height of a cell, in the units of the points.
         out : str or path-like, optional
             The file; it is created atomically.
-        value : str, optional
-            The attribute; by default heights.
+        values : str, optional
+            The name of the attribute; by default heights.
         crs : str, int or pyproj.CRS, optional
             The reference system of the coordinates, by default that of the source. Nothing is
             transformed.
@@ -356,7 +358,7 @@ class TiledDelaunay(TileFolder):
         ...     tin.to_raster(0.5, folder + "/dem.tif").name
         'dem.tif'
         """
-        return write_dem(self, resolution, out, value, as_crs(crs) or self.crs)
+        return write_dem(self, resolution, out, values, as_crs(crs) or self.crs)
 
 
 def _queries(xi: ArrayLike) -> tuple[Floats, tuple[int, ...]]:

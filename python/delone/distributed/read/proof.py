@@ -106,7 +106,7 @@ def prove(tin: TileFolder) -> TiledReport:
     none, nowhere = np.empty(0, dtype=np.int64), np.empty((0, 2))
     edges = [_Edges(none.reshape(0, 2), none, nowhere.reshape(0, 3, 2))]
     foreign = [_Vertices(none, nowhere, none, none)]
-    tree = tin.tree()
+    tree = tin._tree()
     sums = _Sums(points=0, triangles=0, distinct=0)
     spans: dict[int, tuple[int, int]] = {}
     all_read = True

@@ -31,7 +31,7 @@ def dask_frame(tin: TileFolder, table: str) -> Any:
 def partition(number: int, folder: str, table: str) -> Any:
     """Return the part of a table in one tile, as a pandas data frame."""
     pandas = require("pandas", extra="dask", what="a Dask data frame")
-    tile = TileFolder.at(folder).tile(number)
+    tile = TileFolder._at(folder).tile(number)
     if table == "triangles":
         corners = tile.ids[tile.simplices]
         return pandas.DataFrame({name: corners[:, k] for k, name in enumerate("abc")})

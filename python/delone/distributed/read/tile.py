@@ -72,7 +72,7 @@ class Tile:
     simplices: NDArray[np.int32]
     attributes: dict[str, NDArray[Any]]
 
-    def locator(self) -> _core.Locator2:
+    def _locator(self) -> _core.Locator2:
         """Return the point location index of the triangles."""
         neighbors = _core.neighbors2(self.simplices, len(self.points))
         return _core.Locator2(self.points, self.simplices, neighbors)

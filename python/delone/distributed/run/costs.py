@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from delone.distributed.pure.tiles import HALO
 from delone.distributed.run.sources import PIECE
+from delone.renames import renamed
 
 __all__ = ["Plan", "estimate"]
 
@@ -25,6 +26,7 @@ _SECONDS = 1.2e-6
 _ROUNDS = 3
 
 
+@renamed(tiles="ntiles")
 @dataclass(frozen=True)
 class Plan:
     """The estimated resources of a run.
@@ -33,7 +35,7 @@ class Plan:
     ----------
     points : int
         Number of points of the source.
-    tiles : int
+    ntiles : int
         Number of tiles.
     pieces : int
         Number of pieces in which the source is read.
@@ -54,12 +56,12 @@ class Plan:
     --------
     >>> from delone import distributed
     >>> need = distributed.plan(10_000_000, workers=2)
-    >>> need.tiles, need.worker_memory, need.seconds
+    >>> need.ntiles, need.worker_memory, need.seconds
     (5, 530000000, 6.0)
     """
 
     points: int
-    tiles: int
+    ntiles: int
     pieces: int
     tasks: int
     foreign: int
@@ -79,7 +81,7 @@ def estimate(points: int, tile_points: int, workers: int, attributes: int) -> Pl
     rounds = _ROUNDS if tiles > 1 else 0
     return Plan(
         points=points,
-        tiles=tiles,
+        ntiles=tiles,
         pieces=pieces,
         tasks=2 * pieces + tiles * (2 + 2 * rounds),
         foreign=foreign,

@@ -26,6 +26,7 @@ from delone.errors import (
     LimitError,
     NonFiniteError,
 )
+from delone.renames import renamed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -42,6 +43,7 @@ __all__ = ["Progress", "Run"]
 _SAMPLE, _SAMPLES = 4096, 1 << 22
 
 
+@renamed(tiles="ntiles")
 @dataclass(frozen=True)
 class Progress:
     """Progress of a run.
@@ -52,7 +54,7 @@ class Progress:
         ``"look"``, ``"deal"``, ``"begin"``, ``"answer-0"``, ``"proceed-0"``, ..., ``"finish"``.
     done, total : int
         Tasks of the stage.
-    tiles : int
+    ntiles : int
         Number of tiles; 0 until it is known.
     open : int
         Number of tiles that still have queries.
@@ -72,14 +74,14 @@ class Progress:
     ...     _ = distributed.triangulate(
     ...         datasets.grid(400), folder + "/tin", tile_points=100, progress=seen.append
     ...     )
-    >>> seen[-1].stage, seen[-1].done, seen[-1].total, seen[-1].tiles
+    >>> seen[-1].stage, seen[-1].done, seen[-1].total, seen[-1].ntiles
     ('finish', 4, 4, 4)
     """
 
     stage: str = ""
     done: int = 0
     total: int = 0
-    tiles: int = 0
+    ntiles: int = 0
     open: int = 0
     turn: int = 0
     foreign: int = 0
@@ -126,7 +128,7 @@ class Run:
             return
         looks = self._look()
         layout = self._lay_out(looks)
-        self._say(tiles=len(layout.tiles))
+        self._say(ntiles=len(layout.tiles))
         dealt = self._stage("deal", self._pieces())
         slices, counts = collect(self.store, len(layout.tiles), sorted(dealt.items()))
         self._check_sizes(slices)
@@ -309,7 +311,7 @@ class Run:
             name = note_of(stage, key)
             summary = self.store.noted(name)
             if summary is not None:
-                kind, tiles = stage.partition("-")[0], self.progress.tiles
+                kind, tiles = stage.partition("-")[0], self.progress.ntiles
                 check_summary(kind, summary, tiles, self.store.path(name))
                 found[key] = summary
                 self._count(summary)

@@ -1,0 +1,44 @@
+"""Errors of old names: they say the new one, until 0.1.0.
+
+A class with the decorator `renamed` does not have its old names, also for ``hasattr``; reading one
+raises AttributeError with the name to use.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["Renamed", "renamed"]
+
+K = TypeVar("K", bound=type)
+
+
+class Renamed:
+    """An attribute that has another name now."""
+
+    def __init__(self, old: str, new: str) -> None:
+        self._old, self._new = old, new
+
+    def __get__(self, owner: Any, kind: type) -> NoReturn:
+        message = f"{kind.__name__}.{self._old} is now {kind.__name__}.{self._new}"
+        raise AttributeError(message, name=self._old, obj=kind if owner is None else owner)
+
+
+def renamed(**names: str) -> Callable[[K], K]:
+    """Give a class, and those that inherit from it, errors that say the new names of attributes.
+
+    Parameters
+    ----------
+    **names
+        New names by old ones.
+    """
+
+    def decorate(kind: K) -> K:
+        for old, new in names.items():
+            setattr(kind, old, Renamed(old, new))
+        return kind
+
+    return decorate
