@@ -22,6 +22,7 @@ import numpy as np
 from delone._masks import is_masked, refuse_masks
 from delone.counting import agreed, counted
 from delone.errors import DtypeError, InputError, LimitError, NonFiniteError, ShapeError
+from delone.georeference import column_words
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -38,7 +39,14 @@ LARGEST_LIMIT = 2**31 - 1
 # More threads only cost memory for stacks: the result does not depend on their number.
 _MOST_WORKERS = 256
 # Columns that are x and y of points, and third ones that are numbers of rows.
-_PLANAR_COLUMNS = (("x", "y"), ("lon", "lat"), ("longitude", "latitude"), ("easting", "northing"))
+_PLANAR_COLUMNS = (
+    ("x", "y"),
+    ("lon", "lat"),
+    ("long", "lat"),
+    ("lng", "lat"),
+    ("longitude", "latitude"),
+    ("easting", "northing"),
+)
 _NUMBERS_OF_ROWS = {"id", "fid", "gid", "oid", "index", "row", "number", "nr", "no", "label"}
 _REFUSED_KINDS = {
     "b": "booleans",
@@ -63,7 +71,7 @@ def as_points(
     """
     if _is_right(points, ndim):
         return points
-    array = as_plain_array(points, name)
+    array = as_plain_array(_coordinates(points, ndim, name), name)
     _refuse_columns(points, array, name)
     refuse_geometries(array, name)
     _refuse_kind(array, name)
@@ -78,6 +86,65 @@ def as_points(
     return np.require(array, dtype=np.float64, requirements=["C", "A"])
 
 
+def _coordinates(points: Any, ndim: int | None, name: str) -> Any:
+    """Return the coordinates of point geometries; anything else as it is.
+
+    Geometries are those of a GeoDataFrame, GeoSeries or sequence of shapely points.
+    """
+    held = points
+    # Only what is loaded can have made geometries.
+    is_numbers = isinstance(points, np.ndarray) and points.dtype.kind != "O"
+    if is_numbers or "shapely" not in sys.modules:
+        return points
+    with contextlib.suppress(AttributeError):  # a GeoDataFrame without a geometry column
+        if hasattr(points, "crs") and hasattr(points, "geometry"):
+            held = points.geometry
+    if isinstance(held, list | tuple):
+        if not any(hasattr(each, "geom_type") for each in held[:8]):
+            return points
+        every = np.empty(len(held), dtype=object)
+        every[:] = held
+    else:
+        every = np.asarray(held)
+    if every.dtype.kind != "O" or every.ndim != 1:
+        return points
+    if not any(hasattr(each, "geom_type") for each in every[:8]):
+        return points
+    return _of_points(sys.modules["shapely"], every, ndim, name)
+
+
+def _of_points(
+    shapely: Any, every: NDArray[Any], ndim: int | None, name: str
+) -> NDArray[np.float64]:
+    """Return the coordinates of shapely points, (n,); refuse others, and heights in 2-D."""
+    kinds = shapely.get_type_id(every)
+    if len(other := np.flatnonzero(kinds > 0)):
+        raise DtypeError(
+            f"{name} contains geometries that are not points, the first in row {other[0]}, a "
+            f"{every[other[0]].geom_type}: shapely.get_coordinates({name}) has the coordinates of "
+            "all; delone.from_geometry accepts all kinds of geometries"
+        )
+    empty = np.flatnonzero((kinds < 0) | shapely.is_empty(every))
+    if len(empty):
+        rows = ", ".join(map(str, empty[:10].tolist()))
+        raise NonFiniteError(
+            f"{name}: {len(empty)} of {counted(len(every), 'row')} "
+            f"{agreed(len(empty), 'is', 'are')} missing or an empty point; first: {rows}",
+            rows=empty[:10],
+            count=len(empty),
+        )
+    if ndim == 3:
+        found: NDArray[np.float64] = shapely.get_coordinates(every, include_z=True)
+        return found
+    if shapely.has_z(every).any():
+        raise InputError(
+            f"{name} are points with heights: pass shapely.force_2d({name}) for points in 2-D, or "
+            f"shapely.get_coordinates({name}, include_z=True) for points in 3-D"
+        )
+    flat: NDArray[np.float64] = shapely.get_coordinates(every)
+    return flat
+
+
 def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np.float64]:
     """Return points with any leading axes, (..., d), with exactly the values given: `as_points`."""
     if (
@@ -88,7 +155,7 @@ def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np
         and values.shape[-1] == d
     ):
         return values
-    array = as_plain_array(values, name)
+    array = as_plain_array(_coordinates(values, d, name), name)
     if array.shape == (0,):
         # An empty list does not determine the length of the last axis.
         return np.empty((0, d))
@@ -96,7 +163,9 @@ def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np
         _refuse_kind(array, name)
         raise ShapeError(f"{name} must have shape (..., {d}), got {array.shape}")
     if array.ndim == 2:
-        return as_points(values, ndim=d, name=name)
+        # Geometries have become numbers, which nothing can have rounded.
+        found = array if getattr(values, "ndim", 2) == 1 else values
+        return as_points(found, ndim=d, name=name)
     if array.ndim == 1 and isinstance(values, list | tuple):
         array = as_points([values], ndim=d, name=name)
         return array.reshape(d)
@@ -287,18 +356,29 @@ def as_plain_array(points: Any, name: str) -> NDArray[Any]:
 
 
 def _refuse_columns(points: Any, array: NDArray[Any], name: str) -> None:
-    """Reject a table with columns x and y, and a third column that is not a coordinate."""
+    """Reject a table whose columns x and y, by name, are not the first, or the only ones.
+
+    A third column may be a coordinate.
+    """
     listed: Any = getattr(points, "columns", None)
-    if array.ndim != 2 or array.shape[1] != 3 or not hasattr(listed, "__iter__"):
+    if array.ndim != 2 or not hasattr(listed, "__iter__") or len(names := list(listed)) < 2:
         return
-    words = [str(column).strip().casefold() for column in listed]
-    for pair in _PLANAR_COLUMNS:
-        known = [words.index(word) for word in pair if word in words]
-        if len(known) == 2 and (known != [0, 1] or words[2] in _NUMBERS_OF_ROWS):
-            pair_given = [str(list(listed)[k]) for k in known]
+    words = [column_words(column) for column in names]
+    for first, second in _PLANAR_COLUMNS:
+        x = [k for k, each in enumerate(words) if first in each]
+        y = [k for k, each in enumerate(words) if second in each]
+        if len(x) != 1 or len(y) != 1:
+            continue
+        right = x + y == [0, 1] and (
+            len(names) == 2 or (len(names) == 3 and not words[2] & _NUMBERS_OF_ROWS)
+        )
+        if not right:
+            pair = [names[x[0]], names[y[0]]]
+            shown = ", ".join(f"{each}"[:30] for each in names[:8])
+            more = ", ..." if len(names) > 8 else ""
             raise InputError(
-                f"{name} is a table with the columns {', '.join(map(str, listed))}, three "
-                f"coordinates in this order: pass {name}[{pair_given}] for points in 2-D"
+                f"{name} is a table with the columns {shown}{more}, which would be the coordinates "
+                f"in this order: pass {name}[{pair}] for points in 2-D"
             )
 
 

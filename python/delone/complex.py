@@ -7,16 +7,18 @@ their meaning.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self, SupportsIndex
+
+import numpy as np
 
 from delone.errors import InputError
+from delone.georeference import crs_of
 from delone.immutable import Immutable, kept, sealed
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from delone.exchange.parts import Parts
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
     # Names and seconds; a dictionary is made when it is asked for.
     Stages = dict[str, float] | tuple[tuple[str, float], ...]
 
-__all__ = ["Complex", "Stored", "points_alone"]
+__all__ = ["Complex", "Exchanged", "Referenced", "Stored", "points_alone"]
 
 
 def points_alone(
@@ -49,12 +51,135 @@ def points_alone(
     return found
 
 
-class Stored(Immutable):
+class Referenced(Immutable):
+    """An immutable object that knows the reference system of its points."""
+
+    __slots__ = ("_system",)
+
+    _system: str | None
+
+    @property
+    def crs(self) -> str | None:
+        """The reference system of the points, if they declared one, as a GeoDataFrame does."""
+        # Set only where there is one: most points are arrays.
+        return getattr(self, "_system", None)
+
+    def _refer(self, data: Any) -> Self:
+        """Take the reference system that data declare, and return the object."""
+        if type(data) is not np.ndarray and (found := crs_of(data)) is not None:
+            object.__setattr__(self, "_system", found)
+        return self
+
+    def __reduce_ex__(self, protocol: SupportsIndex) -> Any:
+        made: Any = self.__reduce__()
+        system = getattr(self, "_system", None)
+        return made if system is None else (*made[:2], system)
+
+    def __setstate__(self, system: str) -> None:
+        object.__setattr__(self, "_system", system)
+
+
+class Exchanged(Referenced):
+    """An object that is drawn and converted by its parts: points and simplices."""
+
+    __slots__ = ()
+
+    def _parts(self) -> Parts:
+        """Return what other libraries take."""
+        raise NotImplementedError
+
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Draw with matplotlib (extra ``plot``) or, in 3-D, with PyVista (extra ``pyvista``).
+
+        Parameters
+        ----------
+        ax : matplotlib Axes or pyvista Plotter, optional
+            Where to draw; by default on a new one.
+        **options
+            As for `delone.plot.plot`.
+
+        Returns
+        -------
+        matplotlib Axes or pyvista Plotter
+            Where it is drawn.
+
+        Raises
+        ------
+        MissingExtraError
+            The library is not installed.
+        InputError
+            An option does not exist for this kind of object, or there is nothing to draw.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> ax = Delaunay([(0, 0), (1, 0), (0, 1)]).plot()
+        >>> ax.get_aspect()
+        1.0
+        """
+        from delone.plot import plot
+
+        drawn: Any = self
+        return plot(drawn, ax, **options)
+
+    def to_meshio(self) -> Any:
+        """Convert to a mesh of meshio (extra ``mesh``).
+
+        Returns
+        -------
+        meshio.Mesh
+            The simplices, and segments as lines, with regions and markers as values. Where segments
+            have markers, as those of a `Mesh`, both are tags of Gmsh as well: regions from 1 on,
+            markers as they are. 2-D points get z = 0.
+
+        Raises
+        ------
+        MissingExtraError
+            meshio is not installed.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> Delaunay([(0, 0), (1, 0), (0, 1)]).to_meshio().cells_dict["triangle"].shape
+        (1, 3)
+        """
+        from delone.exchange.meshio import to_meshio
+
+        return to_meshio(self._parts())
+
+    def to_pyvista(self) -> Any:
+        """Convert to a mesh of PyVista (extra ``pyvista``).
+
+        Returns
+        -------
+        pyvista.PolyData or pyvista.UnstructuredGrid
+            Edges and triangles as a surface, 2-D points at z = 0; tetrahedra as a grid. Values of
+            simplices and points, such as regions, are its data.
+
+        Raises
+        ------
+        MissingExtraError
+            PyVista is not installed.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> Delaunay([(0, 0), (1, 0), (0, 1)]).to_pyvista().n_cells
+        1
+        """
+        from delone.exchange.pyvista import to_pyvista
+
+        return to_pyvista(self._parts())
+
+
+class Stored(Referenced):
     """An immutable object that can be saved, loaded and pickled."""
 
     __slots__ = ("_workers",)
 
     _workers: int | None
+    # Whether the arrays of a file have the reference system.
+    _SAVES_CRS: ClassVar[bool] = False
 
     @property
     def workers(self) -> int | None:
@@ -107,7 +232,10 @@ class Stored(Immutable):
         """
         from delone import archive
 
-        archive.write(path, self._saved(), self._stored_as())
+        arrays, system = self._saved(), getattr(self, "_system", None)
+        if system is not None:
+            arrays["crs"] = np.array(system)
+        archive.write(path, arrays, self._stored_as())
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
@@ -145,11 +273,15 @@ class Stored(Immutable):
         from delone import archive
 
         arrays = archive.read(path, cls._stored_as())
+        system = None if cls._SAVES_CRS else arrays.pop("crs", None)
         try:
-            return cls._loaded(arrays)
+            made = cls._loaded(arrays)
         except InputError as error:
             # Arrays that are the input of a constructor.
             raise archive.refusal(path, error) from error
+        if system is not None:
+            made.__setstate__(str(system))
+        return made
 
     @classmethod
     def _stored_as(cls) -> str:
@@ -168,7 +300,7 @@ class Stored(Immutable):
         return f"<{type(self).__name__} of {self._described()}>"
 
 
-class Complex(Stored):
+class Complex(Stored, Exchanged):
     """Points and simplices as read-only arrays."""
 
     __slots__ = ("_neighbors", "_points", "_simplices", "_stages")
@@ -264,86 +396,4 @@ class Complex(Stored):
         """Return what other libraries take."""
         from delone.exchange.parts import Parts
 
-        return Parts(self._points, self._simplices)
-
-    def plot(self, ax: Any = None, **options: Any) -> Any:
-        """Draw with matplotlib (extra ``plot``) or, in 3-D, with PyVista (extra ``pyvista``).
-
-        Parameters
-        ----------
-        ax : matplotlib Axes or pyvista Plotter, optional
-            Where to draw; by default on a new one.
-        **options
-            As for `delone.plot.plot`.
-
-        Returns
-        -------
-        matplotlib Axes or pyvista Plotter
-            Where it is drawn.
-
-        Raises
-        ------
-        MissingExtraError
-            The library is not installed.
-        InputError
-            An option does not exist for this kind of object, or there is nothing to draw.
-
-        Examples
-        --------
-        >>> from delone import Delaunay
-        >>> ax = Delaunay([(0, 0), (1, 0), (0, 1)]).plot()
-        >>> ax.get_aspect()
-        1.0
-        """
-        from delone.plot import plot
-
-        return plot(self, ax, **options)
-
-    def to_meshio(self) -> Any:
-        """Convert to a mesh of meshio (extra ``mesh``).
-
-        Returns
-        -------
-        meshio.Mesh
-            The simplices, and segments as lines, with regions and markers as values. Where segments
-            have markers, as those of a `Mesh`, both are tags of Gmsh as well: regions from 1 on,
-            markers as they are. 2-D points get z = 0.
-
-        Raises
-        ------
-        MissingExtraError
-            meshio is not installed.
-
-        Examples
-        --------
-        >>> from delone import Delaunay
-        >>> Delaunay([(0, 0), (1, 0), (0, 1)]).to_meshio().cells_dict["triangle"].shape
-        (1, 3)
-        """
-        from delone.exchange.meshio import to_meshio
-
-        return to_meshio(self._parts())
-
-    def to_pyvista(self) -> Any:
-        """Convert to a mesh of PyVista (extra ``pyvista``).
-
-        Returns
-        -------
-        pyvista.PolyData or pyvista.UnstructuredGrid
-            Edges and triangles as a surface, 2-D points at z = 0; tetrahedra as a grid. Values of
-            simplices and points, such as regions, are its data.
-
-        Raises
-        ------
-        MissingExtraError
-            PyVista is not installed.
-
-        Examples
-        --------
-        >>> from delone import Delaunay
-        >>> Delaunay([(0, 0), (1, 0), (0, 1)]).to_pyvista().n_cells
-        1
-        """
-        from delone.exchange.pyvista import to_pyvista
-
-        return to_pyvista(self._parts())
+        return Parts(self._points, self._simplices, crs=self.crs)

@@ -205,6 +205,7 @@ class Delaunay(PointTriangulation):
             "duplicates": made.duplicates,
         }
         self._fill(arrays, made.stages, workers)
+        self._refer(points)
 
     @property
     def _sites(self) -> tuple[Any, Indices | None]:

@@ -30,6 +30,7 @@ __all__ = [
     "as_degrees",
     "as_known_crs",
     "caller_level",
+    "column_words",
     "common_crs",
     "crs_of",
     "degrees_in",
@@ -233,9 +234,14 @@ def is_geographic(crs: str) -> bool:
     return bool(_GEOGRAPHIC.match(crs)) if known is None else bool(known.is_geographic)
 
 
+def column_words(name: Any) -> set[str]:
+    """Return the words in the name of a column: "decimalLongitude" has "longitude"."""
+    return {each.casefold() for each in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", str(name))}
+
+
 def names_degrees(names: Any) -> bool:
     """Return whether columns are named longitude and latitude; units after names are ignored."""
-    words = {found[0] for name in names if (found := re.findall(r"[a-z]+", str(name).casefold()))}
+    words = {word for name in names for word in column_words(name)}
     return bool(words & _LONGITUDE and words & _LATITUDE)
 
 

@@ -13,7 +13,9 @@ from delone._arrays import as_workers, require_finite
 from delone.complex import Complex
 from delone.counting import counted
 from delone.delaunay import Delaunay
+from delone.dimension import only
 from delone.errors import InternalError
+from delone.extras import require
 from delone.immutable import kept, own_copy, sealed
 from delone.plane import geometry as plane
 from delone.plane.topology import vertex_to_simplex
@@ -182,6 +184,7 @@ class ConvexHull(Complex):
             error.points = own
             raise error
         self._fill(arrays | {"points": own}, {}, workers)
+        self._refer(points)
 
     def validate(self) -> HullReport:
         """Prove that this is the convex hull of the points, or list the faults.
@@ -345,10 +348,71 @@ class ConvexHull(Complex):
                 return plane.total(np.hypot(*along.T))
         return plane.total(space.face_areas(self._points, self._simplices, self._workers))
 
+    @only(2, "`facets` are the polygons of a hull in 3-D")
+    def polygon(self) -> Any:
+        """Return the hull as one polygon of shapely (extra ``geo``); 2-D only.
+
+        Returns
+        -------
+        shapely.Polygon
+            Counter-clockwise, without the points in the middle of a side.
+
+        Raises
+        ------
+        MissingExtraError
+            shapely is not installed.
+
+        Examples
+        --------
+        >>> import delone
+        >>> delone.ConvexHull([(0, 0), (4, 0), (4, 4), (0, 4), (2, 1)]).polygon().area
+        16.0
+        """
+        shapely = require("shapely", extra="geo", what="a polygon")
+        return shapely.Polygon(self._points[self._vertices])
+
+    @only(2, "write the surface with `to_meshio` or delone.io.write_mesh")
+    def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
+        """Convert to a table with one polygon (extra ``geo``); 2-D only.
+
+        Parameters
+        ----------
+        data : DataFrame or mapping, optional
+            Columns to include, with one row. The geometry of a GeoDataFrame is replaced, its
+            reference system and index are kept.
+        crs : optional
+            Reference system of the coordinates, anything that geopandas takes; by default that of
+            the points, if they declared one.
+
+        Returns
+        -------
+        geopandas.GeoDataFrame
+            One row.
+
+        Raises
+        ------
+        MissingExtraError
+            geopandas or shapely is not installed.
+        InputError
+            `data` does not have one row.
+
+        Examples
+        --------
+        >>> import delone
+        >>> hull = delone.ConvexHull([(0, 0), (4, 0), (4, 4), (0, 4), (2, 1)])
+        >>> hull.to_geopandas({"name": ["site"]}).area.tolist()
+        [16.0]
+        """
+        from delone.exchange.geopandas import beside
+
+        own = self.crs if crs is None else crs
+        return beside(np.array([self.polygon()]), data, own, of="hulls")
+
     def _parts(self) -> Parts:
         from delone.exchange.parts import Parts
 
-        return Parts(self._points, self._simplices, of_simplices={"facet_of": self._facet_of})
+        facets = {"facet_of": self._facet_of}
+        return Parts(self._points, self._simplices, of_simplices=facets, crs=self.crs)
 
     def _described(self) -> str:
         vertices = f"{len(self._vertices)} vertices"

@@ -138,6 +138,7 @@ class PeriodicDelaunay(Complex):
         lengths = as_periods(periods)
         _require_one_period(own, lengths)
         self._fill(_triangulated(own, own_weights, lengths, threads), {}, workers)
+        self._refer(points)
 
     def _saved(self) -> dict[str, NDArray[Any]]:
         return {"points": self._points, "weights": self._weights, "periods": self._lengths}
@@ -283,7 +284,8 @@ class PeriodicDelaunay(Complex):
         from delone.exchange.parts import Parts
 
         points, simplices = self._separate
-        return Parts(points, simplices, of_points={"row": self.simplices.ravel()})
+        rows = {"row": self.simplices.ravel()}
+        return Parts(points, simplices, of_points=rows, crs=self.crs)
 
     def _described(self) -> str:
         return f"{counted(self.npoints, 'point')}: {counted(self.nsimplex, 'triangle')}"

@@ -130,6 +130,7 @@ class RegularTriangulation(PointTriangulation):
         if not len(arrays["simplices"]):
             raise _degenerate(own, chain)
         self._fill(arrays, {}, workers)
+        self._refer(points)
 
     @property
     def weights(self) -> Floats:

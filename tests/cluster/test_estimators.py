@@ -120,15 +120,18 @@ def test_points_are_checked(model: Any) -> None:
 
 @pytest.mark.parametrize("columns", [0, 1, 9])
 @pytest.mark.parametrize("model", BOTH, ids=repr)
-def test_geometries_are_named(model: Any, columns: int) -> None:
+def test_points_of_tables_are_points(model: Any, columns: int) -> None:
     geopandas = pytest.importorskip("geopandas")
     table = {f"a{k}": np.arange(len(POINTS)) for k in range(columns)}
     x, y = np.asarray(POINTS).T
     frame = geopandas.GeoDataFrame(table, geometry=geopandas.points_from_xy(x, y))
-    for given in (frame, frame.geometry, frame.geometry.iloc[0]):
-        with pytest.raises(DtypeError, match=r"points\.get_coordinates\(\)\.to_numpy\(\)"):
-            model.fit(given)
-    assert len(model.fit(frame.get_coordinates()).labels_) == len(POINTS)
+    expected = model.fit(frame.get_coordinates()).labels_
+    for given in (frame, frame.geometry):
+        assert np.array_equal(model.fit(given).labels_, expected)
+    with pytest.raises(DtypeError, match=r"points\.get_coordinates\(\)\.to_numpy\(\)"):
+        model.fit(frame.geometry.iloc[0])
+    with pytest.raises(DtypeError, match="not points, the first in row 0, a Polygon"):
+        model.fit(frame.buffer(1))
 
 
 @pytest.mark.filterwarnings("error")

@@ -206,10 +206,13 @@ def test_geometries_are_told_from_coordinates() -> None:
     geopandas = pytest.importorskip("geopandas")
     points = shapely.points([(0, 0), (1, 0), (0, 1)])
     series = geopandas.GeoSeries(points)
-    for given in (points, points.tolist(), series, series.to_frame("geometry")):
+    lines = geopandas.GeoSeries(shapely.linestrings([[(0, 0), (1, 0)], [(0, 1), (2, 2)]]))
+    for given in (lines, lines.tolist(), lines.to_frame("geometry"), lines.to_numpy()):
         with pytest.raises(
             DtypeError, match=r"contains geometries.*get_coordinates.*from_geometry"
         ):
             Delaunay(given)
+    for given in (points, points.tolist(), series, series.to_frame("geometry")):
+        assert Delaunay(given).nsimplex == 1
     assert Delaunay(shapely.get_coordinates(points)).nsimplex == 1
     assert Delaunay(series.get_coordinates().to_numpy()).nsimplex == 1

@@ -112,9 +112,9 @@ def concave_hull(
         if mesh is None:
             size = own.shape[1] + 1
             nothing = sealed(np.empty((0, size), dtype=np.int32))
-            return ConcaveHull._made(
-                sealed(own), nothing, nothing, np.empty(0, dtype=bool), workers
-            )
+            flat = np.empty(0, dtype=bool)
+            made = ConcaveHull._made(sealed(own), nothing, nothing, flat, workers)
+            return made._refer(points)
     given = mesh.points, mesh.simplices, mesh.neighbors
     if mesh.ndim == 2:
         flags = _core.dig2(*given, name, limit, holes=wants_holes)
@@ -122,7 +122,7 @@ def concave_hull(
         raise InputError("holes=True is only available in 2-D: points are 3-D")
     else:
         flags = _core.dig3(*given, name, limit)
-    return ConcaveHull._made(*given, flags, workers)
+    return ConcaveHull._made(*given, flags, workers)._refer(points)
 
 
 def _limit(max_edge: float | None, ratio: float | None) -> tuple[str, float]:

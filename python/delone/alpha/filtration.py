@@ -120,7 +120,7 @@ class AlphaComplex(Stored):
         workers: int | None = None,
         planar: bool = False,
     ) -> None:
-        threads = as_workers(workers)
+        threads, given = as_workers(workers), points
         mesh = known_mesh(points)
         if isinstance(points, PeriodicDelaunay):
             if weights is not None or periodic is not None:
@@ -147,6 +147,7 @@ class AlphaComplex(Stored):
             own_weights = None if weights is None else sealed(as_weights(weights, len(own)))
             valued = _valued(own, own_weights, periodic, threads)
         self._fill(own, own_weights, valued, workers)
+        self._refer(given)
 
     def _fill(
         self, points: Floats, weights: Floats | None, valued: Valued, workers: int | None
@@ -332,7 +333,7 @@ class AlphaComplex(Stored):
         if math.isnan(limit) or (limit < 0 and self._weights is None):
             least = "not NaN" if self._weights is not None else "at least 0"
             raise InputError(f"alpha is a squared radius and must be {least}, got {alpha!r:.60}")
-        return AlphaShape._made(self._points, self._valued, limit, self._workers)
+        return AlphaShape._made(self._points, self._valued, limit, self._workers)._refer(self)
 
     def optimal(self, components: int = 1, *, holes: bool = False) -> float:
         """Return the smallest alpha whose shape is in few parts and has all points.

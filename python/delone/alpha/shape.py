@@ -10,9 +10,10 @@ from delone import _core
 from delone._arrays import as_workers
 from delone.alpha.outline import rings_of
 from delone.alpha.values import simplices_of
+from delone.complex import Exchanged
 from delone.counting import counted
 from delone.errors import InputError
-from delone.immutable import Immutable, kept, sealed
+from delone.immutable import kept, sealed
 from delone.plane import geometry as plane
 from delone.space import geometry as space
 from delone.space.topology import FACES
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone.alpha.values import Valued
+    from delone.exchange.parts import Parts
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["AlphaShape", "ConcaveHull", "Kept"]
 
 
-class Kept(Immutable):
+class Kept(Exchanged):
     """Triangles or tetrahedra that are kept of a triangulation, and their boundary."""
 
     __slots__ = ("_flags", "_neighbors", "_points", "_tops", "_workers")
@@ -114,6 +116,47 @@ class Kept(Immutable):
         simplex, corner = np.nonzero(is_bare)
         sides = np.array([[1, 2], [2, 0], [0, 1]] if self.ndim == 2 else FACES)
         return sealed(np.take_along_axis(self._tops[simplex], sides[corner], axis=1))
+
+    def _parts(self) -> Parts:
+        from delone.exchange.parts import Parts
+
+        return Parts(self._points, self.simplices, crs=self.crs)
+
+    def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
+        """Convert to a table of polygons (extra ``geo``); 2-D only.
+
+        Parameters
+        ----------
+        data : DataFrame or mapping, optional
+            Columns to include, with one row for each polygon. The geometry of a GeoDataFrame is
+            replaced, its reference system and index are kept.
+        crs : optional
+            Reference system of the coordinates, anything that geopandas takes; by default that of
+            the points, if they declared one.
+
+        Returns
+        -------
+        geopandas.GeoDataFrame
+            One row for each of `polygons`, in their order.
+
+        Raises
+        ------
+        MissingExtraError
+            geopandas or shapely is not installed.
+        InputError
+            The points are 3-D or periodic; or `data` does not have one row for each polygon.
+
+        Examples
+        --------
+        >>> import delone
+        >>> shape = delone.AlphaComplex([(0, 0), (4, 0), (0, 3)]).shape(6.25)
+        >>> shape.to_geopandas(crs="EPSG:28992").area.tolist()
+        [6.0]
+        """
+        from delone.exchange.geopandas import beside
+
+        own = self.crs if crs is None else crs
+        return beside(self.polygons(), data, own, of="polygons")
 
     @kept
     def polygons(self) -> NDArray[Any]:
@@ -290,6 +333,17 @@ class AlphaShape(Kept):
         """
         rows, values = simplices_of(self._valued, k, self.ndim)
         return sealed(rows[values <= self._alpha])
+
+    @property
+    @kept
+    def loose_edges(self) -> Indices:
+        """The edges that belong to no triangle, (k, 2); 2-D only."""
+        if self.ndim == 3:
+            raise InputError("loose_edges are only available in 2-D")
+        edges = self.simplices_of(1)
+        sides = np.sort(self.simplices[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        keys, own = (each.astype(np.int64) @ [len(self._points), 1] for each in (edges, sides))
+        return sealed(edges[~np.isin(keys, own)])
 
     @property
     @kept

@@ -22,7 +22,7 @@ class Kind(NamedTuple):
     layout: Mapping[str, tuple[str, int]]
     check: Callable[..., None]
     # Names of texts, which may be missing.
-    texts: tuple[str, ...] = ()
+    texts: tuple[str, ...] = ("crs",)
 
     def fits(self, arrays: Mapping[str, NDArray[Any]]) -> bool:
         """Tell whether the first array, which has the points, has the columns of this layout."""
@@ -163,7 +163,7 @@ def _graph(ndim: int) -> Kind:
         "duplicates": ("<i4", 2),
         "directed": ("|b1", 0),
     }
-    return Kind(f"delone.graphs.Graph {ndim}-D", layout, checks.check_graph, ("kind",))
+    return Kind(f"delone.graphs.Graph {ndim}-D", layout, checks.check_graph, ("kind", "crs"))
 
 
 _WEIGHTS, _PERIODS = ("<f8", 0), ("<f8", 0)

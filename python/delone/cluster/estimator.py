@@ -10,7 +10,6 @@ import numpy as np
 from delone._arrays import (
     as_number,
     as_plain_array,
-    refuse_geometries,
     require_finite,
 )
 from delone.errors import DtypeError, InputError, ShapeError
@@ -163,8 +162,8 @@ class Clusterer:
                 "project longitudes and latitudes, or use scikit-learn for other metrics"
             )
         array = as_plain_array(points, "points")
-        refuse_geometries(array, "points")
-        if array.ndim == 2 and array.shape[1] not in (2, 3):
+        has_points = hasattr(points, "crs") and hasattr(points, "geometry")
+        if not has_points and array.ndim == 2 and array.shape[1] not in (2, 3):
             raise ShapeError(
                 f"points must have 2 or 3 coordinates, got shape {array.shape}; for other "
                 "dimensions, use scikit-learn"

@@ -28,7 +28,7 @@ from delone.constrained.segmented import Given, Options, Origin, Segmented
 from delone.constrained.validation import ConstrainedReport, validate
 from delone.counting import agreed, counted
 from delone.errors import InputError, InternalError
-from delone.georeference import warn_of_degrees
+from delone.georeference import crs_of, warn_of_degrees
 from delone.immutable import kept, own_copy, sealed
 from delone.plane import topology
 
@@ -157,6 +157,8 @@ class ConstrainedDelaunay(Segmented):
 
     __slots__ = ()
 
+    _SAVES_CRS = True
+
     def __init__(
         self,
         points: ArrayLike,
@@ -182,7 +184,9 @@ class ConstrainedDelaunay(Segmented):
         rows = _own(as_segments(segments, len(own)), segments)
         given = _given(rows, Origin.of_arrays(len(rows)), holes, regions)
         labeled = len(given.regions) > 0
-        options = Options(boundary, crossing, conforming, most, method, workers, labeled)
+        system = None if type(points) is np.ndarray else crs_of(points)
+        choices = boundary, crossing, conforming, most, method, workers
+        options = Options(*choices, labeled, crs=system)
         self._compute(own, given, options)
 
     @classmethod

@@ -15,7 +15,7 @@ from delone._arrays import (
     as_segments,
     require_finite,
 )
-from delone.complex import Stored
+from delone.complex import Exchanged, Stored
 from delone.counting import counted, listed
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.graphs.coincident import clique, repeated
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["Graph"]
 
 
-class Graph(Stored):
+class Graph(Stored, Exchanged):
     """Points, and edges between them.
 
     Parameters
@@ -113,6 +113,7 @@ class Graph(Stored):
             raise InputError(f"edges: rows {listed(loops, 10)} join a point to itself")
         arrays = own, _ordered(pairs, one_way), repeated(own)
         self._set(*arrays, directed=one_way, kind=kind, workers=None)
+        self._refer(points)
 
     def _set(self, points: Floats, edges: Indices, duplicates: Indices, **others: Any) -> None:
         """Set everything, with `directed`, `kind` and `workers`; afterwards nothing can be set."""
@@ -344,7 +345,7 @@ class Graph(Stored):
             directed=self._directed,
             kind=self._kind,
             workers=self._workers,
-        )
+        )._refer(self)
 
     def with_duplicates(self, how: str = "star") -> Self:
         """Return the graph with edges at rows that repeat the coordinates of others.
@@ -530,39 +531,6 @@ class Graph(Stored):
 
         return to_geopandas(self._parts(), crs, data)
 
-    def plot(self, ax: Any = None, **options: Any) -> Any:
-        """Draw with matplotlib (extra ``plot``) or, in 3-D, with PyVista (extra ``pyvista``).
-
-        Parameters
-        ----------
-        ax : matplotlib Axes or pyvista Plotter, optional
-            Where to draw; by default on a new one.
-        **options
-            As for `delone.plot.plot`.
-
-        Returns
-        -------
-        matplotlib Axes or pyvista Plotter
-            Where it is drawn.
-
-        Raises
-        ------
-        MissingExtraError
-            The library is not installed.
-        InputError
-            An option does not exist, or there is nothing to draw.
-
-        Examples
-        --------
-        >>> from delone.graphs import Graph
-        >>> ax = Graph([(0, 0), (3, 4)], [(0, 1)]).plot()
-        >>> ax.get_aspect()
-        1.0
-        """
-        from delone.plot import plot
-
-        return plot(self, ax, **options)
-
     def _with(self, edges: Indices) -> Self:
         """Return the graph of other edges between the same points."""
         return self._made(
@@ -572,7 +540,7 @@ class Graph(Stored):
             directed=self._directed,
             kind=self._kind,
             workers=self._workers,
-        )
+        )._refer(self)
 
     def _links(self, weights: str) -> Links:
         """Return the edges with weights for other libraries."""
@@ -585,7 +553,8 @@ class Graph(Stored):
     def _parts(self) -> Parts:
         from delone.exchange.parts import Parts
 
-        return Parts(self._points, self._edges, of_simplices={"length": self.lengths})
+        values = {"length": self.lengths}
+        return Parts(self._points, self._edges, of_simplices=values, crs=self.crs)
 
     def _described(self) -> str:
         points = counted(self.npoints, "point")

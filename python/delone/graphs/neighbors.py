@@ -90,7 +90,8 @@ def nearest_neighbors(
     edges, duplicates = core(rescaled(own)[0], count, one_way, threads)
     _require_k(count, len(own), len(duplicates))
     kind = f"{count} nearest neighbors"
-    return Graph._made(own, edges, duplicates, directed=one_way, kind=kind, workers=workers)
+    made = Graph._made(own, edges, duplicates, directed=one_way, kind=kind, workers=workers)
+    return made._refer(points)
 
 
 def sphere_of_influence(
@@ -150,7 +151,8 @@ def sphere_of_influence(
     own = coordinates(points, ndim=None, planar=planar)
     core = _core.influence2 if own.shape[1] == 2 else _core.influence3
     edges, duplicates = core(rescaled(own)[0], closed, as_workers(workers))
-    return Graph._made(own, edges, duplicates, kind="sphere of influence", workers=workers)
+    made = Graph._made(own, edges, duplicates, kind="sphere of influence", workers=workers)
+    return made._refer(points)
 
 
 def _require_k(k: int, rows: int, duplicates: int) -> None:

@@ -68,7 +68,7 @@ def delaunay_graph(points: Points, *, workers: int | None = None, planar: bool =
     <Graph of 4 points: Delaunay, 5 edges, 1 component>
     """
     base = skeleton(points, workers=workers, planar=planar)
-    return _graph(base, base.edges, "Delaunay", workers)
+    return _graph(points, base, base.edges, "Delaunay", workers)
 
 
 def gabriel(
@@ -126,7 +126,7 @@ def gabriel(
     """
     closed = as_choice(boundary, _BOUNDARIES, name="boundary") == "closed"
     base = skeleton(points, workers=workers, planar=planar)
-    return _graph(base, _balls(base, closed=closed), "Gabriel", workers)
+    return _graph(points, base, _balls(base, closed=closed), "Gabriel", workers)
 
 
 def relative_neighborhood(
@@ -175,7 +175,7 @@ def relative_neighborhood(
     """
     base = skeleton(points, workers=workers, planar=planar)
     edges = _filtered(base, "lune", 2.0, closed=False)
-    return _graph(base, edges, "relative neighborhood", workers)
+    return _graph(points, base, edges, "relative neighborhood", workers)
 
 
 def urquhart(points: Points, *, workers: int | None = None, planar: bool = False) -> Graph:
@@ -220,9 +220,9 @@ def urquhart(points: Points, *, workers: int | None = None, planar: bool = False
     """
     base = skeleton(points, workers=workers, planar=planar, ndim=2)
     if base.tiling is None:
-        return _graph(base, base.edges, "Urquhart", workers)
+        return _graph(points, base, base.edges, "Urquhart", workers)
     edges = _core.of_triangles2(base.tiling, "longest", 1.0, False, base.workers)
-    return _graph(base, edges, "Urquhart", workers)
+    return _graph(points, base, edges, "Urquhart", workers)
 
 
 def beta_skeleton(
@@ -298,7 +298,7 @@ def beta_skeleton(
         edges = _balls(base, closed=closed)
     else:
         edges = _filtered(base, kind, parameter, closed=closed)
-    return _graph(base, edges, f"beta skeleton ({kind}, {parameter:g})", workers)
+    return _graph(points, base, edges, f"beta skeleton ({kind}, {parameter:g})", workers)
 
 
 def _balls(base: Skeleton, *, closed: bool) -> NDArray[np.int32]:
@@ -321,5 +321,8 @@ def _filtered(base: Skeleton, region: str, beta: float, *, closed: bool) -> NDAr
     return _core.of_triangles2(base.tiling, region, beta, closed, base.workers)
 
 
-def _graph(base: Skeleton, edges: NDArray[np.int32], kind: str, workers: int | None) -> Graph:
-    return Graph._made(base.points, edges, base.duplicates, kind=kind, workers=workers)
+def _graph(
+    points: Points, base: Skeleton, edges: NDArray[np.int32], kind: str, workers: int | None
+) -> Graph:
+    made = Graph._made(base.points, edges, base.duplicates, kind=kind, workers=workers)
+    return made._refer(points)

@@ -73,4 +73,5 @@ def minimum_spanning_tree(
         core = _core.spanning2 if ndim == 2 else _core.spanning3
         edges = core(base.adjacency, base.workers)
     kind = "minimum spanning tree"
-    return Graph._made(base.points, edges, base.duplicates, kind=kind, workers=workers)
+    made = Graph._made(base.points, edges, base.duplicates, kind=kind, workers=workers)
+    return made._refer(points)

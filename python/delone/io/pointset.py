@@ -27,11 +27,17 @@ if TYPE_CHECKING:
 __all__ = ["PointSet", "choose_columns", "find_column", "names_height"]
 
 _WORDS = {
-    "x": {"x", "lon", "long", "lng", "longitude", "easting", "east", "e", "xcoord", "coordx"},
-    "y": {"y", "lat", "latitude", "northing", "north", "n", "ycoord", "coordy"},
+    "x": {
+        "x", "lon", "long", "lng", "longitude", "easting", "east", "e", "xcoord", "coordx",
+        "decimallongitude", "locationlong", "gpslon", "gpslong", "gpslng", "gpslongitude",
+    },
+    "y": {
+        "y", "lat", "latitude", "northing", "north", "n", "ycoord", "coordy",
+        "decimallatitude", "locationlat", "gpslat", "gpslatitude",
+    },
     "z": {
         "z", "h", "height", "elevation", "elev", "alt", "altitude", "depth", "bathymetry",
-        "topography", "zcoord", "coordz",
+        "topography", "zcoord", "coordz", "gpsalt", "gpsaltitude", "gpselevation",
     },
 }  # fmt: skip
 # Number of characters of a reference system that are shown.

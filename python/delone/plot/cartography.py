@@ -16,6 +16,7 @@ from delone.extras import require
 from delone.plot.axes import thin
 from delone.plot.colors import show
 from delone.plot.shading import facet_values
+from delone.plot.style import EDGES
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -95,6 +96,7 @@ def _draw_facets(ax: Any, mesh: Segmented, rgb: Floats) -> None:
         edgecolors=_EDGE,
         linewidths=thin(mesh.nsimplex, 0.8),
         zorder=1,
+        gid=EDGES,
     )
     ax.add_collection(facets, autolim=False)
 

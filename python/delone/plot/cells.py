@@ -14,6 +14,7 @@ from delone.extras import require
 from delone.plot.axes import draw_dots, new_axes, require_bounds, thin
 from delone.plot.colors import as_cmap
 from delone.plot.plotter import add_points, as_pyvista_cmap, new_plotter
+from delone.plot.style import EDGES
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -58,7 +59,7 @@ def plot_cells2(
     look: dict[str, Any] = {"facecolors": "none"} if numbers is None else {"cmap": colors}
     look["linewidths"] = thin(len(sites)) if width is None else width
     outlines = [_path(each) for each in rings]
-    cells = collections.PathCollection(outlines, edgecolors=_EDGE, **look)
+    cells = collections.PathCollection(outlines, edgecolors=_EDGE, gid=EDGES, **look)
     ax = new_axes(ax)
     ax.add_collection(cells, autolim=False)
     if numbers is not None:

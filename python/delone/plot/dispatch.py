@@ -10,13 +10,24 @@ from delone.plot import tetrahedra, triangles
 from delone.plot.cells import plot_cells2, plot_cells3
 from delone.plot.graph import plot_graph2, plot_graph3
 from delone.plot.hull import plot_hull
+from delone.plot.kept import plot_kept
 from delone.plot.periodic import plot_periodic
 from delone.plot.protocols import hint, kind_of
+from delone.plot.style import EDGES, require_style, restyle
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from delone.plot.protocols import Cells2, Cells3, Hull2, Linked, Periodic, Simplices, Triangles
+    from delone.plot.protocols import (
+        Cells2,
+        Cells3,
+        Hull2,
+        Linked,
+        Outlined,
+        Periodic,
+        Simplices,
+        Triangles,
+    )
 
 __all__ = ["plot"]
 
@@ -24,6 +35,7 @@ _DRAWERS: dict[str, Callable[..., Any]] = {
     "triangles": triangles.plot,
     "tetrahedra": tetrahedra.plot,
     "hull": plot_hull,
+    "kept": plot_kept,
     "periodic": plot_periodic,
     "cells2": plot_cells2,
     "cells3": plot_cells3,
@@ -33,7 +45,7 @@ _DRAWERS: dict[str, Callable[..., Any]] = {
 
 
 def plot(
-    mesh: Simplices | Triangles | Hull2 | Periodic | Cells2 | Cells3 | Linked,
+    mesh: Simplices | Triangles | Hull2 | Periodic | Cells2 | Cells3 | Linked | Outlined,
     ax: Any = None,
     **options: Any,
 ) -> Any:
@@ -43,8 +55,8 @@ def plot(
     ----------
     mesh : object
         What to draw: a `Delaunay`, `RegularTriangulation`, `ConstrainedDelaunay`, `Mesh`,
-        `TetMesh`, `PeriodicDelaunay`, `ConvexHull`, `Voronoi` or `graphs.Graph`, or an object with
-        the same attributes.
+        `TetMesh`, `PeriodicDelaunay`, `ConvexHull`, `AlphaShape`, `ConcaveHull`, `Voronoi` or
+        `graphs.Graph`, or an object with the same attributes.
     ax : matplotlib Axes or pyvista Plotter, optional
         Where to draw; by default on a new one.
     **options
@@ -76,6 +88,7 @@ def plot(
     - ``cmap``, ``colorbar``, ``shade``: the colors of z, the color bar, light and shadow. Light and
       shadow change the colors, so they are for terrain; by default they are added only with
       ``colorbar=False`` and at least 2000 triangles
+    - ``edges``: the edges of triangles; by default if these are large enough to see
     - ``hull``: the convex hull, or the boundary of a constrained triangulation
     - ``segments``: the segments of a constrained triangulation, bold
     - ``circumcircles``: the circle through the corners of each triangle, up to 3000
@@ -99,8 +112,8 @@ def plot(
     - ``points``: the points
     - ``off_screen``: whether a new plotter draws without a window
 
-    2-D convex hulls and periodic triangulations: ``vertices``, ``title``; the latter also have
-    ``box``, the outline of a period.
+    2-D convex and concave hulls, alpha shapes and periodic triangulations: ``vertices``, ``title``;
+    the latter also have ``box``, the outline of a period.
 
     2-D Voronoi diagrams: ``values``, array_like of shape (n,), ``cmap``, ``colorbar``; ``points``,
     the sites, by default up to 2000; ``linewidth``. Without a clip they are drawn in the bounding
@@ -108,8 +121,12 @@ def plot(
     ``pyvista.Plotter.add_mesh``; bounded cells are drawn, or the sites if there are none.
 
     Graphs: ``values``, array_like of shape (m,): color edges by numbers such as ``graph.lengths``;
-    ``cmap``, ``colorbar``; ``color`` and ``linewidth`` of edges; ``vertices``; in 2-D ``title``, in
-    3-D ``off_screen``.
+    ``cmap``, ``colorbar``; ``vertices``; in 2-D ``title``, in 3-D ``color`` and ``linewidth`` of
+    edges and ``off_screen``.
+
+    In 2-D, properties of matplotlib's lines, such as ``color``, ``linewidth``, ``linestyle``,
+    ``alpha`` and ``zorder``, are those of edges and of the outlines of cells; ``facecolor`` is the
+    color of cells and periodic triangles.
 
     Examples
     --------
@@ -127,22 +144,32 @@ def plot(
     if drawer is None:
         name = f"{type(mesh).__module__}.{type(mesh).__name__}"
         raise InputError(f"an object of type {name} cannot be drawn: {hint(mesh)}")
-    _require_options(drawer, mesh, options)
-    return drawer(mesh, ax, **options)
+    known = _known(drawer)
+    if known is None:
+        return drawer(mesh, ax, **options)
+    style = {name: value for name, value in options.items() if name not in known}
+    if not style:
+        return drawer(mesh, ax, **options)
+    what = f"this {type(mesh).__name__}"
+    if "off_screen" in known:
+        raise InputError(
+            f"{next(iter(style))} is not an option of plotting {what}; its options are "
+            f"{', '.join(known)}"
+        )
+    require_style(style, what, known)
+    own = {name: value for name, value in options.items() if name in known}
+    if "edges" in known:
+        own.setdefault("edges", True)
+    before = set(ax.get_children()) if hasattr(ax, "get_children") else set()
+    drawn = drawer(mesh, ax, **own)
+    new = [each for each in drawn.get_children() if each not in before]
+    restyle([each for each in new if each.get_gid() == EDGES], style)
+    return drawn
 
 
-def _require_options(drawer: Callable[..., Any], mesh: Any, options: dict[str, Any]) -> None:
-    """Refuse options that do not exist for this object, and list those that do.
-
-    A drawer that passes options on to a library checks them itself.
-    """
+def _known(drawer: Callable[..., Any]) -> dict[str, None] | None:
+    """Return the options of a drawer, in their order; None if it passes others on to a library."""
     parameters = inspect.signature(drawer).parameters.values()
     if any(each.kind is each.VAR_KEYWORD for each in parameters):
-        return
-    known = [each.name for each in parameters if each.kind is each.KEYWORD_ONLY]
-    for name in options:
-        if name not in known:
-            raise InputError(
-                f"{name} is not an option of plotting this {type(mesh).__name__}; its options are "
-                f"{', '.join(known)}"
-            )
+        return None
+    return {each.name: None for each in parameters if each.kind is each.KEYWORD_ONLY}

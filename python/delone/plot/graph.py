@@ -12,6 +12,7 @@ from delone.errors import InputError
 from delone.extras import require
 from delone.plot.axes import draw_dots, frame, new_axes, require_bounds, thin
 from delone.plot.plotter import add_points, as_pyvista_cmap, new_plotter
+from delone.plot.style import EDGES
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -30,8 +31,6 @@ def plot_graph2(
     values: ArrayLike | None = None,
     cmap: Any = "viridis",
     colorbar: bool = True,
-    color: Any = _LINE,
-    linewidth: float | None = None,
     vertices: bool | None = None,
     title: str | None = None,
 ) -> Any:
@@ -47,12 +46,12 @@ def plot_graph2(
         low, high = low - 0.5, high + 0.5
     require_bounds(low, high)
     ax = new_axes(ax)
-    width = 2 * thin(len(graph.edges)) if linewidth is None else linewidth
+    width = 2 * thin(len(graph.edges))
     lines = collections.LineCollection(
-        graph.points[graph.edges], linewidths=width, capstyle="round", zorder=2
+        graph.points[graph.edges], linewidths=width, capstyle="round", zorder=2, gid=EDGES
     )
     if chosen is None:
-        lines.set_color(color)
+        lines.set_color(_LINE)
     else:
         lines.set(array=chosen, cmap=cmap)
     ax.add_collection(lines)

@@ -9,6 +9,7 @@ import numpy as np
 from delone._arrays import as_optional_flag
 from delone.extras import require
 from delone.plot.axes import draw_dots, frame, new_axes, require_bounds
+from delone.plot.style import EDGES
 
 if TYPE_CHECKING:
     from delone.plot.protocols import Hull2
@@ -28,7 +29,9 @@ def plot_hull(
     low, high = corners.min(axis=0), corners.max(axis=0)
     require_bounds(low, high)
     ax = new_axes(ax)
-    outline = patches.Polygon(corners, facecolor=_FACE, edgecolor=_RIM, linewidth=1.4, zorder=1)
+    outline = patches.Polygon(
+        corners, facecolor=_FACE, edgecolor=_RIM, linewidth=1.4, zorder=1, gid=EDGES
+    )
     ax.add_patch(outline)
     draw_dots(ax, hull.points, dots)
     frame(ax, low, high, title, margin=0.02 * float(np.max(high - low)))

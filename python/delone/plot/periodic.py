@@ -9,6 +9,7 @@ import numpy as np
 from delone._arrays import as_flag, as_optional_flag
 from delone.extras import require
 from delone.plot.axes import draw_dots, frame, new_axes, require_bounds, thin
+from delone.plot.style import EDGES
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -47,6 +48,7 @@ def plot_periodic(
         edgecolors=_INK,
         linewidths=thin(len(corners)),
         zorder=1,
+        gid=EDGES,
     )
     ax.add_collection(facets, autolim=False)
     if outlined:

@@ -106,6 +106,26 @@ class Segmented(Triangles, Protocol):
         """The areas of the triangles, (m,)."""
 
 
+class Outlined(Protocol):
+    """Triangles that are kept of a 2-D triangulation."""
+
+    @property
+    def points(self) -> Floats:
+        """Coordinates, (n, 2)."""
+
+    @property
+    def simplices(self) -> Indices:
+        """The triangles, (k, 3)."""
+
+    @property
+    def is_kept(self) -> NDArray[np.bool_]:
+        """Whether each triangle of the triangulation is kept, (m,)."""
+
+    @property
+    def boundary(self) -> Indices:
+        """The edges with a triangle on one side only, (b, 2)."""
+
+
 class Hull2(Protocol):
     """A 2-D convex hull."""
 
@@ -223,13 +243,15 @@ def kind_of(thing: Any) -> str:
         return {2: "graph2", 3: "graph3"}.get(d, "")
     if has(thing, "ridge_points", "cell"):
         return {2: "cells2", 3: "cells3"}.get(d, "")
+    if d == 2 and has(thing, "is_kept", "boundary"):
+        return "kept"
     if d == 2 and corners == 3:
         if has(thing, "periods", "corners"):
             return "periodic"
         return "triangles" if has(thing, "edges", "min_bound", "find_simplex") else ""
-    if d == corners == 2 and has(thing, "vertices"):
-        return "hull"
-    return "tetrahedra" if d == 3 and corners in (3, 4) else ""
+    is_hull = d == corners == 2 and has(thing, "vertices")
+    is_solid = d == 3 and corners in (3, 4)
+    return "hull" if is_hull else "tetrahedra" if is_solid else ""
 
 
 def hint(thing: Any) -> str:

@@ -16,6 +16,7 @@ from delone.plot.circles import bounds_with_circles, draw_circles, require_few
 from delone.plot.colors import add_bar, as_cmap, scale, shaded, show
 from delone.plot.protocols import hint, kind_of, segmented
 from delone.plot.shading import facet_light, point_density, rasterize, relief
+from delone.plot.style import EDGES
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -44,6 +45,7 @@ def plot(
     colorbar: bool = True,
     title: str | None = None,
     segments: bool = True,
+    edges: bool | None = None,
 ) -> Any:
     """Draw a 2-D triangulation; for the options see `delone.plot.plot`."""
     require("matplotlib", extra="plot", what="drawing")
@@ -51,6 +53,7 @@ def plot(
     for name, flag in {"hull": hull, "circumcircles": circumcircles, "segments": segments}.items():
         as_flag(flag, name=name)
     dots = as_optional_flag(vertices, name="vertices")
+    lined = as_optional_flag(edges, name="edges")
     look: dict[str, Any] = {
         "cmap": as_cmap(cmap),
         "shade": as_optional_flag(shade, name="shade"),
@@ -61,7 +64,7 @@ def plot(
     heights = as_values(z, mesh.npoints)
     require_drawable(mesh, heights)
     ax = new_axes(ax)
-    _draw_areas(ax, mesh, heights, look)
+    _draw_areas(ax, mesh, heights, look, lined)
     constrained = segmented(mesh)
     if constrained is not None and segments:
         cartography.draw_segments(ax, constrained)
@@ -98,9 +101,12 @@ def require_drawable(mesh: Triangles, heights: Floats | None) -> None:
     require_bounds(mesh.min_bound, mesh.max_bound)
 
 
-def _draw_areas(ax: Any, mesh: Triangles, z: Floats | None, look: dict[str, Any]) -> None:
+def _draw_areas(
+    ax: Any, mesh: Triangles, z: Floats | None, look: dict[str, Any], lined: bool | None
+) -> None:
     """Draw regions, the surface, or edges; as an image if the triangles are too small to see."""
     size = pixels(ax, mesh.min_bound, mesh.max_bound)
+    # Areas are an image where triangles cannot be seen; asked for, edges are drawn over it.
     dense = size[0] * size[1] < _VISIBLE * mesh.nsimplex
     constrained = segmented(mesh)
     if constrained is not None and (z is None or not constrained.nsimplex):
@@ -108,7 +114,10 @@ def _draw_areas(ax: Any, mesh: Triangles, z: Floats | None, look: dict[str, Any]
     elif dense:
         _draw_image(ax, mesh, z, size=max(size), **look)
     else:
-        _draw_triangles(ax, mesh, z, **look)
+        _draw_triangles(ax, mesh, z, lined is not False, **look)
+        return
+    if lined and dense:
+        _draw_edges(ax, mesh, thin(mesh.nsimplex), _INK)
 
 
 def _draw_image(
@@ -157,6 +166,7 @@ def _draw_triangles(
     ax: Any,
     mesh: Triangles,
     z: Floats | None,
+    lined: bool,
     *,
     cmap: Any,
     shade: bool | None,
@@ -166,10 +176,8 @@ def _draw_triangles(
     points, simplices = mesh.points, mesh.simplices
     width = thin(mesh.nsimplex)
     if z is None:
-        lines = collections.LineCollection(
-            points[mesh.edges], colors=_INK, linewidths=width, zorder=1
-        )
-        ax.add_collection(lines, autolim=False)
+        if lined:
+            _draw_edges(ax, mesh, width, _INK)
         return
     means = z[simplices].mean(axis=1)
     mapped = scale(means, cmap)
@@ -182,12 +190,18 @@ def _draw_triangles(
     )
     ax.add_collection(facets, autolim=False)
     # Fainter where there are many, so that they do not darken the colors.
-    lines = collections.LineCollection(
-        points[mesh.edges], colors=[(0, 0, 0, width / 3)], linewidths=0.5 * width, zorder=1
-    )
-    ax.add_collection(lines, autolim=False)
+    if lined:
+        _draw_edges(ax, mesh, 0.5 * width, (0, 0, 0, width / 3))
     if colorbar:
         add_bar(ax, mapped, means, "z")
+
+
+def _draw_edges(ax: Any, mesh: Triangles, width: float, color: Any) -> None:
+    collections = require("matplotlib.collections", extra="plot", what="drawing")
+    lines = collections.LineCollection(
+        mesh.points[mesh.edges], colors=[color], linewidths=width, zorder=1, gid=EDGES
+    )
+    ax.add_collection(lines, autolim=False)
 
 
 def _draw_hull(ax: Any, mesh: Triangles) -> None:

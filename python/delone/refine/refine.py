@@ -224,7 +224,7 @@ def filled(
         start = start._replace(lines=start.lines._replace(frozen=_on_boundary(start)))
     made, counts = rounds(start, sizes, limits)
     stages["refine"] = time.perf_counter() - clock
-    return Mesh._of(made, counts, limits.min_angle, stages, limits.workers)
+    return Mesh._of(made, counts, limits.min_angle, stages, limits.workers)._refer(base)
 
 
 def as_rows(values: ArrayLike | None, count: int, name: str) -> Indices:

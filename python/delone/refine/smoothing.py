@@ -51,7 +51,8 @@ def smoothed(mesh: M, max_iter: int, method: str) -> M:
         "neighbors": made.neighbors,
         "sides": made.sides,
     }
-    return mesh._from_arrays(mesh._arrays() | changed, mesh.stages, mesh._workers)
+    made_of = mesh._arrays() | changed
+    return mesh._from_arrays(made_of, mesh.stages, mesh._workers)._refer(mesh)
 
 
 def _smoothed(mesh: MeshState, points: Floats, rounds: int, method: str) -> _core.SmoothedMesh:

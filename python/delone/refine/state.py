@@ -303,6 +303,7 @@ class MeshState(HullTiling):
             of_simplices={"region": self._region},
             segments=self.segments,
             of_segments={"marker": self.segment_markers},
+            crs=self.crs,
         )
 
     def _saved(self) -> dict[str, NDArray[Any]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -187,7 +188,7 @@ class Contours(ReadOnly):
         ax : matplotlib Axes, optional
             Axes to draw on; by default new ones.
         **options
-            Options of matplotlib's ``LineCollection``, such as ``colors``.
+            Properties of matplotlib's lines, such as ``color`` and ``linestyle``.
 
         Returns
         -------
@@ -259,6 +260,41 @@ class Bands(ReadOnly):
     def __repr__(self) -> str:
         ranges = len(np.unique(self.low))
         return f"<Bands of {counted(ranges, 'range')}: {counted(len(self), 'polygon')}>"
+
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Plot the polygons in the colors of their heights (extra ``plot``).
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Axes to draw on; by default new ones.
+        **options
+            ``cmap``, ``colorbar``, ``title``, and properties of matplotlib's lines for outlines,
+            such as ``color``, ``linewidth`` and ``linestyle``.
+
+        Returns
+        -------
+        matplotlib Axes
+            The axes.
+
+        Raises
+        ------
+        MissingExtraError
+            matplotlib is not installed.
+        InputError
+            An option does not exist.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
+        >>> ax = tin.bands(interval=2).plot(linewidth=1)
+        """
+        from delone.plot.bands import plot_bands
+
+        rings = [self.points[a:b] for a, b in pairwise(self.ring_starts.tolist())]
+        polygons = [rings[a:b] for a, b in pairwise(self.polygon_starts.tolist())]
+        return plot_bands(polygons, self.low, self.high, ax, **options)
 
     def to_shapely(self) -> NDArray[Any]:
         """Return the polygons as geometries (extra ``geo``).

@@ -26,6 +26,7 @@ class Surveyed(HullTiling):
     """A triangulation with heights, lines, a reference system and units."""
 
     __slots__ = ("_breaklines", "_crs", "_soft", "_units", "_z")
+    _SAVES_CRS = True
 
     _breaklines: Indices
     _crs: NDArray[np.str_]

@@ -223,6 +223,7 @@ class Voronoi(Stored):
             own, own_weights, clip=clip, fix=repair, periods=periods, workers=workers
         )
         self._hold(cells=cells, workers=workers)
+        self._refer(points)
 
     @classmethod
     def _from_cells(cls, cells: PlaneCells | SpaceCells, workers: int | None) -> Self:
@@ -622,7 +623,8 @@ class Voronoi(Stored):
             Columns to include, with one row for each point. The cells replace the geometry of a
             GeoDataFrame, and its reference system is kept.
         crs : any, optional
-            Coordinate reference system, anything that geopandas accepts.
+            Coordinate reference system, anything that geopandas accepts; by default that of the
+            points, or else of `data`.
 
         Returns
         -------
@@ -646,7 +648,8 @@ class Voronoi(Stored):
         """
         from delone.exchange.geopandas import beside
 
-        return beside(self.polygons(), data, crs)
+        own = self.crs if crs is None else crs
+        return beside(self.polygons(), data, own)
 
     def to_pyvista(self) -> Any:
         """Convert the bounded or clipped cells to a mesh of PyVista (extra ``pyvista``).
