@@ -15,6 +15,11 @@ The import registers ``.delone`` on DataArray and Dataset.
 
 from __future__ import annotations
 
-from delone.interpolate.accessor import ArrayInterpolation, DatasetInterpolation, VariableWarning
+from delone.interpolate.accessor import (
+    ArrayInterpolation,
+    DatasetInterpolation,
+    VariableWarning,
+    VectorWarning,
+)
 
-__all__ = ["ArrayInterpolation", "DatasetInterpolation", "VariableWarning"]
+__all__ = ["ArrayInterpolation", "DatasetInterpolation", "VariableWarning", "VectorWarning"]

@@ -106,6 +106,7 @@ ALLOWED: dict[str, dict[str, str]] = {
         "queries @ np.cross(b, normal).T > 0": VALUE,
         "length > 0": VALUE,
     },
+    "sphere/vectors.py": {"owner._distance(xi) <= limit": WANTED},
     "sphere/validation.py": {
         "dot(cross(normal, a), x) < 0": EXACT,
         "dot(cross(normal, b), x) > 0": EXACT,

@@ -8,6 +8,7 @@ has what coordinates mean.
 
 Longitudes and latitudes, known by their units, standard names or names, are interpolated on the
 sphere by the methods that `delone.sphere` has; ``planar=True`` takes them as planar coordinates.
+There, two variables may be the components of a vector; the module `components` finds them.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from delone._arrays import as_flag
 from delone.errors import DtypeError, InputError, MissingExtraError
 from delone.georeference import caller_level, warn_of_degrees
 from delone.interpolate.base import as_max_distance
+from delone.interpolate.components import is_component, lone_message, vector_pairs
 from delone.interpolate.methods import interpolator
 from delone.interpolate.places import (
     angles_unit,
@@ -42,14 +44,25 @@ except ImportError as error:
     ) from error
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Hashable, Iterable, Sequence
 
     from numpy.typing import NDArray
 
     from delone.interpolate.places import Places
     from delone.interpolate.weights import Weights
 
-__all__ = ["ArrayInterpolation", "DatasetInterpolation", "VariableWarning"]
+__all__ = ["ArrayInterpolation", "DatasetInterpolation", "VariableWarning", "VectorWarning"]
+
+
+class VectorWarning(UserWarning):
+    """A component of a vector is interpolated alone, as numbers, which is wrong near the poles.
+
+    Examples
+    --------
+    >>> from delone.xarray import VectorWarning
+    >>> issubclass(VectorWarning, UserWarning)
+    True
+    """
 
 
 class VariableWarning(UserWarning):
@@ -152,6 +165,9 @@ class ArrayInterpolation:
             -180 to 180 cause no warning: they mean the same directions.
         delone.GeographicWarning
             The coordinates are longitudes and latitudes, and the method is planar.
+        delone.xarray.VectorWarning
+            On the sphere, the standard name is that of a component to the east or to the north,
+            such as "eastward_wind": it needs the other one, in a Dataset.
 
         Examples
         --------
@@ -237,6 +253,14 @@ class DatasetInterpolation:
         cells of the coordinates are not in the result, like the coordinates; nor is what has only
         some of the dimensions, with a `VariableWarning`.
 
+    Notes
+    -----
+    On the sphere, two variables whose standard names differ in "eastward" and "northward" are the
+    components of vectors, and interpolated as such: see `delone.sphere.Linear.vectors_at`. Their
+    dimensions and ``cell_methods`` must be the same; of several with one standard name, names such
+    as u10 and v10 decide. With ``vectors=[("u", "v")]`` exactly these pairs are vectors, and with
+    ``vectors=[]`` none. Where one of two components is NaN, both are taken as NaN.
+
     Examples
     --------
     >>> import xarray
@@ -247,6 +271,20 @@ class DatasetInterpolation:
     ... )
     >>> stations.delone.interp([1.0], [1.0]).height.values
     array([[4.]])
+
+    A wind from Greenwich across the North Pole to the date line, at the pole as seen from two
+    meridians:
+
+    >>> stations = xarray.Dataset(
+    ...     {"u": ("station", [0.0, 9.0, 0.0, -9.0]), "v": ("station", [9.0, 0.0, -9.0, 0.0])},
+    ...     coords={
+    ...         "lon": ("station", [0.0, 90.0, 180.0, -90.0]),
+    ...         "lat": ("station", [80.0, 80.0, 80.0, 80.0]),
+    ...     },
+    ... )
+    >>> found = stations.delone.interp([0.0, 90.0], [90.0], vectors=[("u", "v")])
+    >>> (found.u.values.round(6) + 0.0).tolist(), (found.v.values.round(6) + 0.0).tolist()
+    ([[0.0, 9.0]], [[9.0, 0.0]])
     """
 
     def __init__(self, dataset: Any) -> None:
@@ -261,10 +299,11 @@ class DatasetInterpolation:
         method: str = "linear",
         degrees: bool | None = None,
         missing: str = "raise",
+        vectors: Sequence[tuple[Hashable, Hashable]] | None = None,
         **options: Any,
     ) -> Any:
-        """Interpolate to other points; see `ArrayInterpolation.interp`."""
-        choices = _Choices(coords, method, degrees, missing, options)
+        """Interpolate to other points; see `ArrayInterpolation.interp`, and above for `vectors`."""
+        choices = _Choices(coords, method, degrees, missing, options, vectors)
         return _interp(self._dataset, x, y, choices)
 
     def grid(
@@ -277,11 +316,12 @@ class DatasetInterpolation:
         method: str = "linear",
         degrees: bool | None = None,
         missing: str = "raise",
+        vectors: Sequence[tuple[Hashable, Hashable]] | None = None,
         **options: Any,
     ) -> Any:
-        """Interpolate to a raster; see `ArrayInterpolation.grid`."""
+        """Interpolate to a raster; see `ArrayInterpolation.grid`, and above for `vectors`."""
         raster = {"resolution": resolution, "shape": shape, "bounds": bounds}
-        choices = _Choices(coords, method, degrees, missing, options)
+        choices = _Choices(coords, method, degrees, missing, options, vectors)
         return _grid(self._dataset, raster, choices)
 
 
@@ -293,6 +333,7 @@ class _Choices(NamedTuple):
     degrees: bool | None
     missing: str
     options: dict[str, Any]
+    vectors: Sequence[tuple[Hashable, Hashable]] | None = None
 
 
 class _Sites(NamedTuple):
@@ -358,7 +399,7 @@ def _turns(degrees: bool, wanted: bool) -> float:
 def _interp(data: Any, x: Any, y: Any, choices: _Choices) -> Any:
     targets = [part for part in (x, y) if isinstance(part, xarray.DataArray)]
     sites = _sites(data, targets if len(targets) == 2 else (), choices)
-    return _interpolated(data, sites, _target(x, y, sites))
+    return _interpolated(data, sites, _target(x, y, sites), choices.vectors)
 
 
 def _grid(data: Any, raster: dict[str, Any], choices: _Choices) -> Any:
@@ -374,7 +415,7 @@ def _grid(data: Any, raster: dict[str, Any], choices: _Choices) -> Any:
         nodes = sites.globe.globe_nodes(mesh, points, **raster)
     else:
         nodes = raster_nodes((points.min(axis=0), points.max(axis=0)), **raster)
-    return _interpolated(data, sites, _nodes(nodes, sites, unit))
+    return _interpolated(data, sites, _nodes(nodes, sites, unit), choices.vectors)
 
 
 def _target(x: Any, y: Any, sites: _Sites) -> tuple[Any, Any]:
@@ -424,26 +465,56 @@ def _described(sites: _Sites, axis: int, unit: str | None) -> dict[str, Any]:
     return attrs
 
 
-def _interpolated(data: Any, sites: _Sites, target: tuple[Any, Any]) -> Any:
+def _interpolated(data: Any, sites: _Sites, target: tuple[Any, Any], vectors: Any) -> Any:
     """Interpolate the variables that have the points, and mask targets too far from them."""
     dims = sites.places.dims
     _require_memory(data, dims, target)
-    queries, degrees = target_points(sites.places, target, sites.degrees, planar=sites.planar)
+    lonlat, degrees = target_points(sites.places, target, sites.degrees, planar=sites.planar)
+    queries = lonlat
     if sites.globe is not None:
-        queries = sites.globe.directions(queries, degrees=degrees)
+        queries = sites.globe.directions(lonlat, degrees=degrees)
     near = None if sites.limit is None else sites.made.distance(queries) <= sites.limit
     geometry = _Geometry(sites.made.weights_at(queries), dims, target, near, sites.rows)
     # Coordinates of the points are not coordinates of the result.
     gone = [name for name, part in data.coords.items() if set(part.dims) & set(dims)]
     plain = data.drop_vars(gone)
     if not isinstance(plain, xarray.Dataset):
+        if not sites.planar and is_component(plain):
+            _warn_of_components([plain.name or "array"], alone=True)
         _require_free([(plain.name or "array", plain)], geometry)
         return _applied(plain, geometry)
     names, others = _variables(data, plain, sites)
     plain = plain.drop_vars(others)
     _require_free(plain.variables.items(), geometry)
-    found = {name: _applied(plain[name], geometry) for name in names}
-    return plain.drop_vars(names).assign(found)
+    pairs = _pairs(plain, names, sites, vectors)
+    paired = {name for pair in pairs for name in pair}
+    found = {name: _applied(plain[name], geometry) for name in names if name not in paired}
+    if pairs:
+        table = sites.globe.vector_weights(sites.made, geometry.table, lonlat, degrees=degrees)
+        for pair in pairs:
+            both = _applied_to_pair([plain[name] for name in pair], table, geometry)
+            found |= dict(zip(pair, both, strict=True))
+    return plain.drop_vars(names).assign({name: found[name] for name in names})
+
+
+def _pairs(plain: Any, names: list[Any], sites: _Sites, vectors: Any) -> list[tuple[Any, Any]]:
+    """The pairs of variables that are vectors; warn of components without another."""
+    if sites.planar:
+        if vectors:
+            raise InputError(
+                "vectors= is for the sphere: these coordinates or this method are planar, where "
+                "components are interpolated as they are"
+            )
+        return []
+    pairs, lone = vector_pairs(plain, names, vectors)
+    if lone:
+        _warn_of_components(lone, alone=False)
+    return pairs
+
+
+def _warn_of_components(names: Iterable[Any], *, alone: bool) -> None:
+    message = lone_message(names, alone=alone)
+    warnings.warn(message, VectorWarning, stacklevel=caller_level())
 
 
 def _require_free(parts: Iterable[tuple[Any, Any]], geometry: _Geometry) -> None:
@@ -512,45 +583,93 @@ def _require_memory(data: Any, dims: tuple[Any, ...], target: tuple[Any, Any]) -
 
 
 def _applied(array: Any, geometry: _Geometry) -> Any:
+    kwargs = {"table": geometry.table, "rows": geometry.rows}
+    return _computed(_last_axes, [array], geometry, kwargs)
+
+
+def _applied_to_pair(pair: list[Any], table: Any, geometry: _Geometry) -> list[Any]:
+    """Interpolate the components of vectors by the table for vectors."""
+    kwargs = {"table": table, "rows": geometry.rows}
+    found = _computed(_last_axes_of_pair, pair, geometry, kwargs)
+    for part, array in zip(found, pair, strict=True):
+        part.attrs = dict(array.attrs)
+    kept = [[dim for dim in array.dims if dim not in geometry.dims] for array in pair]
+    target = geometry.target[0].dims
+    return [
+        part.transpose(*dims, *target).rename(array.name)
+        for part, dims, array in zip(found, kept, pair, strict=True)
+    ]
+
+
+def _computed(
+    function: Callable[..., Any], arrays: list[Any], geometry: _Geometry, kwargs: dict[str, Any]
+) -> Any:
+    """Apply a function of the last axes, which are the points, to arrays; as many results."""
     dims, (across, _), near = geometry.dims, geometry.target, geometry.near
-    # Computed in doubles, and stored as the field is: integers become doubles.
-    kind = array.dtype if array.dtype.kind in "fc" else np.dtype(np.float64)
+    # Computed in doubles, and stored as the fields are: integers become doubles.
+    kinds = [part.dtype if part.dtype.kind in "fc" else np.dtype(np.float64) for part in arrays]
+    if any(kind.kind == "c" for kind in kinds):
+        kinds = [np.result_type(kind, np.complex64) for kind in kinds]
     found = xarray.apply_ufunc(
-        _last_axes,
-        array,
-        kwargs={
-            "table": geometry.table,
-            "count": len(dims),
-            "rows": geometry.rows,
-            "kind": kind,
-        },
-        input_core_dims=[dims],
-        output_core_dims=[across.dims],
+        function,
+        *arrays,
+        kwargs={"count": len(dims), "kinds": kinds, **kwargs},
+        input_core_dims=[dims] * len(arrays),
+        output_core_dims=[across.dims] * len(arrays),
         exclude_dims=set(dims),
         dask="parallelized",
-        output_dtypes=[kind],
+        output_dtypes=kinds,
         dask_gufunc_kwargs={
             "output_sizes": dict(zip(across.dims, across.shape, strict=True)),
             "allow_rechunk": True,
         },
         keep_attrs=True,
     )
+    every = list(found) if len(arrays) > 1 else [found]
     if near is not None:
-        found = found.where(xarray.DataArray(near, dims=across.dims))
-    return found.assign_coords(across.coords)
+        every = [part.where(xarray.DataArray(near, dims=across.dims)) for part in every]
+    every = [part.assign_coords(across.coords) for part in every]
+    return every if len(arrays) > 1 else every[0]
 
 
 def _last_axes(
     values: NDArray[Any],
+    *,
     table: Weights,
     count: int,
     rows: NDArray[np.int64] | None,
-    kind: np.dtype[Any],
+    kinds: Sequence[np.dtype[Any]],
 ) -> NDArray[Any]:
     """Interpolate along the last axes, which are the points; the other axes are fields."""
-    leading = values.shape[: values.ndim - count]
-    fields = np.moveaxis(values.reshape(*leading, -1), -1, 0)
+    fields = _points_first(values, count)
     found = table.apply(fields if rows is None else fields[rows])
-    width = len(table.query_shape)
+    return _points_last(found, len(table.query_shape), kinds[0])
+
+
+def _last_axes_of_pair(
+    east: NDArray[Any],
+    north: NDArray[Any],
+    *,
+    table: Any,
+    count: int,
+    rows: NDArray[np.int64] | None,
+    kinds: Sequence[np.dtype[Any]],
+) -> tuple[NDArray[Any], ...]:
+    """Interpolate two components along the last axes, which are the points."""
+    pair = np.stack([_points_first(part, count) for part in (east, north)], axis=1)
+    found = table.apply(pair if rows is None else pair[rows])
+    width = len(table.table.query_shape)
+    parts = np.moveaxis(found, width, 0)
+    return tuple(_points_last(part, width, kind) for part, kind in zip(parts, kinds, strict=True))
+
+
+def _points_first(values: NDArray[Any], count: int) -> NDArray[Any]:
+    """Values with the points, the last axes, as the first axis."""
+    leading = values.shape[: values.ndim - count]
+    return np.moveaxis(values.reshape(*leading, -1), -1, 0)
+
+
+def _points_last(found: NDArray[Any], width: int, kind: np.dtype[Any]) -> NDArray[Any]:
+    """Results with the axes of the targets, the first ones, at the end."""
     order = (*range(width, found.ndim), *range(width))
     return np.ascontiguousarray(found.transpose(order), dtype=kind)

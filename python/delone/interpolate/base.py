@@ -575,7 +575,7 @@ class Interpolator:
         around: tuple[Indices, Indices] = self._cache["around"]
         return around
 
-    def field_of(self, values: ArrayLike | None) -> Field:
+    def _field_of(self, values: ArrayLike | None) -> Field:
         """Return the values as a field, by default those of the constructor.
 
         Parameters
@@ -605,7 +605,7 @@ class Interpolator:
         """The interpolator, the field, its settled columns; None: the constructor's values."""
         if values is None and self._field is not None:
             return self, *self._field
-        field = self.field_of(values)
+        field = self._field_of(values)
         kept = self._kept_rows(field)
         if self._nan != "drop" or _same(kept, self._kept):
             return self, field, self._settled(field)
@@ -617,7 +617,7 @@ class Interpolator:
         """Parts of a field whose sites differ by ``nan="drop"``; None if all have the same."""
         if values is None or self._nan != "drop":
             return self._parts if values is None else None
-        field = self.field_of(values)
+        field = self._field_of(values)
         return (field, self._narrowed(field)) if len(field.patterns()) > 1 else None
 
     def _narrowed(self, field: Field) -> list[tuple[Rows, Any]]:

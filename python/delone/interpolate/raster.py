@@ -254,7 +254,7 @@ def grid(
         values = None
     if made._ndim == SPACE:
         refuse("a raster", "call the interpolator with the query points")
-    field = made.field_of(values)
+    field = made._field_of(values)
     nodes_x, nodes_y = _nodes(made, resolution, shape, x, y, bounds)
     require_memory(len(nodes_x), len(nodes_y), field.columns.shape[1])
     dtype = np.complex128 if field.is_complex else np.float64

@@ -1,7 +1,8 @@
 """Interpolation on the sphere: linear, by natural neighbors, and by the nearest site.
 
 The base class `_Interpolator` has the policies and the fields, which are those of
-`delone.interpolate`; a subclass has the sites of each query and their weights.
+`delone.interpolate`; a subclass has the sites of each query and their weights. The module `vectors`
+turns these weights into those of vectors.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from delone.renames import renamed
 from delone.sphere.coordinates import queries_of
 from delone.sphere.delaunay import Delaunay
 from delone.sphere.outside import arc_weights
+from delone.sphere.vectors import VectorInterpolation, polar_rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -46,7 +48,7 @@ _NAMED = 5
 
 
 @renamed(weights="weights_at")
-class _Interpolator:
+class _Interpolator(VectorInterpolation):
     """Sites, fields and policies; the base of the public classes."""
 
     EXTRAPOLATE: ClassVar[tuple[str, ...]] = ("nan", "nearest", "raise")
@@ -74,6 +76,11 @@ class _Interpolator:
             points if isinstance(points, Delaunay) else _triangulated(points, degrees, workers)
         )
         self._degrees = self._all._degrees
+        self._polar = (
+            None
+            if isinstance(points, Delaunay) or np.shape(points)[1] != 2
+            else polar_rows(points, self._all.vectors, degrees)
+        )
         self._mesh = self._all
         self._kept: Rows | None = None
         self._field: tuple[Field, _Interpolator, Floats] | None = None
@@ -258,11 +265,11 @@ class _Interpolator:
         )
 
     def _settled(self, field: Field) -> Floats:
-        """Return values for the vertices, after the policies."""
+        """Values for the vertices, after the policies."""
         return self._policies._settled(field)
 
     def _gradients(self, columns: Floats) -> None:
-        """Return None: no method here needs gradients."""
+        """None: no method here needs those at the sites."""
 
     def _with(self, values: ArrayLike | None) -> tuple[Field, _Interpolator, Floats]:
         """The field, the interpolator for its sites, and its values after the policies."""

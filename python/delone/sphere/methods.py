@@ -5,6 +5,8 @@ from __future__ import annotations
 import inspect
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from delone.errors import InputError
 from delone.interpolate.values import chosen
 from delone.sphere.coordinates import queries_of
@@ -14,10 +16,12 @@ from delone.sphere.raster import globe_nodes
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["METHODS", "directions", "globe_nodes", "interpolator"]
+    from delone.interpolate.weights import Weights
+    from delone.sphere.vectors import Vectors
+
+__all__ = ["METHODS", "directions", "globe_nodes", "interpolator", "vector_weights"]
 
 METHODS: Mapping[str, tuple[type[Linear | NaturalNeighbor | Nearest], dict[str, Any]]] = {
     "linear": (Linear, {}),
@@ -45,3 +49,15 @@ def interpolator(
 def directions(lonlat: NDArray[np.float64], *, degrees: bool) -> NDArray[np.float64]:
     """Return longitudes and latitudes, (..., 2), as vectors, (..., 3); NaN stays NaN."""
     return queries_of(lonlat, degrees=degrees, workers=None)
+
+
+def vector_weights(
+    made: Linear | NaturalNeighbor | Nearest,
+    table: Weights,
+    lonlat: NDArray[np.float64],
+    *,
+    degrees: bool,
+) -> Vectors:
+    """Return the table for vectors at longitudes and latitudes, from that for numbers."""
+    longitudes = np.radians(lonlat[..., 0]) if degrees else lonlat[..., 0]
+    return made._transports(directions(lonlat, degrees=degrees), table, longitudes.ravel())
