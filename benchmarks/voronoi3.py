@@ -81,7 +81,7 @@ def interpolated(points: Any, values: Any, queries: Any) -> dict[str, Any]:
     own = {
         f"delone {method}, {workers} worker{'s' * (workers > 1)}": (
             lambda m=method, w=workers: (
-                interpolate.interpolator(m, points, values, workers=w)(queries),
+                interpolate.interpolator(points, values, m, workers=w)(queries),
                 None,
             )[1]
         )

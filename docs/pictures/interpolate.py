@@ -15,7 +15,7 @@ KNOWN = 0.35
 def sea_floor() -> None:
     """The soundings off Baja California as a map of the sea floor, and where they were taken."""
     survey = datasets.baja()
-    made = interpolator("sibson", survey, survey.z, duplicates="mean", planar=True)
+    made = interpolator(survey, survey.z, "sibson", duplicates="mean", planar=True)
     sea = grid(made, resolution=0.0125, max_distance=KNOWN)
     figure, ax = plt.subplots(figsize=(8.4, 8.2), layout="constrained")
     ax.set_facecolor("#e9e3d3")

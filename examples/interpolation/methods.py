@@ -33,7 +33,7 @@ nodes = np.stack((x, y), axis=-1)
 # is no value, except for the nearest one, so only nodes inside are compared.
 
 names = ("nearest", "linear", "sibson", "farin", "clough-tocher")
-fields = {name: interpolator(name, sites, values)(nodes) for name in names}
+fields = {name: interpolator(sites, values, name)(nodes) for name in names}
 inside = np.isfinite(fields["linear"])
 for name in names:
     error = (fields[name] - truth(x, y))[inside]
@@ -44,7 +44,7 @@ for name in names:
 # for each of them. Compare elsewhere, or leave sites out: :func:`delone.interpolate.cross_validate`.
 
 for name in names:
-    assert np.array_equal(interpolator(name, sites, values)(sites), values)
+    assert np.array_equal(interpolator(sites, values, name)(sites), values)
 
 # %%
 # Fields on top, errors below. "sibson" and "farin" are two kinds of natural neighbor interpolation; the second one

@@ -6,6 +6,7 @@ Attributes derived from an object are computed on first use and kept; its arrays
 from __future__ import annotations
 
 import functools
+import inspect
 import threading
 from typing import TYPE_CHECKING, Any, NoReturn, Self, TypeVar
 
@@ -13,13 +14,14 @@ import numpy as np
 
 from delone._arrays import as_points
 from delone.blocks import copied
+from delone.errors import DtypeError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Immutable", "ReadOnly", "kept", "own_copy", "sealed"]
+__all__ = ["Immutable", "ReadOnly", "kept", "made_by", "own_copy", "sealed"]
 
 
 class Immutable:
@@ -75,6 +77,23 @@ class ReadOnly:
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         return self
+
+
+K = TypeVar("K", bound=type)
+
+
+def made_by(how: str) -> Callable[[K], K]:
+    """Give a class that functions make a constructor whose error says `how`, without arguments."""
+
+    def decorate(kind: K) -> K:
+        def refuse(self: Any, *_: Any, **__: Any) -> NoReturn:
+            raise DtypeError(how)
+
+        kind.__init__ = refuse  # type: ignore[misc]
+        kind.__signature__ = inspect.Signature()  # type: ignore[attr-defined]
+        return kind
+
+    return decorate
 
 
 T = TypeVar("T")

@@ -198,3 +198,22 @@ def test_columns_of_tables_have_one_row_for_each_shape() -> None:
             each.to_geopandas({"name": [0] * 9})
     with pytest.raises(delone.InputError, match="data has a column 'v0'"):
         made["edges"].to_geopandas({"v0": [1]})
+
+
+def test_no_constructor_takes_anything() -> None:
+    wrong = []
+    for owner, name in CLASSES.items():
+        kinds = [each.kind for each in inspect.signature(owner).parameters.values()]
+        if inspect.Parameter.VAR_POSITIONAL in kinds:
+            wrong.append(name)
+    assert not wrong
+
+
+@pytest.mark.parametrize(
+    "owner", [TIN, delone.Mesh, delone.TetMesh, delone.AlphaShape, delone.ConcaveHull]
+)
+def test_classes_that_functions_make_say_so(owner: type) -> None:
+    assert not inspect.signature(owner).parameters
+    for given in ((), ([(0, 0), (1, 0), (0, 1)],)):
+        with pytest.raises(delone.DtypeError, match=f"create an? {owner.__name__} with"):
+            owner(*given)

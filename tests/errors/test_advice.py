@@ -72,7 +72,7 @@ CALLS = {
     "method": lambda value: delone.Delaunay(POINTS, method=value),
     "crossing": lambda value: delone.ConstrainedDelaunay(POINTS, [(0, 1)], crossing=value),
     "boundary": lambda value: delone.tetrahedralize(BOX, FACES, boundary=value),
-    "interpolator": lambda value: interpolate.interpolator(value, POINTS, POINTS[:, 0]),
+    "interpolator": lambda value: interpolate.interpolator(POINTS, POINTS[:, 0], value),
     "nan": lambda value: interpolate.Linear(POINTS, POINTS[:, 0], nan=value),
     "k": lambda value: graphs.nearest_neighbors(POINTS, value),
     "metric": lambda value: HDBSCAN(metric=value).fit(POINTS),
@@ -117,8 +117,9 @@ def test_libraries_that_are_missing(monkeypatch):
 
 
 def test_arguments_in_another_order():
-    with pytest.raises(delone.DtypeError, match=r"interpolator\('linear', points, values\)"):
-        interpolate.interpolator(POINTS, POINTS[:, 0], "linear")
+    for order in ((POINTS[:, 0], "linear", POINTS), ("linear", POINTS, POINTS[:, 0])):
+        with pytest.raises(delone.DtypeError, match=r"interpolator\(points, values, 'linear'\)"):
+            interpolate.interpolator(*order)
 
 
 def test_incremental_is_dynamic():

@@ -79,7 +79,7 @@ def test_without_a_triangle_everything_is_outside(method: str, count: int) -> No
     assert mesh.nsimplex == 0
     queries = np.ones((count, 2))
     values = np.arange(4.0)
-    made = interpolator(method, mesh, values, respect_constraints=True)
+    made = interpolator(mesh, values, method, respect_constraints=True)
     assert np.isnan(made(queries)).all()
     assert np.isnan(made.gradient(queries)).all()
     table = made.weights_at(queries)
@@ -98,7 +98,7 @@ def test_outside_of_nothing_is_refused_where_that_is_asked() -> None:
 @pytest.mark.parametrize("method", sorted(METHODS))
 def test_infinity_is_outside_and_nan_is_nowhere(method: str, count: int) -> None:
     square = [(0, 0), (4, 0), (4, 4), (0, 4)]
-    made = interpolator(method, square, np.zeros(4), extrapolate="raise")
+    made = interpolator(square, np.zeros(4), method, extrapolate="raise")
     queries = np.ones((count, 2))
     assert (made(queries) == 0).all()
     for far in (np.inf, -np.inf):

@@ -43,7 +43,7 @@ MAKERS: dict[str, Any] = {
     "Nearest": lambda data, **told: Nearest(data, VALUES, **told),
     "NaturalNeighbor": lambda data, **told: NaturalNeighbor(data, VALUES, **told),
     "CloughTocher": lambda data, **told: CloughTocher(data, VALUES, gradients="local", **told),
-    "interpolator": lambda data, **told: interpolator("sibson", data, VALUES, **told),
+    "interpolator": lambda data, **told: interpolator(data, VALUES, "sibson", **told),
     "grid": lambda data, **told: grid(data, VALUES, shape=(3, 3), **told),
     "cross_validate": lambda data, **told: cross_validate(data, VALUES, **told),
     "AlphaComplex": delone.AlphaComplex,

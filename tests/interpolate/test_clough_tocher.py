@@ -141,7 +141,7 @@ def test_local_gradients_do_not_swing_between_tracks(kind: str) -> None:
     ]
     points = np.concatenate(tracks)
     values = np.sin(4 * points[:, 0]) + 0.01 * rng.random(200)
-    found = interpolator(kind, points, values, gradients="local")(0.1 + 0.8 * rng.random((500, 2)))
+    found = interpolator(points, values, kind, gradients="local")(0.1 + 0.8 * rng.random((500, 2)))
     assert np.abs(found).max() < 2
 
 
@@ -157,10 +157,10 @@ def test_units_change_nothing_in_global_gradients(kind: str, k: int) -> None:
     # An absolute tolerance ended the sweeps after the first one where slopes were small.
     mesh = datasets.uniform(200, seed=15)
     queries = np.random.default_rng(16).random((100, 2))
-    plain = interpolator(kind, mesh, bumps(mesh), gradients="global")
+    plain = interpolator(mesh, bumps(mesh), kind, gradients="global")
     value, slopes = plain(queries), plain.site_gradients()
-    longer = interpolator(kind, mesh * 2.0**k, bumps(mesh), gradients="global")
-    higher = interpolator(kind, mesh, bumps(mesh) * 2.0**k, gradients="global")
+    longer = interpolator(mesh * 2.0**k, bumps(mesh), kind, gradients="global")
+    higher = interpolator(mesh, bumps(mesh) * 2.0**k, kind, gradients="global")
     assert np.array_equal(longer.site_gradients(), slopes / 2.0**k)
     assert np.array_equal(higher.site_gradients(), slopes * 2.0**k)
     np.testing.assert_allclose(longer(queries * 2.0**k), value, rtol=1e-12)

@@ -32,7 +32,7 @@ def faulted(length: int = 5) -> tuple[ConstrainedDelaunay, Any]:
 def test_one_side_does_not_show_on_the_other(method: str) -> None:
     mesh, right = faulted()
     values = mesh.points[:, 1] + 10.0 * right
-    made = interpolator(method, mesh, values, respect_constraints=True)
+    made = interpolator(mesh, values, method, respect_constraints=True)
     queries = np.random.default_rng(4).random((2000, 2)) * (0.499, 1)
     np.testing.assert_allclose(made(queries), queries[:, 1], atol=1e-5)
     values[right] *= -1e3
@@ -62,7 +62,7 @@ def test_without_respect_it_shows() -> None:
 def test_the_nearest_site_that_is_seen() -> None:
     mesh, right = faulted()
     queries = np.random.default_rng(5).random((300, 2))
-    made = interpolator("nearest", mesh, right.astype(float), respect_constraints=True)
+    made = interpolator(mesh, right.astype(float), "nearest", respect_constraints=True)
     assert (made(queries[queries[:, 0] < 0.5]) == 0).all()
     rows = np.arange(mesh.npoints, dtype=float)
     seen = made(queries, values=rows).astype(int)
@@ -71,7 +71,7 @@ def test_the_nearest_site_that_is_seen() -> None:
         side = (mesh.points[:, 0] > 0.5) == (query[0] > 0.5)
         distance = np.where(side | on_fault, np.hypot(*(mesh.points - query).T), np.inf)
         assert row == distance.argmin()
-    far = interpolator("nearest", mesh, rows, respect_constraints=True)([(9, 9), (np.nan, 0)])
+    far = interpolator(mesh, rows, "nearest", respect_constraints=True)([(9, 9), (np.nan, 0)])
     assert far[0] == 302 and np.isnan(far[1])
 
 
@@ -94,7 +94,7 @@ def test_holes_are_outside() -> None:
     queries = np.random.default_rng(8).random((1000, 2))
     within = np.hypot(*(queries - 0.5).T) < 0.19
     for method in ("linear", "sibson", "clough-tocher"):
-        made = interpolator(method, mesh, points[:, 0], respect_constraints=True)
+        made = interpolator(mesh, points[:, 0], method, respect_constraints=True)
         assert np.isnan(made(queries[within])).all()
         np.testing.assert_allclose(made(queries[~within][:50]), queries[~within][:50, 0], atol=1e-5)
     near = Linear(mesh, points[:, 0], extrapolate="nearest")
@@ -123,14 +123,14 @@ def test_sites_without_a_value_are_left_out(method: str) -> None:
     kept = np.flatnonzero(np.isfinite(gaps))
     segments = [(int(kept.searchsorted(a)), int(kept.searchsorted(b))) for a, b in mesh.segments]
     rest = ConstrainedDelaunay(mesh.points[kept], segments)
-    expected = interpolator(method, rest, values[kept], respect_constraints=True)
+    expected = interpolator(rest, values[kept], method, respect_constraints=True)
     queries = np.random.default_rng(4).random((500, 2))
-    made = interpolator(method, mesh, gaps, nan="drop", respect_constraints=True)
+    made = interpolator(mesh, gaps, method, nan="drop", respect_constraints=True)
     np.testing.assert_array_equal(made(queries), expected(queries))
     table = made.weights_at(queries)
     assert np.isin(table.indices, kept).all()
     np.testing.assert_allclose(table @ gaps, expected(queries), rtol=1e-12)
-    whole = interpolator(method, mesh, values, respect_constraints=True)
+    whole = interpolator(mesh, values, method, respect_constraints=True)
     np.testing.assert_array_equal(made(queries, values=values), whole(queries))
     assert NaturalNeighbor(mesh, respect_constraints=True).kind == "sibson"
 
@@ -153,7 +153,7 @@ def test_on_meshes_with_holes(method: str) -> None:
     corners = [*SQUARE, (0.4, 0.4), (0.6, 0.4), (0.6, 0.6), (0.4, 0.6), (0.2, 0.2), (0.2, 0.8)]
     mesh = delone.mesh((corners, ring + hole + fault), holes=[(0.5, 0.5)], max_area=0.004)
     values = 1 + 2 * mesh.points[:, 0] - 3 * mesh.points[:, 1]
-    made = interpolator(method, mesh, values, respect_constraints=True)
+    made = interpolator(mesh, values, method, respect_constraints=True)
     assert made(mesh.points).tobytes() == values.tobytes()
     queries = np.random.default_rng(9).random((500, 2))
     found = made(queries)

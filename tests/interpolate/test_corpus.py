@@ -35,7 +35,7 @@ def test_on_the_corpus(corpus_case: Any, method: str) -> None:
     queries = places(mesh)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", GradientWarning)
-        made = interpolator(method, mesh, values)
+        made = interpolator(mesh, values, method)
         found = made(queries)
         np.testing.assert_array_equal(made(mesh.points), values)
         assert np.isfinite(found).all()

@@ -21,7 +21,7 @@ def one_by_one(points: Any, values: Any, method: str, **options: Any) -> Any:
     rows = np.arange(len(points))
     return np.array(
         [
-            interpolator(method, points[rows != i], values[rows != i], **options)(points[i])
+            interpolator(points[rows != i], values[rows != i], method, **options)(points[i])
             for i in rows
         ]
     )
@@ -75,7 +75,7 @@ def test_global_gradients_in_batches() -> None:
     rows = np.arange(700)
     for i in some:
         rest = rows != i
-        made = interpolator("clough-tocher", points[rest], field(points)[rest], tol=1e-10)
+        made = interpolator(points[rest], field(points)[rest], "clough-tocher", tol=1e-10)
         np.testing.assert_allclose(found.predicted[i], made(points[i]), atol=1e-6)
 
 
@@ -88,7 +88,7 @@ def test_folds(method: str) -> None:
     for start in range(4):
         out = np.sort(dealt[start::4])
         rest = np.setdiff1d(np.arange(60), out)
-        made = interpolator(method, points[rest], values[rest])
+        made = interpolator(points[rest], values[rest], method)
         np.testing.assert_allclose(found.predicted[out], made(points[out]), rtol=1e-12, atol=1e-12)
     assert found.rmse.shape == found.mae.shape == (2,)
     again = cross_validate(points, values, method, folds=4, seed=6)
@@ -184,7 +184,7 @@ def test_options_that_a_method_does_not_have(method: str, name: str) -> None:
     calls: tuple[Any, ...] = (
         lambda **options: cross_validate(points, points[:, 0], method, **options),
         lambda **options: grid(points, points[:, 0], shape=(2, 2), method=method, **options),
-        lambda **options: interpolator(method, points, points[:, 0], **options),
+        lambda **options: interpolator(points, points[:, 0], method, **options),
     )
     wanted = rf"{name} is not an option of '{method}'; its options are .*extrapolate"
     for call in calls:

@@ -48,10 +48,10 @@ def test_sites_come_back_bit_for_bit(method: str, points: str) -> None:
     values = np.random.default_rng(3).normal(size=mesh.npoints) * 1e3
     values[::7] = -0.0
     values = values[mesh.duplicate_of]
-    found = interpolator(method, mesh, values)(mesh.points)
+    found = interpolator(mesh, values, method)(mesh.points)
     assert found.tobytes() == values.tobytes()
     assert (
-        interpolator(method, mesh).weights_at(mesh.points) @ values
+        interpolator(mesh, method=method).weights_at(mesh.points) @ values
     ).tobytes() == values.tobytes()
 
 
@@ -62,7 +62,7 @@ def test_inside_there_is_always_a_value(method: str, points: str) -> None:
     mesh = Delaunay(datasets.GENERATORS[points](200, seed=4))
     values = linear(mesh.points)
     queries = places(mesh)
-    found = interpolator(method, mesh, values)(queries)
+    found = interpolator(mesh, values, method)(queries)
     assert np.isfinite(found).all()
     if method in SIMPLE:
         spread = 1e-12 * np.abs(values).max()
@@ -74,7 +74,7 @@ def test_inside_there_is_always_a_value(method: str, points: str) -> None:
 @pytest.mark.deep("farin-circle", "sibson-circle", "sibson1-circle")
 def test_linear_functions_are_reproduced(method: str, points: str) -> None:
     mesh = Delaunay(datasets.GENERATORS[points](200, seed=5))
-    made = interpolator(method, mesh, linear(mesh.points), extrapolate="linear")
+    made = interpolator(mesh, linear(mesh.points), method, extrapolate="linear")
     inside = places(mesh)
     outside = mesh.min_bound + (mesh.max_bound - mesh.min_bound) * [(-0.5, 0.3), (1.4, 1.6)]
     size = np.abs(linear(mesh.points)).max()
@@ -100,7 +100,7 @@ def test_weights_say_the_same_as_calls(method: str, extrapolate: str) -> None:
     rng = np.random.default_rng(6)
     points, queries = rng.random((80, 2)), rng.random((200, 2)) * 1.8 - 0.4
     values = rng.normal(size=(80, 3)) + 1j * rng.normal(size=(80, 3))
-    made = interpolator(method, points, values, extrapolate=extrapolate)
+    made = interpolator(points, values, method, extrapolate=extrapolate)
     table = made.weights_at(queries)
     np.testing.assert_allclose(table.apply(values), made(queries), rtol=1e-12, atol=1e-12)
     assert len(table) == 200 and table.indices.max() < 80
@@ -118,7 +118,7 @@ def test_weights_say_the_same_as_calls(method: str, extrapolate: str) -> None:
 def test_shapes_and_kinds(method: str) -> None:
     rng = np.random.default_rng(7)
     points = rng.random((40, 2))
-    made = interpolator(method, points)
+    made = interpolator(points, method=method)
     queries = rng.random((3, 5, 2)) * 0.4 + 0.3
     for values in (
         rng.random(40),
@@ -147,7 +147,7 @@ def test_shapes_and_kinds(method: str) -> None:
 def test_queries_that_are_no_numbers(method: str) -> None:
     points = datasets.uniform(30)
     for extrapolate in ("nan", "nearest", "raise"):
-        made = interpolator(method, points, linear(points), extrapolate=extrapolate)
+        made = interpolator(points, linear(points), method, extrapolate=extrapolate)
         found = made([(np.nan, 0.5), (0.5, np.nan), tuple(points[3])])
         assert np.isnan(found[:2]).all() and found[2] == linear(points)[3]
         if extrapolate != "raise":
@@ -160,8 +160,8 @@ def test_beyond_a_hull_that_spans_the_range_of_doubles(method: str, extrapolate:
     corners = np.array([(-1.0, -1), (1, -1), (1, 1), (-1, 1), (0, 0)])
     values = np.array([1.0, 2, 3, 4, 2.5])
     queries = np.array([(1.03, 1.03), (0, 1.03), (-1.03, 0.2)])
-    plain = interpolator(method, corners, values, extrapolate=extrapolate)
-    vast = interpolator(method, corners * 1.7e308, values, extrapolate=extrapolate)
+    plain = interpolator(corners, values, method, extrapolate=extrapolate)
+    vast = interpolator(corners * 1.7e308, values, method, extrapolate=extrapolate)
     found = vast(queries * 1.7e308)
     # Estimated gradients converge at different rates.
     np.testing.assert_allclose(found, plain(queries), atol=0.02)
@@ -173,18 +173,18 @@ def test_extrapolation(method: str) -> None:
     points = np.array([(0, 0), (4, 0), (4, 4), (0, 4), (2, 3), (1, 1.5)])
     values = np.array([1.0, 3.0, 7.0, 5.0, -2.0, 4.0])
     far = np.array([(9, -3), (-1, 9), (2, 9), (-3, 1)])
-    assert np.isnan(interpolator(method, points, values, extrapolate="nan")(far)).all()
+    assert np.isnan(interpolator(points, values, method, extrapolate="nan")(far)).all()
     at_hull = np.array([(4, 0), (0, 4), (2, 4), (0, 1)])
     if method != "nearest":
-        made = interpolator(method, points, values, extrapolate="nearest")
+        made = interpolator(points, values, method, extrapolate="nearest")
         np.testing.assert_allclose(made(far), made(at_hull), rtol=1e-12)
         assert made(far)[:2].tolist() == [3.0, 5.0]
-        on = interpolator(method, points, values, extrapolate="linear")
+        on = interpolator(points, values, method, extrapolate="linear")
         slope = on.gradient(far)
         expected = on(at_hull) + ((far - at_hull) * slope).sum(axis=1)
         np.testing.assert_allclose(on(far), expected, rtol=1e-12)
     with pytest.raises(InputError, match=r"xi: 2 of 3 queries are outside.*rows 0, 2"):
-        refused = interpolator(method, points, values, extrapolate="raise")
+        refused = interpolator(points, values, method, extrapolate="raise")
         refused([(9, 9), (2, 2), (-1, 0)])
     assert np.isfinite(refused([(2, 2), (4, 4)])).all()
     with pytest.raises(InputError, match="outside"):
@@ -198,7 +198,7 @@ def test_duplicates(method: str) -> None:
     values = np.concatenate((linear(points), [10.0, 40.0], linear(points[5:6])))
     first = values[3]
     with pytest.raises(InputError, match="2 duplicates have a different value: rows 20 and 3,"):
-        interpolator(method, twice, values)
+        interpolator(twice, values, method)
     expected = {
         "first": first,
         "last": 40.0,
@@ -207,15 +207,15 @@ def test_duplicates(method: str) -> None:
         "max": 40.0,
     }
     for policy, value in expected.items():
-        made = interpolator(method, twice, values, duplicates=policy)
+        made = interpolator(twice, values, method, duplicates=policy)
         assert made(points[3]) == value
         assert made(points[5]) == values[5]
         assert made.weights_at(points[[3]]).apply(values)[0] == value
     same = values.copy()
     same[20:22] = first
-    assert interpolator(method, twice, same)(points[3]) == first
+    assert interpolator(twice, same, method)(points[3]) == first
     with pytest.raises(InputError, match="no order"):
-        interpolator(method, twice, values * 1j, duplicates="min")
+        interpolator(twice, values * 1j, method, duplicates="min")
 
 
 @pytest.mark.parametrize("method", SIMPLE)
@@ -229,7 +229,7 @@ def test_matrices_share_duplicates(method: str, drop: bool) -> None:
     queries = np.concatenate((np.random.default_rng(5).random((100, 2)), points))
     for policy in ("first", "last", "mean"):
         made = interpolator(
-            method, points, values, duplicates=policy, nan="drop" if drop else "raise"
+            points, values, method, duplicates=policy, nan="drop" if drop else "raise"
         )
         matrix = made.weights_at(queries).csr()
         assert matrix.shape == (136, 36)
@@ -237,8 +237,8 @@ def test_matrices_share_duplicates(method: str, drop: bool) -> None:
         np.testing.assert_allclose(found, made(queries), rtol=1e-12, atol=1e-14)
     for policy in ("min", "max"):
         with pytest.raises(InputError, match="use apply"):
-            interpolator(method, points, duplicates=policy).weights_at(queries).csr()
-        interpolator(method, points[2:32], duplicates=policy).weights_at(queries).csr()
+            interpolator(points, method=method, duplicates=policy).weights_at(queries).csr()
+        interpolator(points[2:32], method=method, duplicates=policy).weights_at(queries).csr()
 
 
 def test_a_mean_of_equal_values_is_that_value() -> None:
@@ -253,21 +253,21 @@ def test_nan_among_values(method: str) -> None:
     values = linear(points)
     values[[4, 11]] = np.nan, np.inf
     with pytest.raises(NonFiniteError, match="first: 4, 11") as caught:
-        interpolator(method, points, values)
+        interpolator(points, values, method)
     assert caught.value.rows.tolist() == [4, 11] and caught.value.count == 2
-    without = interpolator(method, points, values, nan="drop")
+    without = interpolator(points, values, method, nan="drop")
     rest = np.delete(np.arange(60), [4, 11])
     queries = np.random.default_rng(1).random((50, 2))
-    plain = interpolator(method, points[rest], values[rest])
+    plain = interpolator(points[rest], values[rest], method)
     np.testing.assert_array_equal(without(queries), plain(queries))
     # Another field with all its values, and one with other gaps.
     np.testing.assert_array_equal(
         without(queries, values=linear(points)),
-        interpolator(method, points, linear(points))(queries),
+        interpolator(points, linear(points), method)(queries),
     )
     assert not np.isin(without.weights_at(queries).indices, (4, 11)).any()
     np.testing.assert_allclose(without.weights_at(queries) @ values, plain(queries), rtol=1e-12)
-    through = interpolator(method, points, values, nan="propagate")
+    through = interpolator(points, values, method, nan="propagate")
     near = through(points[4])
     assert np.isnan(near) and through(points[11]) == np.inf
 
@@ -279,7 +279,7 @@ def test_gaps_stay_where_they_are(method: str, gradients: str) -> None:
     values = np.column_stack((linear(points), linear(points)))
     values[50, 1] = np.nan
     queries = np.random.default_rng(1).random((1000, 2))
-    made = interpolator(method, points, values, nan="propagate", gradients=gradients)
+    made = interpolator(points, values, method, nan="propagate", gradients=gradients)
     found = made(queries)
     # Gradients come from the values that are there; they reproduce what is linear.
     weights = made.weights_at(queries)
@@ -328,7 +328,7 @@ def test_bad_arguments(kind: Any) -> None:
 def test_bad_methods() -> None:
     points = datasets.uniform(20)
     with pytest.raises(InputError, match="method must be one of"):
-        interpolator("kriging", points)
+        interpolator(points, method="kriging")
     with pytest.raises(InputError, match="kind must be one of"):
         NaturalNeighbor(points, kind="voronoi")
     with pytest.raises(InputError, match="gradients must be one of"):
@@ -345,18 +345,18 @@ def test_neither_workers_nor_company_show(method: str) -> None:
     points = datasets.uniform(2000)
     values = np.sin(7 * points[:, 0]) * points[:, 1]
     queries = np.random.default_rng(2).random((30_000, 2))
-    one = interpolator(method, points, values, workers=1)(queries)
-    np.testing.assert_array_equal(interpolator(method, points, values, workers=3)(queries), one)
+    one = interpolator(points, values, method, workers=1)(queries)
+    np.testing.assert_array_equal(interpolator(points, values, method, workers=3)(queries), one)
     order = np.random.default_rng(3).permutation(len(queries))[:9000]
     np.testing.assert_array_equal(
-        interpolator(method, points, values, workers=2)(queries[order]), one[order]
+        interpolator(points, values, method, workers=2)(queries[order]), one[order]
     )
 
 
 @pytest.mark.parametrize("method", ALL)
 def test_pickles(method: str) -> None:
     points = datasets.uniform(40)
-    made = interpolator(method, points, linear(points))
+    made = interpolator(points, linear(points), method)
     queries = np.random.default_rng(4).random((20, 2))
     expected = made(queries)
     again = pickle.loads(pickle.dumps(made))
@@ -395,7 +395,7 @@ def test_pickled_tables_of_weights_have_no_triangulation(method: str, duplicates
     points[-1] = points[0]
     values = linear(points)
     values[[0, 5]] = 7.0, np.nan
-    made = interpolator(method, points, values, duplicates=duplicates, nan="drop")
+    made = interpolator(points, values, method, duplicates=duplicates, nan="drop")
     table = made.weights_at([(0.3, 0.4), points[0], (0.6, 0.1)])
     data = pickle.dumps(table)
     # The rows that are kept and those that coincide: 12 bytes a site.
@@ -407,12 +407,12 @@ def test_pickled_tables_of_weights_have_no_triangulation(method: str, duplicates
     assert repr(pickle.loads(pickle.dumps(again)) @ values) == repr(again @ values)
     if duplicates != "max":
         np.testing.assert_allclose(again.csr() @ np.nan_to_num(values), table @ values)
-    plain = interpolator(method, datasets.uniform(20_000)).weights_at((0.5, 0.5))
+    plain = interpolator(datasets.uniform(20_000), method=method).weights_at((0.5, 0.5))
     assert len(pickle.dumps(plain)) < 2_000
 
 
 def test_pickled_tables_with_gradients_keep_what_these_need() -> None:
     points = datasets.uniform(500)
-    made = interpolator("clough-tocher", points, linear(points))
+    made = interpolator(points, linear(points), "clough-tocher")
     again = pickle.loads(pickle.dumps(made.weights_at((0.5, 0.5))))
     np.testing.assert_allclose(again @ (3 * linear(points)), 3 * made((0.5, 0.5)), rtol=1e-9)

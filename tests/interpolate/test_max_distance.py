@@ -54,7 +54,7 @@ def test_rasters_of_all_methods(method: str) -> None:
     far = nearest_distance(np.stack(np.meshgrid(whole.x, whole.y), axis=-1), SITES) > 0.06
     assert 0.2 < far.mean() < 0.8
     np.testing.assert_array_equal(masked.values, np.where(far, np.nan, whole.values))
-    of_made = grid(interpolator(method, SITES, VALUES), shape=(40, 30), max_distance=0.06)
+    of_made = grid(interpolator(SITES, VALUES, method), shape=(40, 30), max_distance=0.06)
     np.testing.assert_array_equal(of_made.values, masked.values)
 
 

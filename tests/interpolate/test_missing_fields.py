@@ -28,7 +28,7 @@ def made(method: str, values: Any, **options: Any) -> Any:
     if method.startswith("sphere"):
         kind = {"sphere linear": sphere.Linear, "sphere nearest": sphere.Nearest}[method]
         return kind(VECTORS, values, nan="drop", **options)
-    return interpolator(method, POINTS, values, nan="drop", **options)
+    return interpolator(POINTS, values, method, nan="drop", **options)
 
 
 @pytest.mark.parametrize("method", [*PLANAR, "sphere linear", "sphere nearest"])

@@ -47,7 +47,7 @@ def test_sites_get_their_values_bit_for_bit(method: str, name: str) -> None:
     points = SETS[name]
     values = np.random.default_rng(0).normal(size=(len(points), 2)) * 1e7
     values[0] = -0.0
-    found = interpolator(method, points, values)(points)
+    found = interpolator(points, values, method)(points)
     assert found.tobytes() == values.tobytes()
 
 
@@ -71,7 +71,7 @@ def test_linear_functions_are_reproduced(method: str, name: str) -> None:
     queries = inside(points, 5, 2000)
     assert len(queries) > 500
     values = plane(points)
-    found = interpolator(method, points, values)(queries)
+    found = interpolator(points, values, method)(queries)
     assert np.abs(found - plane(queries)).max() < 2e-14 * max(1.0, np.abs(values).max())
 
 
@@ -142,16 +142,16 @@ def test_what_lies_beyond_the_hull() -> None:
     queries = 3 * uniform(500, 14) - 1
     outside = Delaunay(points).find_simplex(queries) < 0
     for method in LINEAR:
-        assert np.array_equal(np.isnan(interpolator(method, points, values)(queries)), outside)
-        on = interpolator(method, points, values, extrapolate="linear")
+        assert np.array_equal(np.isnan(interpolator(points, values, method)(queries)), outside)
+        on = interpolator(points, values, method, extrapolate="linear")
         assert on(queries) == pytest.approx(plane(queries), abs=1e-11)
         assert on.weights_at(queries).apply(values) == pytest.approx(plane(queries), abs=1e-11)
-        near = interpolator(method, points, values, extrapolate="nearest")(queries)
+        near = interpolator(points, values, method, extrapolate="nearest")(queries)
         assert not np.isnan(near).any()
         assert near.min() >= values.min() - 1e-12
         assert near.max() <= values.max() + 1e-12
         with pytest.raises(InputError, match="outside the hull"):
-            interpolator(method, points, values, extrapolate="raise")(queries)
+            interpolator(points, values, method, extrapolate="raise")(queries)
     assert np.isnan(Linear(points, values, extrapolate="nearest")((np.nan, 0, 0)))
 
 
@@ -276,15 +276,15 @@ def test_shapes_policies_and_fields() -> None:
     with pytest.raises(InputError, match="different value"):
         Linear(points, values)
     for method in ("linear", "laplace", "nearest"):
-        last = interpolator(method, points, values, duplicates="last")
+        last = interpolator(points, values, method, duplicates="last")
         assert last(points[:3]).tolist() == [50, 51, 52]
         assert last(points[:4].reshape(2, 2, 3)).shape == (2, 2)
         table = last.weights_at(points[:3])
         assert table.apply(values).tolist() == [50, 51, 52]
         odd = np.where(values == 7, np.nan, values)
-        dropped = interpolator(method, points, odd, duplicates="last", nan="drop")
+        dropped = interpolator(points, odd, method, duplicates="last", nan="drop")
         assert dropped.triangulation.npoints == 52
-        whole = interpolator(method, Delaunay(points), 1j * values, duplicates="first")
+        whole = interpolator(Delaunay(points), 1j * values, method, duplicates="first")
         assert whole(points[5]) == 5j
         with pytest.raises(ShapeError):
             last([(0, 0)])
@@ -293,7 +293,7 @@ def test_shapes_policies_and_fields() -> None:
 def test_workers_change_nothing() -> None:
     points, queries = uniform(2000, 17), uniform(5000, 18)
     for method in ("linear", "laplace", "nearest"):
-        one, two = (interpolator(method, points, plane(points), workers=k)(queries) for k in (1, 2))
+        one, two = (interpolator(points, plane(points), method, workers=k)(queries) for k in (1, 2))
         assert one.tobytes() == two.tobytes()
 
 

@@ -59,7 +59,7 @@ def test_points_and_dask(method: str) -> None:
     plain = height.delone.interp(track, track * 0 + 0.5, method=method, **options)
     assert plain.dims == ("time", "track") and plain.km.values.tolist() == [1, 2, 3]
     queries = np.column_stack((track.values, np.full(3, 0.5)))
-    expected = interpolator(method, POINTS, height.values.T, **options)(queries).T
+    expected = interpolator(POINTS, height.values.T, method, **options)(queries).T
     np.testing.assert_allclose(plain.values, expected, rtol=1e-12)
     chunked = height.chunk({"time": 2}).delone.interp(
         track, track * 0 + 0.5, method=method, **options

@@ -211,7 +211,7 @@ def test_every_public_name_is_on_a_page() -> None:
         pytest.param(lambda p: interpolate.CloughTocher(p, p[:, 0]), id="clough-tocher-3-D"),
         pytest.param(lambda p: interpolate.NaturalNeighbor(p, p[:, 0]), id="sibson-3-D"),
         pytest.param(lambda p: graphs.gabriel(sphere.Delaunay(xyz=p)), id="graph-on-the-sphere"),
-        pytest.param(lambda p: interpolate.interpolator("idw", p, p[:, 0]), id="idw"),
+        pytest.param(lambda p: interpolate.interpolator(p, p[:, 0], "idw"), id="idw"),
     ],
 )
 def test_what_is_said_to_be_missing_raises(call: Callable[[np.ndarray], object]) -> None:

@@ -434,10 +434,14 @@ def test_the_class_is_not_called(given: tuple[Any, ...]) -> None:
 
 
 @pytest.mark.parametrize("kind", [list, tuple, np.array])
-def test_points_alone_are_no_domain(kind: Any) -> None:
+def test_points_alone_are_a_ring_or_no_domain(kind: Any) -> None:
     points = kind([(0, 0), (4, 0), (4, 4), (0, 4)])
-    with pytest.raises(InputError, match=r"without segments.*\(points, segments\).*Polygon"):
-        delone.mesh(points)
+    assert delone.mesh(points).areas.sum() == 16
+    # Scattered points cross as a ring.
+    with pytest.raises(CrossingSegmentsError):
+        delone.mesh(kind([(0, 0), (4, 4), (4, 0), (0, 4)]))
+    with pytest.raises(InputError, match=r"without segments.*\(points, segments\).*a ring"):
+        delone.mesh(kind([(0, 0, 1), (4, 0, 1), (4, 4, 1), (0, 4, 1)]))
     assert delone.mesh(delone.ConstrainedDelaunay(points, [])).nsimplex >= 2
 
 

@@ -13,7 +13,7 @@ from delone.alpha.values import simplices_of
 from delone.complex import Exchanged
 from delone.counting import counted
 from delone.errors import InputError
-from delone.immutable import kept, sealed
+from delone.immutable import kept, made_by, sealed
 from delone.plane import geometry as plane
 from delone.space import geometry as space
 from delone.space.topology import FACES
@@ -255,6 +255,7 @@ class Kept(Exchanged):
         return int(found.max(initial=-1)) + 1 == len(np.unique(sides))
 
 
+@made_by("create an AlphaShape with AlphaComplex.shape(alpha), not with its class")
 class AlphaShape(Kept):
     """The simplices of an `AlphaComplex` with values up to alpha; made by ``AlphaComplex.shape``.
 
@@ -423,6 +424,7 @@ class AlphaShape(Kept):
         return f"<AlphaShape of {head}: {', '.join(listed)}>"
 
 
+@made_by("create a ConcaveHull with delone.concave_hull(points), not with its class")
 class ConcaveHull(Kept):
     """A concave hull: what `concave_hull` keeps of a Delaunay triangulation.
 

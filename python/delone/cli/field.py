@@ -263,7 +263,7 @@ def _made(
         options["gradients"] = gradients
         if method not in _SMOOTH:
             raise Failure(f"--gradients is for {', '.join(_SMOOTH)}, not {method}", Exit.USAGE)
-    return interpolator(method, survey.points, values, **options)
+    return interpolator(survey.points, values, method, **options)
 
 
 def _raster_options(size: str | None, resolution: str | None, bounds: str | None) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from delone._arrays import as_points
 from delone._masks import refuse_masks
 from delone.counting import agreed
 from delone.errors import DtypeError, InputError, NonFiniteError, ShapeError
@@ -36,6 +37,7 @@ __all__ = [
     "is_shapely",
     "parts_of",
     "require_finite_parts",
+    "rings_of_numbers",
     "steps_of",
 ]
 
@@ -61,7 +63,8 @@ def parts_of(geometries: Any, *, name: str = "geometries") -> Parts:
     """Split geometries, in order, into parts; each row of a table or feature is a geometry.
 
     They are shapely geometries, GeoDataFrames, GeoSeries, objects with
-    ``__geo_interface__``, mappings of that form, None, or iterables of these.
+    ``__geo_interface__``, mappings of that form, None, or iterables of these; or a ring of
+    coordinates, (n, 2), or a sequence of rings, which are one polygon by the even-odd rule.
     """
     found: list[Parts] = []
     count = 0
@@ -132,7 +135,36 @@ def _batches(given: Any, name: str) -> Iterator[Any]:
         raise InputError(f"{name}: {given!r:.80} is not a geometry")
     else:
         refuse_masks(given, name)
-        yield from _of_iterable(given, name)
+        rings = rings_of_numbers(given, name)
+        if rings is None:
+            yield from _of_iterable(given, name)
+        else:
+            yield {"type": "Polygon", "coordinates": [ring.tolist() for ring in rings]}
+
+
+def rings_of_numbers(given: Any, name: str) -> list[Floats] | None:
+    """Return a ring of coordinates, or each of a sequence of rings; None for anything else.
+
+    A ring has two columns and at least three rows.
+    """
+    if not isinstance(given, list | tuple | np.ndarray) or not len(given):
+        return None
+    if _is_ring(given):
+        return [as_points(given, ndim=2, name=name)]
+    if not all(isinstance(each, list | tuple | np.ndarray) and _is_ring(each) for each in given):
+        return None
+    return [as_points(each, ndim=2, name=name) for each in given]
+
+
+def _is_ring(given: list[Any] | tuple[Any, ...] | NDArray[Any]) -> bool:
+    if isinstance(given, np.ndarray) and given.dtype.kind != "O":
+        return given.ndim == 2 and given.shape[1] == 2 and len(given) > 2
+    return len(given) > 2 and all(
+        isinstance(each, list | tuple | np.ndarray)
+        and len(each) == 2
+        and all(isinstance(number, int | float | np.number) for number in each)
+        for each in given
+    )
 
 
 def _string_error(given: Any, name: str) -> str:

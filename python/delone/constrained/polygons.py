@@ -309,6 +309,11 @@ def _rings(polygon: Any, nonzero: bool) -> tuple[Floats, Indices]:
         isinstance(polygon, dict)
         or geodata.is_shapely(polygon)
         or hasattr(polygon, "__geo_interface__")
+        or (
+            isinstance(polygon, list | tuple)
+            and len(polygon)
+            and all(geodata.is_shapely(each) or isinstance(each, dict) for each in polygon)
+        )
     ):
         return _rings_of_geometry(polygon, nonzero)
     rings = [as_points(ring, ndim=2, name="polygon") for ring in _listed(polygon)]

@@ -379,13 +379,13 @@ def _sites(data: Any, targets: Sequence[Any], choices: _Choices) -> _Sites:
     method = choices.method
     if planar is False and places.by and method in globe.METHODS and places.may_be_angles(points):
         in_degrees = not places.in_radians
-        made = globe.interpolator(method, points, degrees=in_degrees, **options)
+        made = globe.interpolator(points, method=method, degrees=in_degrees, **options)
         if limit is not None:
             unit = angles_unit(places, choices.degrees, "the numbers of max_distance")
             limit *= _turns(unit == "degrees", in_degrees)
         return _Sites(places, rows, points, made, globe, limit, choices.degrees)
     warn_of_degrees(None, points, planar=planar, name="coordinates", by=places.by)
-    made = interpolator(method, points, **options)
+    made = interpolator(points, method=method, **options)
     return _Sites(places, rows, points, made, None, limit, choices.degrees)
 
 

@@ -354,7 +354,7 @@ class _Task:
         values = known.shaped(known.columns, (len(rest),))
         if isinstance(self.method, str):
             options = {"workers": self.workers} | self.options
-            made: Any = interpolator(self.method, points[rest], values, **options)
+            made: Any = interpolator(points[rest], values, self.method, **options)
         else:
             made = self.method(points[rest], values, **self.options)
         return as_field(

@@ -35,22 +35,22 @@ METHODS: Mapping[str, tuple[type[Interpolator], dict[str, Any]]] = {
 
 
 def interpolator(
-    method: str,
     points: ArrayLike | Triangulation | PeriodicDelaunay,
     values: ArrayLike | None = None,
+    method: str = "linear",
     **options: Any,
 ) -> Interpolator:
     """Make an interpolator by name.
 
     Parameters
     ----------
-    method : str
-        ``"linear"``, ``"nearest"``, ``"clough-tocher"``, ``"sibson"``, ``"laplace"``,
-        ``"sibson1"`` or ``"farin"``.
     points : array_like, shape (n, 2), or a triangulation
         Sites.
     values : array_like, shape (n,) or (n, ...), optional
         Values at the sites.
+    method : str, optional
+        ``"linear"``, ``"nearest"``, ``"clough-tocher"``, ``"sibson"``, ``"laplace"``,
+        ``"sibson1"`` or ``"farin"``.
     **options
         Options of the class.
 
@@ -67,13 +67,13 @@ def interpolator(
     Examples
     --------
     >>> from delone.interpolate import interpolator
-    >>> interpolator("nearest", [(0, 0), (1, 0), (0, 1)], [1, 2, 3])((2, 0))
+    >>> interpolator([(0, 0), (1, 0), (0, 1)], [1, 2, 3], "nearest")((2, 0))
     array(2.)
     """
-    if not isinstance(method, str):
+    if isinstance(points, str) or not isinstance(method, str):
         raise DtypeError(
-            "the first argument is the method, as in interpolator('linear', points, values); got "
-            f"an object of type {type(method).__name__}"
+            "the arguments are points, values and the method, as in interpolator(points, values, "
+            f"'linear'); the method is an object of type {type(method).__name__}"
         )
     kind, fixed = METHODS[chosen("method", method, tuple(METHODS))]
     require_options(method, options)

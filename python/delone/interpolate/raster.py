@@ -250,7 +250,7 @@ def grid(
             raise InputError("method and options cannot be given with an interpolator that exists")
         made = points
     else:
-        made = interpolator(method, points, values, **options)
+        made = interpolator(points, values, method, **options)
         values = None
     if made._ndim == SPACE:
         refuse("a raster", "call the interpolator with the query points")

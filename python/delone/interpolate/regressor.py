@@ -125,9 +125,9 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         by = "features " + ", ".join(names) if names_degrees(names) else None
         warn_of_degrees(None, plane, planar=self.planar, name="training points", by=by)
         self.interpolator_ = interpolator(
-            self.method,
             plane,
             np.asarray(y, dtype=np.float64),
+            self.method,
             extrapolate=self.extrapolate,
             tolerance=self.tolerance,
             duplicates=self.duplicates,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from delone.errors import DtypeError
+from delone.immutable import made_by
 from delone.refine.adaptivity import coarsened, finer
 from delone.refine.smoothing import smoothed
 from delone.refine.state import MeshState
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["Mesh"]
 
 
+@made_by("create a Mesh with delone.mesh(domain), not with its class")
 class Mesh(MeshState):
     """A triangular mesh, created by `delone.mesh`.
 
@@ -60,9 +61,6 @@ class Mesh(MeshState):
     """
 
     __slots__ = ()
-
-    def __init__(self, *given: Any, **options: Any) -> None:
-        raise DtypeError("create a Mesh with delone.mesh(domain), not with its class")
 
     def refine(
         self,

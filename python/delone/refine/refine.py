@@ -13,6 +13,7 @@ import numpy as np
 
 from delone._arrays import as_callback, as_count, as_flag, as_limit, as_plain_array, as_workers
 from delone._masks import refuse_masks
+from delone.constrained import geodata
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.polygons import inside_of
 from delone.constrained.segments import open_ends
@@ -65,7 +66,7 @@ def mesh(
     domain : ConstrainedDelaunay, tuple of two arrays, or geometry
         What is meshed: the triangles of a constrained triangulation; the area that segments
         enclose, as ``(points, segments)``; or the inside of polygons, in any form that
-        `from_geometry` accepts, with lines and points in them as further edges and vertices. If
+        `from_geometry` accepts, such as a ring of coordinates (k, 2), with lines and points in them as further edges and vertices. If
         there are only lines, what they enclose is meshed.
     min_angle : float, optional
         Lower bound on angles in degrees, from 0 to below 60. Smaller angles remain only where the
@@ -302,7 +303,10 @@ def _base(
         raise DtypeError(f"domain must be {_DOMAINS}, got None")
     else:
         _refuse_points(domain)
-        base = inside_of(domain, crossing=crossing or "split", workers=workers, planar=planar)
+        # A ring of coordinates that crosses itself is rather a set of points.
+        is_ring = geodata.rings_of_numbers(domain, "domain") is not None
+        how = crossing or ("raise" if is_ring else "split")
+        base = inside_of(domain, crossing=how, workers=workers, planar=planar)
         region = base.polygon_of_simplex if base._options.boundary == "polygons" else base.region
     return base, region
 
@@ -311,12 +315,14 @@ def _refuse_points(domain: Any) -> None:
     """Reject points without segments, and suggest what to pass instead."""
     refuse_masks(domain, "domain")
     first = domain[0] if isinstance(domain, list | tuple | np.ndarray) and len(domain) else ()
-    if isinstance(first, list | tuple | np.ndarray) and len(first) in (2, 3):
+    if isinstance(first, list | tuple | np.ndarray) and (
+        len(first) == 3 or (len(first) == 2 and len(domain) < 3)
+    ):
         numbers = all(isinstance(each, int | float | np.number) for each in first)
         if numbers:
             raise InputError(
                 "the domain is points without segments, which do not enclose anything: pass "
-                '(points, segments), or a ring as {"type": "Polygon", "coordinates": [points]}; '
+                "(points, segments), or a ring of at least three points in 2-D; "
                 "for the convex hull, pass delone.ConstrainedDelaunay(points, [])"
             )
 

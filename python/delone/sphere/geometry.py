@@ -138,6 +138,11 @@ def read(
     crs = common_crs(geometries)
     if crs is not None and not degrees:
         raise InputError(f"{name} have a reference system, so they are in degrees: degrees=True")
+    if len(geodata.rings_of_numbers(geometries, name) or ()) > 1:
+        raise InputError(
+            f"{name} are several rings of coordinates, and which are holes of which is not known: "
+            "pass polygons"
+        )
     parts = geodata.parts_of(geometries, name=name)
     geodata.require_finite_parts(parts)
     parts = parts._replace(coordinates=as_degrees(parts.coordinates, crs, name=name))

@@ -32,18 +32,18 @@ METHODS: Mapping[str, tuple[type[Linear | NaturalNeighbor | Nearest], dict[str, 
 
 
 def interpolator(
-    method: str, points: ArrayLike, **options: Any
+    points: ArrayLike, values: ArrayLike | None = None, method: str = "linear", **options: Any
 ) -> Linear | NaturalNeighbor | Nearest:
     """Return an interpolator of sites on the sphere by the name of its method."""
     kind, fixed = METHODS[chosen("method", method, tuple(METHODS))]
-    known = [name for name in [*inspect.signature(kind).parameters][1:] if name not in fixed]
+    known = [name for name in [*inspect.signature(kind).parameters][2:] if name not in fixed]
     for name in options:
         if name not in known:
             raise InputError(
                 f"{name} is not an option of {method!r:.80} on the sphere; its options are "
                 f"{', '.join(known)}"
             )
-    return kind(points, **fixed, **options)
+    return kind(points, values, **fixed, **options)
 
 
 def directions(lonlat: NDArray[np.float64], *, degrees: bool) -> NDArray[np.float64]:

@@ -176,7 +176,7 @@ def transports(
 def refuse_ordered(duplicates: str) -> None:
     """Refuse the policies that compare values, which vectors do not allow."""
     if duplicates in ("min", "max"):
-        raise InputError(f"duplicates={duplicates!r}: vectors have no order; choose 'mean'")
+        raise InputError(f"duplicates={duplicates!r:.20}: vectors have no order; choose 'mean'")
 
 
 def shape_of(values: ArrayLike) -> tuple[tuple[int, ...], bool]:

@@ -8,8 +8,8 @@ import numpy as np
 
 from delone._arrays import as_flag
 from delone.counting import counted
-from delone.errors import DtypeError, InputError
-from delone.immutable import kept, sealed
+from delone.errors import InputError
+from delone.immutable import kept, made_by, sealed
 from delone.plane import topology
 from delone.refine.validation import MeshValidation, validate
 from delone.renames import renamed
@@ -41,6 +41,7 @@ class _Sheet(NamedTuple):
     heights: Floats
 
 
+@made_by("create a TIN with TIN.from_points, from_raster or from_file")
 @renamed(volume="volume_to", gradient="gradients")
 class TIN(Surveyed, Earthworks):
     """A triangulated irregular network: a surface over triangles, linear in each.
@@ -96,9 +97,6 @@ class TIN(Surveyed, Earthworks):
     _all_neighbors: Indices
     _all_simplices: Indices
     _kept: Bools
-
-    def __init__(self, *given: Any, **options: Any) -> None:
-        raise DtypeError("create a TIN with TIN.from_points, from_raster or from_file")
 
     @classmethod
     def from_points(

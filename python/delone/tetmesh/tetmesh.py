@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone.counting import counted
-from delone.errors import DtypeError
+from delone.immutable import made_by
 from delone.tetmesh.planes import differing
 from delone.tetmesh.recovery import RECOVERY_COUNTS, RECOVERY_ROWS, RecoveryReport
 from delone.tetmesh.report import CAUSES, COUNTS, ImproveReport
@@ -48,6 +48,10 @@ _UNRECOVERED: dict[str, NDArray[Any]] = {
 }
 
 
+@made_by(
+    "create a TetMesh with delone.tetrahedralize(points, faces) or delone.improve(mesh), not with "
+    "its class"
+)
 class TetMesh(Triangulation):
     """A tetrahedral mesh, created by `delone.tetrahedralize` or `delone.improve`.
 
@@ -116,12 +120,6 @@ class TetMesh(Triangulation):
     _nadded: int
     _region: Indices
     _report: ImproveReport | RecoveryReport
-
-    def __init__(self, *given: Any, **options: Any) -> None:
-        raise DtypeError(
-            "create a TetMesh with delone.tetrahedralize(points, faces) or delone.improve(mesh), "
-            "not with its class"
-        )
 
     @classmethod
     def _of(

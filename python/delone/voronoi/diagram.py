@@ -53,7 +53,8 @@ class Voronoi(Stored):
         Where cells end: ``"box"`` is the bounding box of the sites. Sites may lie outside.
 
         In 2-D a box ``(xmin, ymin, xmax, ymax)``; or a polygon or multipolygon of shapely, with or
-        without holes, also as a GeoJSON-like mapping; or the union of the polygons in a table or
+        without holes, also as a GeoJSON-like mapping; a ring of coordinates (k, 2), or several, by
+        the even-odd rule; or the union of the polygons in a table or
         series of geopandas.
 
         In 3-D a convex region: a box ``((xmin, ymin, zmin), (xmax, ymax, zmax))`` of shape (2, 3);

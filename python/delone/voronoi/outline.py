@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone.constrained.geodata import is_shapely, rings_of_numbers
 from delone.errors import InputError
 from delone.exchange.geopandas import shapely_or_say
 
@@ -106,8 +107,25 @@ def as_clip(
         if clip != "box":
             raise InputError(f"clip must be 'box', four numbers or a polygon, got {clip!r:.80}")
         return _box([*points.min(axis=0), *points.max(axis=0)])
-    geometry = _geometry(clip)
+    geometry = _of_rings(clip) if isinstance(clip, list | tuple | np.ndarray) else _geometry(clip)
     return _box(clip) if geometry is None else _outline(geometry, fix)
+
+
+def _of_rings(clip: Any) -> Any:
+    """Return the geometry of rings of coordinates or of several geometries; None for a box."""
+    rings = rings_of_numbers(clip, "clip")
+    if rings is None:
+        if len(clip) and all(is_shapely(each) or isinstance(each, dict) for each in clip):
+            return _together([_geometry(each) for each in clip])
+        return None
+    shapely = shapely_or_say()
+    if len(rings) == 1:
+        return shapely.Polygon(rings[0])
+    lines = shapely.MultiLineString([np.vstack((ring, ring[:1])) for ring in rings])
+    if not shapely.is_simple(lines):
+        raise InputError("the rings of clip cross or touch: pass a polygon")
+    # By the even-odd rule, without new points.
+    return shapely.build_area(lines)
 
 
 def _strip(clip: Any, points: Floats, periods: tuple[float | None, float | None]) -> Clip:
