@@ -66,8 +66,8 @@ def mesh(
     domain : ConstrainedDelaunay, tuple of two arrays, or geometry
         What is meshed: the triangles of a constrained triangulation; the area that segments
         enclose, as ``(points, segments)``; or the inside of polygons, in any form that
-        `from_geometry` accepts, such as a ring of coordinates (k, 2), with lines and points in them as further edges and vertices. If
-        there are only lines, what they enclose is meshed.
+        `from_geometry` accepts, such as a ring of coordinates (k, 2), with lines and points in them
+        as further edges and vertices. If there are only lines, what they enclose is meshed.
     min_angle : float, optional
         Lower bound on angles in degrees, from 0 to below 60. Smaller angles remain only where the
         angles of the input force them. Refinement terminates in practice up to 33 degrees; above
