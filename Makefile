@@ -77,7 +77,7 @@ help:
 	@echo 'make wheel   a wheel for this machine, optimized as in a release, into dist'
 	@echo 'make release-check  sdist and wheels for Linux as published, installed and tested; 15 minutes'
 	@echo 'make web     the core as a module for pages, into target/web (crates/web/build.sh says how)'
-	@echo 'make map     the charts and tables of modules in ARCHITECTURE.md'
+	@echo 'make map     the charts and tables of modules in architecture/map.md'
 	@echo 'make build   the package alone, installed into .venv in development mode'
 	@echo 'make clean   remove everything that these made'
 

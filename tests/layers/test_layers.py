@@ -2,7 +2,7 @@
 
 Imports are read from the sources: with `ast` from Python, with a few regular expressions (comments
 and strings taken out first) from Rust, and the dependencies of crates from Cargo.toml. A part that
-is in no layer or table fails: a new part needs a place. ARCHITECTURE.md shows every arrow there is.
+is in no layer or table fails: a new part needs a place. architecture/map.md shows every arrow.
 """
 
 from __future__ import annotations

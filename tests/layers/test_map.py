@@ -1,4 +1,4 @@
-"""The map in ARCHITECTURE.md is the one that the sources have."""
+"""The map in architecture/map.md is the one that the sources have."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The text of the project is plain American English: phrases and spellings that it does not use.
 
-The phrases are those of the table "Say this, not that" in CONTRIBUTING.md that cannot be right in
-another sense. Only the files in `CONVERTED` are checked; add a glob when a folder is converted.
+The phrases are those of the table in phrases.md, beside this file, that cannot be right in another
+sense. Only the files in `CONVERTED` are checked; add a glob when a folder is converted.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ ROOT = Path(__file__).parents[2]
 
 CONVERTED = (
     "*.md",
+    "architecture/*.md",
     "benchmarks/README.md",
     "examples/README.md",
     "docs/*.rst",
@@ -43,7 +44,7 @@ CONVERTED = (
     "fuzz/src/*.rs",
 )
 
-# Each is written out in the left column of the table in CONTRIBUTING.md.
+# Each is written out in the left column of the table in phrases.md.
 PHRASES = (
     "the doubles denote",
     "hangs on",
@@ -150,7 +151,7 @@ BRITISH = (
 IN_CODE = re.compile(r'''``[^`]+``|`[^`]+`|"\w+"''')
 SESSION = re.compile(r"^ *>>> .*?(?=\n *\n|\Z)", re.MULTILINE | re.DOTALL)
 TITLE = re.compile(r'"[^"]*"')
-TABLE = re.compile(r"### Say this, not that.*?(?=\n[^|\n])", re.DOTALL)
+TABLE = Path(__file__).with_name("phrases.md")
 
 
 def prose(text: str) -> str:
@@ -166,7 +167,7 @@ def prose(text: str) -> str:
     str
         One line for each paragraph.
     """
-    text = SESSION.sub("", TABLE.sub("", text).replace("```", "\n\n"))
+    text = SESSION.sub("", text.replace("```", "\n\n"))
     paragraphs = (" ".join(part.split()) for part in re.split(r"\n\s*\n", text))
     return "\n".join(IN_CODE.sub("code", part) for part in paragraphs)
 
@@ -208,7 +209,14 @@ def converted() -> list[Path]:
 @pytest.mark.parametrize("path", converted(), ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_the_text_is_plain_american_english(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
-    assert faults(rust(text) if path.suffix == ".rs" else text) == []
+    found = faults(rust(text) if path.suffix == ".rs" else text)
+    better = {
+        phrase: write
+        for phrase in found
+        for given, write in instead().items()
+        if phrase.lower() in given
+    }
+    assert found == [], f"write instead: {better}"
 
 
 @pytest.mark.parametrize("pattern", CONVERTED)
@@ -216,11 +224,15 @@ def test_each_glob_finds_files(pattern: str) -> None:
     assert list(ROOT.glob(pattern))
 
 
+def instead() -> dict[str, str]:
+    """What to write in place of each row's phrases, in lower case."""
+    rows = [row.split("|") for row in TABLE.read_text(encoding="utf-8").splitlines()]
+    return {row[1].strip().lower(): row[2].strip() for row in rows if len(row) == 4}
+
+
 def test_each_phrase_is_in_the_table() -> None:
-    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    rows = TABLE.search(text)
-    assert rows
-    left = [row.split("|")[1].lower() for row in rows.group().splitlines() if row.startswith("|")]
+    left = instead()
+    assert len(left) > 50
     assert [phrase for phrase in PHRASES if not any(phrase.lower() in cell for cell in left)] == []
 
 

@@ -12,12 +12,15 @@ import re
 import textwrap
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "python" / "delone"
 CORE = ROOT / "crates" / "core" / "src"
-PAGE = ROOT / "ARCHITECTURE.md"
+PAGE = ROOT / "architecture" / "map.md"
 
 # A file of Python by its dotted name, and the files that it imports.
 Graph: TypeAlias = dict[str, set[str]]
@@ -204,7 +207,7 @@ def python_parts() -> dict[str, Part]:
 
 
 def drawn(core: Graph) -> str:
-    """The map of the core and of the package, as a text for ARCHITECTURE.md."""
+    """The map of the core and of the package, as a text for the page with the map."""
     package = {part: to for part, to in parts_of(python_graph()).items() if part != "delone"}
     text = [
         _chart("Modules of the core: each uses only modules on lines above its own", core),
@@ -214,6 +217,10 @@ def drawn(core: Graph) -> str:
             package,
         ),
         _table(python_parts(), package),
+        "Files of the crates, by their first sentences.",
+        _files((ROOT / "crates").glob("*/src"), "*.rs", rust_summary),
+        "Files of the package, by their first sentences.",
+        _files([PACKAGE], "*.py", python_summary),
     ]
     return "\n\n".join(text)
 
@@ -233,6 +240,15 @@ def _table(parts: dict[str, Part], graph: Graph) -> str:
         uses = ", ".join(sorted(graph.get(name, set()) & set(parts)))
         summary = part.summary.replace("|", "\\|")
         rows.append(f"| `{part.place}` | {summary} | {uses} |")
+    return "\n".join(rows)
+
+
+def _files(folders: Iterable[Path], pattern: str, summary: Callable[[Path], str]) -> str:
+    """A table of all files in folders, with what each says of itself."""
+    rows = ["| file | contents |", "|---|---|"]
+    for path in sorted(path for folder in folders for path in folder.rglob(pattern)):
+        if said := summary(path):
+            rows.append(f"| `{path.relative_to(ROOT)}` | {said.replace('|', chr(92) + '|')} |")
     return "\n".join(rows)
 
 
