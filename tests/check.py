@@ -3,9 +3,9 @@
     python tests/check.py [--since REVISION] [--budget SECONDS]
 
 ``make check`` builds first and then runs this. A changed file touches the tests of its own part and
-of the parts that import it, by the map of imports in architecture/map.md. They are run nearest first
-until the time that `times.json` has for them exceeds the budget; the last line says what is left to
-``make test``.
+of the parts that import it, by the map of imports in architecture/map.md. They are run nearest
+first until the time that `times.json` has for them exceeds the budget; the last line says what is
+left to ``make test``.
 """
 
 from __future__ import annotations
