@@ -60,6 +60,7 @@ html_title = "delone"
 html_baseurl = SITE
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
+html_js_files = ["search_titles.js"]
 html_show_sourcelink = False
 html_favicon = "_static/favicon.svg"
 html_theme_options = {
