@@ -398,6 +398,10 @@ def _refuse_kind(array: NDArray[Any], name: str) -> None:
     kind = array.dtype.kind
     if kind in "fiu":
         return
+    if kind == "O" and not array.ndim and hasattr(array.item(), "points"):
+        held = name if hasattr(array.item(), name) else "points"
+        owner = type(array.item()).__name__
+        raise DtypeError(f"{name} is an object of type {owner}, not numbers: pass its {held}")
     what = _REFUSED_KINDS.get(kind, f"dtype {array.dtype}")
     hint = "convert them to numbers that float64 can represent exactly"
     if kind == "U" and not array.ndim:

@@ -13,8 +13,9 @@ import pytest
 
 import delone
 import solids
-from delone import cluster, graphs, interpolate, sphere
+from delone import cluster, graphs, interpolate, sphere, terrain
 from delone.cluster import DBSCAN, HDBSCAN
+from delone.errors import DtypeError
 
 # Wheels are tested with NumPy alone.
 shapely = pytest.importorskip("shapely")
@@ -120,6 +121,31 @@ def test_arguments_in_another_order():
     for order in ((POINTS[:, 0], "linear", POINTS), ("linear", POINTS, POINTS[:, 0])):
         with pytest.raises(delone.DtypeError, match=r"interpolator\(points, values, 'linear'\)"):
             interpolate.interpolator(*order)
+
+
+def test_objects_in_place_of_points_have_points():
+    mesh = delone.Delaunay([(0, 0), (1, 0), (0, 1)])
+    for takes in (delone.Delaunay, delone.Voronoi, cluster.HDBSCAN().fit, mesh.find_simplex):
+        with pytest.raises(DtypeError, match=r"is an object of type Delaunay, .*: pass its points"):
+            takes(mesh)
+    tin = terrain.TIN.from_points([(0, 0, 1), (1, 0, 1), (0, 1, 1)])
+    with pytest.raises(DtypeError, match=r"xyz is an object of type TIN, .*: pass its xyz"):
+        terrain.TIN.from_points(tin)
+    globe = sphere.Delaunay(lonlat=[(0, 0), (1, 0), (0, 1)])
+    with pytest.raises(DtypeError, match=r"lonlat is an object of type Delaunay, .* its lonlat"):
+        sphere.Delaunay(lonlat=globe)
+    with pytest.raises(DtypeError, match=r"Voronoi is not a sphere\.Delaunay; pass its points"):
+        sphere.Linear(sphere.Voronoi.from_delaunay(globe), [1, 2, 3])
+
+
+def test_numbers_in_place_of_geometries_are_a_box():
+    for takes in (delone.from_geometry, sphere.from_geometry):
+        with pytest.raises(delone.InputError, match=r"-10 is not .*: a box is shapely\.box\("):
+            takes((-10, 35, 30, 60))
+    sites = [(0, 40), (20, 50), (-20, 50), (5, 70)]
+    with pytest.raises(delone.InputError, match=r"clip: -10 is not .*: a box is shapely\.box\("):
+        sphere.Voronoi(lonlat=sites, clip=(-10, 35, 30, 60))
+    assert sphere.Voronoi(lonlat=sites, clip=shapely.box(-10, 35, 20, 60)).cell_areas.sum() > 0
 
 
 def test_incremental_is_dynamic():

@@ -195,7 +195,8 @@ def _of_iterable(given: Iterable[Any], name: str) -> Iterator[Any]:
             yield _object_array(run)
             run = []
         if isinstance(item, int | float | np.number):
-            raise InputError(f"{name}: {item!r:.80} is not a geometry")
+            box = "a box is shapely.box(xmin, ymin, xmax, ymax)"
+            raise InputError(f"{name}: {item!r:.80} is not a geometry: {box}")
         yield from _batches(item, name)
     if run:
         yield _object_array(run)

@@ -704,7 +704,7 @@ class Nearest(_Interpolator):
 
 def _triangulated(points: Any, degrees: bool, workers: int | None) -> Delaunay:
     """The triangulation of longitudes and latitudes, (n, 2), or of vectors, (n, 3)."""
-    if hasattr(points, "simplices"):
+    if hasattr(points, "points"):
         raise DtypeError(f"{type(points).__name__} is not a sphere.Delaunay; pass its points")
     shape = as_plain_array(points, "points").shape
     if len(shape) != 2 or shape[1] not in {2, 3}:
