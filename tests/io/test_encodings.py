@@ -1,4 +1,4 @@
-"""XML in the encodings of East Asia, which expat does not read, and in those that nobody knows."""
+"""XML in UTF-32 and encodings of East Asia, which expat does not read, and in unknown ones."""
 
 from __future__ import annotations
 
@@ -33,6 +33,9 @@ NAMES = {
     "Big5": "地面功",
     "UTF-8": "地面",
     "UTF-16": "地面",
+    "UTF-32": "地面",
+    "UTF-32LE": "地面",
+    "UTF-32BE": "地面",
     "windows-1251": "Земля",
     "ISO-8859-15": "5 €",
 }
@@ -50,7 +53,7 @@ def test_surfaces_in_every_encoding(tmp_path, encoding):
     assert read_mesh(path).simplices.tolist() == [[0, 1, 2]]
 
 
-@pytest.mark.parametrize("encoding", ["GBK", "Shift_JIS", "EUC-KR"])
+@pytest.mark.parametrize("encoding", ["GBK", "Shift_JIS", "EUC-KR", "UTF-32"])
 def test_files_of_many_blocks_are_read_to_their_end(tmp_path, encoding):
     points = "".join(f'<P id="{k}">{k} {k * k} 5</P>' for k in range(9, 6000))
     text = SURFACE.format(encoding, NAMES[encoding]).replace("</Pnts>", f"{points}</Pnts>")
@@ -79,10 +82,20 @@ def test_other_declarations_are_errors_of_the_file(tmp_path, text, encoding):
         (read_surface if text is SURFACE else read_mesh)(path)
 
 
+def test_utf_32_that_is_cut_short(tmp_path):
+    path = tmp_path / "a.xml"
+    whole = SURFACE.format("UTF-32", "a").encode("UTF-32")
+    for size in (4, 6, 41, len(whole) - 2):
+        path.write_bytes(whole[:size])
+        with pytest.raises(FileFormatError, match=r"a\.xml"):
+            read_surface(path)
+
+
+@pytest.mark.parametrize("encoding", ["Shift_JIS", "UTF-32"])
 @pytest.mark.parametrize("text", [SURFACE, MESH])
-def test_a_document_type_in_another_encoding(tmp_path, text):
+def test_a_document_type_in_another_encoding(tmp_path, text, encoding):
     path = tmp_path / ("a.xml" if text is SURFACE else "a.vtu")
-    whole = text.format("Shift_JIS", "ソ").replace("?>", '?><!DOCTYPE a [<!ENTITY b "ソ">]>', 1)
-    path.write_bytes(whole.encode("shift_jis"))
+    whole = text.format(encoding, "ソ").replace("?>", '?><!DOCTYPE a [<!ENTITY b "ソ">]>', 1)
+    path.write_bytes(whole.encode(encoding))
     with pytest.raises(FileFormatError, match="DOCTYPE"):
         (read_surface if text is SURFACE else read_mesh)(path)

@@ -1,7 +1,7 @@
-"""Safe XML in any usual encoding: without a document type there are no entities.
+"""Safe XML in any common encoding: without a document type there are no entities.
 
-The parsers read Unicode and encodings of single bytes. Others, which are usual in East Asia, are
-decoded here, so that every parser sees the same characters.
+The parsers read UTF-8, UTF-16 and encodings of single bytes. UTF-32 and those that are common in
+East Asia are decoded here, so that every parser sees the same characters.
 """
 
 from __future__ import annotations
@@ -30,6 +30,12 @@ _SEVERAL_BYTES = {
     **dict.fromkeys(("euc_kr", "cp949"), "cp949"),
     **dict.fromkeys(("big5", "cp950"), "cp950"),
     **{"big5hkscs": "big5hkscs", "euc_jp": "euc_jp", "iso2022_jp": "iso2022_jp"},
+}
+# How files in UTF-32 begin, with a byte order mark or without one. The mark of UTF-16 is a part.
+_FOUR_BYTES = {
+    "utf_32": (codecs.BOM_UTF32_LE, codecs.BOM_UTF32_BE),
+    "utf_32_le": ("<".encode("utf_32_le"),),
+    "utf_32_be": ("<".encode("utf_32_be"),),
 }
 
 
@@ -81,6 +87,9 @@ def decoded(path: Path) -> Iterator[tuple[IO[bytes], str | None]]:
 
 def _codec(head: bytes, path: Path) -> str | None:
     """Return the codec of an encoding that parsers do not read, None for all others."""
+    for codec, beginnings in _FOUR_BYTES.items():
+        if head.startswith(beginnings):
+            return codec
     found = _DECLARED.match(head.lstrip())
     if found is None:
         return None
