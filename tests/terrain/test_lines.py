@@ -9,6 +9,7 @@ import pytest
 
 from delone import InputError
 from delone.terrain import TIN
+from tiers import seeds
 
 
 def exact_crossings(tin: TIN, line) -> list[tuple[float, float]]:
@@ -123,3 +124,114 @@ def test_lines_of_sight_beside_the_surface():
     assert found and found.obstruction is None
     with pytest.raises(InputError, match=r"\(4, 3\) is outside"):
         tin.line_of_sight((0, 4), (4, 3))
+
+
+def exact_parts(tin: TIN, a, b) -> list[tuple[Fraction, Fraction]]:
+    """The parts of a segment in closed triangles, as shares of it: by clipping in fractions."""
+    (ax, ay), (bx, by) = ([Fraction(x) for x in end] for end in (a, b))
+    found = []
+    for triangle in tin.simplices.tolist():
+        corners = [[Fraction(x) for x in tin.points[k].tolist()] for k in triangle]
+        low, high = Fraction(0), Fraction(1)
+        for (px, py), (qx, qy) in zip(corners, corners[1:] + corners[:1], strict=True):
+            # The side of the start, and how it changes along the segment.
+            at = (qx - px) * (ay - py) - (qy - py) * (ax - px)
+            change = (qx - px) * (by - ay) - (qy - py) * (bx - ax)
+            if change > 0:
+                low = max(low, -at / change)
+            elif change < 0:
+                high = min(high, -at / change)
+            elif at < 0:
+                high = Fraction(-1)
+        if low <= high:
+            found.append((low, high))
+    merged: list[tuple[Fraction, Fraction]] = []
+    for low, high in sorted(found):
+        if merged and low <= merged[-1][1]:
+            merged[-1] = merged[-1][0], max(high, merged[-1][1])
+        else:
+            merged.append((low, high))
+    return merged
+
+
+@pytest.mark.parametrize("seed", seeds(3, deep=20))
+def test_parts_are_those_of_closed_triangles(seed):
+    # Small integers: most lines pass corners, and many touch the surface in a corner alone.
+    random = np.random.default_rng(seed)
+    x, y = map(np.ravel, np.meshgrid(np.arange(5.0), np.arange(5.0)))
+    points = np.column_stack((x, y, random.integers(0, 9, 25)))
+    hole = [(1, 1), (2, 0), (3, 1), (2, 2)], [(2, 2), (3, 3), (2, 4), (1, 3)]
+    tins = (
+        TIN.from_points(points),
+        TIN.from_points(points, holes=[np.array(ring, dtype=float) for ring in hole]),
+        TIN.from_points(
+            points, boundary=[[(0, 0), (4, 0), (4, 4), (3, 1), (2, 4), (1, 1), (0, 4)]]
+        ),
+    )
+    single = 0
+    for _ in range(120):
+        tin = tins[random.integers(3)]
+        a, b = random.integers(-1, 6, (2, 2)).astype(float)
+        if (a == b).all():
+            continue
+        found = tin.profile([a, b])
+        parts = np.split(np.arange(len(found)), np.flatnonzero(np.isnan(found.z)))
+        parts = [rows[~np.isnan(found.z[rows])] for rows in parts if len(rows)]
+        want = exact_parts(tin, a, b)
+        ends = [found.distances[rows[[0, -1]]] / np.hypot(*(b - a)) for rows in parts]
+        assert len(parts) == len(want)
+        assert np.reshape(ends, -1) == pytest.approx([float(x) for part in want for x in part])
+        single += sum(low == high for low, high in want)
+    assert single > 5
+
+
+COMB = [(0, 0), (4, 0), (4, 2), (3, 1), (2, 2), (1, 1), (0, 2)]
+
+
+def comb(height: float) -> TIN:
+    """A surface with three peaks on a line that touches nothing else of it."""
+    xyz = [(x, y, height if (x, y) == (2, 2) else 0.0) for x, y in COMB]
+    return TIN.from_points(xyz, boundary=[COMB])
+
+
+def test_a_line_that_touches_peaks_has_their_heights():
+    found = comb(100).profile([(0, 2), (4, 2)])
+    np.testing.assert_array_equal(found.z, [0, np.nan, 100, np.nan, 0])
+    assert found.points[[0, 2, 4]].tolist() == [[0, 2], [2, 2], [4, 2]]
+    back = comb(100).profile([(4, 2), (0, 2)])
+    np.testing.assert_array_equal(back.distances[::2], 4 - found.distances[::-2])
+    # From outside of the hull, and along the way through a corner of it.
+    square = TIN.from_points([(0, 0, 5), (4, 0, 1), (4, 4, 2), (0, 4, 3)])
+    for line, heights in (
+        ([(-1, 1), (1, -1)], [5]),
+        ([(-1, -1), (0, 0), (-1, 1)], [5]),
+        ([(0, 1), (-1, 1)], [4.5]),
+        ([(-1, 1), (0, 1)], [4.5]),
+        ([(-2, 1), (-1, 1)], []),
+    ):
+        assert square.profile(line).z.tolist() == heights
+
+
+def test_peaks_that_are_touched_hide_what_is_behind():
+    found = comb(100).line_of_sight((0, 2), (4, 2), height=1, target=1)
+    assert not found and found.obstruction.tolist() == [2, 2, 100]
+    assert comb(1).line_of_sight((0, 2), (4, 2), height=1, target=1)
+
+
+def test_draped_lines_lose_no_part_that_is_outside():
+    shapely = pytest.importorskip("shapely")
+    tin = comb(7)
+    for line in (
+        [(0, 2), (4, 2)],
+        [(1, 0.5), (0, 2), (4, 2)],
+        [(0, 2), (4, 2), (3, 0.5)],
+        [(0, 2), (2, 2)],
+    ):
+        with pytest.raises(InputError, match=r"between \(.*\) and \(.*\) is outside of the surf"):
+            tin.drape(shapely.LineString(line))
+    whole = tin.drape(shapely.LineString([(0, 2), (1, 1), (2, 2)]))
+    assert shapely.get_coordinates(whole, include_z=True).tolist() == [
+        [0, 2, 0],
+        [1, 1, 0],
+        [2, 2, 7],
+    ]

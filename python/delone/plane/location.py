@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,7 +14,21 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["across_line", "along", "located", "on_edges"]
+__all__ = ["Stretch", "across_line", "along", "located", "on_edges", "stretches"]
+
+
+class Stretch(NamedTuple):
+    """Consecutive triangles along a segment, all kept or all removed."""
+
+    # As the tiling of the hull numbers them.
+    whole: Indices
+    # As those that are kept are numbered; -1 if they are removed.
+    kept: Indices
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether they are kept."""
+        return bool(self.kept[0] >= 0)
 
 
 def located(
@@ -45,7 +59,8 @@ def along(
     that are kept, -1 if removed and at the end; None keeps all. Unless it is None, a and b must
     differ.
     """
-    return np.concatenate([np.empty(0, dtype=np.int32), *stretches(index, tiling, number, a, b)])
+    kept = [part.kept for part in stretches(index, tiling, number, a, b) if part.is_kept]
+    return np.concatenate([np.empty(0, dtype=np.int32), *kept])
 
 
 def stretches(
@@ -54,16 +69,17 @@ def stretches(
     number: Indices | None,
     a: Floats,
     b: Floats,
-) -> list[Indices]:
-    """Return the triangles as `along` does, in parts between which some are removed."""
+) -> list[Stretch]:
+    """Return the triangles as `along` does, in parts, and those between that are removed."""
     met = index.along(a, b)
     if number is None:
-        return [met] if len(met) else []
+        return [Stretch(met, met)] if len(met) else []
     found = number[met]
     removed = found < 0
     found[removed] = number[across_line(*tiling, met[removed], a, b)]
     ends = np.flatnonzero(np.diff(found >= 0)) + 1
-    return [part for part in np.split(found, ends) if len(part) and part[0] >= 0]
+    pairs = zip(np.split(met, ends), np.split(found, ends), strict=True)
+    return [Stretch(*pair) for pair in pairs if len(pair[0])]
 
 
 def across_line(  # noqa: PLR0917 (a tiling is three arrays)

@@ -42,7 +42,7 @@ class Profile(ReadOnly):
         Distances from the start of the line, horizontally.
     z : ndarray of float64, shape (k,)
         Heights there. Between two parts of the line that are on the surface there is a NaN, as
-        plots expect it.
+        plots expect it. A part may be one point, where the line touches a corner of the surface.
     points : ndarray of float64, shape (k, 2)
         The positions.
 
@@ -140,9 +140,10 @@ def profile(tin: Surface, line: Any) -> Profile:
     start = 0.0
     rows: list[Floats] = []
     for a, b, length in zip(points[:-1], points[1:], lengths.tolist(), strict=True):
-        for part in parts_of(tin, a, b):
+        for k, part in enumerate(parts_of(tin, a, b)):
             table = np.column_stack((start + part.share * length, part.z, part.places))
-            if rows and rows[-1][-1, 0] < table[0, 0]:
+            # Two parts of one segment have something between them, however short.
+            if rows and (k or (rows[-1][-1, 2:] != table[0, 2:]).any()):
                 gap = table[:1].copy()
                 gap[0, 1] = np.nan
                 rows.append(gap)
@@ -157,11 +158,54 @@ def profile(tin: Surface, line: Any) -> Profile:
 
 
 def parts_of(tin: Surface, a: Floats, b: Floats) -> list[_Part]:
-    """Return the parts of a segment that are on the surface."""
+    """Return the parts of a segment that are on the surface, also those that are one point."""
     if (a == b).all():
-        z = tin.heights(a[None])
-        return [] if np.isnan(z[0]) else [_Part(np.zeros(1), z, a[None].copy())]
-    return [_part(tin, met, a, b) for met in tin._stretches(a, b)]
+        return _end(tin, a, 0.0)
+    found: list[_Part] = []
+    runs = tin._stretches(a, b)
+    # Corners that are on a part are not a part of their own.
+    kept = [tin.simplices[run.kept] for run in runs if run.is_kept and len(runs) > 1]
+    inside = np.concatenate([np.empty((0, 3), dtype=np.int32), *kept])
+    for run in runs:
+        if run.is_kept:
+            found.append(_part(tin, run.kept, a, b))
+        else:
+            found += _touched(tin, np.setdiff1d(tin._tiling()[0][run.whole], inside), a, b)
+    if not runs:
+        # Outside of the hull, or through a corner of it.
+        found = _touched(tin, tin.hull, a, b)
+    if not (found and (found[0].places[0] == a).all()):
+        found = _end(tin, a, 0.0) + found
+    if not (found and (found[-1].places[-1] == b).all()):
+        found += _end(tin, b, 1.0)
+    return found
+
+
+def _end(tin: Surface, place: Floats, share: float) -> list[_Part]:
+    """The part that is an end of a segment, if it is on the surface."""
+    z = tin.heights(place[None])
+    return [] if np.isnan(z[0]) else [_Part(np.full(1, share), z, place[None].copy())]
+
+
+def _touched(tin: Surface, vertices: NDArray[np.integer], a: Floats, b: Floats) -> list[_Part]:
+    """The parts that are vertices of the surface between the ends of a segment, in order."""
+    places = tin.points[vertices]
+    start, end = (np.broadcast_to(each, places.shape).copy() for each in (a, b))
+    # On a line, the coordinate in which its ends differ more has an order without rounding.
+    axis = int(np.abs(b - a).argmax())
+    low, high = sorted((a[axis], b[axis]))
+    on = (low < places[:, axis]) & (places[:, axis] < high)
+    on[on] = _core.orient2d(start[on], end[on], places[on]) == 0
+    on[on] = ~np.isnan(tin.heights(places[on]))
+    found = vertices[on]
+    order = np.argsort(tin.points[found, axis])
+    found = found[order if a[axis] < b[axis] else order[::-1]]
+    way = b - a
+    shares = np.clip((tin.points[found] - a) @ way / (way @ way), 0, 1)
+    return [
+        _Part(shares[[k]], tin.z[[vertex]], tin.points[[vertex]])
+        for k, vertex in enumerate(found.tolist())
+    ]
 
 
 def _part(tin: Surface, met: Indices, a: Floats, b: Floats) -> _Part:
@@ -268,7 +312,13 @@ def _draped(tin: Surface, line: Any) -> Floats:
     places = np.asarray(line.coords)[:, :2]
     _on(tin.heights(places), places)
     found = profile(tin, places)
-    _on(found.z, found.points)
+    gaps = np.flatnonzero(np.isnan(found.z))
+    if len(gaps):
+        (ax, ay), (bx, by) = found.points[gaps[0] - 1], found.points[gaps[0] + 1]
+        raise InputError(
+            f"what is between ({ax:.10g}, {ay:.10g}) and ({bx:.10g}, {by:.10g}) is outside of the "
+            "surface"
+        )
     return np.column_stack((found.points, found.z))
 
 

@@ -9,6 +9,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone.plane.location import Stretch
+
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -136,8 +138,15 @@ class Surface(Protocol):
     def locate(self, xi: ArrayLike, *, tolerance: float = 0.0) -> Located:
         """Triangles and weights at positions."""
 
-    def _stretches(self, a: Floats, b: Floats) -> list[Indices]:
-        """The triangles along a segment: a list for each part of it that is on the surface."""
+    @property
+    def hull(self) -> NDArray[np.int64]:
+        """The vertices on the convex hull."""
+
+    def _stretches(self, a: Floats, b: Floats) -> list[Stretch]:
+        """The triangles of the hull along a segment, in parts that are on the surface or not."""
+
+    def _tiling(self) -> tuple[Indices, Indices]:
+        """The triangles of the convex hull, and their neighbors."""
 
 
 def on_surface(tin: Surface) -> Bools:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone.exchange.parts import Parts
+    from delone.plane.location import Stretch
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
@@ -65,8 +66,8 @@ class Surveyed(HullTiling):
         """The unit of heights, as ``"m"``, ``"ft"`` or ``"us-ft"``; None if it is unknown."""
         return str(self._units) or None
 
-    def _stretches(self, a: Floats, b: Floats) -> list[Indices]:
-        """The triangles along a segment: a list for each part of it that is on the surface."""
+    def _stretches(self, a: Floats, b: Floats) -> list[Stretch]:
+        """The triangles of the hull along a segment, in parts that are on the surface or not."""
         tiling = (self._points, *self._tiling())
         return stretches(self._whole_locator, tiling, self._number, a, b)
 
