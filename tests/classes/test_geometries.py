@@ -91,7 +91,35 @@ def test_degrees_cause_a_warning_or_are_directions() -> None:
     globe = geopandas.GeoSeries.from_xy(*PLACES.T / 2, crs="EPSG:4326")
     with pytest.warns(delone.GeographicWarning):
         graphs.gabriel(globe)
-    assert np.allclose(sphere.Delaunay(lonlat=globe).lonlat, PLACES / 2)
+    mesh = sphere.Delaunay(lonlat=globe)
+    assert np.allclose(mesh.lonlat, PLACES / 2)
+    # Queries, and sites of interpolators, of any kind of geometries.
+    pairs = np.random.default_rng(0).normal(size=(40, 2))
+    plain = sphere.Linear(PLACES / 2, pairs)
+    for points in (globe, globe.to_frame("geometry"), globe.to_numpy(), list(globe)):
+        assert (mesh.find_simplex(points) == mesh.find_simplex(PLACES / 2)).all()
+        assert (mesh.nearest(points) == np.arange(40)).all()
+        made = sphere.Linear(points, pairs)
+        assert (made(points) == pairs).all() and (made.vectors_at(points) == pairs).all()
+        assert (made.distance(points) == plain.distance(PLACES / 2)).all()
+    pole = geopandas.GeoSeries.from_xy([40.0, 0, 90, 200], [90.0, 0, 0, 0], crs="EPSG:4326")
+    wind = np.array([(1.0, 2), (3, 4), (5, 6), (7, 8)])
+    assert (sphere.Linear(pole, wind).vectors_at(pole) == wind).all()
+
+
+def test_projected_coordinates_are_no_directions() -> None:
+    mesh = sphere.Delaunay(lonlat=PLACES / 2)
+    for takes in (
+        lambda points: sphere.Delaunay(lonlat=points),
+        lambda points: sphere.Voronoi(lonlat=points),
+        lambda points: sphere.Linear(points, ONES),
+        sphere.Linear(mesh, ONES),
+        mesh.find_simplex,
+        mesh.nearest,
+    ):
+        for points in (SURVEY, SURVEY.geometry):
+            with pytest.raises(InputError, match="of EPSG:28992, not longitudes and latitudes"):
+                takes(points)
 
 
 def test_geometries_that_are_not_points() -> None:

@@ -15,8 +15,8 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_plain_array, as_points, as_vectors, as_workers, require_finite
 from delone.counting import agreed, counted
-from delone.errors import DirectionError, DtypeError, ShapeError
-from delone.georeference import caller_level
+from delone.errors import DirectionError, DtypeError, InputError, ShapeError
+from delone.georeference import caller_level, crs_of, parsed
 from delone.immutable import own_copy
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Rows = NDArray[np.bool_]
 
-__all__ = ["LongitudeWarning", "directions_of", "lonlat_of", "queries_of", "units_of"]
+__all__ = ["LongitudeWarning", "directions_of", "lonlat_of", "numbers_of", "queries_of", "units_of"]
 
 # Longitudes of more turns are a mistake, such as a wrong unit.
 _TURNS = 3
@@ -58,6 +58,7 @@ def directions_of(
         if vectors.shape[1] != 3:
             raise ShapeError(f"xyz must have shape (n, 3), got {vectors.shape}: see lonlat")
         return vectors
+    _refuse_projected(lonlat, "lonlat")
     angles = as_points(lonlat, name="lonlat")  # type: ignore[arg-type]
     angles = angles if degrees else _quarters(angles, lonlat)
     if angles.shape[1] != 2:
@@ -70,6 +71,7 @@ def directions_of(
 
 def queries_of(xi: ArrayLike, *, degrees: bool, workers: int | None) -> Floats:
     """Return queries as vectors, (..., 3), from longitudes and latitudes, (..., 2), or vectors."""
+    xi = numbers_of(xi, "xi")
     array = as_plain_array(xi, "xi")
     columns = array.shape[-1] if array.ndim else 0
     if columns not in {2, 3}:
@@ -82,6 +84,24 @@ def queries_of(xi: ArrayLike, *, degrees: bool, workers: int | None) -> Floats:
     _refuse_angles(flat, degrees=degrees, name="xi")
     vectors = _core.sphere_directions(flat, degrees, as_workers(workers))
     return vectors.reshape((*angles.shape[:-1], 3))
+
+
+def numbers_of(given: Any, name: str) -> Any:
+    """Return points of shapely and tables of them as longitudes and latitudes; others as given."""
+    _refuse_projected(given, name)
+    array = as_plain_array(given, name)
+    return as_vectors(given, 2, name=name) if array.dtype.kind == "O" else given
+
+
+def _refuse_projected(given: Any, name: str) -> None:
+    """Refuse what declares a reference system whose coordinates are not angles."""
+    system = None if type(given) is np.ndarray else crs_of(given)
+    known = None if system is None else parsed(system)
+    if known is not None and not known.is_geographic:
+        raise InputError(
+            f"{name} are coordinates of {system:.60}, not longitudes and latitudes: "
+            "transform them to EPSG:4326 first, as to_crs does, or use the classes of the plane"
+        )
 
 
 def units_of(vectors: Floats, workers: int | None) -> Floats:

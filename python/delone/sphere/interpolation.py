@@ -24,7 +24,7 @@ from delone.interpolate.values import DUPLICATES, NAN, as_field, chosen
 from delone.interpolate.weights import Weights, joined, rectangular
 from delone.location import as_tolerance
 from delone.renames import renamed
-from delone.sphere.coordinates import queries_of
+from delone.sphere.coordinates import numbers_of, queries_of
 from delone.sphere.delaunay import Delaunay
 from delone.sphere.outside import arc_weights
 from delone.sphere.vectors import VectorInterpolation, polar_rows
@@ -72,15 +72,15 @@ class _Interpolator(VectorInterpolation):
         as_workers(workers)
         self._workers = workers
         as_flag(degrees, name="degrees")
-        self._all: Delaunay = (
-            points if isinstance(points, Delaunay) else _triangulated(points, degrees, workers)
-        )
+        self._all: Delaunay
+        self._polar = None
+        if isinstance(points, Delaunay):
+            self._all = points
+        else:
+            self._all, lonlat = _triangulated(points, degrees, workers)
+            if lonlat is not None:
+                self._polar = polar_rows(lonlat, self._all.vectors, degrees)
         self._degrees = self._all._degrees
-        self._polar = (
-            None
-            if isinstance(points, Delaunay) or np.shape(points)[1] != 2
-            else polar_rows(points, self._all.vectors, degrees)
-        )
         self._mesh = self._all
         self._kept: Rows | None = None
         self._field: tuple[Field, _Interpolator, Floats] | None = None
@@ -702,13 +702,16 @@ class Nearest(_Interpolator):
         return rectangular(rows, weights)
 
 
-def _triangulated(points: Any, degrees: bool, workers: int | None) -> Delaunay:
-    """The triangulation of longitudes and latitudes, (n, 2), or of vectors, (n, 3)."""
+def _triangulated(
+    points: Any, degrees: bool, workers: int | None
+) -> tuple[Delaunay, ArrayLike | None]:
+    """The triangulation of sites, and their longitudes and latitudes if they are no vectors."""
     if hasattr(points, "points"):
         raise DtypeError(f"{type(points).__name__} is not a sphere.Delaunay; pass its points")
+    points = numbers_of(points, "points")
     shape = as_plain_array(points, "points").shape
     if len(shape) != 2 or shape[1] not in {2, 3}:
         raise ShapeError(f"points must have shape (n, 2) or (n, 3), got {shape}")
     if shape[1] == 2:
-        return Delaunay(lonlat=points, degrees=degrees, workers=workers)
-    return Delaunay(xyz=points, degrees=degrees, workers=workers)
+        return Delaunay(lonlat=points, degrees=degrees, workers=workers), points
+    return Delaunay(xyz=points, degrees=degrees, workers=workers), None

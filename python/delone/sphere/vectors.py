@@ -20,6 +20,7 @@ from delone.blocks import blocks
 from delone.errors import InputError, ShapeError
 from delone.interpolate.base import as_max_distance
 from delone.interpolate.values import as_field
+from delone.sphere.coordinates import numbers_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -68,7 +69,7 @@ def polar_rows(lonlat: ArrayLike, vectors: Floats, degrees: bool) -> Polar | Non
 
 def longitudes_of(xi: ArrayLike, degrees: bool) -> Floats | None:
     """Return the longitudes of queries in radians, flattened; None for queries as vectors."""
-    array = as_plain_array(xi, "xi")
+    array = as_plain_array(numbers_of(xi, "xi"), "xi")
     if array.shape[-1] != 2:
         return None
     longitudes = np.asarray(array[..., 0], dtype=np.float64).ravel()
