@@ -67,6 +67,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "error": ("errors",),
     "interpolate3": ("interpolate",),
     "interpolate_sphere": ("sphere",),
+    "overlap": ("sphere",),
     "locate3": ("locate",),
     "joins": ("validation",),
     "memory": ("delaunay",),

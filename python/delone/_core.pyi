@@ -7,9 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "CellGrid",
     "CellMeasures2",
     "CellMeasures3",
     "CellPieces2",
+    "CheckedCells",
     "CheckedSurface",
     "ClippedCells2",
     "ClippedCells3",
@@ -49,6 +51,7 @@ __all__ = [
     "RegularFaults2",
     "RegularFaults3",
     "RegularTriangulation",
+    "SharedCells",
     "SmoothedMesh",
     "SphereDual",
     "SphereLocator",
@@ -1673,6 +1676,80 @@ class Locator3:
     def locate(self, xi: NDArray[np.float64], workers: int) -> Location3: ...
     def laplace(self, xi: NDArray[np.float64], workers: int) -> NaturalWeights: ...
     def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
+
+@final
+class CheckedCells:
+    """What is known of each cell of a grid."""
+
+    @property
+    def areas(self) -> NDArray[np.float64]:
+        """Areas in steradians, 0 of cells that have none, (n,)."""
+    @property
+    def faults(self) -> NDArray[np.uint8]:
+        """0, 1 empty, 2 opposite ends of a side, 3 beyond a hemisphere, 4 crossing sides, (n,)."""
+    @property
+    def turned(self) -> NDArray[np.bool_]:
+        """Whether outer rings were clockwise, (n,)."""
+    @property
+    def concave(self) -> NDArray[np.bool_]:
+        """Whether cells are concave, or have several rings, (n,)."""
+    @property
+    def repeated(self) -> int:
+        """How many corners repeat the one before."""
+
+@final
+class SharedCells:
+    """The areas that cells of two grids share, as compressed rows."""
+
+    @property
+    def indptr(self) -> NDArray[np.int64]:
+        """Where the entries of each cell of the first grid start, and their number, (n + 1,)."""
+    @property
+    def indices(self) -> NDArray[np.int32]:
+        """Cells of the second grid, (k,)."""
+    @property
+    def areas(self) -> NDArray[np.float64]:
+        """Areas in steradians, (k,)."""
+    @property
+    def first(self) -> NDArray[np.float64]:
+        """Sums over the cells of the first grid, (n,)."""
+    @property
+    def second(self) -> NDArray[np.float64]:
+        """Sums over the cells of the second grid, (m,)."""
+
+@final
+class CellGrid:
+    """The cells of a grid on the sphere."""
+
+    @staticmethod
+    def polygons(
+        vectors: NDArray[np.float64],
+        rings: NDArray[np.int64],
+        cells: NDArray[np.int64],
+        holes: NDArray[np.bool_],
+    ) -> CellGrid:
+        """Cells with arcs of great circles as sides.
+
+        They have corners, starts of rings in these, starts of cells in rings, and whether rings
+        are holes.
+        """
+    @staticmethod
+    def rows(
+        tangents: NDArray[np.float64],
+        starts: NDArray[np.int64],
+        meridians: NDArray[np.float64],
+        numbers: NDArray[np.int32],
+        count: int,
+    ) -> CellGrid:
+        """Cells between meridians and parallels, by rows.
+
+        They have tangents of latitudes, starts of rows in meridians, directions of these, the
+        number of the cell east of each or -1, and a count.
+        """
+    def check(self, crossing: bool, workers: int) -> CheckedCells:
+        """Areas and faults; sides that cross are looked for if `crossing`."""
+    def overlaps(self, other: CellGrid, workers: int) -> SharedCells:
+        """What the cells share with those of another grid; cells with faults share nothing."""
 
 @final
 class SphereWeights:

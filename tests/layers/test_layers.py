@@ -166,6 +166,16 @@ CORE: dict[str, set[str]] = {
     "overlay": {"locate", "order", "parallel", "points", "delone_predicates"} | GROUND,
     "interpolate": {"locate", "delaunay2", "parallel", "wide", "delone_predicates"} | GROUND,
     "interpolate_sphere": {"interpolate", "sphere", "parallel", "delone_predicates"} | GROUND,
+    "overlap": {
+        "locate",
+        "order",
+        "parallel",
+        "points",
+        "sphere",
+        "num_bigint",
+        "delone_predicates",
+    }
+    | GROUND,
     "interpolate3": {"interpolate", "locate", "locate3", "parallel", "wide", "delone_predicates"}
     | GROUND,
 }
@@ -205,6 +215,7 @@ BINDINGS = {
     "measure",
     "memory",
     "mesh2::import",
+    "overlap",
     "overlay",
     "memory::copied",
     "refine::judge",

@@ -25,6 +25,7 @@ mod locate;
 mod locate3;
 mod locator;
 mod measure;
+mod overlap;
 mod predicates;
 mod recover;
 mod refine;
@@ -100,6 +101,9 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<sphere::SphereLocator>()?;
     m.add_class::<sphere::SphereDual>()?;
     m.add_class::<sphere::SphereWeights>()?;
+    m.add_class::<overlap::CellGrid>()?;
+    m.add_class::<overlap::CheckedCells>()?;
+    m.add_class::<overlap::SharedCells>()?;
     m.add_class::<improve::ImprovedMesh>()?;
     m.add_class::<improve::ImprovementCounts>()?;
     m.add_class::<surface::CheckedSurface>()?;

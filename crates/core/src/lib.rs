@@ -28,6 +28,7 @@ pub mod memory;
 pub mod mesh2;
 pub mod mesh3;
 pub mod order;
+pub mod overlap;
 pub mod overlay;
 mod parallel;
 pub mod points;

@@ -13,7 +13,7 @@ from delone.plane.topology import boundary_edges, boundary_next, neighbors
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["check_constrained", "check_delaunay", "check_sites"]
+__all__ = ["check_constrained", "check_delaunay", "check_overlaps", "check_sites"]
 
 
 def check_sites(**arrays: NDArray[Any]) -> None:
@@ -31,6 +31,25 @@ def check_sites(**arrays: NDArray[Any]) -> None:
     if len(corners):
         _check_vectors(corners)
         require(len(sides) > 0, "corners have no sides")
+
+
+def check_overlaps(**arrays: NDArray[Any]) -> None:
+    """Check compressed rows of positive areas, and the areas and shapes of both grids."""
+    indptr, indices, areas = arrays["indptr"], arrays["indices"], arrays["areas"]
+    sources, targets = arrays["source_areas"], arrays["target_areas"]
+    require(len(indptr) == len(targets) + 1, "indptr and target_areas do not match")
+    require(indptr[0] == 0 and indptr[-1] == len(areas), "indptr does not partition areas")
+    require((np.diff(indptr) >= 0).all(), "indptr descends")
+    require(len(indices) == len(areas), "indices and areas do not match")
+    check_range("indices", indices, 0, len(sources))
+    for name, cells in (("source", sources), ("target", targets)):
+        sums, shape = arrays[f"{name}_sums"], arrays[f"{name}_shape"]
+        require(len(sums) == len(cells), f"{name}_sums and {name}_areas do not match")
+        fits = len(shape) > 0 and (shape >= 0).all() and (shape <= len(cells)).all()
+        require(fits and int(np.prod(shape)) == len(cells), f"{name}_shape does not fit")
+        for values in (cells, sums):
+            require(bool((np.isfinite(values) & (values >= 0)).all()), f"{name}: a wrong area")
+    require(bool((np.isfinite(areas) & (areas > 0)).all()), "an area is not positive")
 
 
 def check_delaunay(**arrays: NDArray[Any]) -> None:

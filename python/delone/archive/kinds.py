@@ -27,7 +27,8 @@ class Kind(NamedTuple):
     def fits(self, arrays: Mapping[str, NDArray[Any]]) -> bool:
         """Tell whether the first array, which has the points, has the columns of this layout."""
         name, (_, columns) = next(iter(self.layout.items()))
-        return columns == int(arrays[name].shape[1])
+        shape = arrays[name].shape
+        return columns == (int(shape[1]) if len(shape) > 1 else 0)
 
 
 def _simplices(ndim: int) -> dict[str, tuple[str, int]]:
@@ -256,6 +257,23 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
                 "winding": ("<i8", 0),
             },
             directions.check_sites,
+        ),
+    ),
+    "sphere.Overlaps": (
+        Kind(
+            "delone.sphere.Overlaps",
+            {
+                "indptr": ("<i8", 0),
+                "indices": ("<i4", 0),
+                "areas": ("<f8", 0),
+                "source_areas": ("<f8", 0),
+                "target_areas": ("<f8", 0),
+                "source_sums": ("<f8", 0),
+                "target_sums": ("<f8", 0),
+                "source_shape": ("<i8", 0),
+                "target_shape": ("<i8", 0),
+            },
+            directions.check_overlaps,
         ),
     ),
 }

@@ -14,17 +14,24 @@ from delone.sphere.constrained import ConstrainedDelaunay
 from delone.sphere.coordinates import LongitudeWarning
 from delone.sphere.delaunay import Delaunay
 from delone.sphere.geometry import from_geometry
+from delone.sphere.grid import Grid, GridFaults, GridReport
 from delone.sphere.interpolation import Linear, NaturalNeighbor, Nearest
+from delone.sphere.overlaps import OverlapReport, Overlaps
 from delone.sphere.sides import PolygonWarning
 from delone.sphere.voronoi import Voronoi
 
 __all__ = [
     "ConstrainedDelaunay",
     "Delaunay",
+    "Grid",
+    "GridFaults",
+    "GridReport",
     "Linear",
     "LongitudeWarning",
     "NaturalNeighbor",
     "Nearest",
+    "OverlapReport",
+    "Overlaps",
     "PolygonWarning",
     "Voronoi",
     "from_geometry",

@@ -1,0 +1,211 @@
+//! Grids of cells on the sphere, and the areas that two of them share.
+
+use delone::{Error, Result};
+use delone_core::overlap::{Checked, Grid, Polygons, Rows, check, overlaps};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use crate::arrays::{Column, column, flat, rows};
+use crate::errors::raise;
+use crate::signals::watched;
+
+/// The arrays of a grid.
+enum Given {
+    Polygons {
+        vectors: Py<PyArray2<f64>>,
+        rings: Py<PyArray1<i64>>,
+        cells: Py<PyArray1<i64>>,
+        holes: Py<PyArray1<bool>>,
+    },
+    Rows {
+        tangents: Py<PyArray2<f64>>,
+        starts: Py<PyArray1<i64>>,
+        meridians: Py<PyArray2<f64>>,
+        numbers: Py<PyArray1<i32>>,
+        count: usize,
+    },
+}
+
+/// The same, lent for a call.
+enum Lent<'py> {
+    Polygons {
+        vectors: PyReadonlyArray2<'py, f64>,
+        rings: PyReadonlyArray1<'py, i64>,
+        cells: PyReadonlyArray1<'py, i64>,
+        holes: PyReadonlyArray1<'py, bool>,
+    },
+    Rows {
+        tangents: PyReadonlyArray2<'py, f64>,
+        starts: PyReadonlyArray1<'py, i64>,
+        meridians: PyReadonlyArray2<'py, f64>,
+        numbers: PyReadonlyArray1<'py, i32>,
+        count: usize,
+    },
+}
+
+impl Given {
+    fn lent<'py>(&self, py: Python<'py>) -> PyResult<Lent<'py>> {
+        use numpy::PyArrayMethods;
+        Ok(match self {
+            Given::Polygons {
+                vectors,
+                rings,
+                cells,
+                holes,
+            } => Lent::Polygons {
+                vectors: vectors.bind(py).try_readonly()?,
+                rings: rings.bind(py).try_readonly()?,
+                cells: cells.bind(py).try_readonly()?,
+                holes: holes.bind(py).try_readonly()?,
+            },
+            Given::Rows {
+                tangents,
+                starts,
+                meridians,
+                numbers,
+                count,
+            } => Lent::Rows {
+                tangents: tangents.bind(py).try_readonly()?,
+                starts: starts.bind(py).try_readonly()?,
+                meridians: meridians.bind(py).try_readonly()?,
+                numbers: numbers.bind(py).try_readonly()?,
+                count: *count,
+            },
+        })
+    }
+}
+
+impl Lent<'_> {
+    fn grid(&self) -> Result<Grid<'_>> {
+        Ok(match self {
+            Lent::Polygons {
+                vectors,
+                rings,
+                cells,
+                holes,
+            } => Grid::Polygons(Polygons {
+                vectors: rows(vectors, "vectors")?,
+                rings: flat(rings, "rings")?,
+                cells: flat(cells, "cells")?,
+                holes: flat(holes, "holes")?,
+            }),
+            Lent::Rows {
+                tangents,
+                starts,
+                meridians,
+                numbers,
+                count,
+            } => Grid::Rows(Rows {
+                tangents: rows(tangents, "tangents")?,
+                starts: flat(starts, "starts")?,
+                meridians: rows(meridians, "meridians")?,
+                numbers: flat(numbers, "numbers")?,
+                count: *count,
+            }),
+        })
+    }
+}
+
+/// What is known of each cell of a grid.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct CheckedCells {
+    /// Areas in steradians, 0 of cells that have none, (n,).
+    pub areas: Column<f64>,
+    /// 0, 1 for empty cells, 2 for opposite ends of a side, 3 for cells beyond a hemisphere, 4 for
+    /// sides that cross, (n,).
+    pub faults: Column<u8>,
+    /// Whether outer rings were clockwise, (n,).
+    pub turned: Column<bool>,
+    /// Whether cells are concave, or have several rings, (n,).
+    pub concave: Column<bool>,
+    /// How many corners repeat the one before.
+    pub repeated: usize,
+}
+
+/// The areas that cells of two grids share, as compressed rows.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct SharedCells {
+    /// Where the entries of each cell of the first grid start, and their number, (n + 1,).
+    pub indptr: Column<i64>,
+    /// Cells of the second grid, (k,).
+    pub indices: Column<i32>,
+    /// Areas in steradians, (k,).
+    pub areas: Column<f64>,
+    /// Sums over the cells of the first grid, (n,).
+    pub first: Column<f64>,
+    /// Sums over the cells of the second grid, (m,).
+    pub second: Column<f64>,
+}
+
+/// The cells of a grid on the sphere.
+#[pyclass(frozen, module = "delone._core")]
+pub struct CellGrid(Given);
+
+#[pymethods]
+impl CellGrid {
+    /// Cells with arcs of great circles as sides: corners, where their rings start, where the rings
+    /// of cells start, and whether rings are holes.
+    #[staticmethod]
+    fn polygons(
+        vectors: Py<PyArray2<f64>>,
+        rings: Py<PyArray1<i64>>,
+        cells: Py<PyArray1<i64>>,
+        holes: Py<PyArray1<bool>>,
+    ) -> Self {
+        Self(Given::Polygons {
+            vectors,
+            rings,
+            cells,
+            holes,
+        })
+    }
+
+    /// Cells between meridians and parallels, by rows: tangents of latitudes, where the meridians
+    /// of rows start, their directions, the number of the cell east of each or -1, and how many
+    /// cells there are.
+    #[staticmethod]
+    fn rows(
+        tangents: Py<PyArray2<f64>>,
+        starts: Py<PyArray1<i64>>,
+        meridians: Py<PyArray2<f64>>,
+        numbers: Py<PyArray1<i32>>,
+        count: usize,
+    ) -> Self {
+        Self(Given::Rows {
+            tangents,
+            starts,
+            meridians,
+            numbers,
+            count,
+        })
+    }
+
+    /// Areas and faults; sides that cross are looked for if `crossing`.
+    fn check(&self, py: Python<'_>, crossing: bool, workers: usize) -> PyResult<CheckedCells> {
+        let lent = self.0.lent(py)?;
+        let grid = lent.grid().map_err(|e: Error| raise(py, &e))?;
+        let found: Checked = watched(py, |watch| check(&grid, crossing, workers, watch))?;
+        Ok(CheckedCells {
+            areas: column(py, found.areas),
+            faults: column(py, found.faults),
+            turned: column(py, found.turned),
+            concave: column(py, found.concave),
+            repeated: found.repeated,
+        })
+    }
+
+    /// What the cells share with those of another grid; cells with faults share nothing.
+    fn overlaps(&self, py: Python<'_>, other: &Self, workers: usize) -> PyResult<SharedCells> {
+        let (lent, beside) = (self.0.lent(py)?, other.0.lent(py)?);
+        let grid = lent.grid().map_err(|e| raise(py, &e))?;
+        let target = beside.grid().map_err(|e| raise(py, &e))?;
+        let found = watched(py, |watch| overlaps(&grid, &target, workers, watch))?;
+        Ok(SharedCells {
+            indptr: column(py, found.starts),
+            indices: column(py, found.cells),
+            areas: column(py, found.areas),
+            first: column(py, found.first),
+            second: column(py, found.second),
+        })
+    }
+}

@@ -1,0 +1,337 @@
+//! Cells with arcs of great circles as sides, prepared for overlaps.
+//!
+//! A cell is what is to the left of its rings: outer ones run counterclockwise and holes clockwise,
+//! whatever the order in which they are given. Each ring starts at its smallest corner, so that a
+//! turned, reversed or repeated ring gives the same cell, bit for bit.
+//!
+//! All corners are within a hemisphere around `center`. So sides are within the cap of `radius`
+//! around it, the opposite side of the sphere is outside, and areas are below 2 pi.
+
+use std::cmp::Ordering;
+
+use delone_predicates::arithmetic::Pair;
+use delone_predicates::sphere::{Unit, leveled, same};
+use delone_predicates::{Point3, Sign, orient2d};
+
+use crate::points::Extent;
+
+use super::pairs::{Pair3, Turn, chart, chart_of, cross_of, factor, heads};
+use super::signs::{Moved, Side, side};
+
+/// Cells with more corners count as concave, so that testing that takes no long time.
+const MANY: usize = 64;
+/// Cells with smaller areas, in steradians, are empty: sums of triangles err by less.
+pub const LEAST: f64 = 1e-29;
+/// The least cosine of the angle between the center and a corner.
+const WITHIN: f64 = 1e-6;
+
+/// What is wrong with a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Fault {
+    /// Fewer than three distinct corners, or no area.
+    Empty = 1,
+    /// A side joins opposite directions.
+    Opposite = 2,
+    /// No hemisphere contains it.
+    Large = 3,
+    /// Two of its sides cross.
+    Crossing = 4,
+}
+
+/// A corner and the side that starts there.
+#[derive(Clone)]
+pub struct Corner {
+    /// The vector, leveled.
+    pub v: Point3,
+    /// Its direction.
+    pub unit: Pair3,
+    /// The normal of the side to `next`.
+    pub n: Pair3,
+    /// The end of the side.
+    pub next: u32,
+}
+
+/// A cell.
+#[derive(Clone)]
+pub struct Cell {
+    /// All corners, ring by ring.
+    pub corners: Vec<Corner>,
+    /// The area.
+    pub area: f64,
+    /// A direction around which the cell is, a unit vector.
+    pub center: Point3,
+    /// The largest distance of a corner from it, through the sphere.
+    pub radius: f64,
+    /// Whether it is known to be convex.
+    pub convex: bool,
+    /// Whether outer rings were clockwise.
+    pub turned: bool,
+    /// Corners that repeat the one before.
+    pub repeated: usize,
+}
+
+/// The rings of a cell: whether each is a hole, and its corners.
+pub type Rings<'a> = &'a mut dyn Iterator<Item = (bool, &'a [Point3])>;
+
+impl Cell {
+    /// Prepares a cell.
+    pub fn of(rings: Rings<'_>) -> (Option<Self>, Option<Fault>) {
+        let mut cell = Self {
+            corners: Vec::new(),
+            area: 0.0,
+            center: [0.0; 3],
+            radius: 0.0,
+            convex: false,
+            turned: false,
+            repeated: 0,
+        };
+        let mut kept = Vec::new();
+        for (hole, ring) in rings {
+            let ring = cell.distinct(ring);
+            if ring.len() > 2 {
+                kept.push((hole, ring));
+            }
+        }
+        if kept.is_empty() {
+            return (None, Some(Fault::Empty));
+        }
+        if kept.iter().any(|(_, ring)| has_opposite(ring)) {
+            return (None, Some(Fault::Opposite));
+        }
+        let Some((center, _)) = around(&kept) else {
+            return (None, Some(Fault::Large));
+        };
+        let axis = chart_of(center);
+        for (hole, ring) in &mut kept {
+            let units: Vec<Pair3> = ring.iter().map(|&v| chart(axis, &unit_of(v))).collect();
+            let mut own = Turn::new();
+            for (k, p) in units.iter().enumerate() {
+                own.mul(factor(p, &units[(k + 1) % units.len()]), false);
+            }
+            if (own.area() < 0.0) != *hole {
+                ring.reverse();
+                cell.turned |= !*hole;
+            }
+            start_at_smallest(ring);
+        }
+        // Again, now that the order of corners is independent of that of the input: charts depend on
+        // the last bits of a center that is as near to one axis as to another.
+        let Some((center, radius)) = around(&kept) else {
+            return (None, Some(Fault::Large));
+        };
+        (cell.center, cell.radius) = (center, radius);
+        let (axis, mut all) = (chart_of(center), Turn::new());
+        for (_, ring) in &kept {
+            cell.add(ring);
+        }
+        for corner in &cell.corners {
+            let next = &cell.corners[corner.next as usize];
+            all.mul(
+                factor(&chart(axis, &corner.unit), &chart(axis, &next.unit)),
+                false,
+            );
+        }
+        cell.area = all.area();
+        if cell.area < LEAST {
+            return (None, Some(Fault::Empty));
+        }
+        cell.convex = cell.corners.len() <= MANY && cell.is_convex();
+        (Some(cell), None)
+    }
+
+    /// The corners of a ring, leveled, without those that repeat the one before.
+    ///
+    /// A coordinate below 2^-1022 of the largest may lose digits: the corner moves by 2^-1073
+    /// before anything is decided.
+    fn distinct(&mut self, ring: &[Point3]) -> Vec<Point3> {
+        let mut found: Vec<Point3> = Vec::with_capacity(ring.len());
+        for &v in ring {
+            // Adding 0 removes the sign of a negative zero.
+            let v = leveled(v).map(|x| x + 0.0);
+            if found.last().is_none_or(|&before| !same(before, v)) {
+                found.push(v);
+            }
+        }
+        while found.len() > 1 && same(found[0], found[found.len() - 1]) {
+            found.pop();
+        }
+        self.repeated += ring.len() - found.len();
+        found
+    }
+
+    fn add(&mut self, ring: &[Point3]) {
+        let from = self.corners.len();
+        for (k, &v) in ring.iter().enumerate() {
+            let next = (k + 1) % ring.len();
+            self.corners.push(Corner {
+                v,
+                unit: unit_of(v),
+                n: cross_of(v, ring[next]),
+                next: (from + next) as u32,
+            });
+        }
+    }
+
+    /// The side that starts at a corner.
+    #[inline]
+    pub fn side(&self, k: usize) -> Side<'_> {
+        let corner = &self.corners[k];
+        Side {
+            a: corner.v,
+            b: self.corners[corner.next as usize].v,
+            n: &corner.n,
+        }
+    }
+
+    /// Whether no corner is to the right of a side.
+    fn is_convex(&self) -> bool {
+        let count = self.corners.len();
+        let one_ring = (0..count).all(|k| self.corners[k].next as usize == (k + 1) % count);
+        one_ring
+            && (0..count).all(|e| {
+                let next = self.corners[e].next as usize;
+                (0..count).all(|k| {
+                    k == e
+                        || k == next
+                        || side(self.side(e), self.corners[k].v, Moved::Neither) >= 0
+                })
+            })
+    }
+
+    /// A box that holds the cell: that of its corners and, as the sphere bulges, the square of the
+    /// radius over two.
+    ///
+    /// A direction p of the cell is y / |y| for a y in the hull of the corners, with |y| at least
+    /// the cosine of the cap, 1 - radius^2 / 2.
+    pub fn extent(&self) -> Extent<3> {
+        let bulge = self.radius * self.radius * 0.5 + 1e-12;
+        let corners = Extent::of(self.corners.iter().map(|c| heads(&c.unit)));
+        Extent {
+            min: corners.min.map(|x| x - bulge),
+            max: corners.max.map(|x| x + bulge),
+        }
+    }
+
+    /// Two sides that cross in their insides, if any do.
+    pub fn crossing(&self) -> Option<[usize; 2]> {
+        if self.convex {
+            return None;
+        }
+        let mut spans: Vec<(f64, f64, usize)> = (0..self.corners.len())
+            .map(|k| {
+                let next = self.corners[k].next as usize;
+                let ([p, q], r) = ([k, next].map(|i| heads(&self.corners[i].unit)), self.center);
+                // Along the longest way from a pole of coordinates that is far from the center.
+                let axis = chart_of(r) / 2;
+                let (x, y) = (p[axis], q[axis]);
+                let bulge = 0.5 * (0..3).map(|i| (p[i] - q[i]) * (p[i] - q[i])).sum::<f64>();
+                (x.min(y) - bulge - 1e-12, x.max(y) + bulge + 1e-12, k)
+            })
+            .collect();
+        spans.sort_by(|p, q| p.0.total_cmp(&q.0));
+        for (at, &(_, end, e)) in spans.iter().enumerate() {
+            for &(start, _, f) in &spans[at + 1..] {
+                if start > end {
+                    break;
+                }
+                if self.cross(e, f) {
+                    return Some([e.min(f), e.max(f)]);
+                }
+            }
+        }
+        None
+    }
+
+    fn cross(&self, e: usize, f: usize) -> bool {
+        let (first, second) = (self.side(e), self.side(f));
+        let s1 = side(first, second.a, Moved::Neither);
+        let s2 = side(first, second.b, Moved::Neither);
+        if s1 * s2 >= 0 {
+            return false;
+        }
+        let s3 = side(second, first.a, Moved::Neither);
+        let s4 = side(second, first.b, Moved::Neither);
+        // One arc, not its antipode, crosses the other: see `meet`.
+        s3 * s4 < 0 && s1 == s4
+    }
+}
+
+/// The direction as pairs.
+fn unit_of(v: Point3) -> Pair3 {
+    let unit = Unit::of(v);
+    [0, 1, 2].map(|k| Pair {
+        hi: unit.hi[k],
+        lo: unit.lo[k],
+    })
+}
+
+/// Whether the ends of a side are opposite.
+fn has_opposite(ring: &[Point3]) -> bool {
+    let zero = |a: Point3, b: Point3, i: usize, j: usize| {
+        orient2d([a[i], a[j]], [b[i], b[j]], [0.0; 2]) == Sign::Zero
+    };
+    (0..ring.len()).any(|k| {
+        let (a, b) = (ring[k], ring[(k + 1) % ring.len()]);
+        a[0] * b[0] + a[1] * b[1] + a[2] * b[2] < 0.0
+            && [(0, 1), (1, 2), (2, 0)]
+                .iter()
+                .all(|&(i, j)| zero(a, b, i, j))
+    })
+}
+
+/// A center of a hemisphere that contains all corners, and the largest distance from it.
+///
+/// The mean of the corners, else some steps towards the farthest one (M. Bădoiu and K. L. Clarkson,
+/// 2003).
+fn around(rings: &[(bool, Vec<Point3>)]) -> Option<(Point3, f64)> {
+    let units: Vec<Point3> = rings
+        .iter()
+        .flat_map(|(_, ring)| ring.iter().map(|&v| Unit::of(v).hi))
+        .collect();
+    let normal = |c: Point3| {
+        let length = (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]).sqrt();
+        (length > 1e-9).then(|| c.map(|x| x / length))
+    };
+    let product = |a: &Point3, b: &Point3| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let mut sum = [0.0; 3];
+    for p in &units {
+        sum = [0, 1, 2].map(|k| sum[k] + p[k]);
+    }
+    let mut center = normal(sum).unwrap_or(units[0]);
+    for step in 0..128 {
+        let far = units
+            .iter()
+            .min_by(|p, q| product(p, &center).total_cmp(&product(q, &center)))?;
+        if product(far, &center) > WITHIN {
+            let distance = |p: &Point3| (0..3).map(|k| (p[k] - center[k]).powi(2)).sum::<f64>();
+            // By differences: near the center, products do not tell corners apart.
+            let farthest = units.iter().map(distance).fold(0.0, f64::max);
+            return Some((center, farthest.sqrt()));
+        }
+        let share = 1.0 / f64::from(step + 2);
+        center = normal([0, 1, 2].map(|k| center[k] + share * (far[k] - center[k])))?;
+    }
+    None
+}
+
+fn compare(a: &Point3, b: &Point3) -> Ordering {
+    a[0].total_cmp(&b[0])
+        .then(a[1].total_cmp(&b[1]))
+        .then(a[2].total_cmp(&b[2]))
+}
+
+/// Turns a ring so that the sequence of its corners is the smallest one.
+fn start_at_smallest(ring: &mut [Point3]) {
+    let count = ring.len();
+    let mut best = 0;
+    for start in 1..count {
+        let later = (0..count)
+            .map(|k| compare(&ring[(start + k) % count], &ring[(best + k) % count]))
+            .find(|order| order.is_ne());
+        if later == Some(Ordering::Less) {
+            best = start;
+        }
+    }
+    ring.rotate_left(best);
+}

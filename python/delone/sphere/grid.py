@@ -1,0 +1,719 @@
+"""The class Grid: cells on the sphere, for regridding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_choice, as_number, as_workers
+from delone.counting import agreed, counted
+from delone.errors import DirectionError, InputError, ShapeError
+from delone.immutable import Immutable, ReadOnly, kept, sealed
+from delone.sphere import rings as rings_of
+from delone.sphere.coordinates import lonlat_of, units_of
+from delone.sphere.gaussian import gaussian_bounds
+from delone.sphere.healpix import healpix_corners
+from delone.sphere.rings import as_bounds, as_corners, as_starts, merged_corners
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.sphere.voronoi import Voronoi
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int64]
+
+__all__ = ["Grid", "GridFaults", "GridReport"]
+
+# What is wrong with a cell, in the order of the core's numbers, and the cure.
+_FAULTS = {
+    2: ("a side that joins opposite directions", "add a corner between them"),
+    3: ("corners that no hemisphere contains", "split such cells"),
+    4: ("sides that cross", "repair them, for example with shapely.make_valid"),
+}
+# Cells of one grid that share more of the smaller one than this overlap; less is a rounding.
+_SHARED = 1e-12
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class GridReport(ReadOnly):
+    """What was done to the corners of a grid, and which cells are special.
+
+    Attributes
+    ----------
+    merged : int
+        Corners that were moved to an earlier corner within `merge`.
+    repeated : int
+        Corners that repeat the one before in their cell, and are ignored.
+    turned : ndarray of int64
+        Cells whose corners are clockwise, and are taken in the other direction.
+    empty : ndarray of int64
+        Cells with fewer than three distinct corners, or without area; they share nothing.
+    concave : ndarray of int64
+        Cells that are concave or have several rings, or have more than 64 corners.
+
+    Examples
+    --------
+    >>> from delone import sphere
+    >>> corners = [(1, 0, 0), (0, 0, 1), (0, 1, 0)]
+    >>> sphere.Grid.mesh(corners, [0, 3]).report
+    <GridReport: 1 cell turned>
+    """
+
+    merged: int
+    repeated: int
+    turned: Indices
+    empty: Indices
+    concave: Indices
+
+    def __repr__(self) -> str:
+        parts = [f"{counted(self.merged, 'corner')} merged"] if self.merged else []
+        if self.repeated:
+            parts.append(f"{counted(self.repeated, 'repeated corner')} ignored")
+        for name in ("turned", "empty", "concave"):
+            if count := len(getattr(self, name)):
+                parts.append(f"{counted(count, 'cell')} {name}")
+        return f"<GridReport: {', '.join(parts) or 'nothing special'}>"
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class GridFaults(ReadOnly):
+    """What `Grid.validate` finds; truthy if no cells overlap.
+
+    Attributes
+    ----------
+    overlapping : ndarray of int64, shape (k, 2)
+        Pairs of cells that share more than 1e-12 of the smaller one.
+    covered : float
+        The fraction of the sphere that the cells cover, where overlaps count twice.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone import sphere
+    >>> grid = sphere.Grid.lonlat(np.arange(0, 361, 30), np.arange(0, 91, 30))
+    >>> faults = grid.validate()
+    >>> bool(faults), round(faults.covered, 12)
+    (True, 0.5)
+    """
+
+    overlapping: Indices
+    covered: float
+
+    def __bool__(self) -> bool:
+        return not len(self.overlapping)
+
+    def __repr__(self) -> str:
+        pairs = f"{counted(len(self.overlapping), 'pair')} of cells overlap"
+        if not len(self.overlapping):
+            pairs = "no cells overlap"
+        return f"<GridFaults: {pairs}, {100 * self.covered:.6g} % of the sphere>"
+
+
+class Grid(Immutable):
+    """Cells on the sphere: the grid of a model, a map or a set of polygons.
+
+    Make one with a class method:
+
+    - `lonlat`: between meridians and parallels, by bounds
+    - `curvilinear`: quadrilaterals, by two-dimensional arrays of corners
+    - `mesh`: any polygons, by their corners
+    - `polygons`: shapely geometries and GeoDataFrames
+    - `voronoi`: the cells of a `delone.sphere.Voronoi` diagram
+    - `healpix`: the pixels of HEALPix
+    - `gaussian`: a Gaussian grid, full or reduced
+
+    Attributes
+    ----------
+    ncells : int
+        Number of cells.
+    shape : tuple of int
+        Shape of fields on the grid: (rows, columns) for `lonlat`, `curvilinear` and a full
+        Gaussian grid, else (ncells,). Cells are numbered in row-major order.
+    areas : ndarray of float64, shape (ncells,)
+        Areas in steradians.
+    edges : {"parallel", "arc"}
+        What sides are: meridians and parallels, or arcs of great circles.
+    report : GridReport
+        What was done to corners, with counts and rows.
+
+    Notes
+    -----
+    Polygons may be concave, have holes and several parts, repeat corners, have corners in the
+    sides of others, run clockwise, and lie at or around a pole. Each must be within a hemisphere.
+    The start, the direction and repetitions of a ring, and the order of bounds, change no bit of
+    what is computed. Areas are right to a few units in their last place, for cells of
+    centimeters, too.
+
+    See Also
+    --------
+    delone.sphere.Overlaps : The areas that cells of two grids share.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone import sphere
+    >>> grid = sphere.Grid.lonlat(np.arange(0, 361, 1), np.arange(-90, 91, 1))
+    >>> grid
+    <Grid of 64800 cells (180 x 360), parallels>
+    >>> bool(np.isclose(grid.areas.sum(), 4 * np.pi, rtol=1e-14))
+    True
+    """
+
+    __slots__ = ("_arrays", "_edges", "_made", "_merged", "_shape", "_workers")
+
+    _arrays: tuple[Any, ...]
+    _edges: str
+    _made: _core.CellGrid
+    _merged: int
+    _shape: tuple[int, ...]
+    _workers: int | None
+
+    def __init__(self) -> None:
+        raise InputError(
+            "make a Grid with a class method: Grid.lonlat, .curvilinear, .mesh, .polygons, "
+            ".voronoi, .healpix or .gaussian"
+        )
+
+    @classmethod
+    def _of(
+        cls,
+        edges: str,
+        arrays: tuple[Any, ...],
+        shape: tuple[int, ...],
+        merged: int,
+        workers: int | None,
+    ) -> Self:
+        """Return a grid of arrays for the core."""
+        as_workers(workers)
+        made = cls.__new__(cls)
+        arrays = tuple(sealed(a) if isinstance(a, np.ndarray) else a for a in arrays)
+        build = _core.CellGrid.rows if edges == "parallel" else _core.CellGrid.polygons
+        made._hold(
+            arrays=arrays,
+            edges=edges,
+            made=build(*arrays),
+            merged=merged,
+            shape=shape,
+            workers=workers,
+        )
+        made._refuse_faults()
+        return made
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _again, (self._edges, self._arrays, self._shape, self._merged, self._workers)
+
+    def __repr__(self) -> str:
+        size = f" ({' x '.join(map(str, self._shape))})" if len(self._shape) > 1 else ""
+        sides = "parallels" if self._edges == "parallel" else "arcs of great circles"
+        return f"<Grid of {counted(self.ncells, 'cell')}{size}, {sides}>"
+
+    def __len__(self) -> int:
+        return self.ncells
+
+    @classmethod
+    def lonlat(
+        cls, lon: ArrayLike, lat: ArrayLike, *, degrees: bool = True, workers: int | None = None
+    ) -> Self:
+        """Return the cells between meridians and parallels.
+
+        Parameters
+        ----------
+        lon, lat : array_like, shape (n + 1,) or (n, 2)
+            Bounds of columns and rows: the edges between them, or both bounds of each, as in files
+            with CF conventions. In either direction; neighbors must share their bound. Latitudes
+            beyond a pole by rounding mean the pole.
+        degrees : bool, optional
+            Whether bounds are in degrees (the default) or in radians.
+        workers : int, optional
+            Maximum number of threads; by default one per core.
+
+        Returns
+        -------
+        Grid
+            Its shape is (rows, columns).
+
+        Raises
+        ------
+        InputError
+            Bounds are not monotonic, leave gaps, or span more than one turn.
+        ShapeError, DtypeError, NonFiniteError
+            A bound is not a number, or an array has another shape.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> sphere.Grid.lonlat([0, 120, 240, 360], [(90, 0), (0, -90)])
+        <Grid of 6 cells (2 x 3), parallels>
+        """
+        columns = as_bounds(lon, name="lon", degrees=degrees)
+        rows = as_bounds(lat, name="lat", degrees=degrees)
+        arrays = rings_of.rows(rows, [columns] * (len(rows) - 1))
+        return cls._of("parallel", arrays, (len(rows) - 1, len(columns) - 1), 0, workers)
+
+    @classmethod
+    def gaussian(
+        cls, n: int, points: str | Sequence[int] | None = None, *, workers: int | None = None
+    ) -> Self:
+        """Return the cells of a Gaussian grid.
+
+        Parameters
+        ----------
+        n : int
+            Number of parallels between a pole and the equator: 80 for N80.
+        points : "octahedral" or sequence of int, optional
+            Cells in each row from north to south, of a reduced grid; "octahedral" has 20 in the
+            row at a pole and 4 more in each row towards the equator. By default 4 n in all rows.
+        workers : int, optional
+            Maximum number of threads; by default one per core.
+
+        Returns
+        -------
+        Grid
+            Rows from north to south, each from longitude 0 eastward.
+
+        Raises
+        ------
+        InputError
+            `n` is below 1, or `points` does not have a positive number for each of the 2 n rows.
+
+        Notes
+        -----
+        Rows are centered at the roots of the Legendre polynomial of degree 2 n. Their bounds are
+        such that their areas are proportional to the weights of Gauss's quadrature. Columns are
+        centered at multiples of 360 degrees over their number.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> sphere.Grid.gaussian(80)
+        <Grid of 51200 cells (160 x 320), parallels>
+        >>> sphere.Grid.gaussian(80, "octahedral")
+        <Grid of 28480 cells, parallels>
+        """
+        rows, columns = gaussian_bounds(n, points)
+        arrays = rings_of.rows(rows, columns)
+        shape = (2 * n, 4 * n) if points is None else (arrays[-1],)
+        return cls._of("parallel", arrays, shape, 0, workers)
+
+    @classmethod
+    def curvilinear(
+        cls,
+        lon: ArrayLike,
+        lat: ArrayLike,
+        *,
+        merge: float = 1e-12,
+        degrees: bool = True,
+        workers: int | None = None,
+    ) -> Self:
+        """Return quadrilaterals by two-dimensional arrays of their corners.
+
+        Parameters
+        ----------
+        lon, lat : array_like, shape (rows + 1, columns + 1) or (rows, columns, k)
+            Longitudes and latitudes of corners: those between the cells, or the k corners of each,
+            in order around it, as bounds in files with CF conventions.
+        merge : float, optional
+            Corners nearer than this, in radians, become one: files repeat corners with other last
+            bits. 0 for none.
+        degrees : bool, optional
+            Whether corners are in degrees (the default) or in radians.
+        workers : int, optional
+            Maximum number of threads; by default one per core.
+
+        Returns
+        -------
+        Grid
+            Its shape is (rows, columns); sides are arcs of great circles.
+
+        Raises
+        ------
+        DirectionError
+            A cell has opposite ends of a side, sides that cross, or no hemisphere that contains
+            it; ``error.rows`` has the first.
+        ShapeError, DtypeError, NonFiniteError
+            Arrays have other shapes, or a corner is not a number.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from delone import sphere
+        >>> lon, lat = np.meshgrid([0, 10, 20], [0, 5, 10, 15])
+        >>> sphere.Grid.curvilinear(lon + lat, lat)
+        <Grid of 6 cells (3 x 2), arcs of great circles>
+        """
+        vectors, shape = as_corners(lon, lat, degrees=degrees, workers=workers)
+        starts = np.arange(len(vectors) + 1, dtype=np.int64) * vectors.shape[1]
+        return cls._polygons(vectors.reshape(-1, 3), starts, shape, merge, workers)
+
+    @classmethod
+    def mesh(
+        cls,
+        xyz: ArrayLike | None = None,
+        starts: ArrayLike | None = None,
+        *,
+        lonlat: ArrayLike | None = None,
+        merge: float = 1e-12,
+        degrees: bool = True,
+        workers: int | None = None,
+    ) -> Self:
+        """Return polygons by their corners.
+
+        Parameters
+        ----------
+        xyz : array_like, shape (k, 3) or (n, c, 3), optional
+            Corners as vectors of any length, cell by cell and in order around each.
+        starts : array_like, shape (n + 1,), optional
+            Where the corners of each cell start, and their number. Not needed if each cell has c
+            corners.
+        lonlat : array_like, shape (k, 2) or (n, c, 2), optional
+            Longitudes and latitudes instead of `xyz`.
+        merge, degrees, workers
+            As for `curvilinear`.
+
+        Returns
+        -------
+        Grid
+            Sides are arcs of great circles.
+
+        Raises
+        ------
+        DirectionError
+            As for `curvilinear`, or a vector is zero.
+        ShapeError, DtypeError, NonFiniteError
+            Arrays have other shapes, or a corner is not a number.
+
+        Examples
+        --------
+        The cells of triangles, by rows of an array of places:
+
+        >>> import numpy as np
+        >>> from delone import sphere
+        >>> places = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0)])
+        >>> grid = sphere.Grid.mesh(places[[(0, 1, 2), (1, 3, 2)]])
+        >>> (grid.areas / np.pi).tolist()
+        [0.5, 0.5]
+        """
+        vectors, where = as_starts(xyz, lonlat, starts, degrees=degrees, workers=workers)
+        return cls._polygons(vectors, where, (len(where) - 1,), merge, workers)
+
+    @classmethod
+    def polygons(
+        cls,
+        geometries: Any,
+        *,
+        merge: float = 1e-12,
+        degrees: bool = True,
+        workers: int | None = None,
+    ) -> Self:
+        """Return the cells of polygons in longitudes and latitudes (extra ``geo``).
+
+        Parameters
+        ----------
+        geometries : geometry, iterable of geometries, GeoSeries or GeoDataFrame
+            Polygons and multipolygons of shapely, one cell each; None and empty ones are empty
+            cells. Geographic reference systems only.
+        merge, degrees, workers
+            As for `curvilinear`.
+
+        Returns
+        -------
+        Grid
+            Sides are arcs of great circles. A ring is a hole where shapely says so, however it
+            runs.
+
+        Raises
+        ------
+        InputError
+            A geometry is not a polygon, or its reference system is projected.
+        DirectionError
+            As for `curvilinear`.
+        MissingExtraError
+            shapely is not installed.
+
+        Notes
+        -----
+        Polygons that are cut at 180 degrees fit together there. A polygon around a pole that is
+        completed along the edge of the map, with corners at latitude 90, is one around the pole.
+
+        Examples
+        --------
+        >>> from shapely import box
+        >>> from delone import sphere
+        >>> sphere.Grid.polygons([box(0, 0, 10, 10), box(170, -5, 190, 5)])
+        <Grid of 2 cells, arcs of great circles>
+        """
+        given = rings_of.geometries(geometries, degrees=degrees, workers=workers)
+        vectors, merged = merged_corners(given.vectors, _as_merge(merge))
+        arrays = (vectors, given.rings, given.cells, given.holes)
+        return cls._of("arc", arrays, (len(given.cells) - 1,), merged, workers)
+
+    @classmethod
+    def voronoi(cls, diagram: Voronoi, *, workers: int | None = None) -> Self:
+        """Return the cells of a Voronoi diagram, one for each of its sites.
+
+        Parameters
+        ----------
+        diagram : delone.sphere.Voronoi
+            The diagram, without a clip. Sites with the same direction have the same cell.
+        workers : int, optional
+            Maximum number of threads; by default one per core.
+
+        Returns
+        -------
+        Grid
+            Sides are arcs of great circles between the rounded vertices.
+
+        Raises
+        ------
+        InputError
+            The diagram is clipped: make the grid of `Voronoi.to_geopandas`.
+        DirectionError
+            A cell is larger than a hemisphere, as those of few sites are.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from delone import sphere
+        >>> sites = [(0, 90), (0, 0), (90, 0), (180, 0), (270, 0), (0, -90)]
+        >>> grid = sphere.Grid.voronoi(sphere.Voronoi(lonlat=sites))
+        >>> (grid.areas / np.pi).round(9)
+        array([0.66666667, 0.66666667, 0.66666667, 0.66666667, 0.66666667,
+               0.66666667])
+        """
+        vectors, starts = rings_of.voronoi(diagram)
+        return cls._polygons(vectors, starts, (len(starts) - 1,), 0.0, workers)
+
+    @classmethod
+    def healpix(cls, nside: int, order: str = "ring", *, workers: int | None = None) -> Self:
+        """Return the pixels of HEALPix.
+
+        Parameters
+        ----------
+        nside : int
+            Pixels along a side of a base pixel; there are 12 nside^2 pixels. A power of two for
+            "nested".
+        order : {"ring", "nested"}, optional
+            How pixels are numbered.
+        workers : int, optional
+            Maximum number of threads; by default one per core.
+
+        Returns
+        -------
+        Grid
+            Quadrilaterals. The sides of pixels are not arcs of great circles; here they are, so
+            that areas differ a little from each other.
+
+        Raises
+        ------
+        InputError
+            `nside` is below 1, above 2^13, or not a power of two for "nested".
+
+        Notes
+        -----
+        Corners follow from integers, so that pixels share them exactly (K. M. Górski et al.,
+        "HEALPix", The Astrophysical Journal 622, 2005).
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> sphere.Grid.healpix(64, "nested")
+        <Grid of 49152 cells, arcs of great circles>
+        """
+        kind = as_choice(order, ("ring", "nested"), name="order")
+        vectors = healpix_corners(nside, nested=kind == "nested", workers=as_workers(workers))
+        starts = np.arange(len(vectors) + 1, dtype=np.int64) * 4
+        return cls._polygons(vectors.reshape(-1, 3), starts, (len(vectors),), 0.0, workers)
+
+    @classmethod
+    def _polygons(
+        cls,
+        vectors: Floats,
+        starts: Indices,
+        shape: tuple[int, ...],
+        merge: float,
+        workers: int | None,
+    ) -> Self:
+        """Return the grid of cells of one ring each."""
+        vectors, merged = merged_corners(vectors, _as_merge(merge))
+        count = len(starts) - 1
+        cells = np.arange(count + 1, dtype=np.int64)
+        holes = np.zeros(count, dtype=np.bool_)
+        return cls._of("arc", (vectors, starts, cells, holes), shape, merged, workers)
+
+    def _refuse_faults(self) -> None:
+        """Raise an error for cells that cannot be used."""
+        faults = self._checked.faults
+        for fault, (what, cure) in _FAULTS.items():
+            rows = np.flatnonzero(faults == fault)
+            if len(rows):
+                count = len(rows)
+                cells = f"{counted(count, 'cell')} {agreed(count, 'has', 'have')} {what}"
+                message = f"{cells}, first cell {rows[0]}: {cure}"
+                raise DirectionError(message, rows=rows[:10].tolist(), count=count)
+
+    @property
+    @kept
+    def _checked(self) -> _core.CheckedCells:
+        return self._made.check(True, as_workers(self._workers))
+
+    @property
+    def workers(self) -> int | None:
+        """Maximum number of threads; None for one per core. The result does not depend on it."""
+        return self._workers
+
+    @property
+    def ncells(self) -> int:
+        """Number of cells."""
+        return int(np.prod(self._shape))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of fields on the grid."""
+        return self._shape
+
+    @property
+    def edges(self) -> str:
+        """What sides are: "parallel" for meridians and parallels, "arc" for great circles."""
+        return self._edges
+
+    @property
+    @kept
+    def areas(self) -> Floats:
+        """Areas in steradians, (ncells,); 0 of empty cells."""
+        return sealed(self._checked.areas)
+
+    @property
+    @kept
+    def report(self) -> GridReport:
+        """What was done to corners, and which cells are special."""
+        known = self._checked
+        return GridReport(
+            merged=self._merged,
+            repeated=known.repeated,
+            turned=np.flatnonzero(known.turned),
+            empty=np.flatnonzero(known.faults == 1),
+            concave=np.flatnonzero(known.concave),
+        )
+
+    @property
+    @kept
+    def rings(self) -> tuple[Floats, Indices, Indices]:
+        """The rings of all cells: unit vectors of corners, starts of rings, starts of cells.
+
+        Those of cells between meridians and parallels are their four corners.
+        """
+        if self._edges == "arc":
+            vectors, starts, cells, _ = self._arrays
+        else:
+            vectors, starts, cells = rings_of.corners(self._arrays)
+        return sealed(units_of(vectors, self._workers)), sealed(starts), sealed(cells)
+
+    @property
+    @kept
+    def centers_lonlat(self) -> Floats:
+        """Longitudes and latitudes of a place in the middle of each cell, (ncells, 2), in degrees.
+
+        The mean direction of the corners; NaN for cells without corners.
+        """
+        vectors, starts, cells = self.rings
+        total = np.concatenate((np.zeros((1, 3)), np.cumsum(vectors, axis=0)))
+        sums = np.diff(total[starts[cells]], axis=0)
+        none = ~sums.any(axis=1)
+        sums[none] = 1.0
+        found = lonlat_of(sums)
+        found[none] = np.nan
+        return sealed(found)
+
+    def validate(self) -> GridFaults:
+        """Find cells that overlap.
+
+        Returns
+        -------
+        GridFaults
+            Truthy if no two cells share more than 1e-12 of the smaller one.
+
+        Notes
+        -----
+        Computes the overlaps of the grid with itself. Gaps are not faults: `covered` is the
+        fraction of the sphere that the cells cover.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> square = [(0, 0), (10, 0), (10, 10), (0, 10)]
+        >>> moved = [(5, 0), (15, 0), (15, 10), (5, 10)]
+        >>> sphere.Grid.mesh(lonlat=[square, moved]).validate()
+        <GridFaults: 1 pair of cells overlap, 0.483547 % of the sphere>
+        """
+        found = self._made.overlaps(self._made, as_workers(self._workers))
+        first = np.repeat(np.arange(self.ncells), np.diff(found.indptr))
+        pairs = np.column_stack((first, found.indices.astype(np.int64)))
+        small = self.areas[pairs].min(axis=1)
+        wrong = (pairs[:, 0] < pairs[:, 1]) & (found.areas > _SHARED * small)
+        return GridFaults(overlapping=pairs[wrong], covered=float(self.areas.sum() / (4 * np.pi)))
+
+    def to_geopandas(self, data: Any = None, *, crs: Any = "EPSG:4326", step: float = 1.0) -> Any:
+        """Convert the cells to a table of geopandas (extra ``geo``).
+
+        Parameters
+        ----------
+        data : DataFrame or mapping, optional
+            Columns to include, with one row for each cell.
+        crs : any, optional
+            Coordinate reference system of longitudes and latitudes.
+        step : float, optional
+            Degrees between the corners that show arcs of great circles, at most.
+
+        Returns
+        -------
+        GeoDataFrame
+            Polygons and multipolygons in degrees, cut at 180 degrees and completed along the edge
+            of the map if they contain a pole. Empty cells are empty polygons.
+
+        Raises
+        ------
+        MissingExtraError
+            geopandas is not installed.
+        InputError
+            `data` does not have one row for each cell, or `step` is not positive.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> table = sphere.Grid.lonlat([170, 190], [0, 10, 20]).to_geopandas()
+        >>> table.geom_type.tolist(), table.total_bounds.tolist()
+        (['MultiPolygon', 'MultiPolygon'], [-180.0, 0.0, 180.0, 20.0])
+        """
+        from delone.exchange.geopandas import cells_to_geopandas
+
+        width = as_number(step, name="step")
+        if not 0 < width < np.inf:
+            raise InputError(f"step must be positive and finite, got {step!r:.60}")
+        if self._edges == "parallel":
+            shapes = rings_of.boxes(self._arrays)
+        else:
+            shapes = rings_of.shapes(self._arrays, self.areas, width)
+        return cells_to_geopandas(shapes, data, crs)
+
+
+def _as_merge(merge: float) -> float:
+    """Return the distance within which corners become one."""
+    value = as_number(merge, name="merge")
+    if not 0 <= value < 0.1:
+        raise InputError(f"merge must be from 0 to 0.1 radians, got {value!r:.60}")
+    return value
+
+
+def _again(
+    edges: str, arrays: tuple[Any, ...], shape: tuple[int, ...], merged: int, workers: int | None
+) -> Grid:
+    """Return a pickled grid."""
+    if len(arrays) != 4 + (edges == "parallel"):
+        raise ShapeError("a pickled Grid is incomplete")
+    return Grid._of(edges, arrays, shape, merged, workers)
