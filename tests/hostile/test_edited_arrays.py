@@ -50,9 +50,6 @@ MAKE: dict[str, Callable[[], Any]] = {
         lonlat=9 * SQUARE, segments=[*SIDES, (0, 2), (1, 6), (3, 3)], crossing="split"
     ),
     "sphere.from_geometry": lambda: sphere.from_geometry(shapely.Polygon(SQUARE[:4], [SQUARE[4:]])),
-    "sphere.Overlaps": lambda: sphere.Overlaps(
-        sphere.Grid.healpix(1), sphere.Grid.lonlat([0, 120, 240, 360], [-90, 0, 90])
-    ),
     "sphere.Voronoi": lambda: sphere.Voronoi(lonlat=SQUARE, radius=6371.0),
     "sphere.Voronoi, clipped": lambda: sphere.Voronoi(
         lonlat=SQUARE, clip=shapely.Polygon(SQUARE[:4], [SQUARE[4:]])

@@ -24,15 +24,15 @@ SPHERE = 4 * np.pi
 def of_the_sphere() -> dict[str, Callable[[], Grid]]:
     sites = np.random.default_rng(4).normal(size=(60, 3))
     return {
-        "lonlat": lambda: Grid.lonlat(LON, LAT),
-        "one column": lambda: Grid.lonlat([0, 360], LAT),
-        "healpix ring": lambda: Grid.healpix(3),
-        "healpix nested": lambda: Grid.healpix(4, "nested"),
-        "gaussian": lambda: Grid.gaussian(8),
-        "octahedral": lambda: Grid.gaussian(8, "octahedral"),
-        "reduced": lambda: Grid.gaussian(2, [3, 7, 7, 3]),
-        "voronoi": lambda: Grid.voronoi(sphere.Voronoi(xyz=sites)),
-        "curvilinear": lambda: Grid.curvilinear(*np.meshgrid(LON, LAT)),
+        "lonlat": lambda: Grid.from_lonlat(LON, LAT),
+        "one column": lambda: Grid.from_lonlat([0, 360], LAT),
+        "healpix ring": lambda: Grid.from_healpix(3),
+        "healpix nested": lambda: Grid.from_healpix(4, "nested"),
+        "gaussian": lambda: Grid.from_gaussian(8),
+        "octahedral": lambda: Grid.from_gaussian(8, "octahedral"),
+        "reduced": lambda: Grid.from_gaussian(2, [3, 7, 7, 3]),
+        "voronoi": lambda: Grid.from_voronoi(sphere.Voronoi(xyz=sites)),
+        "curvilinear": lambda: Grid.from_curvilinear(*np.meshgrid(LON, LAT)),
     }
 
 
@@ -44,47 +44,47 @@ def test_cells_tile_the_sphere(name: str) -> None:
     assert faults
     assert abs(faults.covered - 1) < 4e-15
     assert not len(grid.report.turned)
-    assert grid.ncells == np.prod(grid.shape) == len(grid) == len(grid.areas)
+    assert grid.ncells == np.prod(grid.grid_shape) == len(grid) == len(grid.areas)
     again = pickle.loads(pickle.dumps(grid))
     assert np.array_equal(again.areas, grid.areas)
-    assert (again.shape, again.edges, repr(again)) == (grid.shape, grid.edges, repr(grid))
+    assert (again.grid_shape, again.edges, repr(again)) == (grid.grid_shape, grid.edges, repr(grid))
 
 
 def test_areas_are_those_of_the_definition() -> None:
-    grid = Grid.lonlat(LON, LAT)
+    grid = Grid.from_lonlat(LON, LAT)
     sines = np.sin(np.radians(LAT))
     expected = np.diff(sines)[:, None] * np.radians(30.0) * np.ones(12)
-    assert np.allclose(grid.areas.reshape(grid.shape), expected, rtol=1e-14, atol=0)
+    assert np.allclose(grid.areas.reshape(grid.grid_shape), expected, rtol=1e-14, atol=0)
     ring = [(1.0, 0, 0), (1, 1, 0.5), (0, 1, 2)]
-    assert Grid.mesh([ring]).areas[0] == pytest.approx(float(polygon_area(ring)), rel=1e-15)
+    assert Grid.from_mesh([ring]).areas[0] == pytest.approx(float(polygon_area(ring)), rel=1e-15)
 
 
 def test_the_order_of_bounds_is_that_of_cells() -> None:
-    grid = Grid.lonlat(LON, LAT)
+    grid = Grid.from_lonlat(LON, LAT)
     for a, b, lon, lat in (
         (1, -1, LON, LAT[::-1]),
         (-1, 1, LON[::-1], LAT),
         (-1, -1, LON[::-1], LAT[::-1]),
     ):
-        other = Grid.lonlat(lon, lat)
-        expected = grid.areas.reshape(grid.shape)[::b, ::a]
-        assert np.array_equal(other.areas.reshape(grid.shape), expected)
+        other = Grid.from_lonlat(lon, lat)
+        expected = grid.areas.reshape(grid.grid_shape)[::b, ::a]
+        assert np.array_equal(other.areas.reshape(grid.grid_shape), expected)
         centers = grid.centers_lonlat.reshape(6, 12, 2)[::b, ::a]
         assert np.allclose(other.centers_lonlat.reshape(6, 12, 2), centers, atol=1e-12)
     pairs = np.column_stack((LON[:-1], LON[1:])), np.column_stack((LAT[1:], LAT[:-1]))[::-1]
-    assert np.array_equal(Grid.lonlat(*pairs).areas, Grid.lonlat(LON, LAT[::-1]).areas)
-    radians = Grid.lonlat(np.radians(LON), np.radians(LAT), degrees=False)
+    assert np.array_equal(Grid.from_lonlat(*pairs).areas, Grid.from_lonlat(LON, LAT[::-1]).areas)
+    radians = Grid.from_lonlat(np.radians(LON), np.radians(LAT), degrees=False)
     assert np.allclose(radians.areas, grid.areas, rtol=1e-14)
 
 
 def test_a_latitude_beyond_a_pole_by_rounding_is_the_pole() -> None:
     lat = np.radians(LAT.astype(np.float32)).astype(np.float64)
-    grid = Grid.lonlat(LON, np.degrees(lat))
+    grid = Grid.from_lonlat(LON, np.degrees(lat))
     assert abs(grid.areas.sum() / SPHERE - 1) < 1e-14
 
 
 def test_healpix_orders_have_the_same_pixels() -> None:
-    ring, nested = Grid.healpix(8), Grid.healpix(8, "nested")
+    ring, nested = Grid.from_healpix(8), Grid.from_healpix(8, "nested")
     found = [np.round(grid.centers_lonlat, 9) for grid in (ring, nested)]
     order = [np.lexsort(c.T) for c in found]
     assert np.array_equal(found[0][order[0]], found[1][order[1]])
@@ -107,7 +107,7 @@ def test_the_report_names_cells() -> None:
         [(0, 0), (10, 0), (0, 0), (10, 0)],
         [(0, 0), (10, 0), (4, 4), (0, 10)],
     ]
-    report = Grid.mesh(lonlat=cells).report
+    report = Grid.from_mesh(lonlat=cells).report
     assert report.turned.tolist() == [1]
     assert report.empty.tolist() == [3]
     assert report.concave.tolist() == [4]
@@ -115,10 +115,10 @@ def test_the_report_names_cells() -> None:
     assert report.merged == 0
     near = np.array(cells, dtype=float)
     near[1] += 1e-13
-    grid = Grid.mesh(lonlat=near)
+    grid = Grid.from_mesh(lonlat=near)
     assert grid.report.merged == 4
-    assert np.array_equal(grid.areas, Grid.mesh(lonlat=cells).areas)
-    assert Grid.mesh(lonlat=near, merge=0).report.merged == 0
+    assert np.array_equal(grid.areas, Grid.from_mesh(lonlat=cells).areas)
+    assert Grid.from_mesh(lonlat=near, merge=0).report.merged == 0
 
 
 def test_merging_follows_chains() -> None:
@@ -126,7 +126,7 @@ def test_merging_follows_chains() -> None:
     corners = np.column_stack((np.cos(steps), np.sin(steps), np.zeros(5)))
     other = np.tile([(0.0, 1, 0), (0, 0, 1)], (5, 1)).reshape(5, 2, 3)
     cells = np.concatenate((corners[:, None], other), axis=1)
-    grid = Grid.mesh(cells)
+    grid = Grid.from_mesh(cells)
     assert grid.report.merged == 4
     assert len(np.unique(grid.rings[0], axis=0)) == 3
 
@@ -135,38 +135,38 @@ def test_merging_follows_chains() -> None:
     ("call", "error", "message"),
     [
         (Grid, delone.InputError, "make a Grid with a class method"),
-        (lambda: Grid.lonlat([0, 1, 1], LAT), delone.InputError, "ascend or descend"),
-        (lambda: Grid.lonlat([0, 361], LAT), delone.InputError, "more than one turn"),
-        (lambda: Grid.lonlat([(0, 1), (2, 3)], LAT), delone.InputError, "entries 0 and 1"),
-        (lambda: Grid.lonlat(LON, [0, 91]), delone.InputError, "beyond a pole"),
-        (lambda: Grid.lonlat(LON, [0, np.nan]), delone.NonFiniteError, "NaN"),
-        (lambda: Grid.lonlat([0], LAT), delone.ShapeError, "at least 2"),
-        (lambda: Grid.lonlat(np.ones((2, 3)), LAT), delone.ShapeError, "shape"),
-        (lambda: Grid.healpix(3, "nested"), delone.InputError, "power of two"),
-        (lambda: Grid.healpix(0), delone.InputError, "nside"),
-        (lambda: Grid.gaussian(2, [4, 4]), delone.InputError, "4 numbers"),
-        (lambda: Grid.gaussian(2, "reduced"), delone.InputError, "octahedral"),
-        (lambda: Grid.mesh([(1, 0, 0)]), delone.ShapeError, "starts"),
-        (lambda: Grid.mesh([(1, 0, 0)], [0, 2]), delone.ShapeError, "number of corners, 1"),
-        (lambda: Grid.mesh(np.eye(3), [0, 3], merge=1), delone.InputError, "merge"),
-        (lambda: Grid.curvilinear([[0, 1]], [[0, 1]]), delone.ShapeError, "two rows"),
-        (lambda: Grid.curvilinear(LON, LAT), delone.ShapeError, "shape"),
+        (lambda: Grid.from_lonlat([0, 1, 1], LAT), delone.InputError, "ascend or descend"),
+        (lambda: Grid.from_lonlat([0, 361], LAT), delone.InputError, "more than one turn"),
+        (lambda: Grid.from_lonlat([(0, 1), (2, 3)], LAT), delone.InputError, "entries 0 and 1"),
+        (lambda: Grid.from_lonlat(LON, [0, 91]), delone.InputError, "beyond a pole"),
+        (lambda: Grid.from_lonlat(LON, [0, np.nan]), delone.NonFiniteError, "NaN"),
+        (lambda: Grid.from_lonlat([0], LAT), delone.ShapeError, "at least 2"),
+        (lambda: Grid.from_lonlat(np.ones((2, 3)), LAT), delone.ShapeError, "shape"),
+        (lambda: Grid.from_healpix(3, "nested"), delone.InputError, "power of two"),
+        (lambda: Grid.from_healpix(0), delone.InputError, "nside"),
+        (lambda: Grid.from_gaussian(2, [4, 4]), delone.InputError, "4 numbers"),
+        (lambda: Grid.from_gaussian(2, "reduced"), delone.InputError, "octahedral"),
+        (lambda: Grid.from_mesh([(1, 0, 0)]), delone.ShapeError, "starts"),
+        (lambda: Grid.from_mesh([(1, 0, 0)], [0, 2]), delone.ShapeError, "number of corners, 1"),
+        (lambda: Grid.from_mesh(np.eye(3), [0, 3], merge=1), delone.InputError, "merge"),
+        (lambda: Grid.from_curvilinear([[0, 1]], [[0, 1]]), delone.ShapeError, "two rows"),
+        (lambda: Grid.from_curvilinear(LON, LAT), delone.ShapeError, "shape"),
         (
-            lambda: Grid.mesh([[(1, 0, 0), (-1, 0, 0), (0, 1, 1)]]),
+            lambda: Grid.from_mesh([[(1, 0, 0), (-1, 0, 0), (0, 1, 1)]]),
             delone.DirectionError,
             "1 cell has a side that joins opposite directions, first cell 0",
         ),
         (
-            lambda: Grid.mesh(lonlat=[[(0, 0), (120, 0), (240, 0)]]),
+            lambda: Grid.from_mesh(lonlat=[[(0, 0), (120, 0), (240, 0)]]),
             delone.DirectionError,
             "no hemisphere contains",
         ),
         (
-            lambda: Grid.mesh(lonlat=[[(0, 0), (9, 9), (9, 0), (0, 9)]]),
+            lambda: Grid.from_mesh(lonlat=[[(0, 0), (9, 9), (9, 0), (0, 9)]]),
             delone.DirectionError,
             "sides that cross",
         ),
-        (lambda: Grid.mesh(np.zeros((1, 3, 3))), delone.DirectionError, "zero"),
+        (lambda: Grid.from_mesh(np.zeros((1, 3, 3))), delone.DirectionError, "zero"),
     ],
 )
 def test_what_is_refused(call: Callable[[], Any], error: type[Exception], message: str) -> None:
@@ -180,27 +180,27 @@ def test_polygons_of_shapely() -> None:
     hole = shapely.Polygon([(0, 0), (10, 0), (10, 10), (0, 10)], [[(2, 2), (4, 2), (4, 4), (2, 4)]])
     parts = shapely.MultiPolygon([shapely.box(170, 0, 180, 5), shapely.box(-180, 0, -170, 5)])
     table = geopandas.GeoDataFrame(geometry=[hole, parts, None, hole.reverse()], crs=4326)
-    grid = Grid.polygons(table)
+    grid = Grid.from_polygons(table)
     assert grid.report.empty.tolist() == [2]
     assert grid.areas[0] == grid.areas[3]
-    outer, inner = (Grid.polygons(shapely.Polygon(ring)).areas[0] for ring in
+    outer, inner = (Grid.from_polygons(shapely.Polygon(ring)).areas[0] for ring in
                     (hole.exterior, hole.interiors[0]))  # fmt: skip
     assert grid.areas[0] == pytest.approx(outer - inner, rel=1e-14)
-    again = Grid.polygons(grid.to_geopandas())
+    again = Grid.from_polygons(grid.to_geopandas())
     assert np.allclose(again.areas, grid.areas, rtol=1e-12)
     with pytest.raises(delone.InputError, match="projected"):
-        Grid.polygons(table.to_crs(3857))
+        Grid.from_polygons(table.to_crs(3857))
     with pytest.raises(delone.InputError, match="geometry 1 is a POINT"):
-        Grid.polygons([hole, shapely.Point(0, 0)])
+        Grid.from_polygons([hole, shapely.Point(0, 0)])
 
 
 def test_tables_of_cells() -> None:
     pytest.importorskip("geopandas")
-    table = Grid.lonlat(LON, LAT).to_geopandas({"number": np.arange(72)})
+    table = Grid.from_lonlat(LON, LAT).to_geopandas({"number": np.arange(72)})
     assert table.area.sum() == pytest.approx(360 * 180)
     assert table.number.tolist() == list(range(72))
-    table = Grid.healpix(2).to_geopandas()
+    table = Grid.from_healpix(2).to_geopandas()
     assert table.is_valid.all()
     assert table.area.sum() == pytest.approx(360 * 180, rel=1e-6)
     with pytest.raises(delone.InputError, match="step"):
-        Grid.healpix(1).to_geopandas(step=0)
+        Grid.from_healpix(1).to_geopandas(step=0)

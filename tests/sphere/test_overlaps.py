@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pickle
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -14,6 +14,7 @@ from delone.sphere import Grid, Overlaps
 from tiers import seeds
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def degrees(step: float) -> Grid:
-    return Grid.lonlat(np.arange(0, 361, step), np.arange(-90, 91, step))
+    return Grid.from_lonlat(np.arange(0, 361, step), np.arange(-90, 91, step))
 
 
 def cubed(n: int) -> Floats:
@@ -46,14 +47,14 @@ def worst(overlaps: Overlaps) -> float:
 
 
 def test_nested_grids_have_the_pairs_of_theory() -> None:
-    coarse, fine = Grid.mesh(cubed(4)), Grid.mesh(cubed(8))
+    coarse, fine = Grid.from_mesh(cubed(4)), Grid.from_mesh(cubed(8))
     assert len(Overlaps(coarse, fine).areas) == 384
     same = Overlaps(coarse, coarse)
     assert np.array_equal(same.indices, np.arange(96))
     assert np.allclose(same.areas, coarse.areas, rtol=1e-15)
     # Cells with arcs in rows: a northern side bulges into the next row, except at the equator.
     lon, lat = np.meshgrid(np.arange(0, 361, 10.0), np.arange(-90, 91, 10.0))
-    arcs = Grid.curvilinear(lon, lat)
+    arcs = Grid.from_curvilinear(lon, lat)
     found = Overlaps(arcs, degrees(10))
     assert len(found.areas) == 648 + 16 * 36
     assert worst(found) < 1e-14
@@ -65,14 +66,14 @@ def test_nested_grids_have_the_pairs_of_theory() -> None:
 def test_rotated_grids_conserve(seed: int) -> None:
     rng = np.random.default_rng(seed)
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-    source = Grid.mesh(cubed(6) @ turn)
+    source = Grid.from_mesh(cubed(6) @ turn)
     for target in (
         degrees(15),
-        Grid.healpix(4),
-        Grid.gaussian(4, "octahedral"),
-        Grid.mesh(cubed(6)),
-        Grid.voronoi(sphere.Voronoi(xyz=rng.normal(size=(80, 3)))),
-        Grid.lonlat([0, 360], np.arange(-90, 91, 18.0)),
+        Grid.from_healpix(4),
+        Grid.from_gaussian(4, "octahedral"),
+        Grid.from_mesh(cubed(6)),
+        Grid.from_voronoi(sphere.Voronoi(xyz=rng.normal(size=(80, 3)))),
+        Grid.from_lonlat([0, 360], np.arange(-90, 91, 18.0)),
     ):
         there, back = Overlaps(source, target), Overlaps(target, source)
         assert worst(there) < 1e-14
@@ -95,7 +96,7 @@ def test_small_cells_are_as_right_as_large_ones(size: float) -> None:
         v = width * (np.sin(angle) * x + np.cos(angle) * y)
         place = center / np.linalg.norm(center) + u[..., None] * a + v[..., None] * b
         around = place[:-1, :-1], place[:-1, 1:], place[1:, 1:], place[1:, :-1]
-        return Grid.mesh(np.stack(around, axis=2).reshape(-1, 4, 3), merge=0)
+        return Grid.from_mesh(np.stack(around, axis=2).reshape(-1, 4, 3), merge=0)
 
     inner, outer = grid(rng.uniform(0, 1), size / 4), grid(0.0, size)
     assert abs(Overlaps(inner, outer).covered_source - 1).max() < 2e-15
@@ -110,8 +111,8 @@ def test_how_cells_are_written_changes_no_bit() -> None:
         if rng.random() < 0.5:
             other = other[::-1]
         cells.append(np.insert(other, k, 4 * other[k], axis=0))
-    source, other = Grid.mesh(corners), Grid.mesh(np.array(cells))
-    for target in (Grid.healpix(4), degrees(15), source):
+    source, other = Grid.from_mesh(corners), Grid.from_mesh(np.array(cells))
+    for target in (Grid.from_healpix(4), degrees(15), source):
         one, two = Overlaps(source, target), Overlaps(other, target)
         assert np.array_equal(one.indices, two.indices)
         assert np.array_equal(one.areas, two.areas)
@@ -119,8 +120,8 @@ def test_how_cells_are_written_changes_no_bit() -> None:
         assert np.array_equal(one.indices, two.indices)
         assert np.array_equal(one.areas, two.areas)
     lon, lat = np.arange(0, 361, 15), np.arange(-90, 91, 15)
-    one = Overlaps(source, Grid.lonlat(lon, lat)).matrix.toarray().reshape(12, 24, -1)
-    two = Overlaps(source, Grid.lonlat(lon[::-1], lat[::-1])).matrix.toarray()
+    one = Overlaps(source, Grid.from_lonlat(lon, lat)).matrix.toarray().reshape(12, 24, -1)
+    two = Overlaps(source, Grid.from_lonlat(lon[::-1], lat[::-1])).matrix.toarray()
     assert np.array_equal(one, two.reshape(12, 24, -1)[::-1, ::-1])
 
 
@@ -129,13 +130,13 @@ def test_corners_in_sides_and_holes() -> None:
     corners = cubed(3)
     middles = corners + np.roll(corners, -1, axis=1)
     more = np.stack((corners, middles), axis=2).reshape(-1, 8, 3)
-    for target in (Grid.mesh(cubed(4)), degrees(30)):
-        one, two = (Overlaps(Grid.mesh(c, merge=0), target).matrix for c in (corners, more))
+    for target in (Grid.from_mesh(cubed(4)), degrees(30)):
+        one, two = (Overlaps(Grid.from_mesh(c, merge=0), target).matrix for c in (corners, more))
         assert abs(one - two).max() < 1e-15
     shapely = pytest.importorskip("shapely")
     whole, hole = shapely.box(-20, -20, 20, 20), shapely.box(-9, -9, 7, 8)
-    cells = Grid.polygons([whole - hole, hole, whole])
-    for target in (degrees(5), Grid.healpix(8)):
+    cells = Grid.from_polygons([whole - hole, hole, whole])
+    for target in (degrees(5), Grid.from_healpix(8)):
         table = Overlaps(cells, target).matrix.toarray()
         assert abs(table[:, 0] + table[:, 1] - table[:, 2]).max() < 1e-16
         assert abs(table.sum(axis=0) - cells.areas).max() < 1e-14
@@ -145,18 +146,18 @@ def test_cells_around_poles() -> None:
     shapely = pytest.importorskip("shapely")
     for sign in (1, -1):
         ring = [(lon, sign * (70 + 5 * (lon % 60 == 0))) for lon in range(0, 360, 20)]
-        cap = Grid.mesh(lonlat=[ring])
+        cap = Grid.from_mesh(lonlat=[ring])
         found = Overlaps(cap, degrees(5))
         assert abs(found.covered_source[0] - 1) < 1e-14
         assert (found.covered_target > 1 - 1e-14).sum() >= 2 * 72
         # The same cell cut at 180 degrees and completed at the edge of the map.
-        flat = Grid.polygons(cap.to_geopandas().geometry)
+        flat = Grid.from_polygons(cap.to_geopandas().geometry)
         assert abs(flat.areas[0] / cap.areas[0] - 1) < 1e-5
         assert isinstance(cap.to_geopandas().geometry[0], shapely.Polygon)
 
 
 def test_files_keep_areas(tmp_path: Path) -> None:
-    made = Overlaps(Grid.healpix(2), degrees(30))
+    made = Overlaps(Grid.from_healpix(2), degrees(30))
     made.save(tmp_path / "areas.npz")
     again = Overlaps.load(tmp_path / "areas.npz")
     for other in (again, pickle.loads(pickle.dumps(made))):
@@ -169,18 +170,45 @@ def test_files_keep_areas(tmp_path: Path) -> None:
     assert made.source is not None
 
 
+@pytest.mark.parametrize(
+    ("name", "edit", "message"),
+    [
+        ("indptr", lambda a: a[:-1], "do not match"),
+        ("indptr", lambda a: a[::-1].copy(), "partition"),
+        ("indptr", lambda a: np.where(a == a[2], a[-1] + 1, a), "descends"),
+        ("indices", lambda a: a + 40, "indices"),
+        ("areas", lambda a: -a, "positive"),
+        ("areas", lambda a: a * np.nan, "positive"),
+        ("target_sums", lambda a: a[1:], "target_sums"),
+        ("source_areas", lambda a: a - 9, "wrong area"),
+        ("source_shape", lambda a: a + 1, "source_shape"),
+    ],
+)
+def test_edited_files(
+    tmp_path: Path, name: str, edit: Callable[[NDArray[Any]], NDArray[Any]], message: str
+) -> None:
+    path = tmp_path / "areas.npz"
+    Overlaps(Grid.from_healpix(2), degrees(30)).save(path)
+    with np.load(path) as archive:
+        arrays = dict(archive)
+    arrays[name] = edit(arrays[name])
+    np.savez(path, **arrays)
+    with pytest.raises(delone.FileFormatError, match=message):
+        Overlaps.load(path)
+
+
 def test_what_is_refused() -> None:
     with pytest.raises(delone.DtypeError, match=r"target must be a sphere\.Grid, got int"):
-        Overlaps(Grid.healpix(1), 3)  # type: ignore[arg-type]
+        Overlaps(Grid.from_healpix(1), 3)  # type: ignore[arg-type]
 
 
 def test_the_report_names_cells() -> None:
-    region = Grid.lonlat([0, 10, 20, 25], [0, 10])
+    region = Grid.from_lonlat([0, 10, 20, 25], [0, 10])
     report = Overlaps(region, degrees(10)).report
     assert report.npairs == 3
     assert report.target_partly.tolist() == [9 * 36 + 2]
     assert len(report.target_outside) == 645
-    twice = Grid.mesh(lonlat=[[(0, 1), (9, 1), (9, 9), (0, 9)]] * 2)
+    twice = Grid.from_mesh(lonlat=[[(0, 1), (9, 1), (9, 9), (0, 9)]] * 2)
     assert Overlaps(region, twice).report.source_repeatedly.tolist() == [0]
     assert len(Overlaps(twice, region).report.source_repeatedly) == 0
     assert len(Overlaps(twice, twice).report.target_repeatedly) == 2

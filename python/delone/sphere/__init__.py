@@ -19,6 +19,7 @@ from delone.sphere.interpolation import Linear, NaturalNeighbor, Nearest
 from delone.sphere.overlaps import OverlapReport, Overlaps
 from delone.sphere.sides import PolygonWarning
 from delone.sphere.voronoi import Voronoi
+from delone.sphere.weights import Weights
 
 __all__ = [
     "ConstrainedDelaunay",
@@ -34,5 +35,6 @@ __all__ = [
     "Overlaps",
     "PolygonWarning",
     "Voronoi",
+    "Weights",
     "from_geometry",
 ]

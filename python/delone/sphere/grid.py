@@ -61,7 +61,7 @@ class GridReport(ReadOnly):
     --------
     >>> from delone import sphere
     >>> corners = [(1, 0, 0), (0, 0, 1), (0, 1, 0)]
-    >>> sphere.Grid.mesh(corners, [0, 3]).report
+    >>> sphere.Grid.from_mesh(corners, [0, 3]).report
     <GridReport: 1 cell turned>
     """
 
@@ -96,7 +96,7 @@ class GridFaults(ReadOnly):
     --------
     >>> import numpy as np
     >>> from delone import sphere
-    >>> grid = sphere.Grid.lonlat(np.arange(0, 361, 30), np.arange(0, 91, 30))
+    >>> grid = sphere.Grid.from_lonlat(np.arange(0, 361, 30), np.arange(0, 91, 30))
     >>> faults = grid.validate()
     >>> bool(faults), round(faults.covered, 12)
     (True, 0.5)
@@ -158,7 +158,7 @@ class Grid(Immutable):
     --------
     >>> import numpy as np
     >>> from delone import sphere
-    >>> grid = sphere.Grid.lonlat(np.arange(0, 361, 1), np.arange(-90, 91, 1))
+    >>> grid = sphere.Grid.from_lonlat(np.arange(0, 361, 1), np.arange(-90, 91, 1))
     >>> grid
     <Grid of 64800 cells (180 x 360), parallels>
     >>> bool(np.isclose(grid.areas.sum(), 4 * np.pi, rtol=1e-14))
@@ -176,7 +176,7 @@ class Grid(Immutable):
 
     def __init__(self) -> None:
         raise InputError(
-            "make a Grid with a class method: Grid.lonlat, .curvilinear, .mesh, .polygons, "
+            "make a Grid with a class method: Grid.from_lonlat, .curvilinear, .mesh, .polygons, "
             ".voronoi, .healpix or .gaussian"
         )
 
@@ -217,7 +217,7 @@ class Grid(Immutable):
         return self.ncells
 
     @classmethod
-    def lonlat(
+    def from_lonlat(
         cls, lon: ArrayLike, lat: ArrayLike, *, degrees: bool = True, workers: int | None = None
     ) -> Self:
         """Return the cells between meridians and parallels.
@@ -248,7 +248,7 @@ class Grid(Immutable):
         Examples
         --------
         >>> from delone import sphere
-        >>> sphere.Grid.lonlat([0, 120, 240, 360], [(90, 0), (0, -90)])
+        >>> sphere.Grid.from_lonlat([0, 120, 240, 360], [(90, 0), (0, -90)])
         <Grid of 6 cells (2 x 3), parallels>
         """
         columns = as_bounds(lon, name="lon", degrees=degrees)
@@ -257,7 +257,7 @@ class Grid(Immutable):
         return cls._of("parallel", arrays, (len(rows) - 1, len(columns) - 1), 0, workers)
 
     @classmethod
-    def gaussian(
+    def from_gaussian(
         cls, n: int, points: str | Sequence[int] | None = None, *, workers: int | None = None
     ) -> Self:
         """Return the cells of a Gaussian grid.
@@ -291,9 +291,9 @@ class Grid(Immutable):
         Examples
         --------
         >>> from delone import sphere
-        >>> sphere.Grid.gaussian(80)
+        >>> sphere.Grid.from_gaussian(80)
         <Grid of 51200 cells (160 x 320), parallels>
-        >>> sphere.Grid.gaussian(80, "octahedral")
+        >>> sphere.Grid.from_gaussian(80, "octahedral")
         <Grid of 28480 cells, parallels>
         """
         rows, columns = gaussian_bounds(n, points)
@@ -302,7 +302,7 @@ class Grid(Immutable):
         return cls._of("parallel", arrays, shape, 0, workers)
 
     @classmethod
-    def curvilinear(
+    def from_curvilinear(
         cls,
         lon: ArrayLike,
         lat: ArrayLike,
@@ -344,7 +344,7 @@ class Grid(Immutable):
         >>> import numpy as np
         >>> from delone import sphere
         >>> lon, lat = np.meshgrid([0, 10, 20], [0, 5, 10, 15])
-        >>> sphere.Grid.curvilinear(lon + lat, lat)
+        >>> sphere.Grid.from_curvilinear(lon + lat, lat)
         <Grid of 6 cells (3 x 2), arcs of great circles>
         """
         vectors, shape = as_corners(lon, lat, degrees=degrees, workers=workers)
@@ -352,7 +352,7 @@ class Grid(Immutable):
         return cls._polygons(vectors.reshape(-1, 3), starts, shape, merge, workers)
 
     @classmethod
-    def mesh(
+    def from_mesh(
         cls,
         xyz: ArrayLike | None = None,
         starts: ArrayLike | None = None,
@@ -395,7 +395,7 @@ class Grid(Immutable):
         >>> import numpy as np
         >>> from delone import sphere
         >>> places = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0)])
-        >>> grid = sphere.Grid.mesh(places[[(0, 1, 2), (1, 3, 2)]])
+        >>> grid = sphere.Grid.from_mesh(places[[(0, 1, 2), (1, 3, 2)]])
         >>> (grid.areas / np.pi).tolist()
         [0.5, 0.5]
         """
@@ -403,7 +403,7 @@ class Grid(Immutable):
         return cls._polygons(vectors, where, (len(where) - 1,), merge, workers)
 
     @classmethod
-    def polygons(
+    def from_polygons(
         cls,
         geometries: Any,
         *,
@@ -445,7 +445,7 @@ class Grid(Immutable):
         --------
         >>> from shapely import box
         >>> from delone import sphere
-        >>> sphere.Grid.polygons([box(0, 0, 10, 10), box(170, -5, 190, 5)])
+        >>> sphere.Grid.from_polygons([box(0, 0, 10, 10), box(170, -5, 190, 5)])
         <Grid of 2 cells, arcs of great circles>
         """
         given = rings_of.geometries(geometries, degrees=degrees, workers=workers)
@@ -454,7 +454,7 @@ class Grid(Immutable):
         return cls._of("arc", arrays, (len(given.cells) - 1,), merged, workers)
 
     @classmethod
-    def voronoi(cls, diagram: Voronoi, *, workers: int | None = None) -> Self:
+    def from_voronoi(cls, diagram: Voronoi, *, workers: int | None = None) -> Self:
         """Return the cells of a Voronoi diagram, one for each of its sites.
 
         Parameters
@@ -481,7 +481,7 @@ class Grid(Immutable):
         >>> import numpy as np
         >>> from delone import sphere
         >>> sites = [(0, 90), (0, 0), (90, 0), (180, 0), (270, 0), (0, -90)]
-        >>> grid = sphere.Grid.voronoi(sphere.Voronoi(lonlat=sites))
+        >>> grid = sphere.Grid.from_voronoi(sphere.Voronoi(lonlat=sites))
         >>> (grid.areas / np.pi).round(9)
         array([0.66666667, 0.66666667, 0.66666667, 0.66666667, 0.66666667,
                0.66666667])
@@ -490,7 +490,7 @@ class Grid(Immutable):
         return cls._polygons(vectors, starts, (len(starts) - 1,), 0.0, workers)
 
     @classmethod
-    def healpix(cls, nside: int, order: str = "ring", *, workers: int | None = None) -> Self:
+    def from_healpix(cls, nside: int, order: str = "ring", *, workers: int | None = None) -> Self:
         """Return the pixels of HEALPix.
 
         Parameters
@@ -522,7 +522,7 @@ class Grid(Immutable):
         Examples
         --------
         >>> from delone import sphere
-        >>> sphere.Grid.healpix(64, "nested")
+        >>> sphere.Grid.from_healpix(64, "nested")
         <Grid of 49152 cells, arcs of great circles>
         """
         kind = as_choice(order, ("ring", "nested"), name="order")
@@ -573,7 +573,7 @@ class Grid(Immutable):
         return int(np.prod(self._shape))
 
     @property
-    def shape(self) -> tuple[int, ...]:
+    def grid_shape(self) -> tuple[int, ...]:
         """The shape of fields on the grid."""
         return self._shape
 
@@ -648,7 +648,7 @@ class Grid(Immutable):
         >>> from delone import sphere
         >>> square = [(0, 0), (10, 0), (10, 10), (0, 10)]
         >>> moved = [(5, 0), (15, 0), (15, 10), (5, 10)]
-        >>> sphere.Grid.mesh(lonlat=[square, moved]).validate()
+        >>> sphere.Grid.from_mesh(lonlat=[square, moved]).validate()
         <GridFaults: 1 pair of cells overlap, 0.483547 % of the sphere>
         """
         found = self._made.overlaps(self._made, as_workers(self._workers))
@@ -658,7 +658,7 @@ class Grid(Immutable):
         wrong = (pairs[:, 0] < pairs[:, 1]) & (found.areas > _SHARED * small)
         return GridFaults(overlapping=pairs[wrong], covered=float(self.areas.sum() / (4 * np.pi)))
 
-    def to_geopandas(self, data: Any = None, *, crs: Any = "EPSG:4326", step: float = 1.0) -> Any:
+    def to_geopandas(self, data: Any = None, *, crs: Any = None, step: float = 1.0) -> Any:
         """Convert the cells to a table of geopandas (extra ``geo``).
 
         Parameters
@@ -666,7 +666,7 @@ class Grid(Immutable):
         data : DataFrame or mapping, optional
             Columns to include, with one row for each cell.
         crs : any, optional
-            Coordinate reference system of longitudes and latitudes.
+            Coordinate reference system of longitudes and latitudes, by default EPSG:4326.
         step : float, optional
             Degrees between the corners that show arcs of great circles, at most.
 
@@ -686,11 +686,11 @@ class Grid(Immutable):
         Examples
         --------
         >>> from delone import sphere
-        >>> table = sphere.Grid.lonlat([170, 190], [0, 10, 20]).to_geopandas()
+        >>> table = sphere.Grid.from_lonlat([170, 190], [0, 10, 20]).to_geopandas()
         >>> table.geom_type.tolist(), table.total_bounds.tolist()
         (['MultiPolygon', 'MultiPolygon'], [-180.0, 0.0, 180.0, 20.0])
         """
-        from delone.exchange.geopandas import cells_to_geopandas
+        from delone.exchange.geopandas import beside
 
         width = as_number(step, name="step")
         if not 0 < width < np.inf:
@@ -699,7 +699,7 @@ class Grid(Immutable):
             shapes = rings_of.boxes(self._arrays)
         else:
             shapes = rings_of.shapes(self._arrays, self.areas, width)
-        return cells_to_geopandas(shapes, data, crs)
+        return beside(shapes, data, "EPSG:4326" if crs is None else crs, of="cells")
 
 
 def _as_merge(merge: float) -> float:

@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._arrays import as_workers
+from delone._arrays import as_choice, as_workers
 from delone.complex import Stored
 from delone.counting import counted
 from delone.errors import DtypeError
 from delone.extras import require
 from delone.immutable import ReadOnly, kept, sealed
 from delone.sphere.grid import Grid
+from delone.sphere.weights import METHODS, Weights, as_mask, row_sums
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int64]
@@ -50,8 +51,8 @@ class OverlapReport(ReadOnly):
     --------
     >>> import numpy as np
     >>> from delone import sphere
-    >>> north = sphere.Grid.lonlat(np.arange(0, 361, 10), [-5, 30, 60, 90])
-    >>> sphere.Overlaps(north, sphere.Grid.healpix(4)).report
+    >>> north = sphere.Grid.from_lonlat(np.arange(0, 361, 10), [-5, 30, 60, 90])
+    >>> sphere.Overlaps(north, sphere.Grid.from_healpix(4)).report
     <OverlapReport: 500 pairs, 72 target cells outside, 32 target cells partly covered>
     """
 
@@ -132,8 +133,8 @@ class Overlaps(Stored):
     --------
     >>> import numpy as np
     >>> from delone import sphere
-    >>> source = sphere.Grid.healpix(16)
-    >>> target = sphere.Grid.lonlat(np.arange(0, 361, 5), np.arange(-90, 91, 5))
+    >>> source = sphere.Grid.from_healpix(16)
+    >>> target = sphere.Grid.from_lonlat(np.arange(0, 361, 5), np.arange(-90, 91, 5))
     >>> overlaps = sphere.Overlaps(source, target)
     >>> overlaps
     <Overlaps of 3072 source and 2592 target cells: 12752 pairs>
@@ -157,7 +158,7 @@ class Overlaps(Stored):
         self._fill(
             (found.indptr, found.indices, found.areas),
             (source.areas, target.areas, found.second, found.first),
-            (source.shape, target.shape),
+            (source.grid_shape, target.grid_shape),
             (source, target),
             workers,
         )
@@ -281,6 +282,99 @@ class Overlaps(Stored):
             more = share > 1 + _ROUNDING
             rows += [np.flatnonzero(x) for x in (outside, partly, more)]
         return OverlapReport(len(self.areas), *rows)
+
+    def to_weights(
+        self,
+        method: str = "conservative",
+        *,
+        source_mask: ArrayLike | None = None,
+        target_mask: ArrayLike | None = None,
+    ) -> Weights:
+        """Return what each source cell contributes to each target cell.
+
+        Parameters
+        ----------
+        method : {"conservative", "normalized", "sum", "majority"}, optional
+            How values are combined:
+
+            - "conservative": integrals over the target cell, divided by its area ("destarea"). The
+              sum of values times areas is that of the source. A cell of which a part is not covered
+              has as much less.
+            - "normalized": means over the covered part ("fracarea"). A constant remains one.
+            - "sum": amounts, such as numbers of inhabitants: each source cell gives its value to
+              target cells by the share of its area.
+            - "majority": categories: the value that covers most of the target cell.
+        source_mask, target_mask : array_like of bool, optional
+            True, or 1, for cells that take part, as in files; the shape of fields or of cells. By
+            default all do.
+
+        Returns
+        -------
+        Weights
+            They hold no grid. Masked target cells have no entries.
+
+        Raises
+        ------
+        InputError
+            `method` is unknown.
+        ShapeError, DtypeError
+            A mask has another shape, or is not boolean.
+
+        Notes
+        -----
+        Fluxes and densities want "conservative", states such as temperatures "normalized".
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> source = sphere.Grid.from_lonlat([0, 1, 2, 3], [0, 1])
+        >>> target = sphere.Grid.from_lonlat([0, 2, 4], [0, 1])
+        >>> overlaps = sphere.Overlaps(source, target)
+        >>> for method in ("conservative", "normalized", "sum", "majority"):
+        ...     weights = overlaps.to_weights(method)
+        ...     print(method, weights.apply([[6.0, 6.0, 3.0]]).round(9).tolist())
+        conservative [[6.0, 1.5]]
+        normalized [[6.0, 3.0]]
+        sum [[12.0, 3.0]]
+        majority [[6.0, 3.0]]
+        >>> overlaps.to_weights("normalized", source_mask=[0, 1, 0]).apply([[9, 6, 3]]).tolist()
+        [[6.0, nan]]
+        """
+        kind = as_choice(method, METHODS, name="method")
+        sources = as_mask(source_mask, self.source_shape, "source_mask")
+        targets = as_mask(target_mask, self.target_shape, "target_mask")
+        indptr, indices, areas = self._rows
+        of_source, of_target = self._sums[2], self._sums[3]
+        if sources is not None or targets is not None:
+            row = np.repeat(np.arange(len(self.target_areas)), np.diff(indptr))
+            kept = np.ones(len(areas), dtype=bool)
+            if sources is not None:
+                kept &= sources[indices]
+            if targets is not None:
+                kept &= targets[row]
+            indices, areas, row = indices[kept], areas[kept], row[kept]
+            counts = np.bincount(row, minlength=len(self.target_areas))
+            indptr = np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
+            of_target = row_sums(indptr, areas)
+            of_source = np.bincount(indices, areas, len(self.source_areas)).astype(np.float64)
+        lengths = np.diff(indptr)
+        if kind == "normalized":
+            over = np.repeat(of_target, lengths)
+        elif kind == "sum":
+            over = self.source_areas[indices]
+        else:
+            over = np.repeat(self.target_areas, lengths)
+        fractions = [
+            np.nan_to_num(_shares(sums, whole))
+            for sums, whole in ((of_source, self.source_areas), (of_target, self.target_areas))
+        ]
+        return Weights._of(
+            kind,
+            (indptr, indices, areas / over),
+            (fractions[0], fractions[1]),
+            (self.source_areas, self.target_areas),
+            self._shapes,
+        )
 
 
 def _shares(sums: Floats, areas: Floats) -> Floats:

@@ -266,7 +266,7 @@ def geometries(given: Any, *, degrees: bool, workers: int | None) -> Rings:
 def voronoi(diagram: Voronoi) -> tuple[Floats, Indices]:
     """Return the corners of the cells of a diagram, and where those of each site start."""
     if diagram._region is not None:
-        raise InputError("the diagram is clipped: use Grid.polygons(diagram.to_geopandas())")
+        raise InputError("the diagram is clipped: use Grid.from_polygons(diagram.to_geopandas())")
     if diagram.triangulation is None:
         raise InputError("all sites are on one great circle: cells are lunes, not polygons")
     indptr, entries = diagram.region_rows

@@ -1,0 +1,260 @@
+"""Map files: weights in the layouts of ESMF and of SCRIP."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.atomic import replacing
+from delone.errors import FileFormatError, InputError
+from delone.extras import require
+from delone.sphere.coordinates import lonlat_of
+
+if TYPE_CHECKING:
+    import os
+
+    from numpy.typing import NDArray
+
+    from delone.sphere.grid import Grid
+
+    Floats = NDArray[np.float64]
+    Grids = tuple[Grid | None, Grid | None]
+
+__all__ = ["read_map", "write_map"]
+
+# How files name methods.
+_NORMALIZATION = {"conservative": "destarea", "normalized": "fracarea", "sum": "none"}
+_ROW = {"esmf": "row", "scrip": "dst_address"}
+_COLUMN = {"esmf": "col", "scrip": "src_address"}
+
+
+def _names(layout: str, side: int) -> dict[str, str]:
+    """Return the names of what is known of the cells of one grid."""
+    if layout == "esmf":
+        a = "ab"[side]
+        names = {
+            "size": f"n_{a}",
+            "corners": f"nv_{a}",
+            "rank": ("src", "dst")[side] + "_grid_rank",
+        }
+        short = {"x": "xc", "y": "yc", "xs": "xv", "ys": "yv", "mask": "mask", "area": "area"}
+        names |= {key: f"{name}_{a}" for key, name in short.items()}
+        return names | {"frac": f"frac_{a}", "dims": ("src", "dst")[side] + "_grid_dims"}
+    grid = ("src", "dst")[side] + "_grid"
+    long = {
+        "size": "size", "corners": "corners", "rank": "rank", "x": "center_lon", "y": "center_lat",
+        "xs": "corner_lon", "ys": "corner_lat", "mask": "imask", "area": "area", "frac": "frac",
+        "dims": "dims",
+    }  # fmt: skip
+    return {key: f"{grid}_{name}" for key, name in long.items()}
+
+
+def write_map(
+    weights: Any, path: str | os.PathLike[str], layout: str, grids: Grids, form: str
+) -> None:
+    """Write a `Weights`; see its `to_netcdf`."""
+    if weights.method == "majority":
+        raise InputError("a map file cannot have weights of method majority, which are no sums")
+    netcdf = require("netCDF4", extra="xarray", what="writing NetCDF files")
+    for name, grid, areas in zip(
+        ("source", "target"), grids, (weights.source_areas, weights.target_areas), strict=True
+    ):
+        if grid is not None and grid.ncells != len(areas):
+            raise InputError(f"{name} has {grid.ncells} cells, and the weights {len(areas)}")
+    with replacing(path) as temporary, netcdf.Dataset(temporary, "w", format=form) as file:
+        _write_heads(file, weights, layout)
+        fractions = weights.source_fractions, weights.fractions
+        sizes = weights.source_areas, weights.target_areas
+        shapes = weights.source_shape, weights.target_shape
+        for side in range(2):
+            _write_cells(file, layout, side, (sizes[side], fractions[side], shapes[side]))
+            grid = grids[side]
+            if grid is not None:
+                _write_places(file, _names(layout, side), grid)
+        links = "n_s" if layout == "esmf" else "num_links"
+        file.createDimension(links, len(weights.values))
+        file.createDimension("num_wgts", 1)
+        rows = np.repeat(np.arange(len(weights.fractions)), np.diff(weights.indptr))
+        for name, numbers in ((_ROW[layout], rows), (_COLUMN[layout], weights.indices)):
+            variable = file.createVariable(name, "i4", (links,))
+            variable.start_index = np.int32(1)
+            variable[:] = numbers.astype(np.int32) + np.int32(1)
+        if layout == "esmf":
+            file.createVariable("S", "f8", (links,))[:] = weights.values
+        else:
+            shape = (links, "num_wgts")
+            file.createVariable("remap_matrix", "f8", shape)[:] = weights.values[:, None]
+
+
+def _write_heads(file: Any, weights: Any, layout: str) -> None:
+    """Write the attributes by which readers know what a file is."""
+    esmf = layout == "esmf"
+    # NCO looks for the name of ESMF's program in the title.
+    file.title = (
+        "delone: weights in the layout of ESMF Offline Regridding Weight Generator"
+        if esmf
+        else "delone: weights in the layout of SCRIP"
+    )
+    file.conventions = "NCAR-CSM" if esmf else "SCRIP"
+    file.normalization = _NORMALIZATION.get(weights.method, "none")
+    file.map_method = "Conservative remapping"
+    if esmf:
+        file.ESMF_regrid_method = "First-order Conservative"
+        file.domain_a = file.domain_b = file.grid_file_src = file.grid_file_dst = "not given"
+    else:
+        file.source_grid = file.dest_grid = "not given"
+    file.delone_method = weights.method
+
+
+def _write_cells(
+    file: Any, layout: str, side: int, known: tuple[Floats, Floats, tuple[int, ...]]
+) -> None:
+    """Write what the weights know of the cells of one grid."""
+    names, (areas, fractions, shape) = _names(layout, side), known
+    file.createDimension(names["size"], len(areas))
+    file.createDimension(names["rank"], len(shape))
+    # The fastest axis comes first.
+    file.createVariable(names["dims"], "i4", (names["rank"],))[:] = np.array(shape[::-1])
+    area = file.createVariable(names["area"], "f8", (names["size"],))
+    area.units = "square radians"
+    area[:] = areas
+    share = file.createVariable(names["frac"], "f8", (names["size"],))
+    share.units = "unitless"
+    share[:] = fractions
+    mask = file.createVariable(names["mask"], "i4", (names["size"],))
+    mask.units = "unitless"
+    # A cell without a covered part takes no part.
+    mask[:] = (fractions > 0).astype(np.int32)
+
+
+def _write_places(file: Any, names: dict[str, str], grid: Grid) -> None:
+    """Write the centers and corners of cells; the last corner is repeated where one has fewer."""
+    vectors, rings, cells = grid.rings
+    # Files have one ring for each cell: the first.
+    starts = rings[np.minimum(cells[:-1], len(rings) - 1)]
+    ends = rings[np.minimum(cells[:-1] + 1, len(rings) - 1)]
+    counts = np.maximum(ends - starts, 0)
+    most = max(int(counts.max(initial=0)), 1)
+    at = starts[:, None] + np.minimum(np.arange(most), np.maximum(counts - 1, 0)[:, None])
+    places = lonlat_of(vectors)[np.minimum(at, len(vectors) - 1)] if len(vectors) else None
+    file.createDimension(names["corners"], most)
+    centers = grid.centers_lonlat
+    for axis, (x, xs) in enumerate((("x", "xs"), ("y", "ys"))):
+        center = file.createVariable(names[x], "f8", (names["size"],))
+        center.units = "degrees"
+        center[:] = centers[:, axis]
+        corner = file.createVariable(names[xs], "f8", (names["size"], names["corners"]))
+        corner.units = "degrees"
+        if places is not None:
+            corner[:] = places[..., axis]
+
+
+def read_map(path: str | os.PathLike[str]) -> tuple[Any, ...]:
+    """Return the parts of the weights of a file; see `Weights.from_netcdf`."""
+    netcdf = require("netCDF4", extra="xarray", what="reading NetCDF files")
+    try:
+        file = netcdf.Dataset(path)
+    except OSError as error:
+        if isinstance(error, FileNotFoundError | PermissionError):
+            raise
+        raise FileFormatError(f"{path} is not a NetCDF file: {error}") from error
+    with file:
+        file.set_auto_mask(False)
+        return _parts(file, str(path))
+
+
+def _parts(file: Any, path: str) -> tuple[Any, ...]:
+    """Return what `Weights` holds."""
+    names = set(file.variables)
+    layout = "esmf" if {"row", "col", "S"} <= names else "scrip"
+    needed = {_ROW[layout], _COLUMN[layout], "S" if layout == "esmf" else "remap_matrix"}
+    if not needed <= names:
+        raise FileFormatError(
+            f"{path} is not a map file: it has neither row, col and S nor src_address, "
+            "dst_address and remap_matrix"
+        )
+    shapes, areas, fractions = [], [], []
+    for side in range(2):
+        found = _read_cells(file, _names(layout, side), path)
+        shapes.append(found[0])
+        areas.append(found[1])
+        fractions.append(found[2])
+    rows = _numbers(file, _ROW[layout], len(areas[1]), path)
+    columns = _numbers(file, _COLUMN[layout], len(areas[0]), path)
+    values = np.asarray(file.variables["S" if layout == "esmf" else "remap_matrix"][:])
+    if values.ndim > 1:
+        if values.shape[1] > 1 and values[:, 1:].any():
+            raise FileFormatError(f"{path} has weights of second order, which need gradients")
+        values = values[:, 0]
+    if not len(rows) == len(columns) == len(values):
+        raise FileFormatError(f"{path} has rows, columns and weights of different numbers")
+    values = values.astype(np.float64)
+    method = _method(file)
+    if method == "areas":
+        method = "conservative"
+        with np.errstate(divide="ignore", invalid="ignore"):
+            values = np.where(areas[1][rows] > 0, values / areas[1][rows], 0.0)
+    order = np.lexsort((columns, rows))
+    rows, columns, values = rows[order], columns[order], values[order]
+    # Entries of one pair are added.
+    first = np.ones(len(rows), dtype=bool)
+    first[1:] = (rows[1:] != rows[:-1]) | (columns[1:] != columns[:-1])
+    starts = np.flatnonzero(first)
+    sums = np.add.reduceat(values, starts) if len(starts) else values
+    counts = np.bincount(rows[starts], minlength=len(areas[1]))
+    indptr = np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
+    entries = indptr, columns[starts].astype(np.int32), sums
+    covered = fractions[1]
+    if covered is None:
+        # A file without fractions: any cell with an entry has values.
+        covered = (counts > 0).astype(np.float64)
+    share = np.ones(len(areas[0])) if fractions[0] is None else fractions[0]
+    return method, entries, (share, covered), (areas[0], areas[1]), (shapes[0], shapes[1])
+
+
+def _method(file: Any) -> str:
+    """Return the method of a file, "areas" if its weights are areas."""
+    own = getattr(file, "delone_method", None)
+    if own in _NORMALIZATION:
+        return str(own)
+    said = str(getattr(file, "normalization", "")).strip().lower()
+    if said == "none" and "row" not in file.variables:
+        return "areas"
+    known = {name: method for method, name in _NORMALIZATION.items() if name != "none"}
+    return known.get(said, "other")
+
+
+def _numbers(file: Any, name: str, count: int, path: str) -> NDArray[np.int64]:
+    """Return numbers of cells from 0."""
+    variable = file.variables[name]
+    start = getattr(variable, "start_index", getattr(variable, "first_index", 1))
+    numbers = np.asarray(variable[:]).astype(np.int64) - int(start)
+    wrong = (numbers < 0) | (numbers >= count)
+    if wrong.any():
+        at = int(np.flatnonzero(wrong)[0])
+        raise FileFormatError(
+            f"{path}: {name}[{at}] is {numbers[at] + int(start)}, outside {int(start)} to "
+            f"{count - 1 + int(start)}"
+        )
+    return numbers
+
+
+def _read_cells(
+    file: Any, names: dict[str, str], path: str
+) -> tuple[tuple[int, ...], Floats, Floats | None]:
+    """Return the shape, areas and covered fractions of the cells of one grid."""
+    if names["size"] not in file.dimensions:
+        raise FileFormatError(f"{path} has no dimension {names['size']}")
+    count = len(file.dimensions[names["size"]])
+    shape: tuple[int, ...] = (count,)
+    if names["dims"] in file.variables:
+        dims = np.asarray(file.variables[names["dims"]][:]).ravel()[::-1]
+        if (dims > 0).all() and int(np.prod(dims, dtype=np.int64)) == count:
+            shape = tuple(dims.tolist())
+    found = []
+    for key in ("area", "frac"):
+        variable = file.variables.get(names[key])
+        found.append(None if variable is None else np.asarray(variable[:], dtype=np.float64))
+    areas, fractions = found
+    return shape, np.full(count, np.nan) if areas is None else areas, fractions
