@@ -102,7 +102,6 @@ ABSENCES: dict[tuple[str, str], str] = {
     ("coming_from/scikit_learn.rst", "other metrics"): "distances are Euclidean",
     ("coming_from/shapely.rst", "buffers, unions"): "geometries are triangulated, not changed",
     ("coming_from/xesmf.rst", "nearest_d2s"): "targets are interpolated one by one",
-    ("coming_from/xesmf.rst", '"conservative"'): "cells of two grids are not intersected",
     ("howto.rst", "This is not in delone"): "there is no wavefront of edges",
     ("releasing.rst", "no release"): "the sentence says what the check looks for",
     ("coming_from/triangle.rst", "``X``: none"): "arithmetic is always exact",

@@ -180,7 +180,7 @@ def test_pickles_are_small() -> None:
 @pytest.mark.parametrize(
     ("call", "error", "message"),
     [
-        (lambda w: Weights(), delone.InputError, "Overlaps.weights"),
+        (lambda w: Weights(), delone.InputError, "Overlaps.to_weights"),
         (lambda w: OVERLAPS.to_weights("bilinear"), delone.InputError, "method"),
         (lambda w: OVERLAPS.to_weights(source_mask=[1, 0]), delone.ShapeError, "source_mask"),
         (lambda w: OVERLAPS.to_weights(source_mask=np.full(768, 2)), delone.InputError, "0 and 1"),
