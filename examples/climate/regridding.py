@@ -19,7 +19,7 @@ from delone import datasets, sphere
 source = sphere.Grid.from_healpix(24)
 places = source.centers_lonlat
 coast = sphere.from_geometry(datasets.land())
-at_sea = coast.polygon[coast.find_simplex(places)] < 0
+at_sea = coast.polygon_of_simplex[coast.find_simplex(places)] < 0
 lon, lat = np.radians(places.T)
 field = np.where(at_sea, 15 + 12 * np.cos(2 * lat) + 3 * np.sin(4 * lon) * np.cos(lat), np.nan)
 
