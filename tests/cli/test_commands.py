@@ -39,3 +39,17 @@ def test_help_loads_no_command():
     assert "delone.cli.commands" in loaded
     assert not loaded & {f"delone.cli.{listed.module}" for listed in COMMANDS.values()}
     assert not loaded & {"delone.io", "delone.voronoi", "delone.terrain", "delone.distributed"}
+
+
+# Commands that share a module with others.
+SHARED = {
+    "crossval": "interpolate",
+    "contours": "terrain",
+    "profile": "terrain",
+    "volume": "terrain",
+}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_module_of_a_command_has_its_name(name: str) -> None:
+    assert COMMANDS[name].module == SHARED.get(name, name)

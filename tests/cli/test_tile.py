@@ -95,7 +95,7 @@ def test_wrong_inputs_and_outputs(survey, tmp_path, command):
 
 
 def test_progress_is_words():
-    from delone.cli.tiles import _words
+    from delone.cli.tile import _words
 
     progress = distributed.Progress("proceed-0002", 3, 8, 64, 8, 3, 12_345, 2**30)
     said, more = _words(progress)
@@ -109,7 +109,7 @@ def test_json_is_json(survey, tmp_path, command):
 
 
 def test_progress_has_room_in_eighty_columns(monkeypatch, capsys):
-    from delone.cli.tiles import _live
+    from delone.cli.tile import _live
 
     monkeypatch.setenv("COLUMNS", "80")
     monkeypatch.setenv("TERM", "xterm")

@@ -32,12 +32,12 @@ class Listed(NamedTuple):
 
 COMMANDS = {
     "triangulate": Listed(
-        "triangulating",
+        "triangulate",
         "triangulate",
         "Triangulate the points of a file, report, and write meshes and plots.",
     ),
     "sphere": Listed(
-        "globe",
+        "sphere",
         "globe",
         "Triangulate longitudes and latitudes on the sphere, report, and write meshes.",
     ),
@@ -48,7 +48,7 @@ COMMANDS = {
     ),
     "info": Listed("info", "info", "Describe the contents of a file without triangulating it."),
     "explore": Listed(
-        "exploring",
+        "explore",
         "explore",
         "Show the triangulation of a file in the browser, where points can be moved.",
     ),
@@ -58,22 +58,22 @@ COMMANDS = {
         "Compute a graph of neighbors, such as a spanning tree, and write its edges as lines.",
     ),
     "interpolate": Listed(
-        "field",
+        "interpolate",
         "interpolate",
         "Interpolate the values of points to a raster, and write it to files and plots.",
     ),
     "crossval": Listed(
-        "field",
+        "interpolate",
         "crossval",
         "Predict each value from the others, and report the error of each method.",
     ),
     "voronoi": Listed(
-        "cells",
+        "voronoi",
         "voronoi",
         "Clip the Voronoi cells of sites to an outline, and write them with their attributes.",
     ),
     "tile": Listed(
-        "tiles",
+        "tile",
         "tile",
         "Triangulate more points than fit into memory, in tiles that form one triangulation.",
     ),
@@ -97,15 +97,15 @@ COMMANDS = {
         "volume",
         "Compute the volumes to cut and to fill between a surface and a height or another surface.",
     ),
-    "hull": Listed("outline", "hull", "Compute the outline of points, and write its polygons."),
+    "hull": Listed("hull", "hull", "Compute the outline of points, and write its polygons."),
     "mesh": Listed(
-        "meshing",
+        "mesh",
         "make_mesh",
         "Mesh polygons, or what closed lines enclose, with triangles without small angles.",
         on_rows=False,
     ),
     "tetrahedralize": Listed(
-        "filling",
+        "tetrahedralize",
         "fill",
         "Fill a closed surface with tetrahedra; its triangles are kept exactly.",
         on_rows=False,

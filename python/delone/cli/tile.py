@@ -217,7 +217,9 @@ def _blamed(error: OSError, output: Path) -> BaseException:
 
 def _print_plan(plan: Plan, as_json: bool) -> None:
     if as_json:
-        print_json({"delone": __version__, **asdict(plan)})
+        # By the same name as in the report of a run.
+        figures = asdict(plan)
+        print_json({"delone": __version__, "tiles": figures.pop("ntiles"), **figures})
         return
     rows = [
         ("points", f"{plan.points:,}"),
