@@ -43,6 +43,7 @@ def versions() -> dict[str, str]:
     patterns = {
         "CITATION.cff": r"^version: *\"?([^\"\n]+)\"?$",
         "recipe/recipe.yaml": r"^  version: *\"?([^\"\n]+)\"?$",
+        "docs/citation.rst": r"^ +version = \{([^}]+)\},$",
     }
     workspace = tomllib.loads(read("Cargo.toml"))["workspace"]
     found = {"Cargo.toml": of_python(workspace["package"]["version"])}

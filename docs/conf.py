@@ -36,6 +36,7 @@ extensions = [
     "live",
     "member_tables",
     "picture_texts",
+    "question_index",
     "questions",
     "try_page",
 ]

@@ -4,17 +4,14 @@ In the source the questions are the terms of definition lists, ``... compute a c
 roles ``:index:`` for the words that users look for. Sphinx shows sections, not terms, as results of
 a search, with a title and the text below it. So before the page is read, ``... compute a convex
 hull?`` becomes the title "Compute a convex hull", and the words become entries of the index, which
-lead to the section itself; `_static/search_titles.js` names results of the search after it.
+lead to the section itself (`question_index.py`); `_static/search_titles.js` names results of the
+search after it.
 """
 
 from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING
-
-from docutils import nodes
-from sphinx import addnodes
-from sphinx.transforms import SphinxTransform
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
@@ -48,25 +45,7 @@ def _read(app: Sphinx, page: str, source: list[str]) -> None:
         source[0] = sections(source[0])
 
 
-class EntriesOfSections(SphinxTransform):
-    """Lets the entries of the index lead to the section, whose title the search has."""
-
-    # Before the index is collected, at 850.
-    default_priority = 800
-
-    def apply(self, **_: object) -> None:
-        """Change the anchors of the entries on the page."""
-        if self.env.docname != PAGE:
-            return
-        for part in self.document.findall(nodes.section):
-            for entry in part.children:
-                if isinstance(entry, addnodes.index):
-                    anchor = part["ids"][0]
-                    entry["entries"] = [(e[0], e[1], anchor, *e[3:]) for e in entry["entries"]]
-
-
 def setup(app: Sphinx) -> dict[str, bool]:
     """Register the change of the page."""
     app.connect("source-read", _read)
-    app.add_transform(EntriesOfSections)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -14,6 +14,8 @@ from types import ModuleType
 
 import pytest
 
+import delone
+
 DOCS = Path(__file__).parents[2] / "docs"
 HOWTO = (DOCS / "howto.rst").read_text(encoding="utf-8")
 
@@ -81,3 +83,12 @@ def test_the_index_is_read_as_the_search_does() -> None:
     assert CHECK.found(index, "flow accumulation") == {"b"}
     assert CHECK.found(index, "GPU") == {"c"} == CHECK.found(index, "blue noise")
     assert CHECK.found(index, "zarr") == CHECK.found(index, "flowing water") == set()
+
+
+def test_tables_of_members_have_what_a_page_has() -> None:
+    members = load(DOCS / "extensions" / "member_tables.py").members
+    attributes, methods = members(delone.Delaunay)
+    assert {"areas", "simplices"} <= set(attributes) and {"find_simplex", "load"} <= set(methods)
+    assert not set(attributes) & set(methods) and attributes == sorted(attributes)
+    error = [name for names in members(delone.InputError) for name in names]
+    assert not {"args", "with_traceback", "add_note"} & set(error)
