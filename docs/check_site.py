@@ -201,7 +201,11 @@ def pages(root: Path) -> list[Path]:
 
 def _is_stem(stem: str, word: str) -> bool:
     """Whether a term of the index is, or may be, what is left of a word without its ending."""
-    return word.startswith(stem) and len(stem) >= max(SHORTEST, len(word) - ENDING)
+    # "simplify" and "simplified" have the stem "simplifi".
+    other = re.sub(r"y$", "i", word)
+    return (word.startswith(stem) or stem == other) and len(stem) >= max(
+        SHORTEST, len(word) - ENDING
+    )
 
 
 def found(index: dict[str, Any], term: str) -> set[str]:
