@@ -114,6 +114,15 @@ impl Side<'_> {
         [sign(1, 2), sign(2, 0), sign(0, 1)]
     }
 
+    /// The sign of the first coordinate of the normal that is not zero.
+    fn first(&self) -> i32 {
+        let x = self.n[0].hi;
+        if x.abs() > LOW {
+            return of(x);
+        }
+        first(&self.signs())
+    }
+
     fn exact_normal(&self) -> super::exact::Big3 {
         across(&big3(self.a), &big3(self.b))
     }
@@ -145,13 +154,16 @@ pub fn side(e: Side, q: Point3, moved: Moved) -> i32 {
 #[cold]
 #[inline(never)]
 fn side_exact(e: Side, q: Point3, moved: Moved) -> i32 {
-    let found = number(orient_exact([e.a, e.b, q]));
-    if found != 0 {
-        return found;
+    // A common corner, the most frequent tie, needs no integers.
+    if q != e.a && q != e.b {
+        let found = number(orient_exact([e.a, e.b, q]));
+        if found != 0 {
+            return found;
+        }
     }
     match moved {
-        Moved::Corner => first(&e.signs()) * first(&q),
-        Moved::Side => -first(&e.signs()) * first(&q),
+        Moved::Corner => e.first() * first(&q),
+        Moved::Side => -e.first() * first(&q),
         Moved::Neither => 0,
     }
 }
@@ -241,7 +253,7 @@ fn corner_exact([c, s]: Point2, t: f64, e: Side) -> i32 {
     if found != 0 {
         return found;
     }
-    -first(&e.signs()) * first(&[c, s, t])
+    -e.first() * first(&[c, s, t])
 }
 
 /// Whether a moved side runs east.
@@ -325,7 +337,7 @@ fn falling_exact(m: Point2, e: Side) -> i32 {
     if found.sign() != 0 {
         return found.sign();
     }
-    first(&e.signs()) * first(&[m[1], -m[0]])
+    e.first() * first(&[m[1], -m[0]])
 }
 
 /// Whether the circle of a moved side passes beyond the parallels of tangents t and -t, where t > 0
@@ -351,4 +363,172 @@ fn reaches_exact(t: f64, e: Side) -> bool {
     }
     let n = e.signs();
     -first(&n) * first(&[n[0], n[1], -n[2]]) > 0
+}
+
+#[cfg(test)]
+mod tests {
+    //! All stages against integers alone, on input within a few units in the last place of a tie.
+
+    use super::super::pairs::cross_of;
+    use super::*;
+    use delone_predicates::sphere::leveled;
+
+    /// Numbers from -1 to 1, and small integers.
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn bits(&mut self) -> u64 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            self.0
+        }
+
+        fn next(&mut self) -> f64 {
+            (self.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        }
+
+        fn vector(&mut self) -> Point3 {
+            let v = if self.bits() % 3 == 0 {
+                [0, 1, 2].map(|_| (self.bits() % 5) as f64 - 2.0)
+            } else {
+                [0, 1, 2].map(|_| self.next())
+            };
+            if v == [0.0; 3] {
+                [1.0, 0.0, 0.0]
+            } else {
+                leveled(v)
+            }
+        }
+
+        /// A few units in the last place away.
+        fn near(&mut self, x: f64) -> f64 {
+            x * (1.0 + ((self.bits() % 5) as f64 - 2.0) * f64::EPSILON)
+        }
+    }
+
+    /// Calls `test` with sides and other numbers; the sign of the integers is `exact`, if not zero.
+    fn each(test: impl Fn(Side, &mut Numbers) -> (i32, i32)) {
+        let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15);
+        let mut ties = 0;
+        for _ in 0..4000 {
+            let (a, b) = (numbers.vector(), numbers.vector());
+            let n = cross_of(a, b);
+            if n.iter().all(|x| x.hi == 0.0) {
+                continue;
+            }
+            let (found, exact) = test(Side { a, b, n: &n }, &mut numbers);
+            assert!(found != 0);
+            if exact == 0 {
+                ties += 1;
+            } else {
+                assert_eq!(found, exact);
+            }
+        }
+        assert!(ties > 0);
+    }
+
+    fn sign(x: bool) -> i32 {
+        if x { 1 } else { -1 }
+    }
+
+    #[test]
+    fn corners_at_circles() {
+        each(|e, numbers| {
+            let (s, t) = (numbers.next(), (numbers.bits() % 3) as f64);
+            let q = leveled([0, 1, 2].map(|k| numbers.near(s * e.a[k] + t * e.b[k])));
+            let q = if q.iter().all(|x| x.is_finite() && *x != 0.0) {
+                q
+            } else {
+                e.a
+            };
+            let exact = product(&e.exact_normal(), &big3(q)).sign();
+            assert_eq!(
+                side(e, q, Moved::Corner),
+                if exact == 0 {
+                    -side(e, q, Moved::Side)
+                } else {
+                    exact
+                }
+            );
+            assert_eq!(side(e, q, Moved::Neither), exact);
+            (side(e, q, Moved::Side), exact)
+        });
+    }
+
+    #[test]
+    fn corners_at_meridians_and_parallels() {
+        each(|e, numbers| {
+            let t = numbers.near(e.a[2] / (e.a[0] * e.a[0] + e.a[1] * e.a[1]).sqrt());
+            let [x, y, z] = big3(e.a);
+            let square = x.square().plus(&y.square());
+            if !t.is_finite() {
+                return (1, 0);
+            }
+            (sign(above(t, e.a)), with_root(&z, &Big::of(-t), &square))
+        });
+        each(|e, numbers| {
+            let m = [numbers.near(e.a[0]), numbers.near(e.a[1])];
+            let m = if m == [0.0; 2] { [1.0, 0.0] } else { m };
+            let [x, y, _] = big3(e.a);
+            let exact = Big::of(m[0]).times(&y).minus(&Big::of(m[1]).times(&x));
+            (sign(east(m, e.a)), exact.sign())
+        });
+    }
+
+    #[test]
+    fn circles_at_corners_of_meridians_and_parallels() {
+        each(|e, numbers| {
+            // The meridian of an end, at which the circle has the latitude of that end.
+            let v = if numbers.bits() % 2 == 0 { e.a } else { e.b };
+            let m = if v[0] == 0.0 && v[1] == 0.0 {
+                [1.0, 0.0]
+            } else {
+                [v[0], v[1]]
+            };
+            let len = (m[0] * m[0] + m[1] * m[1]).sqrt();
+            let t = numbers.near(v[2] / len);
+            let n = e.exact_normal();
+            let [x, y] = m.map(Big::of);
+            let exact = with_root(
+                &n[0].times(&x).plus(&n[1].times(&y)),
+                &n[2].times(&Big::of(t)),
+                &x.square().plus(&y.square()),
+            );
+            (corner(m, len, t, e), exact)
+        });
+    }
+
+    #[test]
+    fn extrema_of_circles() {
+        each(|e, numbers| {
+            let m = [numbers.near(e.n[0].hi), numbers.near(e.n[1].hi)];
+            let m = if m == [0.0; 2] { [1.0, 0.0] } else { m };
+            let m = leveled([m[0], m[1], 0.0]);
+            let m = [m[0], m[1]];
+            let n = e.exact_normal();
+            let exact = Big::of(m[0])
+                .times(&n[1])
+                .minus(&Big::of(m[1]).times(&n[0]));
+            (falling(m, e), exact.sign())
+        });
+        each(|e, numbers| {
+            let (h, n) = (e.n.map(|x| x.hi), e.exact_normal());
+            let t = numbers.near((h[0] * h[0] + h[1] * h[1]).sqrt() / h[2].abs());
+            if !(t > 0.0 && t.is_finite()) {
+                return (1, 0);
+            }
+            let square = n[2].times(&Big::of(t)).square();
+            let exact = n[0].square().plus(&n[1].square()).minus(&square);
+            (sign(reaches(t, e)), exact.sign())
+        });
+        each(|e, _| {
+            let (a, b) = (big3(e.a), big3(e.b));
+            let exact = b[2]
+                .times(&product(&a, &a))
+                .minus(&a[2].times(&product(&a, &b)));
+            (rise(e, false), exact.sign())
+        });
+        each(|e, _| (sign(eastward(e)), e.exact_normal()[2].sign()));
+    }
 }
