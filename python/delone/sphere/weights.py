@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._arrays import as_choice, as_number, as_plain_array
+from delone import _core
+from delone._arrays import as_choice, as_number, as_plain_array, as_workers
 from delone.counting import agreed, counted
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.extras import require
@@ -30,7 +31,7 @@ METHODS = ("conservative", "normalized", "sum", "majority")
 OTHER = "other"
 # Fractions that differ by less are equal.
 _ROUNDING = 1e-12
-# Entries that are processed together.
+# Values of fields that are processed together.
 _LOT = 1 << 22
 
 
@@ -248,7 +249,7 @@ class Weights(Immutable):
             kind = np.float32 if given.dtype == np.float32 else np.float64
             found = np.empty((len(given), len(self.fractions)), dtype=kind)
             missing = np.empty(found.shape, dtype=bool)
-            lot = max(1, _LOT // max(len(self.values), 1))
+            lot = max(1, _LOT // max(given.shape[1], 1))
             for first in range(0, len(given), lot):
                 part = given[first : first + lot].astype(np.float64)
                 found[first : first + lot], missing[first : first + lot] = self._mixed(
@@ -285,37 +286,33 @@ class Weights(Immutable):
     def _mixed(self, part: Floats, skipna: bool, least: float) -> tuple[Floats, Flags]:
         """Return sums of products, and which are missing.
 
-        Sums are over differences from the smallest value of each row, so that a constant remains
+        Sums are over differences from the smallest value of each field, so that a constant remains
         one, exactly.
         """
-        indptr, indices, values = self._rows
-        used = np.flatnonzero(np.diff(indptr))
-        starts, lengths = indptr[used], np.diff(indptr)[used]
-        found = np.zeros((len(part), len(self.fractions)))
-        share = np.broadcast_to(self.fractions, found.shape)
-        if not len(used):
-            return found, np.ones(found.shape, dtype=bool)
-        entries = part[:, indices]
-        none = np.isnan(entries) if skipna else None
-        totals = np.broadcast_to(self._totals()[used], (len(part), len(used)))
+        share = np.broadcast_to(self.fractions, (len(part), len(self.fractions)))
+        totals = np.broadcast_to(self._totals(), share.shape)
+        none = np.isnan(part) if skipna else None
         if none is not None and none.any():
-            there = np.where(none, 0.0, values)
-            totals = np.add.reduceat(there, starts, axis=1)
-            share = np.zeros(found.shape)
-            kept = np.where(none, 0.0, self._shares())
-            share[:, used] = np.add.reduceat(kept, starts, axis=1)
-        low = np.fmin.reduceat(entries, starts, axis=1)
+            there = np.where(none, 0.0, 1.0)
+            totals = self._combined(self.values, there)
+            share = self._combined(self._shares(), there)
+        low = np.fmin.reduce(part, axis=1, initial=np.inf, keepdims=True)
         low = np.where(np.isfinite(low), low, 0.0)
-        rest = entries - np.repeat(low, lengths, axis=1)
+        rest = part - low
         if none is not None:
             rest[none] = 0.0
-        sums = np.add.reduceat(rest * values, starts, axis=1)
+        sums = self._combined(self.values, rest)
+        missing = (share <= 0) | (share < least - _ROUNDING)
         if skipna and self._method in {"normalized", OTHER}:
             with np.errstate(invalid="ignore", divide="ignore"):
-                found[:, used] = low + sums / totals
-        else:
-            found[:, used] = low * totals + sums
-        return found, (share <= 0) | (share < least - _ROUNDING)
+                return low + sums / totals, missing
+        return low * totals + sums, missing
+
+    def _combined(self, weights: Floats, part: Floats) -> Floats:
+        """Return sums of products with fields, (fields, ntarget)."""
+        columns = np.ascontiguousarray(part.T)
+        threads = as_workers(None)
+        return _core.combine2(self.indptr, self.indices, weights, columns, None, None, threads).T
 
     def _totals(self) -> Floats:
         """Return the sum of the weights of each target cell."""
