@@ -252,3 +252,28 @@ def test_forms_of_issues_are_valid() -> None:
         fields = [field for field in form["body"] if field["type"] != "markdown"]
         assert len({field["id"] for field in fields}) == len(fields)
         assert all(field["attributes"]["label"] for field in fields)
+
+
+def test_the_oldest_glibc_is_the_same_everywhere() -> None:
+    compatibility = script("rehearse").COMPATIBILITY
+    oldest = compatibility.removeprefix("manylinux_").replace("_", ".")
+    assert f"glibc {oldest} or later" in (ROOT / "README.md").read_text(encoding="utf-8")
+    built = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["cibuildwheel"]
+    assert {v for k, v in built.items() if k.startswith("manylinux-")} == {compatibility}
+
+
+def test_a_rehearsal_says_what_it_leaves_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without zig, other targets and tools, one sentence each, and the wheel for this machine."""
+    rehearse = script("rehearse")
+    monkeypatch.setattr(rehearse, "said_by", lambda *_: "")
+    monkeypatch.setattr(rehearse, "has", lambda _: False)
+    monkeypatch.setattr(rehearse.platform, "machine", lambda: "x86_64")
+    made = rehearse.Rehearsal(Path(), Path())
+    assert rehearse.plans(made) == [("x86_64", sys.executable)]
+    said = "\n".join(made.left_out)
+    assert len(made.left_out) == 3
+    assert all(word in said for word in ("aarch64", "zig", "global lock", "abi3audit"))
+    monkeypatch.setattr(rehearse, "has", lambda _: True)
+    made = rehearse.Rehearsal(Path(), Path())
+    rehearse.plans(made)
+    assert "rustup target add aarch64-unknown-linux-gnu" in made.left_out[0]
