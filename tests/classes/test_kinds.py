@@ -217,3 +217,18 @@ def test_classes_that_functions_make_say_so(owner: type) -> None:
     for given in ((), ([(0, 0), (1, 0), (0, 1)],)):
         with pytest.raises(delone.DtypeError, match=f"create an? {owner.__name__} with"):
             owner(*given)
+
+
+def test_contours_are_lines_at_their_heights() -> None:
+    hill = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0), (2, 2, 3)])
+    contours = hill.contours(interval=1)
+    parts = contours._parts()
+    ends = parts.points[parts.simplices]
+    assert (ends[..., 2] == parts.of_simplices["level"][:, None]).all()
+    for line in range(len(contours)):
+        pieces = ends[parts.of_simplices["line"] == line][..., :2]
+        run = contours.coordinates(line)
+        assert np.array_equal(pieces, np.stack((run[:-1], run[1:]), axis=1))
+    assert not len(hill.contours([99.0])._parts().simplices)
+    if pytest.importorskip("meshio"):
+        assert len(contours.to_meshio().cells_dict["line"]) == len(ends)

@@ -24,6 +24,7 @@ from delone.terrain.surface import on_surface
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone.exchange.parts import Parts
     from delone.terrain.surface import Surface
 
     Bools = NDArray[np.bool_]
@@ -143,6 +144,69 @@ class Contours(ReadOnly):
             shapely.GeometryType.LINESTRING, np.column_stack((self.points, z)), (self.starts,)
         )
         return found
+
+    def _parts(self) -> Parts:
+        """The pieces of the lines between neighboring points, at their heights."""
+        from delone.exchange.parts import Parts
+
+        size = np.diff(self.starts)
+        first = np.delete(np.arange(len(self.points)), self.starts[1:] - 1)
+        line = np.repeat(np.arange(len(self), dtype=np.int32), size - 1)
+        return Parts(
+            np.column_stack((self.points, np.repeat(self.level, size))),
+            np.column_stack((first, first + 1)).astype(np.int32),
+            of_simplices={"line": line, "level": self.level[line]},
+            crs=self.crs,
+        )
+
+    def to_meshio(self) -> Any:
+        """Convert to a mesh of meshio (extra ``mesh``).
+
+        Returns
+        -------
+        meshio.Mesh
+            Each piece of a line between neighboring points as a cell, at its height, with the
+            number and the ``level`` of its line.
+
+        Raises
+        ------
+        MissingExtraError
+            meshio is not installed.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
+        >>> tin.contours([2.0]).to_meshio().points[:, 2].tolist()
+        [2.0, 2.0, 2.0]
+        """
+        from delone.exchange.meshio import to_meshio
+
+        return to_meshio(self._parts())
+
+    def to_pyvista(self) -> Any:
+        """Convert to lines of PyVista (extra ``pyvista``), at their heights.
+
+        Returns
+        -------
+        pyvista.PolyData
+            As `to_meshio`.
+
+        Raises
+        ------
+        MissingExtraError
+            PyVista is not installed.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
+        >>> tin.contours([2.0]).to_pyvista().cell_data["level"]
+        pyvista_ndarray([2., 2.])
+        """
+        from delone.exchange.pyvista import to_pyvista
+
+        return to_pyvista(self._parts())
 
     def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
         """Return a table of the lines (extra ``geo``).
