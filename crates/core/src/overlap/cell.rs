@@ -71,6 +71,9 @@ pub struct Cell {
     pub repeated: usize,
 }
 
+/// Corners with their directions.
+type Ring = Vec<(Point3, Pair3)>;
+
 /// The rings of a cell: whether each is a hole, and its corners.
 pub type Rings<'a> = &'a mut dyn Iterator<Item = (bool, &'a [Point3])>;
 
@@ -86,7 +89,7 @@ impl Cell {
             turned: false,
             repeated: 0,
         };
-        let mut kept = Vec::new();
+        let mut kept: Vec<(bool, Ring)> = Vec::new();
         for (hole, ring) in rings {
             let ring = cell.distinct(ring);
             if ring.len() > 2 {
@@ -104,10 +107,12 @@ impl Cell {
         };
         let axis = chart_of(center);
         for (hole, ring) in &mut kept {
-            let units: Vec<Pair3> = ring.iter().map(|&v| chart(axis, &unit_of(v))).collect();
             let mut own = Turn::new();
-            for (k, p) in units.iter().enumerate() {
-                own.mul(factor(p, &units[(k + 1) % units.len()]), false);
+            let mut last = chart(axis, &ring[ring.len() - 1].1);
+            for (_, unit) in ring.iter() {
+                let next = chart(axis, unit);
+                own.mul(factor(&last, &next), false);
+                last = next;
             }
             if (own.area() < 0.0) != *hole {
                 ring.reverse();
@@ -144,30 +149,31 @@ impl Cell {
     ///
     /// A coordinate below 2^-1022 of the largest may lose digits: the corner moves by 2^-1073
     /// before anything is decided.
-    fn distinct(&mut self, ring: &[Point3]) -> Vec<Point3> {
-        let mut found: Vec<Point3> = Vec::with_capacity(ring.len());
+    fn distinct(&mut self, ring: &[Point3]) -> Ring {
+        let mut found: Ring = Vec::with_capacity(ring.len());
         for &v in ring {
             // Adding 0 removes the sign of a negative zero.
             let v = leveled(v).map(|x| x + 0.0);
-            if found.last().is_none_or(|&before| !same(before, v)) {
-                found.push(v);
+            if found.last().is_none_or(|before| !same(before.0, v)) {
+                found.push((v, unit_of(v)));
             }
         }
-        while found.len() > 1 && same(found[0], found[found.len() - 1]) {
+        while found.len() > 1 && same(found[0].0, found[found.len() - 1].0) {
             found.pop();
         }
         self.repeated += ring.len() - found.len();
         found
     }
 
-    fn add(&mut self, ring: &[Point3]) {
+    fn add(&mut self, ring: &Ring) {
         let from = self.corners.len();
-        for (k, &v) in ring.iter().enumerate() {
-            let next = (k + 1) % ring.len();
+        self.corners.reserve_exact(ring.len());
+        for (k, &(v, unit)) in ring.iter().enumerate() {
+            let next = if k + 1 == ring.len() { 0 } else { k + 1 };
             self.corners.push(Corner {
                 v,
-                unit: unit_of(v),
-                n: cross_of(v, ring[next]),
+                unit,
+                n: cross_of(v, ring[next].0),
                 next: (from + next) as u32,
             });
         }
@@ -267,12 +273,12 @@ fn unit_of(v: Point3) -> Pair3 {
 }
 
 /// Whether the ends of a side are opposite.
-fn has_opposite(ring: &[Point3]) -> bool {
+fn has_opposite(ring: &Ring) -> bool {
     let zero = |a: Point3, b: Point3, i: usize, j: usize| {
         orient2d([a[i], a[j]], [b[i], b[j]], [0.0; 2]) == Sign::Zero
     };
     (0..ring.len()).any(|k| {
-        let (a, b) = (ring[k], ring[(k + 1) % ring.len()]);
+        let (a, b) = (ring[k].0, ring[(k + 1) % ring.len()].0);
         a[0] * b[0] + a[1] * b[1] + a[2] * b[2] < 0.0
             && [(0, 1), (1, 2), (2, 0)]
                 .iter()
@@ -284,10 +290,10 @@ fn has_opposite(ring: &[Point3]) -> bool {
 ///
 /// The mean of the corners, else some steps towards the farthest one (M. Bădoiu and K. L. Clarkson,
 /// 2003).
-fn around(rings: &[(bool, Vec<Point3>)]) -> Option<(Point3, f64)> {
+fn around(rings: &[(bool, Ring)]) -> Option<(Point3, f64)> {
     let units: Vec<Point3> = rings
         .iter()
-        .flat_map(|(_, ring)| ring.iter().map(|&v| Unit::of(v).hi))
+        .flat_map(|(_, ring)| ring.iter().map(|(_, unit)| heads(unit)))
         .collect();
     let normal = |c: Point3| {
         let length = (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]).sqrt();
@@ -322,12 +328,12 @@ fn compare(a: &Point3, b: &Point3) -> Ordering {
 }
 
 /// Turns a ring so that the sequence of its corners is the smallest one.
-fn start_at_smallest(ring: &mut [Point3]) {
+fn start_at_smallest(ring: &mut Ring) {
     let count = ring.len();
     let mut best = 0;
     for start in 1..count {
         let later = (0..count)
-            .map(|k| compare(&ring[(start + k) % count], &ring[(best + k) % count]))
+            .map(|k| compare(&ring[(start + k) % count].0, &ring[(best + k) % count].0))
             .find(|order| order.is_ne());
         if later == Some(Ordering::Less) {
             best = start;

@@ -389,7 +389,7 @@ mod tests {
         }
 
         fn vector(&mut self) -> Point3 {
-            let v = if self.bits() % 3 == 0 {
+            let v = if self.bits().is_multiple_of(3) {
                 [0, 1, 2].map(|_| (self.bits() % 5) as f64 - 2.0)
             } else {
                 [0, 1, 2].map(|_| self.next())
@@ -480,7 +480,7 @@ mod tests {
     fn circles_at_corners_of_meridians_and_parallels() {
         each(|e, numbers| {
             // The meridian of an end, at which the circle has the latitude of that end.
-            let v = if numbers.bits() % 2 == 0 { e.a } else { e.b };
+            let v = if numbers.bits().is_multiple_of(2) { e.a } else { e.b };
             let m = if v[0] == 0.0 && v[1] == 0.0 {
                 [1.0, 0.0]
             } else {
