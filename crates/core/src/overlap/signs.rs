@@ -480,7 +480,11 @@ mod tests {
     fn circles_at_corners_of_meridians_and_parallels() {
         each(|e, numbers| {
             // The meridian of an end, at which the circle has the latitude of that end.
-            let v = if numbers.bits().is_multiple_of(2) { e.a } else { e.b };
+            let v = if numbers.bits().is_multiple_of(2) {
+                e.a
+            } else {
+                e.b
+            };
             let m = if v[0] == 0.0 && v[1] == 0.0 {
                 [1.0, 0.0]
             } else {
