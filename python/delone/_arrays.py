@@ -104,19 +104,29 @@ def _coordinates(points: Any, ndim: int | None, name: str) -> Any:
             return points
         every = np.empty(len(held), dtype=object)
         every[:] = held
-    else:
+    elif getattr(getattr(held, "dtype", None), "kind", "") == "O":
         every = np.asarray(held)
-    if every.dtype.kind != "O" or every.ndim != 1:
+    else:
+        return points  # such as a table of numbers
+    if every.ndim != 1:
         return points
     if not any(hasattr(each, "geom_type") for each in every[:8]):
         return points
     return _of_points(sys.modules["shapely"], every, ndim, name)
 
 
+def _is_geometry(thing: Any) -> bool:
+    return hasattr(thing, "geom_type")
+
+
 def _of_points(
     shapely: Any, every: NDArray[Any], ndim: int | None, name: str
 ) -> NDArray[np.float64]:
     """Return the coordinates of shapely points, (n,); refuse others, and heights in 2-D."""
+    strange = [k for k, each in enumerate(every) if each is not None and not _is_geometry(each)]
+    if strange:
+        kind = type(every[strange[0]]).__name__
+        raise DtypeError(f"{name} contains geometries, and in row {strange[0]} an object {kind}")
     kinds = shapely.get_type_id(every)
     if len(other := np.flatnonzero(kinds > 0)):
         raise DtypeError(
