@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, datasets
+from delone.compat import scipy
 from delone.errors import DtypeError, ShapeError
 from delone.predicates import orient2d
 
@@ -82,11 +83,14 @@ def test_any_leading_shape(shape: tuple[int, ...]) -> None:
     assert found.reshape(-1).tolist() == [int(f) for f in one_by_one]
 
 
-def test_arguments_of_scipy_are_taken() -> None:
-    mesh = Delaunay(datasets.uniform(100))
-    queries = np.random.default_rng(0).random((50, 2))
-    expected = mesh.find_simplex(queries)
-    assert np.array_equal(mesh.find_simplex(queries, True, 1e-3), expected)
+def test_arguments_of_scipy_are_those_of_the_drop_in() -> None:
+    points, queries = datasets.uniform(100), np.random.default_rng(0).random((50, 2))
+    mesh = Delaunay(points)
+    with pytest.raises(TypeError, match="bruteforce"):
+        mesh.find_simplex(queries, bruteforce=True)  # type: ignore[call-arg]
+    found = scipy.Delaunay(points).find_simplex(queries, True, 0.0)
+    inside = mesh.find_simplex(queries) >= 0
+    assert np.array_equal(found >= 0, inside)
 
 
 @pytest.mark.parametrize("bad", [1.0, (1, 2, 3), [[1], [2]], np.zeros((2, 3))])

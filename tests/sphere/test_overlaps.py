@@ -105,9 +105,11 @@ def test_small_cells_are_as_right_as_large_ones(size: float) -> None:
 def test_rows_that_end_in_a_small_cell() -> None:
     # Products of directions do not tell corners apart that are 1e-8 away from the center.
     ring = [(1, -1e-9, 0), (1, 0, -1e-8), (1, 1e-9, 0), (1, 0, 1e-8)]
-    cell = Grid.mesh([ring], merge=0)
+    cell = Grid.from_mesh([ring], merge=0)
     edges = np.degrees(1e-8 * np.linspace(-1, 1, 9))
-    parts = [Overlaps(cell, Grid.lonlat([-1, 1], edges[k : k + 2])).areas.sum() for k in range(8)]
+    parts = [
+        Overlaps(cell, Grid.from_lonlat([-1, 1], edges[k : k + 2])).areas.sum() for k in range(8)
+    ]
     assert parts == pytest.approx(parts[::-1], rel=1e-9)
     assert sum(parts) == pytest.approx(cell.areas[0], rel=1e-12)
 

@@ -65,7 +65,7 @@ def as_bounds(values: ArrayLike, *, name: str, degrees: bool) -> Floats:
                 at = int(np.flatnonzero(first[1:] != second[:-1])[0])
                 raise InputError(
                     f"{name}: the bounds of entries {at} and {at + 1} do not meet: give edges, or "
-                    "make cells with gaps by Grid.mesh"
+                    "make cells with gaps by Grid.from_mesh"
                 )
         flat = np.concatenate((first, second[-1:]))
     elif array.ndim != 1:
