@@ -190,8 +190,9 @@ class Weights(Immutable):
 
         Parameters
         ----------
-        values : array_like, shape (..., *source_shape) or (..., nsource)
-            Real numbers; leading axes, such as times and levels, remain.
+        values : array_like, shape (..., r, c) or (..., nsource)
+            Real numbers, in the shape of the grid or as rows; leading axes, such as times and
+            levels, remain.
         skipna : bool, optional
             Whether NaN means a missing value, whose cell takes no part. By default NaN propagates
             to all target cells that share area with it.
@@ -204,7 +205,7 @@ class Weights(Immutable):
 
         Returns
         -------
-        ndarray, shape (..., *target_shape) or (..., ntarget)
+        ndarray, shape (..., r, c) or (..., ntarget)
             float32 for float32, else float64; for "majority" the dtype of `values`. Cells without
             any value are missing, not 0.
 
