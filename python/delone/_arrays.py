@@ -115,16 +115,12 @@ def _coordinates(points: Any, ndim: int | None, name: str) -> Any:
     return _of_points(sys.modules["shapely"], every, ndim, name)
 
 
-def _is_geometry(thing: Any) -> bool:
-    return hasattr(thing, "geom_type")
-
-
 def _of_points(
     shapely: Any, every: NDArray[Any], ndim: int | None, name: str
 ) -> NDArray[np.float64]:
     """Return the coordinates of shapely points, (n,); refuse others, and heights in 2-D."""
-    strange = [k for k, each in enumerate(every) if each is not None and not _is_geometry(each)]
-    if strange:
+    strange = np.flatnonzero(~shapely.is_valid_input(every))
+    if len(strange):
         kind = type(every[strange[0]]).__name__
         raise DtypeError(f"{name} contains geometries, and in row {strange[0]} an object {kind}")
     kinds = shapely.get_type_id(every)

@@ -224,3 +224,16 @@ def test_the_report_names_cells() -> None:
     assert Overlaps(region, twice).report.source_repeatedly.tolist() == [0]
     assert len(Overlaps(twice, region).report.source_repeatedly) == 0
     assert len(Overlaps(twice, twice).report.target_repeatedly) == 2
+
+
+def test_cells_beyond_the_first_lot() -> None:
+    """Cells are prepared by lots of 1,024; both grids have several, in threads or not."""
+    fine, other = Grid.from_healpix(16), Grid.from_healpix(20)
+    assert min(fine.ncells, other.ncells) > 2 * 1024
+    for source, target in ((fine, other), (other, fine)):
+        one = Overlaps(source, target, workers=1)
+        assert np.allclose(one.covered_target, 1, rtol=0, atol=1e-13)
+        assert np.allclose(one.covered_source, 1, rtol=0, atol=1e-13)
+        many = Overlaps(source, target, workers=3)
+        assert np.array_equal(one.indices, many.indices)
+        assert one.areas.tobytes() == many.areas.tobytes()
