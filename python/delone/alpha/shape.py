@@ -342,9 +342,9 @@ class AlphaShape(Kept):
         if self.ndim == 3:
             raise InputError("loose_edges are only available in 2-D")
         edges = self.simplices_of(1)
-        sides = np.sort(self.simplices[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-        keys, own = (each.astype(np.int64) @ [len(self._points), 1] for each in (edges, sides))
-        return sealed(edges[~np.isin(keys, own)])
+        sides = np.ascontiguousarray(self.simplices[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2))
+        rows = _core.facet_rows(sides, np.ascontiguousarray(edges), len(self._points), False)
+        return sealed(edges[rows < 0])
 
     @property
     @kept
