@@ -15,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 LOCKS = ("Cargo.lock", "fuzz/Cargo.lock", "benchmarks/peers/Cargo.lock", "crates/web/Cargo.lock")
 # The packages of the workspace; others in the lock files have versions of their own.
-PACKAGES = ("delone", "delone-bindings", "delone-core", "delone-predicates")
+PACKAGES = ("delone-bindings", "delone-core", "delone-predicates")
 # What pages say before the first release, and no longer when a version has a tag.
 UNRELEASED = re.compile(
     r"\bno release yet\b|\bnot (?:yet )?released\b|\bfrom the first release on\b"
@@ -23,7 +23,7 @@ UNRELEASED = re.compile(
     re.IGNORECASE,
 )
 # What users read. The page about releasing speaks of the first one for its own reasons.
-PAGES = ("README.md", "SECURITY.md", "CITATION.cff", "crates/*/README.md", "docs/**/*.rst")
+PAGES = ("README.md", "SECURITY.md", "CITATION.cff", "docs/**/*.rst")
 NOT_PAGES = ("docs/releasing.rst", "docs/generated/", "docs/gallery/", "docs/_build/")
 
 

@@ -37,7 +37,6 @@ ROOT = Path(__file__).parents[1]
 COMPATIBILITY = "manylinux_2_28"
 MACHINES = {"x86_64": "x86_64-unknown-linux-gnu", "aarch64": "aarch64-unknown-linux-gnu"}
 FREE_THREADED = ("python3.15t", "python3.14t")
-CRATES = ("delone-predicates", "delone-core", "delone")
 # What the commands on pages need of a shell. Nothing else is in the path of an environment.
 SHELL = ("sh", "mkdir", "env", "uname")
 # What is in the sdist and in no repository.
@@ -231,19 +230,6 @@ WHERE = (
 )
 
 
-def package_crates() -> list[str]:
-    """Package the crates as for crates.io, each built from its package."""
-    chosen = [option for crate in CRATES for option in ("--package", crate)]
-    dirty = [] if tag_here() else ["--allow-dirty"]
-    run(
-        "cargo", "package", "--quiet", *chosen, *dirty,
-        "--target-dir", ROOT / "target" / "release-check",
-    )  # fmt: skip
-    manifests = [tomllib.loads(p.read_text("utf-8")) for p in ROOT.glob("crates/*/Cargo.toml")]
-    kept = [m["package"]["name"] for m in manifests if m["package"].get("publish", True)]
-    return [f"{name} is neither packaged nor `publish = false`" for name in set(kept) - set(CRATES)]
-
-
 def has_index() -> bool:
     """Whether pip reaches an index of packages."""
     ask = ("-m", "pip", "download", "--quiet", "--no-deps", "--only-binary", ":all:", "numpy", "-d")
@@ -282,7 +268,7 @@ def rehearse(rehearsal: Rehearsal, tag: str | None) -> None:
     rehearsal.step("check the sdist", partial(sdist_faults, source))
     runnable = wheels(rehearsal, source)
     why = "" if has_index() else "no index of packages can be reached"
-    rehearsal.leave_out("environments and crates", why)
+    rehearsal.leave_out("environments", why)
     for number, (wheel, python) in enumerate(() if why else runnable):
         folder = rehearsal.work / str(number)
         name = f"quick tests with NumPy alone, {wheel.name}"
@@ -291,8 +277,6 @@ def rehearse(rehearsal: Rehearsal, tag: str | None) -> None:
         if python == sys.executable:
             name = f"all of README with all extras, {wheel.name}"
             rehearsal.step(name, partial(try_extras, wheel, python, folder / "all"))
-    if not why:
-        rehearsal.step("package the crates", package_crates)
     shutil.rmtree(source.parent)
 
 

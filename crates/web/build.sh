@@ -47,7 +47,7 @@ quietly() {
 
 # What the result depends on.
 sources() {
-    find crates/web crates/delone crates/core crates/predicates -type f \
+    find crates/web crates/core crates/predicates -type f \
         \( -name '*.rs' -o -name '*.toml' -o -name 'Cargo.lock' -o -name '*.js' -o -name '*.ts' \) \
         -not -path '*/target/*'
     echo Cargo.toml
@@ -154,7 +154,7 @@ within() {
 rm -rf "$work/crates" "$work/.cargo"
 mkdir -p "$work/crates/web" "$work/.cargo"
 cp -p Cargo.toml Cargo.lock "$work"
-cp -rp crates/predicates crates/core crates/delone crates/bindings "$work/crates"
+cp -rp crates/predicates crates/core crates/bindings "$work/crates"
 cp -rp crates/web/Cargo.toml crates/web/Cargo.lock crates/web/src "$work/crates/web"
 
 # Debian may have another version of the command.

@@ -183,51 +183,8 @@ CORE: dict[str, set[str]] = {
 NEEDS = {
     "predicates": set[str](),
     "core": {"delone-predicates", "num-bigint", "thiserror", "libc"},
-    "delone": {"delone-core", "delone-predicates", "thiserror"},
-    "bindings": {"delone", "delone-core", "delone-predicates", "pyo3", "numpy"},
-    "web": {"delone", "delone-core", "delone-predicates", "wasm-bindgen"},
-}
-# What the bindings take from the core: what the crate `delone` does not offer.
-BINDINGS = {
-    "arrays",
-    "cluster",
-    "consistency",
-    "constrained::components",
-    "constrained::nesting",
-    "constrained::numbered_by_smallest",
-    "constrained::simple_ring",
-    "contour",
-    "delaunay2::lawson",
-    "delaunay2::validate",
-    "delaunay3::validate",
-    "distributed",
-    "alpha",
-    "graphs",
-    "hull",
-    "improve",
-    "interpolate",
-    "interpolate3",
-    "interpolate_sphere",
-    "joins",
-    "live",
-    "locate",
-    "locate3",
-    "measure",
-    "memory",
-    "mesh2::import",
-    "overlap",
-    "overlay",
-    "memory::copied",
-    "refine::judge",
-    "refine::smooth",
-    "regular",
-    "regular3",
-    "sphere",
-    "recover",
-    "surface",
-    "voronoi",
-    "voronoi3",
-    "watch",
+    "bindings": {"delone-core", "delone-predicates", "pyo3", "numpy"},
+    "web": {"delone-core", "delone-predicates", "wasm-bindgen"},
 }
 NAMES_OF_CRATES = ("delone_predicates", "delone_core", "pyo3", "numpy", "libc")
 
@@ -291,35 +248,6 @@ def core_faults(core: Path) -> list[str]:
     return faults
 
 
-def paths_of(tree: str, before: str = "") -> list[str]:
-    """The paths in a `use` of Rust, with braces resolved."""
-    depth, start, found = 0, 0, []
-    for i, letter in enumerate(tree + ","):
-        depth += {"{": 1, "}": -1}.get(letter, 0)
-        if letter == "," and depth == 0:
-            part, start = tree[start:i].strip(), i + 1
-            head, brace, inside = part.partition("{")
-            if brace:
-                found += paths_of(inside.removesuffix("}"), before + head)
-            elif part:
-                found.append(before + part.split(" as ")[0])
-    return found
-
-
-def bindings_faults(bindings: Path) -> list[str]:
-    """Names of the core that the bindings use although they are not among `BINDINGS`."""
-    faults = []
-    for path in sorted((bindings / "src").rglob("*.rs")):
-        for tree in re.findall(r"\buse delone_core::(.*?);", rust_text(path), re.DOTALL):
-            wrong = [
-                name
-                for name in paths_of(tree)
-                if not any(name == may or name.startswith(f"{may}::") for may in BINDINGS)
-            ]
-            faults += [f"{path.name} uses {name} of the core" for name in wrong]
-    return faults
-
-
 def crate_faults(crates: Path) -> list[str]:
     faults = []
     for manifest in sorted(crates.glob("*/Cargo.toml")):
@@ -380,30 +308,6 @@ def test_the_tables_hold_nothing_that_is_not_so() -> None:
 
 def test_crates_need_what_they_may() -> None:
     assert crate_faults(CRATES) == []
-
-
-def test_bindings_use_the_public_crate_where_it_has_something() -> None:
-    # The function that reports progress of `improve` answers the core in its own terms.
-    own = {"improve.rs uses error::Error of the core", "improve.rs uses error::Result of the core"}
-    assert set(bindings_faults(CRATES / "bindings")) == own
-
-
-@pytest.mark.parametrize(
-    ("line", "name"),
-    [
-        ("use delone_core::error::Error;", "error::Error"),
-        ("use delone_core::delaunay2::{Method, validate::validate};", "delaunay2::Method"),
-        ("use delone_core::{measure, refine::{judge, refine}};", "refine::refine"),
-        ("use delone_core::constrained as c;", "constrained"),
-    ],
-)
-def test_a_detour_of_the_bindings_is_found(line: str, name: str, tmp_path: Path) -> None:
-    bindings = tmp_path / "bindings"
-    shutil.copytree(CRATES / "bindings" / "src", bindings / "src")
-    with (bindings / "src" / "hull.rs").open("a", encoding="utf-8") as source:
-        source.write(f"\n{line}\n")
-    found = set(bindings_faults(bindings)) - set(bindings_faults(CRATES / "bindings"))
-    assert found == {f"hull.rs uses {name} of the core"}
 
 
 def test_the_core_has_no_cycle() -> None:

@@ -38,7 +38,6 @@ CONVERTED = (
     "crates/core/src/**/*.rs",
     "crates/core/examples/*.rs",
     "crates/core/tests/suite/*.rs",
-    "crates/delone/src/**/*.rs",
     "crates/predicates/src/*.rs",
     "fuzz/fuzz_targets/*.rs",
     "fuzz/src/*.rs",

@@ -43,6 +43,10 @@ ABSENCES: dict[tuple[str, str], str] = {
         "getting_started.rst",
         "There is no release yet",
     ): "CONTRIBUTING.md says what the first release changes",
+    (
+        "decisions/no-crate-for-rust.rst",
+        "No public crate for Rust",
+    ): "the crates are not published: the page says why",
     ("index.rst", "There is no release yet"): "CONTRIBUTING.md says what the first release changes",
     (
         "coming_from/cgal.rst",

@@ -114,7 +114,7 @@ def test_files_with_other_versions_are_named(name: str, tmp_path: Path) -> None:
         ("README.md", "There is no release yet, so you build."),
         ("docs/getting_started.rst", "Before the first\nrelease, build."),
         ("docs/guide/io.rst", "From the first release on, install."),
-        ("crates/delone/README.md", "It is not yet released."),
+        ("SECURITY.md", "It is not yet released."),
     ],
 )
 def test_pages_that_deny_the_release_are_named(page: str, text: str, tmp_path: Path) -> None:

@@ -1,12 +1,12 @@
 //! Alpha complexes and concave hulls as arrays.
 
-use delone::{Error, Result};
 use delone_core::alpha::{self, Limit, Sites};
+use delone_core::error::{Error, Result};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, flat, in_range, rows, table};
-use crate::errors::attached;
+use crate::errors::Outcome;
 use crate::given::{checked, finite_weights, simplices_of, unequal};
 use crate::signals::watched;
 
@@ -32,12 +32,9 @@ macro_rules! of_dimension {
             simplices: PyReadonlyArray2<'_, i32>,
             neighbors: PyReadonlyArray2<'_, i32>,
             workers: usize,
-        ) -> PyResult<Flat> {
-            let (given, weights) = attached(py, || {
-                let given = checked::<$d, 3>(&points, &simplices, &neighbors)?;
-                let weights = finite_weights(weights.as_ref(), given.points.len())?;
-                Ok((given, weights))
-            })?;
+        ) -> Outcome<Flat> {
+            let given = checked::<$d, 3>(&points, &simplices, &neighbors)?;
+            let weights = finite_weights(weights.as_ref(), given.points.len())?;
             let found = watched(py, |watch| {
                 let sites = Sites {
                     points: given.points,
@@ -57,15 +54,11 @@ macro_rules! of_dimension {
             weights: Option<PyReadonlyArray1<'_, f64>>,
             edges: PyReadonlyArray2<'_, i32>,
             workers: usize,
-        ) -> PyResult<Column<f64>> {
-            let (sites, edges) = attached(py, || {
-                let points: &[[f64; $d]] = rows(&points, "points")?;
-                let weights = finite_weights(weights.as_ref(), points.len())?;
-                Ok((
-                    Sites { points, weights },
-                    simplices_of::<2>(&edges, points.len())?,
-                ))
-            })?;
+        ) -> Outcome<Column<f64>> {
+            let points: &[[f64; $d]] = rows(&points, "points")?;
+            let weights = finite_weights(weights.as_ref(), points.len())?;
+            let sites = Sites { points, weights };
+            let edges = simplices_of::<2>(&edges, points.len())?;
             let found = watched(py, |watch| alpha::edges(sites, edges, workers, watch))?;
             Ok(column(py, found))
         }
@@ -78,17 +71,15 @@ macro_rules! of_dimension {
             weights: Option<PyReadonlyArray1<'_, f64>>,
             edges: PyReadonlyArray2<'_, i32>,
             values: PyReadonlyArray1<'_, f64>,
-        ) -> PyResult<Column<f64>> {
-            let (sites, edges, values) = attached(py, || {
-                let points: &[[f64; $d]] = rows(&points, "points")?;
-                let weights = finite_weights(weights.as_ref(), points.len())?;
-                let edges = simplices_of::<2>(&edges, points.len())?;
-                let values = flat(&values, "values")?;
-                if edges.len() != values.len() {
-                    return Err(unequal());
-                }
-                Ok((Sites { points, weights }, edges, values))
-            })?;
+        ) -> Outcome<Column<f64>> {
+            let points: &[[f64; $d]] = rows(&points, "points")?;
+            let weights = finite_weights(weights.as_ref(), points.len())?;
+            let edges = simplices_of::<2>(&edges, points.len())?;
+            let values = flat(&values, "values")?;
+            if edges.len() != values.len() {
+                return Err(unequal().into());
+            }
+            let sites = Sites { points, weights };
             let found = watched(py, |watch| alpha::vertices(sites, edges, values, watch))?;
             Ok(column(py, found))
         }
@@ -100,14 +91,11 @@ macro_rules! of_dimension {
             order: PyReadonlyArray1<'_, i32>,
             neighbors: PyReadonlyArray2<'_, i32>,
             outside: bool,
-        ) -> PyResult<Column<i32>> {
-            let (order, neighbors) = attached(py, || {
-                let neighbors: &[[i32; $corners]] = rows(&neighbors, "neighbors")?;
-                in_range(neighbors, -1, neighbors.len(), "neighbors")?;
-                let order = flat(&order, "order")?;
-                in_range(order.as_chunks::<1>().0, 0, neighbors.len(), "order")?;
-                Ok((order, neighbors))
-            })?;
+        ) -> Outcome<Column<i32>> {
+            let neighbors: &[[i32; $corners]] = rows(&neighbors, "neighbors")?;
+            in_range(neighbors, -1, neighbors.len(), "neighbors")?;
+            let order = flat(&order, "order")?;
+            in_range(order.as_chunks::<1>().0, 0, neighbors.len(), "order")?;
             let found = watched(py, |watch| alpha::counts(order, neighbors, outside, watch))?;
             Ok(column(py, found))
         }
@@ -118,16 +106,13 @@ macro_rules! of_dimension {
             py: Python<'_>,
             kept: PyReadonlyArray1<'_, bool>,
             neighbors: PyReadonlyArray2<'_, i32>,
-        ) -> PyResult<Column<i32>> {
-            let (kept, neighbors) = attached(py, || {
-                let neighbors: &[[i32; $corners]] = rows(&neighbors, "neighbors")?;
-                in_range(neighbors, -1, neighbors.len(), "neighbors")?;
-                let kept = flat(&kept, "kept")?;
-                if kept.len() != neighbors.len() {
-                    return Err(unequal());
-                }
-                Ok((kept, neighbors))
-            })?;
+        ) -> Outcome<Column<i32>> {
+            let neighbors: &[[i32; $corners]] = rows(&neighbors, "neighbors")?;
+            in_range(neighbors, -1, neighbors.len(), "neighbors")?;
+            let kept = flat(&kept, "kept")?;
+            if kept.len() != neighbors.len() {
+                return Err(unequal().into());
+            }
             let found = watched(py, |watch| alpha::labels(kept, neighbors, watch))?;
             Ok(column(py, found))
         }
@@ -162,12 +147,9 @@ pub fn alpha_solid3(
     simplices: PyReadonlyArray2<'_, i32>,
     neighbors: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Solid> {
-    let (given, weights) = attached(py, || {
-        let given = checked::<3, 4>(&points, &simplices, &neighbors)?;
-        let weights = finite_weights(weights.as_ref(), given.points.len())?;
-        Ok((given, weights))
-    })?;
+) -> Outcome<Solid> {
+    let given = checked::<3, 4>(&points, &simplices, &neighbors)?;
+    let weights = finite_weights(weights.as_ref(), given.points.len())?;
     let found = watched(py, |watch| {
         let sites = Sites {
             points: given.points,
@@ -193,24 +175,22 @@ pub fn alpha_torus2(
     offsets: PyReadonlyArray3<'_, i32>,
     partners: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<(Column<f64>, Table<f64>, Table<i32>)> {
-    let (sites, simplices, offsets, partners) = attached(py, || {
-        let points: &[[f64; 2]] = rows(&points, "points")?;
-        let weights = finite_weights(weights.as_ref(), points.len())?;
-        let simplices = simplices_of::<3>(&simplices, points.len())?;
-        let partners: &[[i32; 3]] = rows(&partners, "partners")?;
-        in_range(partners, -1, 3 * simplices.len(), "partners")?;
-        let offsets = flat(&offsets, "offsets")?.as_chunks::<2>().0;
-        let offsets: &[[[i32; 2]; 3]] = offsets.as_chunks::<3>().0;
-        let right = |corner: &[i32; 2]| corner.iter().all(|k| (-2..=2).contains(k));
-        if !offsets.iter().flatten().all(right) {
-            return Err(Error::Shape("offsets must be -2 to 2 periods".into()));
-        }
-        if offsets.len() != simplices.len() || partners.len() != simplices.len() {
-            return Err(unequal());
-        }
-        Ok((Sites { points, weights }, simplices, offsets, partners))
-    })?;
+) -> Outcome<(Column<f64>, Table<f64>, Table<i32>)> {
+    let points: &[[f64; 2]] = rows(&points, "points")?;
+    let weights = finite_weights(weights.as_ref(), points.len())?;
+    let simplices = simplices_of::<3>(&simplices, points.len())?;
+    let partners: &[[i32; 3]] = rows(&partners, "partners")?;
+    in_range(partners, -1, 3 * simplices.len(), "partners")?;
+    let offsets = flat(&offsets, "offsets")?.as_chunks::<2>().0;
+    let offsets: &[[[i32; 2]; 3]] = offsets.as_chunks::<3>().0;
+    let right = |corner: &[i32; 2]| corner.iter().all(|k| (-2..=2).contains(k));
+    if !offsets.iter().flatten().all(right) {
+        return Err(Error::Shape("offsets must be -2 to 2 periods".into()).into());
+    }
+    if offsets.len() != simplices.len() || partners.len() != simplices.len() {
+        return Err(unequal().into());
+    }
+    let sites = Sites { points, weights };
     let found = watched(py, |watch| {
         alpha::torus(sites, periods, simplices, offsets, partners, workers, watch)
     })?;
@@ -229,15 +209,12 @@ pub fn alpha_rings2(
     simplices: PyReadonlyArray2<'_, i32>,
     neighbors: PyReadonlyArray2<'_, i32>,
     labels: PyReadonlyArray1<'_, i32>,
-) -> PyResult<Rings> {
-    let (given, labels) = attached(py, || {
-        let given = checked::<2, 3>(&points, &simplices, &neighbors)?;
-        let labels = flat(&labels, "labels")?;
-        if labels.len() != given.simplices.len() {
-            return Err(unequal());
-        }
-        Ok((given, labels))
-    })?;
+) -> Outcome<Rings> {
+    let given = checked::<2, 3>(&points, &simplices, &neighbors)?;
+    let labels = flat(&labels, "labels")?;
+    if labels.len() != given.simplices.len() {
+        return Err(unequal().into());
+    }
     let found = watched(py, |watch| {
         alpha::rings(
             given.points,
@@ -274,11 +251,9 @@ pub fn dig2(
     name: &str,
     value: f64,
     holes: bool,
-) -> PyResult<Column<bool>> {
-    let (given, limit) = attached(py, || {
-        let given = checked::<2, 3>(&points, &simplices, &neighbors)?;
-        Ok((given, limit(name, value)?))
-    })?;
+) -> Outcome<Column<bool>> {
+    let given = checked::<2, 3>(&points, &simplices, &neighbors)?;
+    let limit = limit(name, value)?;
     let found = watched(py, |watch| {
         alpha::dig2(
             given.points,
@@ -301,11 +276,9 @@ pub fn dig3(
     neighbors: PyReadonlyArray2<'_, i32>,
     name: &str,
     value: f64,
-) -> PyResult<Column<bool>> {
-    let (given, limit) = attached(py, || {
-        let given = checked::<3, 4>(&points, &simplices, &neighbors)?;
-        Ok((given, limit(name, value)?))
-    })?;
+) -> Outcome<Column<bool>> {
+    let given = checked::<3, 4>(&points, &simplices, &neighbors)?;
+    let limit = limit(name, value)?;
     let found = watched(py, |watch| {
         alpha::dig3(given.points, given.simplices, given.neighbors, limit, watch)
     })?;

@@ -7,7 +7,9 @@ use numpy::{
 };
 use pyo3::prelude::*;
 
-use delone::{Error, Result};
+use delone_core::error::{Error, Result};
+
+use crate::errors::Outcome;
 
 /// A 1-D NumPy array.
 pub type Column<T> = Py<PyArray1<T>>;
@@ -80,7 +82,7 @@ pub fn are_starts(starts: &[i32], length: usize) -> Result<()> {
 }
 
 /// A vector of rows as an `(n, D)` array that owns it.
-pub fn table<T: Element, const D: usize>(py: Python<'_>, rows: Vec<[T; D]>) -> PyResult<Table<T>> {
+pub fn table<T: Element, const D: usize>(py: Python<'_>, rows: Vec<[T; D]>) -> Outcome<Table<T>> {
     let shape = [rows.len(), D];
     let array = PyArray1::from_vec(py, rows.into_flattened()).reshape(shape)?;
     Ok(array.unbind())
@@ -90,16 +92,18 @@ pub fn table<T: Element, const D: usize>(py: Python<'_>, rows: Vec<[T; D]>) -> P
 pub fn frozen<T: Element + Copy, const D: usize>(
     py: Python<'_>,
     rows: &[[T; D]],
-) -> PyResult<Table<T>> {
+) -> Outcome<Table<T>> {
     let array = PyArray2::<T>::zeros(py, [rows.len(), D], false);
     let mut lent = array.try_readwrite()?;
-    lent.as_slice_mut()?.copy_from_slice(rows.as_flattened());
+    lent.as_slice_mut()
+        .map_err(PyErr::from)?
+        .copy_from_slice(rows.as_flattened());
     lent.make_nonwriteable();
     Ok(array.unbind())
 }
 
 /// A vector as a read-only array that cannot be made writeable: the owner of its memory is not an array.
-pub fn sealed<T: Element>(py: Python<'_>, values: Vec<T>) -> PyResult<Column<T>> {
+pub fn sealed<T: Element>(py: Python<'_>, values: Vec<T>) -> Outcome<Column<T>> {
     let array = PyArray1::from_vec(py, values);
     array.try_readwrite()?.make_nonwriteable();
     Ok(array.unbind())
@@ -109,7 +113,7 @@ pub fn sealed<T: Element>(py: Python<'_>, values: Vec<T>) -> PyResult<Column<T>>
 pub fn sealed_rows<T: Element, const D: usize>(
     py: Python<'_>,
     rows: Vec<[T; D]>,
-) -> PyResult<Table<T>> {
+) -> Outcome<Table<T>> {
     let shape = [rows.len(), D];
     let array = sealed(py, rows.into_flattened())?;
     Ok(array.bind(py).reshape(shape)?.unbind())
@@ -141,7 +145,7 @@ pub fn shaped<T: Element, S: IntoDimension>(
     py: Python<'_>,
     values: Vec<T>,
     shape: S,
-) -> PyResult<Py<PyArray<T, S::Dim>>> {
+) -> Outcome<Py<PyArray<T, S::Dim>>> {
     let array = PyArray1::from_vec(py, values).reshape(shape)?;
     Ok(array.unbind())
 }
@@ -152,7 +156,7 @@ pub fn numbers(py: Python<'_>, numbers: Vec<u32>) -> Column<i32> {
 }
 
 /// Rows of numbers as an array.
-pub fn number_rows<const D: usize>(py: Python<'_>, rows: &[[u32; D]]) -> PyResult<Table<i32>> {
+pub fn number_rows<const D: usize>(py: Python<'_>, rows: &[[u32; D]]) -> Outcome<Table<i32>> {
     table(py, signed(rows))
 }
 

@@ -1,13 +1,13 @@
 //! Clusters: merges of a spanning tree, condensed trees, and clusters of one density.
 
-use delone::Error;
 use delone_core::cluster::{self, Condensed, cores, hierarchy, reach_tree};
+use delone_core::error::Error;
 use delone_core::graphs::Tree;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, in_range, rows, table};
-use crate::errors::attached;
+use crate::errors::Outcome;
 use crate::signals::watched;
 
 /// `(clusters, levels, parents, births, deaths, sizes, stabilities, heights, (below, up to))`.
@@ -34,18 +34,15 @@ macro_rules! of_dimension {
             edges: PyReadonlyArray2<'_, i32>,
             duplicates: PyReadonlyArray2<'_, i32>,
             workers: usize,
-        ) -> PyResult<Table<f64>> {
-            let (points, edges, duplicates) = attached(py, || {
-                let points: &[[f64; $d]] = rows(&points, "points")?;
-                let edges: &[[i32; 2]] = rows(&edges, "edges")?;
-                let duplicates: &[[i32; 2]] = rows(&duplicates, "duplicates")?;
-                in_range(edges, 0, points.len(), "edges")?;
-                in_range(duplicates, 0, points.len(), "duplicates")?;
-                if edges.len() + duplicates.len() + 1 != points.len() {
-                    return Err(Error::Shape("the edges are not those of a tree".into()));
-                }
-                Ok((points, edges, duplicates))
-            })?;
+        ) -> Outcome<Table<f64>> {
+            let points: &[[f64; $d]] = rows(&points, "points")?;
+            let edges: &[[i32; 2]] = rows(&edges, "edges")?;
+            let duplicates: &[[i32; 2]] = rows(&duplicates, "duplicates")?;
+            in_range(edges, 0, points.len(), "edges")?;
+            in_range(duplicates, 0, points.len(), "duplicates")?;
+            if edges.len() + duplicates.len() + 1 != points.len() {
+                return Err(Error::Shape("the edges are not those of a tree".into()).into());
+            }
             let found = watched(py, |watch| {
                 let links = cluster::single_links(points, edges, duplicates, watch)?;
                 let merges = hierarchy(points, links, workers, watch)?;
@@ -64,15 +61,11 @@ macro_rules! of_dimension {
             least: usize,
             number: f64,
             workers: usize,
-        ) -> PyResult<Tower> {
-            let points: &[[f64; $d]] = attached(py, || {
-                let points: &[[f64; $d]] = rows(&points, "points")?;
-                if points.len() < 2 || k < 1 || k > points.len() || number.is_nan() || number < 0.0
-                {
-                    return Err(Error::Shape("no condensed tree of this".into()));
-                }
-                Ok(points)
-            })?;
+        ) -> Outcome<Tower> {
+            let points: &[[f64; $d]] = rows(&points, "points")?;
+            if points.len() < 2 || k < 1 || k > points.len() || number.is_nan() || number < 0.0 {
+                return Err(Error::Shape("no condensed tree of this".into()).into());
+            }
             let (found, heights, [below, up_to]) = watched(py, |watch| {
                 let tree = Tree::of(points, workers, watch)?;
                 let distances = cores(&tree, k, points.len(), workers, watch)?;
@@ -112,13 +105,11 @@ macro_rules! of_dimension {
             eps: f64,
             k: usize,
             workers: usize,
-        ) -> PyResult<(Column<i32>, Column<bool>)> {
-            let points: &[[f64; $d]] = attached(py, || {
-                if eps.is_nan() || eps < 0.0 || k < 1 {
-                    return Err(Error::Shape("no density of this".into()));
-                }
-                rows(&points, "points")
-            })?;
+        ) -> Outcome<(Column<i32>, Column<bool>)> {
+            if eps.is_nan() || eps < 0.0 || k < 1 {
+                return Err(Error::Shape("no density of this".into()).into());
+            }
+            let points: &[[f64; $d]] = rows(&points, "points")?;
             let found = watched(py, |watch| {
                 let tree = Tree::of(points, workers, watch)?;
                 cluster::density(&tree, points.len(), eps, k, workers, watch)

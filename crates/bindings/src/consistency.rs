@@ -4,7 +4,7 @@ use delone_core::consistency::{self, Fault};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-use crate::errors::attached;
+use crate::errors::Outcome;
 use crate::given::checked;
 use crate::signals::watched;
 
@@ -17,8 +17,8 @@ pub fn fault2(
     simplices: PyReadonlyArray2<'_, i32>,
     neighbors: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Option<(&'static str, usize)>> {
-    let given = attached(py, || checked(&points, &simplices, &neighbors))?;
+) -> Outcome<Option<(&'static str, usize)>> {
+    let given = checked(&points, &simplices, &neighbors)?;
     let found = watched(py, |watch| consistency::triangles(given, workers, watch))?;
     Ok(found.map(named))
 }
@@ -31,8 +31,8 @@ pub fn fault3(
     simplices: PyReadonlyArray2<'_, i32>,
     neighbors: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Option<(&'static str, usize)>> {
-    let given = attached(py, || checked(&points, &simplices, &neighbors))?;
+) -> Outcome<Option<(&'static str, usize)>> {
+    let given = checked(&points, &simplices, &neighbors)?;
     let found = watched(py, |watch| consistency::tetrahedra(given, workers, watch))?;
     Ok(found.map(named))
 }

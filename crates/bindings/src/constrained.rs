@@ -1,9 +1,11 @@
 //! Constrained triangulations as arrays.
 
-use delone::arrays::Rule;
-use delone::{Constrained, Error, Options, Point2, Result};
+use delone_core::Point2;
 use delone_core::constrained::nesting::{Covers, Parts, odd_pairs};
-use delone_core::constrained::{components, numbered_by_smallest, simple_ring};
+use delone_core::constrained::{
+    Constrained, Options, Rule, components, constrain, numbered_by_smallest, polygon, simple_ring,
+};
+use delone_core::error::{Error, Result};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -12,10 +14,10 @@ use crate::arrays::{
     Column, Table, column, each_in_range, flat, frozen, in_range, rows, sealed, sealed_rows,
     signed, table,
 };
-use crate::errors::{attached, raise};
-use crate::given::unequal;
+use crate::errors::Outcome;
+use crate::given::{pairs, unequal};
 use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
-use crate::signals::{optioned, watched};
+use crate::signals::watched;
 use crate::triangulation::{method_of, seconds};
 
 /// A constrained Delaunay triangulation of the whole hull.
@@ -94,39 +96,37 @@ pub fn constrained2<'py>(
     max_vertices: usize,
     method: &str,
     workers: usize,
-) -> PyResult<(ConstrainedTriangulation, Py<PyTuple>)> {
+) -> Outcome<(ConstrainedTriangulation, Py<PyTuple>)> {
     let method = method_of(method)?;
-    let points: &[Point2] = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let segments: &[[i32; 2]] = rows(&segments, "segments").map_err(|e| raise(py, &e))?;
-    let with = |options: Options<'_>| {
-        let options = options.method(method).max_points(max_vertices);
-        let options = options.split_crossings(split).conforming(conforming);
-        options.constrain(points, segments)
+    let points: &[Point2] = rows(&points, "points")?;
+    let segments = pairs(&segments, points.len(), "segments")?;
+    let options = Options {
+        split,
+        conforming,
+        max_vertices,
+        method,
+        workers,
     };
-    let made = optioned(py, workers, with)?;
-    let stages = seconds(py, made.stages())?;
+    let made = watched(py, |watch| constrain(points, &segments, options, watch))?;
+    let stages = seconds(py, &made.stages)?;
     Ok((arrays_of(py, made)?, stages))
 }
 
-fn arrays_of(py: Python<'_>, made: Constrained<'_>) -> PyResult<ConstrainedTriangulation> {
-    let (tiling, constrained, segments) = made.into_parts();
-    let added = sealed_rows(py, tiling.added().to_vec())?;
-    let duplicates = sealed_rows(py, signed(tiling.duplicates()))?;
-    let (simplices, neighbors) = tiling.into_arrays();
-    let zero = segments.zero.into_iter().map(|row| row as i32).collect();
+fn arrays_of(py: Python<'_>, made: Constrained) -> Outcome<ConstrainedTriangulation> {
+    let zero = made.zero.into_iter().map(|row| row as i32).collect();
     Ok(ConstrainedTriangulation {
-        added,
-        simplices: sealed_rows(py, simplices)?,
-        neighbors: sealed_rows(py, neighbors)?,
-        constrained: sealed_rows(py, constrained)?,
-        duplicates,
-        segments: sealed_rows(py, segments.ends)?,
-        source_start: sealed(py, segments.starts)?,
-        source: sealed(py, segments.sources)?,
-        forward: sealed(py, segments.forward)?,
+        added: sealed_rows(py, made.added)?,
+        simplices: sealed_rows(py, made.arrays.simplices)?,
+        neighbors: sealed_rows(py, made.arrays.neighbors)?,
+        constrained: sealed_rows(py, made.constrained)?,
+        duplicates: sealed_rows(py, signed(&made.duplicates))?,
+        segments: sealed_rows(py, made.subsegments.ends)?,
+        source_start: sealed(py, made.subsegments.start)?,
+        source: sealed(py, made.subsegments.source)?,
+        forward: sealed(py, made.subsegments.forward)?,
         zero: sealed(py, zero)?,
-        through: sealed_rows(py, signed(&segments.through))?,
-        crossings: sealed_rows(py, signed(&segments.crossings))?,
+        through: sealed_rows(py, signed(&made.through))?,
+        crossings: sealed_rows(py, signed(&made.crossings))?,
     })
 }
 
@@ -136,19 +136,13 @@ pub fn components2(
     py: Python<'_>,
     neighbors: PyReadonlyArray2<'_, i32>,
     constrained: PyReadonlyArray2<'_, bool>,
-) -> PyResult<Column<i32>> {
-    let given = || -> Result<_> {
-        let sides: &[[i32; 3]] = rows(&neighbors, "neighbors")?;
-        let walls: &[[bool; 3]] = rows(&constrained, "constrained")?;
-        if sides.len() != walls.len() {
-            return Err(Error::Shape(
-                "constrained and neighbors differ in length".into(),
-            ));
-        }
-        in_range(sides, -1, sides.len(), "neighbors")?;
-        Ok((sides, walls))
-    };
-    let (sides, walls) = given().map_err(|e| raise(py, &e))?;
+) -> Outcome<Column<i32>> {
+    let sides: &[[i32; 3]] = rows(&neighbors, "neighbors")?;
+    let walls: &[[bool; 3]] = rows(&constrained, "constrained")?;
+    if sides.len() != walls.len() {
+        return Err(unequal().into());
+    }
+    in_range(sides, -1, sides.len(), "neighbors")?;
     let labels = watched(py, |watch| components(sides, walls, watch))?;
     Ok(column(py, labels))
 }
@@ -161,24 +155,19 @@ pub fn numbered_components(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     component: PyReadonlyArray1<'_, i32>,
-) -> PyResult<Column<i32>> {
-    let (corners, of) = attached(py, || {
-        let corners: &[[i32; 3]] = rows(&simplices, "simplices")?;
-        let of = flat(&component, "component")?;
-        in_range(corners, 0, points.shape()[0], "simplices")?;
-        in_range(of.as_chunks::<1>().0, 0, i32::MAX as usize, "component")?;
-        if of.len() != corners.len() {
-            return Err(Error::Shape(
-                "component and simplices differ in length".into(),
-            ));
-        }
-        Ok((corners, of))
-    })?;
+) -> Outcome<Column<i32>> {
+    let corners: &[[i32; 3]] = rows(&simplices, "simplices")?;
+    let of = flat(&component, "component")?;
+    in_range(corners, 0, points.shape()[0], "simplices")?;
+    in_range(of.as_chunks::<1>().0, 0, i32::MAX as usize, "component")?;
+    if of.len() != corners.len() {
+        return Err(Error::Shape("component and simplices differ in length".into()).into());
+    }
     let found = if points.shape()[1] == 2 {
-        let points = attached(py, || rows::<f64, 2>(&points, "points"))?;
+        let points = rows::<f64, 2>(&points, "points")?;
         watched(py, |watch| numbered_by_smallest(points, corners, of, watch))?
     } else {
-        let points = attached(py, || rows::<f64, 3>(&points, "points"))?;
+        let points = rows::<f64, 3>(&points, "points")?;
         watched(py, |watch| numbered_by_smallest(points, corners, of, watch))?
     };
     Ok(column(py, found))
@@ -250,8 +239,8 @@ impl CoverArrays<'_> {
 
 /// The components to the left and right of each subsegment, (q, 2).
 #[pyfunction]
-pub fn components_beside2(py: Python<'_>, parts: PartArrays<'_>) -> PyResult<Table<i32>> {
-    let (parts, segments) = attached(py, || parts.checked())?;
+pub fn components_beside2(py: Python<'_>, parts: PartArrays<'_>) -> Outcome<Table<i32>> {
+    let (parts, segments) = parts.checked()?;
     table(py, watched(py, |watch| parts.beside(segments, watch))?)
 }
 
@@ -262,11 +251,11 @@ pub fn components_inside2(
     parts: PartArrays<'_>,
     covers: CoverArrays<'_>,
     first: usize,
-) -> PyResult<Table<i32>> {
-    let (parts, segments) = attached(py, || parts.checked())?;
-    let covers = attached(py, || covers.checked())?;
+) -> Outcome<Table<i32>> {
+    let (parts, segments) = parts.checked()?;
+    let covers = covers.checked()?;
     if covers.starts.len() != segments.len() + 1 {
-        return Err(raise(py, &unequal()));
+        return Err(unequal().into());
     }
     let found = watched(py, |watch| parts.containing(segments, covers, first, watch))?;
     table(py, found)
@@ -274,8 +263,8 @@ pub fn components_inside2(
 
 /// Pairs of a subsegment and a polygon of which an odd number of sides cover it, ascending, (k, 2).
 #[pyfunction]
-pub fn odd_pairs2(py: Python<'_>, covers: CoverArrays<'_>) -> PyResult<Table<i32>> {
-    let covers = attached(py, || covers.checked())?;
+pub fn odd_pairs2(py: Python<'_>, covers: CoverArrays<'_>) -> Outcome<Table<i32>> {
+    let covers = covers.checked()?;
     table(py, watched(py, |watch| odd_pairs(covers, watch))?)
 }
 
@@ -286,15 +275,15 @@ pub fn polygon2(
     points: PyReadonlyArray2<'_, f64>,
     starts: PyReadonlyArray1<'_, i32>,
     nonzero: bool,
-) -> PyResult<(Table<f64>, Table<i32>)> {
-    let points: &[Point2] = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let starts = bounds(&starts).map_err(|e| raise(py, &e))?;
+) -> Outcome<(Table<f64>, Table<i32>)> {
+    let points: &[Point2] = rows(&points, "points")?;
+    let starts = bounds(&starts, points.len())?;
     let rule = if nonzero {
         Rule::NonZero
     } else {
         Rule::EvenOdd
     };
-    let filled = optioned(py, 1, |options| options.fill(points, &starts, rule))?;
+    let filled = watched(py, |watch| polygon(points, &starts, rule, watch))?;
     Ok((table(py, filled.added)?, table(py, filled.simplices)?))
 }
 
@@ -306,24 +295,25 @@ pub fn polygon2(
 pub fn ring2(
     py: Python<'_>,
     points: &Bound<'_, PyAny>,
-) -> PyResult<Option<(Table<f64>, Table<i32>)>> {
+) -> Outcome<Option<(Table<f64>, Table<i32>)>> {
     let Ok(points) = points.extract::<PyReadonlyArray2<'_, f64>>() else {
         return Ok(None);
     };
     let Ok(points) = rows::<f64, 2>(&points, "points") else {
         return Ok(None);
     };
-    let Some(simplices) = simple_ring(points).map_err(|e| raise(py, &e.into()))? else {
+    let Some(simplices) = simple_ring(points)? else {
         return Ok(None);
     };
     Ok(Some((frozen(py, points)?, frozen(py, &simplices)?)))
 }
 
 /// The start of each ring, and the end.
-fn bounds(starts: &PyReadonlyArray1<'_, i32>) -> Result<Vec<usize>> {
-    let wrong = || Error::Shape("starts has an entry below 0".into());
-    let starts = flat(starts, "starts")?.iter();
-    starts
-        .map(|&s| usize::try_from(s).map_err(|_| wrong()))
-        .collect()
+fn bounds(starts: &PyReadonlyArray1<'_, i32>, count: usize) -> Result<Vec<usize>> {
+    let starts = flat(starts, "starts")?;
+    each_in_range(starts, 0, count + 1, "starts")?;
+    if !starts.is_sorted() {
+        return Err(Error::Shape("starts must ascend".into()));
+    }
+    Ok(starts.iter().map(|&s| s as usize).collect())
 }

@@ -1,13 +1,13 @@
 //! Disks of triangles and the points deepest in circles, for triangulations in tiles.
 
-use delone::{Error, Result};
 use delone_core::distributed::{deepest, disk, within};
+use delone_core::error::{Error, Result};
 use delone_core::memory::with_room;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, in_range, rows, table};
-use crate::errors::raise;
+use crate::errors::Outcome;
 use crate::signals::watched;
 
 /// Triangles between two checks for interruption.
@@ -20,10 +20,10 @@ pub fn disks2(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
-) -> PyResult<Table<f64>> {
-    let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let simplices: &[[i32; 3]] = rows(&simplices, "simplices").map_err(|e| raise(py, &e))?;
-    in_range(simplices, 0, points.len(), "simplices").map_err(|e| raise(py, &e))?;
+) -> Outcome<Table<f64>> {
+    let points = rows(&points, "points")?;
+    let simplices: &[[i32; 3]] = rows(&simplices, "simplices")?;
+    in_range(simplices, 0, points.len(), "simplices")?;
     let disks = watched(py, |watch| -> Result<_> {
         let mut disks = with_room(simplices.len())?;
         for lot in simplices.chunks(LOT) {
@@ -45,10 +45,10 @@ pub fn within2(
     own: usize,
     bounds: [f64; 4],
     workers: usize,
-) -> PyResult<Column<bool>> {
-    let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let simplices: &[[i32; 3]] = rows(&simplices, "simplices").map_err(|e| raise(py, &e))?;
-    in_range(simplices, 0, points.len(), "simplices").map_err(|e| raise(py, &e))?;
+) -> Outcome<Column<bool>> {
+    let points = rows(&points, "points")?;
+    let simplices: &[[i32; 3]] = rows(&simplices, "simplices")?;
+    in_range(simplices, 0, points.len(), "simplices")?;
     let found = watched(py, |watch| {
         within(points, simplices, own, bounds, workers, watch)
     })?;
@@ -75,14 +75,14 @@ pub fn deepest2(
     corners: PyReadonlyArray2<'_, f64>,
     most: usize,
     workers: usize,
-) -> PyResult<DeepestPoints> {
-    let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let corners: &[[f64; 6]] = rows(&corners, "corners").map_err(|e| raise(py, &e))?;
+) -> Outcome<DeepestPoints> {
+    let points = rows(&points, "points")?;
+    let corners: &[[f64; 6]] = rows(&corners, "corners")?;
     let finite = points.as_flattened().iter().all(|x| x.is_finite())
         && corners.as_flattened().iter().all(|x| x.is_finite());
     if !finite {
         let error = Error::Shape("points and corners must be finite".into());
-        return Err(raise(py, &error));
+        return Err(error.into());
     }
     let found = watched(py, |watch| {
         let mut triangles = with_room(corners.len())?;

@@ -1,13 +1,14 @@
 //! Triangulations passed as arrays: borrowed and checked for one call, or held for many; and other
 //! arrays passed with points: weights, edges.
 
-use delone::{Error, Result};
 use delone_core::arrays::Given;
+use delone_core::error::{Error, Result};
 use delone_core::watch::Watch;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays::{flat, in_range, rows};
+use crate::errors::Outcome;
 use crate::signals::{watched, watched_attached};
 
 /// Up to this number of queries a call keeps the GIL: it is over before another thread could run.
@@ -72,7 +73,7 @@ impl Held {
     }
 
     /// Borrows the arrays.
-    pub fn lend<'py>(&self, py: Python<'py>) -> PyResult<Lent<'py>> {
+    pub fn lend<'py>(&self, py: Python<'py>) -> Outcome<Lent<'py>> {
         Ok(Lent {
             points: self.points.bind(py).try_readonly()?,
             simplices: self.simplices.bind(py).try_readonly()?,
@@ -94,13 +95,13 @@ impl Lent<'_> {
 }
 
 /// Runs `work` for `count` queries, without the GIL unless there are few.
-pub fn answered<T: Send, E: Into<Error>>(
+pub fn answered<T: Send>(
     py: Python<'_>,
     count: usize,
-    work: impl FnOnce(&Watch) -> Result<T, E> + Send,
-) -> PyResult<T> {
+    work: impl FnOnce(&Watch) -> Result<T> + Send,
+) -> Outcome<T> {
     if count <= FEW {
-        return watched_attached(py, work);
+        return watched_attached(work);
     }
     watched(py, work)
 }

@@ -1,6 +1,6 @@
 //! Proximity graphs as arrays of edges.
 
-use delone::{Error, Result};
+use delone_core::error::{Error, Result};
 use delone_core::graphs::{self, Neighbors, Region, Rule, Skeleton, Tree};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use crate::arrays::{
     Column, Table, are_starts, column, each_in_range, flat, in_range, number_rows, rows, table,
 };
-use crate::errors::attached;
+use crate::errors::Outcome;
 use crate::given::simplices_of;
 use crate::signals::watched;
 
@@ -71,9 +71,8 @@ macro_rules! of_dimension {
             beta: f64,
             closed: bool,
             workers: usize,
-        ) -> PyResult<Table<i32>> {
-            let (skeleton, region) =
-                attached(py, || Ok((graph.skeleton::<$d>()?, region(name, beta)?)))?;
+        ) -> Outcome<Table<i32>> {
+            let (skeleton, region) = (graph.skeleton::<$d>()?, region(name, beta)?);
             let found = watched(py, |watch| {
                 let tree = match region {
                     Region::Lune(_) => Some(Tree::of(skeleton.points, workers, watch)?),
@@ -93,8 +92,8 @@ macro_rules! of_dimension {
             simplices: Option<PyReadonlyArray2<'_, i32>>,
             neighbors: Option<PyReadonlyArray2<'_, i32>>,
             workers: usize,
-        ) -> PyResult<Table<i32>> {
-            let (skeleton, tiling) = attached(py, || {
+        ) -> Outcome<Table<i32>> {
+            let (skeleton, tiling) = (|| -> Result<_> {
                 let skeleton = graph.skeleton::<$d>()?;
                 let (Some(simplices), Some(neighbors)) = (&simplices, &neighbors) else {
                     return Ok((skeleton, None));
@@ -106,7 +105,7 @@ macro_rules! of_dimension {
                     return Err(Error::Shape("neighbors and simplices do not match".into()));
                 }
                 Ok((skeleton, Some((simplices, neighbors))))
-            })?;
+            })()?;
             let found = watched(py, |watch| {
                 let tree = Tree::of(skeleton.points, workers, watch)?;
                 graphs::antipodes(&skeleton, &tree, tiling, workers, watch)
@@ -120,8 +119,8 @@ macro_rules! of_dimension {
             py: Python<'_>,
             graph: Adjacency<'_>,
             workers: usize,
-        ) -> PyResult<Table<i32>> {
-            let skeleton = attached(py, || graph.skeleton::<$d>())?;
+        ) -> Outcome<Table<i32>> {
+            let skeleton = graph.skeleton::<$d>()?;
             let found = watched(py, |watch| graphs::spanning_tree(&skeleton, workers, watch))?;
             table(py, found)
         }
@@ -134,8 +133,8 @@ macro_rules! of_dimension {
             k: usize,
             directed: bool,
             workers: usize,
-        ) -> PyResult<Found> {
-            let points: &[[f64; $d]] = attached(py, || rows(&points, "points"))?;
+        ) -> Outcome<Found> {
+            let points: &[[f64; $d]] = rows(&points, "points")?;
             let list = if directed {
                 Neighbors::Directed
             } else {
@@ -157,16 +156,14 @@ macro_rules! of_dimension {
             edges: PyReadonlyArray2<'_, i32>,
             ends: PyReadonlyArray2<'_, f64>,
             workers: usize,
-        ) -> PyResult<Table<i32>> {
-            let (points, edges, ends) = attached(py, || {
-                let points: &[[f64; $d]] = rows(&points, "points")?;
-                let edges: &[[i32; 2]] = rows(&edges, "edges")?;
-                in_range(edges, 0, points.len(), "edges")?;
-                let ends: &[[f64; $d]; 2] = rows(&ends, "ends")?
-                    .try_into()
-                    .map_err(|_| Error::Shape("ends has other than two rows".into()))?;
-                Ok((points, edges, *ends))
-            })?;
+        ) -> Outcome<Table<i32>> {
+            let points: &[[f64; $d]] = rows(&points, "points")?;
+            let edges: &[[i32; 2]] = rows(&edges, "edges")?;
+            in_range(edges, 0, points.len(), "edges")?;
+            let ends: &[[f64; $d]; 2] = rows(&ends, "ends")?
+                .try_into()
+                .map_err(|_| Error::Shape("ends has other than two rows".into()))?;
+            let ends = *ends;
             let found = watched(py, |watch| {
                 graphs::not_longer(points, edges, ends, workers, watch)
             })?;
@@ -180,8 +177,8 @@ macro_rules! of_dimension {
             points: PyReadonlyArray2<'_, f64>,
             closed: bool,
             workers: usize,
-        ) -> PyResult<Found> {
-            let points: &[[f64; $d]] = attached(py, || rows(&points, "points"))?;
+        ) -> Outcome<Found> {
+            let points: &[[f64; $d]] = rows(&points, "points")?;
             let (edges, duplicates) = watched(py, |watch| {
                 let tree = Tree::of(points, workers, watch)?;
                 let edges = graphs::influence(&tree, closed, points.len(), workers, watch)?;
@@ -246,16 +243,16 @@ pub fn of_triangles2(
     beta: f64,
     closed: bool,
     workers: usize,
-) -> PyResult<Table<i32>> {
-    let ((points, simplices, neighbors), rule) = attached(py, || {
+) -> Outcome<Table<i32>> {
+    let ((points, simplices, neighbors), rule) = {
         let rule = match (name, beta > 1.0 && beta <= 2.0) {
             ("longest", _) => Rule::Longest,
             ("ball", _) => Rule::Ball { closed },
             ("circle", true) => Rule::Arcs { beta, closed },
-            _ => return Err(Error::Shape(format!("no rule {name} with beta {beta}"))),
+            _ => return Err(Error::Shape(format!("no rule {name} with beta {beta}")).into()),
         };
-        Ok((tiling.triangles()?, rule))
-    })?;
+        (tiling.triangles()?, rule)
+    };
     let found = watched(py, |watch| {
         graphs::of_triangles(points, simplices, neighbors, rule, workers, watch)
     })?;
@@ -268,8 +265,8 @@ pub fn spanning_triangles2(
     py: Python<'_>,
     tiling: Tiling<'_>,
     workers: usize,
-) -> PyResult<Table<i32>> {
-    let (points, simplices, neighbors) = attached(py, || tiling.triangles())?;
+) -> Outcome<Table<i32>> {
+    let (points, simplices, neighbors) = tiling.triangles()?;
     let found = watched(py, |watch| {
         graphs::spanning_tree_of_triangles(points, simplices, neighbors, workers, watch)
     })?;
@@ -282,12 +279,9 @@ pub fn graph_components(
     py: Python<'_>,
     edges: PyReadonlyArray2<'_, i32>,
     npoints: usize,
-) -> PyResult<Column<i32>> {
-    let edges: &[[i32; 2]] = attached(py, || {
-        let edges = rows(&edges, "edges")?;
-        in_range(edges, 0, npoints, "edges")?;
-        Ok(edges)
-    })?;
+) -> Outcome<Column<i32>> {
+    let edges = rows(&edges, "edges")?;
+    in_range(edges, 0, npoints, "edges")?;
     let found = watched(py, |watch| graphs::components(edges, npoints, watch))?;
     Ok(column(py, found))
 }

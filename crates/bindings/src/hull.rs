@@ -5,7 +5,7 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, number_rows, numbers, rows};
-use crate::errors::raise;
+use crate::errors::Outcome;
 use crate::signals::watched;
 
 /// `(vertices, duplicates)`.
@@ -13,8 +13,8 @@ type Chain = (Column<i32>, Table<i32>);
 
 /// The extreme points in 2-D, counter-clockwise, and the rows that repeat them.
 #[pyfunction]
-pub fn hull2(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> PyResult<Chain> {
-    let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
+pub fn hull2(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> Outcome<Chain> {
+    let points = rows(&points, "points")?;
     let (vertices, duplicates) = watched(py, |watch| hull::hull2(points, watch))?;
     Ok((numbers(py, vertices), number_rows(py, &duplicates)?))
 }
@@ -38,8 +38,8 @@ pub struct Hull3 {
 
 /// The hull of 3-D points; None if they span no volume.
 #[pyfunction]
-pub fn hull3(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> PyResult<Option<Hull3>> {
-    let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
+pub fn hull3(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> Outcome<Option<Hull3>> {
+    let points = rows(&points, "points")?;
     let Some(found) = watched(py, |watch| hull::hull3(points, watch))? else {
         return Ok(None);
     };

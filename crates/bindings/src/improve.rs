@@ -1,13 +1,13 @@
 //! Improved tetrahedra as arrays.
 
-use delone::Result;
+use delone_core::error::Result;
 use delone_core::error::{Error, Result as CoreResult};
 use delone_core::improve::{Improved, Task, improve};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, flat, in_range, rows, table};
-use crate::errors::raise;
+use crate::errors::Outcome;
 use crate::signals::watched;
 
 /// Numbers of changes to tetrahedra, by kind.
@@ -67,7 +67,7 @@ pub fn improve3<'py>(
     turn: bool,
     passes: usize,
     progress: Option<Py<PyAny>>,
-) -> PyResult<ImprovedMesh> {
+) -> Outcome<ImprovedMesh> {
     let task = || -> Result<Task<'_>> {
         let points = rows(&points, "points")?;
         let simplices = rows(&simplices, "simplices")?;
@@ -85,7 +85,7 @@ pub fn improve3<'py>(
             passes,
         })
     };
-    let task = task().map_err(|e| raise(py, &e))?;
+    let task = task()?;
     let mut failure = None;
     let mut notify = |pass: usize, below: usize| -> CoreResult<()> {
         let Some(progress) = &progress else {
@@ -99,13 +99,13 @@ pub fn improve3<'py>(
     };
     let outcome = watched(py, |watch| improve(task, watch, &mut notify));
     if let Some(error) = failure {
-        return Err(error);
+        return Err(error.into());
     }
     arrays_of(py, outcome?)
 }
 
 /// The result as Python arrays.
-fn arrays_of(py: Python<'_>, made: Improved) -> PyResult<ImprovedMesh> {
+fn arrays_of(py: Python<'_>, made: Improved) -> Outcome<ImprovedMesh> {
     let counts = ImprovementCounts {
         edges: made.counts.edges,
         boundary: made.counts.boundary,

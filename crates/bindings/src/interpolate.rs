@@ -1,12 +1,13 @@
 //! Interpolation: the bodies of the methods of `Locator2`, and other functions.
 
-use delone::{Error, Point2, Point3, Result};
+use delone_core::error::{Error, Result};
 use delone_core::interpolate::{
     Adjacency, Barrier, Field, Kind, Method, Order, Rows, Table as Sums, clough_tocher,
     clough_tocher_weights, global_gradients, leave_one_out, linear, local_gradients, natural,
     natural_values,
 };
 use delone_core::interpolate3;
+use delone_core::{Point2, Point3};
 use numpy::{
     PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods,
 };
@@ -14,7 +15,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, each_in_range, flat, rows, shaped};
-use crate::errors::raise;
+use crate::errors::Outcome;
 use crate::locator::Plane;
 use crate::signals::watched;
 
@@ -62,7 +63,7 @@ fn table_of(
     queries: usize,
     columns: usize,
     order: Order,
-) -> PyResult<Array> {
+) -> Outcome<Array> {
     match order {
         Order::Value => Ok(shaped(py, found, [queries, columns])?.into_any()),
         _ => Ok(shaped(py, found, [queries, columns, order.components()])?.into_any()),
@@ -77,11 +78,10 @@ pub fn linear_of(
     xi: &Points<'_>,
     order: usize,
     workers: usize,
-) -> PyResult<Array> {
+) -> Outcome<Array> {
     let order = order_of(order)?;
-    let fail = |e: Error| raise(py, &e);
     let columns = values.shape()[1];
-    let items = flat(values, "values").map_err(fail)?;
+    let items = flat(values, "values")?;
     let (found, n) = locator.batch(xi, workers, |batch| {
         let field = Field::new(&batch.locator.given, items, None, columns)?;
         linear(batch, field, order)
@@ -111,18 +111,17 @@ pub fn smooth_of(
     locator: &Plane,
     kind: Option<&str>,
     given: Smooth<'_, '_>,
-) -> PyResult<Array> {
+) -> Outcome<Array> {
     let order = order_of(given.order)?;
     let kind = kind.map(kind_of).transpose()?;
-    let fail = |e: Error| raise(py, &e);
     let columns = given.values.shape()[1];
-    let items = flat(given.values, "values").map_err(fail)?;
+    let items = flat(given.values, "values")?;
     let slopes = given.gradients.map(|g| flat(g, "gradients"));
-    let slopes = slopes.transpose().map_err(fail)?;
+    let slopes = slopes.transpose()?;
     if slopes.is_none() & kind.is_none_or(Kind::is_smooth) {
-        return Err(PyValueError::new_err("this kind requires gradients"));
+        return Err(PyValueError::new_err("this kind requires gradients").into());
     }
-    let barrier = barrier_of(given.barrier, locator.held.count(py)).map_err(fail)?;
+    let barrier = barrier_of(given.barrier, locator.held.count(py))?;
     let (found, n) = locator.batch(given.xi, given.workers, |batch| {
         let field = Field::new(&batch.locator.given, items, slopes, columns)?;
         match kind {
@@ -151,9 +150,8 @@ pub fn corner_weights_of(
     xi: &Points<'_>,
     barrier: Option<&Closed<'_>>,
     workers: usize,
-) -> PyResult<CornerWeights> {
-    let fail = |e: Error| raise(py, &e);
-    let barrier = barrier_of(barrier, locator.held.count(py)).map_err(fail)?;
+) -> Outcome<CornerWeights> {
+    let barrier = barrier_of(barrier, locator.held.count(py))?;
     let (found, n) = locator.batch(xi, workers, |batch| clough_tocher_weights(batch, barrier))?;
     Ok(CornerWeights {
         simplex: column(py, found.triangle),
@@ -185,10 +183,9 @@ pub fn natural_of(
     xi: &Points<'_>,
     barrier: Option<&Closed<'_>>,
     workers: usize,
-) -> PyResult<NaturalWeights> {
+) -> Outcome<NaturalWeights> {
     let kind = kind_of(kind)?;
-    let fail = |e: Error| raise(py, &e);
-    let barrier = barrier_of(barrier, locator.held.count(py)).map_err(fail)?;
+    let barrier = barrier_of(barrier, locator.held.count(py))?;
     let ((found, triangle), _) =
         locator.batch(xi, workers, |batch| natural(batch, kind, barrier))?;
     let entries = found.indices.len();
@@ -223,7 +220,7 @@ pub fn leave_one_out_of(
     locator: &Plane,
     kind: &str,
     workers: usize,
-) -> PyResult<WeightRows> {
+) -> Outcome<WeightRows> {
     let method = Method::named(kind).ok_or_else(|| {
         PyValueError::new_err(format!("kind {kind:?} has no leave-one-out weights"))
     })?;
@@ -254,25 +251,23 @@ pub fn combine2(
     slopes: Option<PyReadonlyArray2<'_, f64>>,
     gradients: Option<Gradients<'_>>,
     workers: usize,
-) -> PyResult<Table<f64>> {
-    let fail = |e: Error| raise(py, &e);
+) -> Outcome<Table<f64>> {
     let [n, columns] = [0, 1].map(|k| values.shape()[k]);
     let slopes = slopes.as_ref().map(|s| rows(s, "slopes"));
     let gradients = gradients.as_ref().map(|g| flat(g, "gradients"));
     let table = Sums {
-        indptr: flat(&indptr, "indptr").map_err(fail)?,
-        indices: flat(&indices, "indices").map_err(fail)?,
-        weights: flat(&weights, "weights").map_err(fail)?,
-        slopes: slopes.transpose().map_err(fail)?,
+        indptr: flat(&indptr, "indptr")?,
+        indices: flat(&indices, "indices")?,
+        weights: flat(&weights, "weights")?,
+        slopes: slopes.transpose()?,
     };
-    let gradients = gradients.transpose().map_err(fail)?;
+    let gradients = gradients.transpose()?;
     if table.slopes.is_some() != gradients.is_some() {
-        return Err(PyValueError::new_err(
-            "slopes and gradients must be given together",
-        ));
+        let text = "slopes and gradients must be given together";
+        return Err(PyValueError::new_err(text).into());
     }
-    let items = flat(&values, "values").map_err(fail)?;
-    let field = Field::of_rows(n, items, gradients, columns).map_err(|e| fail(e.into()))?;
+    let items = flat(&values, "values")?;
+    let field = Field::of_rows(n, items, gradients, columns)?;
     let found = watched(py, |watch| table.combine(n, field, workers, watch))?;
     shaped(py, found, [indptr.shape()[0].saturating_sub(1), columns])
 }
@@ -291,14 +286,13 @@ pub fn gradients_global2(
     maxiter: usize,
     workers: usize,
     floor: Option<f64>,
-) -> PyResult<(Py<PyArray3<f64>>, Column<i64>)> {
-    let fail = |e: Error| raise(py, &e);
-    let rows: &[Point2] = rows(&points, "points").map_err(fail)?;
+) -> Outcome<(Py<PyArray3<f64>>, Column<i64>)> {
+    let rows: &[Point2] = rows(&points, "points")?;
     let (n, columns) = (rows.len(), values.shape()[1]);
-    let starts = flat(&indptr, "indptr").map_err(fail)?;
-    let ends = flat(&indices, "indices").map_err(fail)?;
-    let items = flat(&values, "values").map_err(fail)?;
-    let field = Field::of_rows(n, items, None, columns).map_err(|e| fail(e.into()))?;
+    let starts = flat(&indptr, "indptr")?;
+    let ends = flat(&indices, "indices")?;
+    let items = flat(&values, "values")?;
+    let field = Field::of_rows(n, items, None, columns)?;
     let (found, sweeps) = watched(py, |watch| {
         let edges = Adjacency::new(n, starts, ends)?;
         global_gradients(rows, edges, field, tol, floor, maxiter, workers, watch)
@@ -316,17 +310,16 @@ pub fn gradients_local2(
     values: Values<'_>,
     degree: usize,
     workers: usize,
-) -> PyResult<Py<PyArray3<f64>>> {
-    let fail = |e: Error| raise(py, &e);
+) -> Outcome<Py<PyArray3<f64>>> {
     if !(1..=2).contains(&degree) {
-        return Err(PyValueError::new_err("degree must be 1 or 2"));
+        return Err(PyValueError::new_err("degree must be 1 or 2").into());
     }
-    let rows: &[Point2] = rows(&points, "points").map_err(fail)?;
+    let rows: &[Point2] = rows(&points, "points")?;
     let (n, columns) = (rows.len(), values.shape()[1]);
-    let starts = flat(&indptr, "indptr").map_err(fail)?;
-    let ends = flat(&indices, "indices").map_err(fail)?;
-    let items = flat(&values, "values").map_err(fail)?;
-    let field = Field::of_rows(n, items, None, columns).map_err(|e| fail(e.into()))?;
+    let starts = flat(&indptr, "indptr")?;
+    let ends = flat(&indices, "indices")?;
+    let items = flat(&values, "values")?;
+    let field = Field::of_rows(n, items, None, columns)?;
     let found = watched(py, |watch| {
         let edges = Adjacency::new(n, starts, ends)?;
         local_gradients(rows, edges, field, degree, workers, watch)
@@ -344,16 +337,15 @@ pub fn gradients_local3(
     values: Values<'_>,
     vertices: PyReadonlyArray1<'_, i32>,
     workers: usize,
-) -> PyResult<Py<PyArray3<f64>>> {
-    let fail = |e: Error| raise(py, &e);
-    let rows: &[Point3] = rows(&points, "points").map_err(fail)?;
+) -> Outcome<Py<PyArray3<f64>>> {
+    let rows: &[Point3] = rows(&points, "points")?;
     let (n, columns) = (rows.len(), values.shape()[1]);
-    let starts = flat(&indptr, "indptr").map_err(fail)?;
-    let ends = flat(&indices, "indices").map_err(fail)?;
-    let vertices = flat(&vertices, "vertices").map_err(fail)?;
-    each_in_range(vertices, 0, n, "vertices").map_err(fail)?;
-    let items = flat(&values, "values").map_err(fail)?;
-    let field = Field::of_rows(n, items, None, columns).map_err(|e| fail(e.into()))?;
+    let starts = flat(&indptr, "indptr")?;
+    let ends = flat(&indices, "indices")?;
+    let vertices = flat(&vertices, "vertices")?;
+    each_in_range(vertices, 0, n, "vertices")?;
+    let items = flat(&values, "values")?;
+    let field = Field::of_rows(n, items, None, columns)?;
     let found = watched(py, |watch| {
         let edges = Adjacency::new(n, starts, ends)?;
         interpolate3::local_gradients(rows, edges, field, vertices, workers, watch)

@@ -1,12 +1,12 @@
 //! Equal facets in lists, as arrays.
 
-use delone::{Error, Result};
+use delone_core::error::Result;
 use delone_core::joins;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, column, in_range, rows, table};
-use crate::errors::attached;
+use crate::errors::Outcome;
 use crate::signals::watched;
 
 /// The first row of `facets`, (k, 2) or (k, 3), that is each of `wanted`, -1 where there is none;
@@ -18,7 +18,7 @@ pub fn facet_rows(
     wanted: PyReadonlyArray2<'_, i32>,
     npoints: usize,
     directed: bool,
-) -> PyResult<Column<i32>> {
+) -> Outcome<Column<i32>> {
     match facets.shape()[1] {
         2 => rows_in::<2>(py, &facets, &wanted, npoints, directed),
         _ => rows_in::<3>(py, &facets, &wanted, npoints, directed),
@@ -31,12 +31,12 @@ fn rows_in<const D: usize>(
     wanted: &PyReadonlyArray2<'_, i32>,
     npoints: usize,
     directed: bool,
-) -> PyResult<Column<i32>> {
-    let (known, wanted): (&[[i32; D]], _) = attached(py, || {
+) -> Outcome<Column<i32>> {
+    let (known, wanted): (&[[i32; D]], _) = {
         let known = rows(facets, "facets")?;
         in_range(known, 0, npoints, "facets")?;
-        Ok((known, rows(wanted, "wanted")?))
-    })?;
+        (known, rows(wanted, "wanted")?)
+    };
     let found = watched(py, |watch| joins::rows(known, wanted, directed, watch))?;
     Ok(column(py, found))
 }
@@ -48,13 +48,13 @@ pub fn facet_neighbors<'py>(
     py: Python<'py>,
     simplices: PyReadonlyArray2<'py, i32>,
     npoints: usize,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> Outcome<Bound<'py, PyAny>> {
     if simplices.shape()[1] == 3 {
-        let of: &[[i32; 3]] = attached(py, || corners(&simplices, npoints))?;
+        let of: &[[i32; 3]] = corners(&simplices, npoints)?;
         let found = watched(py, |watch| joins::neighbors_of_triangles(of, watch))?;
         return Ok(table(py, found)?.into_bound(py).into_any());
     }
-    let of: &[[i32; 4]] = attached(py, || corners(&simplices, npoints))?;
+    let of: &[[i32; 4]] = corners(&simplices, npoints)?;
     let found = watched(py, |watch| joins::neighbors_of_tetrahedra(of, watch))?;
     Ok(table(py, found)?.into_bound(py).into_any())
 }
@@ -62,7 +62,7 @@ pub fn facet_neighbors<'py>(
 fn corners<'a, const N: usize>(
     simplices: &'a PyReadonlyArray2<'_, i32>,
     npoints: usize,
-) -> Result<&'a [[i32; N]], Error> {
+) -> Result<&'a [[i32; N]]> {
     let corners = rows(simplices, "simplices")?;
     in_range(corners, 0, npoints, "simplices")?;
     Ok(corners)

@@ -6,7 +6,7 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{Table, rows, table};
-use crate::errors::raise;
+use crate::errors::Outcome;
 use crate::given::simplices_of;
 use crate::signals::watched;
 
@@ -30,9 +30,9 @@ pub fn lawson2(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     record: bool,
-) -> PyResult<FlippedTriangulation> {
-    let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let simplices = simplices_of(&simplices, points.len()).map_err(|e| raise(py, &e))?;
+) -> Outcome<FlippedTriangulation> {
+    let points = rows(&points, "points")?;
+    let simplices = simplices_of(&simplices, points.len())?;
     let made = watched(py, |watch| lawson(points, simplices, record, watch))?;
     let sequence = if record {
         Some(table(py, made.sequence)?)
@@ -53,8 +53,8 @@ pub fn neighbors2(
     py: Python<'_>,
     simplices: PyReadonlyArray2<'_, i32>,
     npoints: usize,
-) -> PyResult<Table<i32>> {
-    let simplices = simplices_of(&simplices, npoints).map_err(|e| raise(py, &e))?;
+) -> Outcome<Table<i32>> {
+    let simplices = simplices_of(&simplices, npoints)?;
     let neighbors = watched(py, |watch| adjacency(simplices, npoints, watch))?;
     table(py, neighbors)
 }

@@ -3,14 +3,15 @@
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::{Mutex, TryLockError};
 
-use delone::{Error, Point2, Result};
+use delone_core::Point2;
+use delone_core::error::{Error, Result};
 use delone_core::live::plane::{Plane, State};
 use delone_core::watch::Watch;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, flat, number_rows, rows, table};
-use crate::errors::raise;
+use crate::errors::Outcome;
 use crate::signals::{watched, watched_attached};
 
 /// Up to this number of points a call keeps the GIL: it is over before another thread could run.
@@ -77,8 +78,8 @@ impl Live2 {
         &self,
         py: Python<'_>,
         count: usize,
-        work: impl FnOnce(&mut Plane, &Watch) -> delone_core::error::Result<T> + Send,
-    ) -> PyResult<T> {
+        work: impl FnOnce(&mut Plane, &Watch) -> Result<T> + Send,
+    ) -> Outcome<T> {
         locked(&self.live, py, count, work)
     }
 
@@ -87,8 +88,8 @@ impl Live2 {
         &self,
         py: Python<'_>,
         count: usize,
-        work: impl FnOnce(&mut Plane, &Watch) -> delone_core::error::Result<T> + Send,
-    ) -> PyResult<T> {
+        work: impl FnOnce(&mut Plane, &Watch) -> Result<T> + Send,
+    ) -> Outcome<T> {
         self.with(py, count, |plane, watch| {
             let made = work(plane, watch)?;
             self.edits.fetch_add(1, Ordering::Relaxed);
@@ -103,18 +104,18 @@ pub fn locked<L: Send, T: Send>(
     live: &Mutex<L>,
     py: Python<'_>,
     count: usize,
-    work: impl FnOnce(&mut L, &Watch) -> delone_core::error::Result<T> + Send,
-) -> PyResult<T> {
+    work: impl FnOnce(&mut L, &Watch) -> Result<T> + Send,
+) -> Outcome<T> {
     if count <= FEW {
         match live.try_lock() {
-            Ok(mut live) => return watched_attached(py, move |watch| work(&mut live, watch)),
-            Err(TryLockError::Poisoned(_)) => return Err(raise(py, &broken())),
+            Ok(mut live) => return watched_attached(move |watch| work(&mut live, watch)),
+            Err(TryLockError::Poisoned(_)) => return Err(broken().into()),
             Err(TryLockError::WouldBlock) => {}
         }
     }
     watched(py, |watch| -> Result<T> {
         let mut live = live.lock().map_err(|_| broken())?;
-        Ok(work(&mut live, watch)?)
+        work(&mut live, watch)
     })
 }
 
@@ -155,12 +156,12 @@ impl Live2 {
         handles: Option<Handles<'_>>,
         total: usize,
         workers: usize,
-    ) -> PyResult<Self> {
-        let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
+    ) -> Outcome<Self> {
+        let points = rows(&points, "points")?;
         let given = handles.as_ref().map(|h| flat(h, "handles")).transpose();
-        let given = given.map_err(|e| raise(py, &e))?;
+        let given = given?;
         let given = given.map(|given| checked_handles(given, points.len(), total));
-        let given = given.transpose().map_err(|e| raise(py, &e))?;
+        let given = given.transpose()?;
         let plane = watched(py, |watch| match given {
             Some(own) => Plane::of(points, &own, total, workers, watch),
             None => Plane::new(points, workers, watch),
@@ -169,7 +170,7 @@ impl Live2 {
     }
 
     /// Numbers: points, vertices, triangles, and the next handle.
-    fn counts(&self, py: Python<'_>) -> PyResult<[usize; 4]> {
+    fn counts(&self, py: Python<'_>) -> Outcome<[usize; 4]> {
         self.with(py, 0, |plane, _| {
             Ok([
                 plane.len(),
@@ -187,8 +188,8 @@ impl Live2 {
     }
 
     /// Inserts points and returns their handles.
-    fn insert(&self, py: Python<'_>, points: Points<'_>, workers: usize) -> PyResult<Column<i64>> {
-        let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
+    fn insert(&self, py: Python<'_>, points: Points<'_>, workers: usize) -> Outcome<Column<i64>> {
+        let points = rows(&points, "points")?;
         let made = self.edit(py, points.len(), |plane, watch| {
             plane.insert(points, workers, watch)
         })?;
@@ -196,8 +197,8 @@ impl Live2 {
     }
 
     /// Removes points.
-    fn remove(&self, py: Python<'_>, handles: Handles<'_>, workers: usize) -> PyResult<()> {
-        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+    fn remove(&self, py: Python<'_>, handles: Handles<'_>, workers: usize) -> Outcome<()> {
+        let handles = flat(&handles, "handles")?;
         self.edit(py, handles.len(), |plane, watch| {
             plane.remove(handles, workers, watch)
         })
@@ -209,8 +210,8 @@ impl Live2 {
         py: Python<'_>,
         handles: Handles<'_>,
         workers: usize,
-    ) -> PyResult<Column<i64>> {
-        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+    ) -> Outcome<Column<i64>> {
+        let handles = flat(&handles, "handles")?;
         let gone = self.edit(py, usize::MAX, |plane, watch| {
             plane.remove_with_segments(handles, workers, watch)
         })?;
@@ -224,17 +225,17 @@ impl Live2 {
         handles: Handles<'_>,
         points: Points<'_>,
         workers: usize,
-    ) -> PyResult<()> {
-        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
-        let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
+    ) -> Outcome<()> {
+        let handles = flat(&handles, "handles")?;
+        let points = rows(&points, "points")?;
         self.edit(py, handles.len(), |plane, watch| {
             plane.relocate(handles, points, workers, watch)
         })
     }
 
     /// Which of these handles are not there, or are named earlier.
-    fn faults(&self, py: Python<'_>, handles: Handles<'_>) -> PyResult<[Column<i64>; 2]> {
-        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+    fn faults(&self, py: Python<'_>, handles: Handles<'_>) -> Outcome<[Column<i64>; 2]> {
+        let handles = flat(&handles, "handles")?;
         let [gone, twice] = self.with(py, handles.len(), |plane, _| {
             Ok(faults_of(handles, |h| plane.has(h)))
         })?;
@@ -242,13 +243,13 @@ impl Live2 {
     }
 
     /// The handles, ascending, and their points.
-    fn points(&self, py: Python<'_>) -> PyResult<(Column<i64>, Table<f64>)> {
+    fn points(&self, py: Python<'_>) -> Outcome<(Column<i64>, Table<f64>)> {
         let (handles, points) = self.with(py, usize::MAX, |plane, watch| plane.points(watch))?;
         Ok((column(py, handles), table(py, points)?))
     }
 
     /// The present triangulation; no triangles if all points are on one line.
-    fn arrays(&self, py: Python<'_>) -> PyResult<LiveArrays2> {
+    fn arrays(&self, py: Python<'_>) -> Outcome<LiveArrays2> {
         let made = self.with(py, usize::MAX, |plane, watch| plane.export(watch))?;
         Ok(LiveArrays2 {
             handles: column(py, made.rows),
@@ -264,7 +265,7 @@ impl Live2 {
     }
 
     /// Chooses whether crossings of segments are split.
-    fn split_crossings(&self, py: Python<'_>, split: bool) -> PyResult<()> {
+    fn split_crossings(&self, py: Python<'_>, split: bool) -> Outcome<()> {
         self.with(py, 0, |plane, _| {
             plane.split_crossings(split);
             Ok(())
@@ -272,7 +273,7 @@ impl Live2 {
     }
 
     /// Whether there are segments, and whether crossings are split.
-    fn constraints(&self, py: Python<'_>) -> PyResult<[bool; 2]> {
+    fn constraints(&self, py: Python<'_>) -> Outcome<[bool; 2]> {
         self.with(py, 0, |plane, _| {
             Ok([plane.has_segments(), plane.splits_crossings()])
         })
@@ -284,8 +285,8 @@ impl Live2 {
         py: Python<'_>,
         ends: PyReadonlyArray2<'_, i64>,
         workers: usize,
-    ) -> PyResult<Column<i64>> {
-        let ends: &[[i64; 2]] = rows(&ends, "ends").map_err(|e| raise(py, &e))?;
+    ) -> Outcome<Column<i64>> {
+        let ends: &[[i64; 2]] = rows(&ends, "ends")?;
         let made = self.edit(py, usize::MAX, |plane, watch| {
             plane.insert_segments(ends, workers, watch)
         })?;
@@ -293,13 +294,8 @@ impl Live2 {
     }
 
     /// Removes segments.
-    fn remove_segments(
-        &self,
-        py: Python<'_>,
-        handles: Handles<'_>,
-        workers: usize,
-    ) -> PyResult<()> {
-        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+    fn remove_segments(&self, py: Python<'_>, handles: Handles<'_>, workers: usize) -> Outcome<()> {
+        let handles = flat(&handles, "handles")?;
         self.edit(py, usize::MAX, |plane, watch| {
             plane.remove_segments(handles, workers, watch)
         })
@@ -314,21 +310,19 @@ impl Live2 {
         total: usize,
         crossings: (Handles<'_>, Points<'_>),
         workers: usize,
-    ) -> PyResult<()> {
+    ) -> Outcome<()> {
         let ((handles, ends), (added, places)) = (known, crossings);
-        let ends: &[[i64; 2]] = rows(&ends, "ends").map_err(|e| raise(py, &e))?;
-        let places: &[Point2] = rows(&places, "places").map_err(|e| raise(py, &e))?;
-        let given = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
-        let added = flat(&added, "added").map_err(|e| raise(py, &e))?;
-        let numbers = checked_handles(given, ends.len(), total).map_err(|e| raise(py, &e))?;
+        let ends: &[[i64; 2]] = rows(&ends, "ends")?;
+        let places: &[Point2] = rows(&places, "places")?;
+        let given = flat(&handles, "handles")?;
+        let added = flat(&added, "added")?;
+        let numbers = checked_handles(given, ends.len(), total)?;
         self.edit(py, usize::MAX, |plane, watch| {
             let added = checked_handles(added, places.len(), plane.total());
-            let added = added.map_err(|_| {
-                delone_core::error::Error::Shape("handles of crossings are wrong".into())
-            })?;
+            let added = added.map_err(|_| Error::Shape("handles of crossings are wrong".into()))?;
             if let Some(&row) = ends.as_flattened().iter().find(|&&row| !plane.has(row)) {
                 let message = format!("row {row} is not there");
-                return Err(delone_core::error::Error::Shape(message));
+                return Err(Error::Shape(message));
             }
             let ends = ends.iter().map(|pair| pair.map(|row| row as u32));
             let known: Vec<_> = numbers.into_iter().zip(ends).collect();
@@ -338,7 +332,7 @@ impl Live2 {
     }
 
     /// The segments and their crossings.
-    fn segments(&self, py: Python<'_>) -> PyResult<LiveSegments2> {
+    fn segments(&self, py: Python<'_>) -> Outcome<LiveSegments2> {
         let (handles, ends, crossings, added, total) = self.with(py, usize::MAX, |plane, _| {
             let (handles, ends) = plane.segments()?;
             let crossings = plane.crossings()?.into_iter().map(|c| c.map(i64::from));
@@ -357,8 +351,8 @@ impl Live2 {
     }
 
     /// Which of these handles of segments are not there, or are named earlier.
-    fn segment_faults(&self, py: Python<'_>, handles: Handles<'_>) -> PyResult<[Column<i64>; 2]> {
-        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+    fn segment_faults(&self, py: Python<'_>, handles: Handles<'_>) -> Outcome<[Column<i64>; 2]> {
+        let handles = flat(&handles, "handles")?;
         let [gone, twice] = self.with(py, handles.len(), |plane, _| {
             Ok(faults_of(handles, |h| plane.has_segment(h)))
         })?;
@@ -366,8 +360,8 @@ impl Live2 {
     }
 
     /// Which of these handles of points are ends of segments, each with one, or crossings, with -1.
-    fn held(&self, py: Python<'_>, handles: Handles<'_>) -> PyResult<Table<i64>> {
-        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+    fn held(&self, py: Python<'_>, handles: Handles<'_>) -> Outcome<Table<i64>> {
+        let handles = flat(&handles, "handles")?;
         let held = self.with(py, handles.len(), |plane, _| {
             let there = handles.iter().filter(|&&h| plane.has(h));
             let held = there.filter_map(|&h| match plane.is_crossing(h as u32) {
@@ -383,8 +377,8 @@ impl Live2 {
     }
 
     /// The handles of the corners of a triangle that contains each query, -1 outside, and weights.
-    fn corners(&self, py: Python<'_>, xi: Points<'_>) -> PyResult<(Table<i64>, Table<f64>)> {
-        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+    fn corners(&self, py: Python<'_>, xi: Points<'_>) -> Outcome<(Table<i64>, Table<f64>)> {
+        let queries = rows(&xi, "xi")?;
         let found = self.with(py, queries.len(), |plane, watch| {
             plane.corners(queries, watch)
         })?;
@@ -392,8 +386,8 @@ impl Live2 {
     }
 
     /// The same, and the number of edits so far; and if that is not `known`, the handles of all points.
-    fn weights(&self, py: Python<'_>, xi: Points<'_>, known: i64) -> PyResult<Weights> {
-        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+    fn weights(&self, py: Python<'_>, xi: Points<'_>, known: i64) -> Outcome<Weights> {
+        let queries = rows(&xi, "xi")?;
         let edits = || self.edits.load(Ordering::Relaxed);
         let count = if edits() == known {
             queries.len()
@@ -416,8 +410,8 @@ impl Live2 {
     }
 
     /// The handle of the nearest point to each query, -1 if there is none.
-    fn nearest(&self, py: Python<'_>, xi: Points<'_>) -> PyResult<Column<i64>> {
-        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+    fn nearest(&self, py: Python<'_>, xi: Points<'_>) -> Outcome<Column<i64>> {
+        let queries = rows(&xi, "xi")?;
         let found = self.with(py, queries.len(), |plane, watch| {
             plane.nearest(queries, watch)
         })?;
@@ -425,13 +419,13 @@ impl Live2 {
     }
 
     /// The triangles that were removed and added since the last call, as handles.
-    fn changes(&self, py: Python<'_>) -> PyResult<(Table<i64>, Table<i64>)> {
+    fn changes(&self, py: Python<'_>) -> Outcome<(Table<i64>, Table<i64>)> {
         let found = self.with(py, usize::MAX, |plane, watch| plane.changes(watch))?;
         Ok((table(py, found.gone)?, table(py, found.new)?))
     }
 
     /// The present state.
-    fn state(&self, py: Python<'_>) -> PyResult<LiveState2> {
+    fn state(&self, py: Python<'_>) -> Outcome<LiveState2> {
         self.with(py, usize::MAX, |plane, watch| plane.state(watch))
             .map(LiveState2)
     }
@@ -439,7 +433,7 @@ impl Live2 {
     /// Restores a state; not if `known` is given and is not the number of edits so far. Whether it was
     /// restored.
     #[pyo3(signature = (state, known=None))]
-    fn restore(&self, py: Python<'_>, state: &LiveState2, known: Option<i64>) -> PyResult<bool> {
+    fn restore(&self, py: Python<'_>, state: &LiveState2, known: Option<i64>) -> Outcome<bool> {
         let state = &state.0;
         self.with(py, usize::MAX, |plane, watch| {
             if known.is_some_and(|known| known != self.edits.load(Ordering::Relaxed)) {
@@ -455,7 +449,7 @@ impl Live2 {
 #[pymethods]
 impl LiveState2 {
     /// A triangulation of its own in this state.
-    fn open(&self, py: Python<'_>) -> PyResult<Live2> {
+    fn open(&self, py: Python<'_>) -> Outcome<Live2> {
         let plane = watched(py, |watch| {
             let mut plane = Plane::new(&[], 1, watch)?;
             plane.restore(&self.0, watch)?;

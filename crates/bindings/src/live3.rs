@@ -3,14 +3,14 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicI64, Ordering};
 
-use delone::Error;
+use delone_core::error::Error;
 use delone_core::live::space::{Space, State};
 use delone_core::watch::Watch;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, flat, number_rows, rows, table};
-use crate::errors::raise;
+use crate::errors::Outcome;
 use crate::live::{Weights, checked_handles, locked};
 use crate::signals::watched;
 
@@ -57,7 +57,7 @@ impl Live3 {
         py: Python<'_>,
         count: usize,
         work: impl FnOnce(&mut Space, &Watch) -> delone_core::error::Result<T> + Send,
-    ) -> PyResult<T> {
+    ) -> Outcome<T> {
         locked(&self.live, py, count, work)
     }
 
@@ -67,7 +67,7 @@ impl Live3 {
         py: Python<'_>,
         count: usize,
         work: impl FnOnce(&mut Space, &Watch) -> delone_core::error::Result<T> + Send,
-    ) -> PyResult<T> {
+    ) -> Outcome<T> {
         self.with(py, count, |space, watch| {
             let made = work(space, watch)?;
             self.edits.fetch_add(1, Ordering::Relaxed);
@@ -86,12 +86,12 @@ impl Live3 {
         handles: Option<Handles<'_>>,
         total: usize,
         workers: usize,
-    ) -> PyResult<Self> {
-        let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
+    ) -> Outcome<Self> {
+        let points = rows(&points, "points")?;
         let given = handles.as_ref().map(|h| flat(h, "handles")).transpose();
-        let given = given.map_err(|e| raise(py, &e))?;
+        let given = given?;
         let given = given.map(|given| checked_handles(given, points.len(), total));
-        let given = given.transpose().map_err(|e| raise(py, &e))?;
+        let given = given.transpose()?;
         let space = watched(py, |watch| match given {
             Some(own) => Space::of(points, &own, total, workers, watch),
             None => Space::new(points, workers, watch),
@@ -100,7 +100,7 @@ impl Live3 {
     }
 
     /// Numbers: points, vertices, tetrahedra, and the next handle.
-    fn counts(&self, py: Python<'_>) -> PyResult<[usize; 4]> {
+    fn counts(&self, py: Python<'_>) -> Outcome<[usize; 4]> {
         self.with(py, 0, |space, _| {
             Ok([
                 space.len(),
@@ -118,8 +118,8 @@ impl Live3 {
     }
 
     /// Inserts points and returns their handles.
-    fn insert(&self, py: Python<'_>, points: Points<'_>, workers: usize) -> PyResult<Column<i64>> {
-        let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
+    fn insert(&self, py: Python<'_>, points: Points<'_>, workers: usize) -> Outcome<Column<i64>> {
+        let points = rows(&points, "points")?;
         let made = self.edit(py, points.len(), |space, watch| {
             space.insert(points, workers, watch)
         })?;
@@ -127,8 +127,8 @@ impl Live3 {
     }
 
     /// Removes points.
-    fn remove(&self, py: Python<'_>, handles: Handles<'_>, workers: usize) -> PyResult<()> {
-        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+    fn remove(&self, py: Python<'_>, handles: Handles<'_>, workers: usize) -> Outcome<()> {
+        let handles = flat(&handles, "handles")?;
         self.edit(py, handles.len(), |space, watch| {
             space.remove(handles, workers, watch)
         })
@@ -141,17 +141,17 @@ impl Live3 {
         handles: Handles<'_>,
         points: Points<'_>,
         workers: usize,
-    ) -> PyResult<()> {
-        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
-        let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
+    ) -> Outcome<()> {
+        let handles = flat(&handles, "handles")?;
+        let points = rows(&points, "points")?;
         self.edit(py, handles.len(), |space, watch| {
             space.relocate(handles, points, workers, watch)
         })
     }
 
     /// Which of these handles are not there, or are named earlier.
-    fn faults(&self, py: Python<'_>, handles: Handles<'_>) -> PyResult<[Column<i64>; 2]> {
-        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+    fn faults(&self, py: Python<'_>, handles: Handles<'_>) -> Outcome<[Column<i64>; 2]> {
+        let handles = flat(&handles, "handles")?;
         let [gone, twice] = self.with(py, handles.len(), |space, _| {
             let gone = handles.iter().copied().filter(|&h| !space.has(h)).collect();
             let mut sorted = handles.to_vec();
@@ -163,13 +163,13 @@ impl Live3 {
     }
 
     /// The handles, ascending, and their points.
-    fn points(&self, py: Python<'_>) -> PyResult<(Column<i64>, Table<f64>)> {
+    fn points(&self, py: Python<'_>) -> Outcome<(Column<i64>, Table<f64>)> {
         let (handles, points) = self.with(py, usize::MAX, |space, watch| space.points(watch))?;
         Ok((column(py, handles), table(py, points)?))
     }
 
     /// The present triangulation; no tetrahedra if all points are in one plane.
-    fn arrays(&self, py: Python<'_>) -> PyResult<LiveArrays3> {
+    fn arrays(&self, py: Python<'_>) -> Outcome<LiveArrays3> {
         let made = self.with(py, usize::MAX, |space, watch| space.export(watch))?;
         Ok(LiveArrays3 {
             handles: column(py, made.rows),
@@ -181,8 +181,8 @@ impl Live3 {
     }
 
     /// The handles of the corners of a tetrahedron that contains each query, -1 outside, and weights.
-    fn corners(&self, py: Python<'_>, xi: Points<'_>) -> PyResult<(Table<i64>, Table<f64>)> {
-        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+    fn corners(&self, py: Python<'_>, xi: Points<'_>) -> Outcome<(Table<i64>, Table<f64>)> {
+        let queries = rows(&xi, "xi")?;
         let found = self.with(py, queries.len(), |space, watch| {
             space.corners(queries, watch)
         })?;
@@ -190,8 +190,8 @@ impl Live3 {
     }
 
     /// The same, and the number of edits so far; and if that is not `known`, the handles of all points.
-    fn weights(&self, py: Python<'_>, xi: Points<'_>, known: i64) -> PyResult<Weights> {
-        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+    fn weights(&self, py: Python<'_>, xi: Points<'_>, known: i64) -> Outcome<Weights> {
+        let queries = rows(&xi, "xi")?;
         let edits = || self.edits.load(Ordering::Relaxed);
         let count = if edits() == known {
             queries.len()
@@ -214,8 +214,8 @@ impl Live3 {
     }
 
     /// The handle of the nearest point to each query, -1 if there is none.
-    fn nearest(&self, py: Python<'_>, xi: Points<'_>) -> PyResult<Column<i64>> {
-        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+    fn nearest(&self, py: Python<'_>, xi: Points<'_>) -> Outcome<Column<i64>> {
+        let queries = rows(&xi, "xi")?;
         let found = self.with(py, queries.len(), |space, watch| {
             space.nearest(queries, watch)
         })?;
@@ -223,13 +223,13 @@ impl Live3 {
     }
 
     /// The tetrahedra that were removed and added since the last call, as handles.
-    fn changes(&self, py: Python<'_>) -> PyResult<(Table<i64>, Table<i64>)> {
+    fn changes(&self, py: Python<'_>) -> Outcome<(Table<i64>, Table<i64>)> {
         let found = self.with(py, usize::MAX, |space, watch| space.changes(watch))?;
         Ok((table(py, found.gone)?, table(py, found.new)?))
     }
 
     /// The present state.
-    fn state(&self, py: Python<'_>) -> PyResult<LiveState3> {
+    fn state(&self, py: Python<'_>) -> Outcome<LiveState3> {
         self.with(py, usize::MAX, |space, watch| space.state(watch))
             .map(LiveState3)
     }
@@ -237,7 +237,7 @@ impl Live3 {
     /// Restores a state; not if `known` is given and is not the number of edits so far. Whether it was
     /// restored.
     #[pyo3(signature = (state, known=None))]
-    fn restore(&self, py: Python<'_>, state: &LiveState3, known: Option<i64>) -> PyResult<bool> {
+    fn restore(&self, py: Python<'_>, state: &LiveState3, known: Option<i64>) -> Outcome<bool> {
         let state = &state.0;
         self.with(py, usize::MAX, |space, watch| {
             if known.is_some_and(|known| known != self.edits.load(Ordering::Relaxed)) {
@@ -253,7 +253,7 @@ impl Live3 {
 #[pymethods]
 impl LiveState3 {
     /// A triangulation of its own in this state.
-    fn open(&self, py: Python<'_>) -> PyResult<Live3> {
+    fn open(&self, py: Python<'_>) -> Outcome<Live3> {
         let space = watched(py, |watch| {
             let mut space = Space::new(&[], 1, watch)?;
             space.restore(&self.0, watch)?;

@@ -1,12 +1,12 @@
 //! Point location on arrays.
 
-use delone::Error;
+use delone_core::error::Error;
 use delone_core::locate::{Batch, Kept, Locator, along, coordinates, find, nearest};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, rows, shaped};
-use crate::errors::raise;
+use crate::errors::Outcome;
 use crate::given::checked;
 use crate::interpolate::{
     Closed, CornerWeights, Gradients, NaturalWeights, Points, Smooth, Values, WeightRows,
@@ -41,17 +41,17 @@ impl Locator2 {
         points: PyReadonlyArray2<'_, f64>,
         simplices: PyReadonlyArray2<'_, i32>,
         neighbors: PyReadonlyArray2<'_, i32>,
-    ) -> PyResult<Self> {
+    ) -> Outcome<Self> {
         Plane::new(&points, &simplices, &neighbors).map(Self)
     }
 
     /// For each query, the first triangle that contains it, or -1.
-    fn find(&self, xi: Points<'_>, workers: usize) -> PyResult<Column<i32>> {
+    fn find(&self, xi: Points<'_>, workers: usize) -> Outcome<Column<i32>> {
         self.0.column(&xi, workers, find)
     }
 
     /// Triangles with barycentric coordinates, and outside the nearest boundary point.
-    fn locate(&self, py: Python<'_>, xi: Points<'_>, workers: usize) -> PyResult<Location2> {
+    fn locate(&self, py: Python<'_>, xi: Points<'_>, workers: usize) -> Outcome<Location2> {
         let (found, n) = self.0.batch(&xi, workers, coordinates)?;
         Ok(Location2 {
             simplex: column(py, found.triangle),
@@ -63,7 +63,7 @@ impl Locator2 {
     }
 
     /// The nearest vertex to each query, in a Delaunay triangulation.
-    fn nearest(&self, xi: Points<'_>, workers: usize) -> PyResult<Column<i32>> {
+    fn nearest(&self, xi: Points<'_>, workers: usize) -> Outcome<Column<i32>> {
         self.0.column(&xi, workers, nearest)
     }
 
@@ -73,10 +73,10 @@ impl Locator2 {
         py: Python<'_>,
         a: PyReadonlyArray1<'_, f64>,
         b: PyReadonlyArray1<'_, f64>,
-    ) -> PyResult<Column<i32>> {
+    ) -> Outcome<Column<i32>> {
         let end = |p: &PyReadonlyArray1<'_, f64>| {
             let pair = p.as_slice().ok().and_then(|p| p.try_into().ok());
-            pair.ok_or_else(|| raise(py, &Error::Shape("an end must have two coordinates".into())))
+            pair.ok_or_else(|| Error::Shape("an end must have two coordinates".into()))
         };
         let (a, b) = (end(&a)?, end(&b)?);
         let met = self
@@ -93,7 +93,7 @@ impl Locator2 {
         xi: Points<'_>,
         order: usize,
         workers: usize,
-    ) -> PyResult<Py<PyAny>> {
+    ) -> Outcome<Py<PyAny>> {
         linear_of(py, &self.0, &values, &xi, order, workers)
     }
 
@@ -108,7 +108,7 @@ impl Locator2 {
         barrier: Option<Closed<'_>>,
         order: usize,
         workers: usize,
-    ) -> PyResult<Py<PyAny>> {
+    ) -> Outcome<Py<PyAny>> {
         let given = Smooth {
             values: &values,
             gradients: Some(&gradients),
@@ -127,7 +127,7 @@ impl Locator2 {
         xi: Points<'_>,
         barrier: Option<Closed<'_>>,
         workers: usize,
-    ) -> PyResult<CornerWeights> {
+    ) -> Outcome<CornerWeights> {
         corner_weights_of(py, &self.0, &xi, barrier.as_ref(), workers)
     }
 
@@ -139,7 +139,7 @@ impl Locator2 {
         xi: Points<'_>,
         barrier: Option<Closed<'_>>,
         workers: usize,
-    ) -> PyResult<NaturalWeights> {
+    ) -> Outcome<NaturalWeights> {
         natural_of(py, &self.0, kind, &xi, barrier.as_ref(), workers)
     }
 
@@ -155,7 +155,7 @@ impl Locator2 {
         barrier: Option<Closed<'_>>,
         order: usize,
         workers: usize,
-    ) -> PyResult<Py<PyAny>> {
+    ) -> Outcome<Py<PyAny>> {
         let given = Smooth {
             values: &values,
             gradients: gradients.as_ref(),
@@ -168,7 +168,7 @@ impl Locator2 {
     }
 
     /// For each vertex, the weights of the others.
-    fn leave_one_out(&self, py: Python<'_>, kind: &str, workers: usize) -> PyResult<WeightRows> {
+    fn leave_one_out(&self, py: Python<'_>, kind: &str, workers: usize) -> Outcome<WeightRows> {
         leave_one_out_of(py, &self.0, kind, workers)
     }
 }
@@ -182,9 +182,9 @@ pub fn find_simplex2(
     neighbors: PyReadonlyArray2<'_, i32>,
     xi: PyReadonlyArray2<'_, f64>,
     workers: usize,
-) -> PyResult<Column<i32>> {
-    let given = checked(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
-    let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+) -> Outcome<Column<i32>> {
+    let given = checked(&points, &simplices, &neighbors)?;
+    let queries = rows(&xi, "xi")?;
     let found = watched(py, |watch| {
         let kept = Kept::of(&given, watch)?;
         find(&Batch {

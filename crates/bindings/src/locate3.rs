@@ -6,6 +6,7 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, shaped};
+use crate::errors::Outcome;
 use crate::interpolate::{NaturalWeights, Points};
 use crate::locator::Space;
 
@@ -35,12 +36,12 @@ impl Locator3 {
         points: PyReadonlyArray2<'_, f64>,
         simplices: PyReadonlyArray2<'_, i32>,
         neighbors: PyReadonlyArray2<'_, i32>,
-    ) -> PyResult<Self> {
+    ) -> Outcome<Self> {
         Space::new(&points, &simplices, &neighbors).map(Self)
     }
 
     /// For each query, the first tetrahedron that contains it, or -1.
-    fn find(&self, xi: Points<'_>, workers: usize) -> PyResult<Column<i32>> {
+    fn find(&self, xi: Points<'_>, workers: usize) -> Outcome<Column<i32>> {
         self.0.column(&xi, workers, find)
     }
 
@@ -50,14 +51,14 @@ impl Locator3 {
         py: Python<'_>,
         xi: Points<'_>,
         workers: usize,
-    ) -> PyResult<(Column<i32>, Table<f64>)> {
+    ) -> Outcome<(Column<i32>, Table<f64>)> {
         let (found, n) = self.0.batch(&xi, workers, within)?;
         let weights = shaped(py, found.weights, [n, 4])?;
         Ok((column(py, found.simplex), weights))
     }
 
     /// Tetrahedra with barycentric coordinates, and outside the nearest boundary point.
-    fn locate(&self, py: Python<'_>, xi: Points<'_>, workers: usize) -> PyResult<Location3> {
+    fn locate(&self, py: Python<'_>, xi: Points<'_>, workers: usize) -> Outcome<Location3> {
         let (found, n) = self.0.batch(&xi, workers, coordinates)?;
         Ok(Location3 {
             simplex: column(py, found.simplex),
@@ -69,7 +70,7 @@ impl Locator3 {
     }
 
     /// Laplace weights of natural neighbors, as compressed rows, and the tetrahedra of queries.
-    fn laplace(&self, py: Python<'_>, xi: Points<'_>, workers: usize) -> PyResult<NaturalWeights> {
+    fn laplace(&self, py: Python<'_>, xi: Points<'_>, workers: usize) -> Outcome<NaturalWeights> {
         let ((found, simplex), _) = self.0.batch(&xi, workers, natural)?;
         Ok(NaturalWeights {
             indptr: column(py, found.indptr),
@@ -81,7 +82,7 @@ impl Locator3 {
     }
 
     /// The nearest vertex to each query, in a Delaunay triangulation.
-    fn nearest(&self, xi: Points<'_>, workers: usize) -> PyResult<Column<i32>> {
+    fn nearest(&self, xi: Points<'_>, workers: usize) -> Outcome<Column<i32>> {
         self.0.column(&xi, workers, nearest)
     }
 }

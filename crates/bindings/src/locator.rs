@@ -1,6 +1,6 @@
 //! Triangulations that are kept for many calls: the common part of `Locator2` and `Locator3`.
 
-use delone::{Error, Result};
+use delone_core::error::Result;
 use delone_core::locate::{self, Batch, Cache, Dimension, Locator};
 use delone_core::locate3;
 use delone_core::watch::Watch;
@@ -8,7 +8,7 @@ use numpy::{Element, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, column, rows};
-use crate::errors::raise;
+use crate::errors::Outcome;
 use crate::given::{Held, answered, checked};
 use crate::signals::watched;
 
@@ -29,9 +29,9 @@ impl<P: Dimension<D, N>, const D: usize, const N: usize> Tiling<P, D, N> {
         points: &PyReadonlyArray2<'_, f64>,
         simplices: &PyReadonlyArray2<'_, i32>,
         neighbors: &PyReadonlyArray2<'_, i32>,
-    ) -> PyResult<Self> {
+    ) -> Outcome<Self> {
         let py = points.py();
-        let given = checked(points, simplices, neighbors).map_err(|e| raise(py, &e))?;
+        let given = checked(points, simplices, neighbors)?;
         let kept = watched(py, |watch| Cache::of(&given, watch))?;
         Ok(Self {
             held: Held::new(points, simplices, neighbors),
@@ -40,28 +40,28 @@ impl<P: Dimension<D, N>, const D: usize, const N: usize> Tiling<P, D, N> {
     }
 
     /// Calls `work` with a locator for `count` queries, without the GIL unless there are few.
-    pub fn run<T: Send, E: Into<Error>>(
+    pub fn run<T: Send>(
         &self,
         py: Python<'_>,
         count: usize,
-        work: impl FnOnce(&Locator<P, D, N>, &Watch) -> Result<T, E> + Send,
-    ) -> PyResult<T> {
+        work: impl FnOnce(&Locator<P, D, N>, &Watch) -> Result<T> + Send,
+    ) -> Outcome<T> {
         let lent = self.held.lend(py)?;
-        let given = lent.given().map_err(|e| raise(py, &e))?;
+        let given = lent.given()?;
         answered(py, count, |watch| {
             work(&Locator::new(given, &self.kept, watch), watch)
         })
     }
 
     /// Calls `work` with a batch of queries; also returns their number.
-    pub fn batch<T: Send, E: Into<Error>>(
+    pub fn batch<T: Send>(
         &self,
         xi: &PyReadonlyArray2<'_, f64>,
         workers: usize,
-        work: impl FnOnce(&Batch<P, D, N>) -> Result<T, E> + Send,
-    ) -> PyResult<(T, usize)> {
+        work: impl FnOnce(&Batch<P, D, N>) -> Result<T> + Send,
+    ) -> Outcome<(T, usize)> {
         let py = xi.py();
-        let queries = rows(xi, "xi").map_err(|e| raise(py, &e))?;
+        let queries = rows(xi, "xi")?;
         let found = self.run(py, queries.len(), |&locator, watch| {
             work(&Batch {
                 locator,
@@ -74,12 +74,12 @@ impl<P: Dimension<D, N>, const D: usize, const N: usize> Tiling<P, D, N> {
     }
 
     /// Calls `work`, which returns one number per query.
-    pub fn column<T: Element + Send, E: Into<Error>>(
+    pub fn column<T: Element + Send>(
         &self,
         xi: &PyReadonlyArray2<'_, f64>,
         workers: usize,
-        work: impl FnOnce(&Batch<P, D, N>) -> Result<Vec<T>, E> + Send,
-    ) -> PyResult<Column<T>> {
+        work: impl FnOnce(&Batch<P, D, N>) -> Result<Vec<T>> + Send,
+    ) -> Outcome<Column<T>> {
         let (found, _) = self.batch(xi, workers, work)?;
         Ok(column(xi.py(), found))
     }

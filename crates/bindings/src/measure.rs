@@ -1,13 +1,13 @@
 //! Measures of simplices: edges and faces, centers, sizes, shapes.
 
-use delone::{Error, Result};
+use delone_core::error::Result;
 use delone_core::measure;
 use delone_core::watch::Watch;
 use numpy::{PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, rows, shaped, table};
-use crate::errors::attached;
+use crate::errors::Outcome;
 use crate::given::simplices_of;
 use crate::signals::watched;
 
@@ -19,13 +19,11 @@ pub fn edges2(
     neighbors: PyReadonlyArray2<'_, i32>,
     npoints: usize,
     workers: usize,
-) -> PyResult<Table<i32>> {
-    let (simplices, neighbors) = attached(py, || {
-        Ok((
-            simplices_of(&simplices, npoints)?,
-            rows(&neighbors, "neighbors")?,
-        ))
-    })?;
+) -> Outcome<Table<i32>> {
+    let (simplices, neighbors) = (
+        simplices_of(&simplices, npoints)?,
+        rows(&neighbors, "neighbors")?,
+    );
     let found = watched(py, |watch| {
         measure::edges2(simplices, neighbors, npoints, workers, watch)
     })?;
@@ -39,8 +37,8 @@ pub fn edges3(
     simplices: PyReadonlyArray2<'_, i32>,
     npoints: usize,
     workers: usize,
-) -> PyResult<Table<i32>> {
-    let simplices = attached(py, || simplices_of(&simplices, npoints))?;
+) -> Outcome<Table<i32>> {
+    let simplices = simplices_of(&simplices, npoints)?;
     let found = watched(py, |watch| {
         measure::edges3(simplices, npoints, workers, watch)
     })?;
@@ -55,13 +53,11 @@ pub fn faces3(
     neighbors: PyReadonlyArray2<'_, i32>,
     npoints: usize,
     workers: usize,
-) -> PyResult<Table<i32>> {
-    let (simplices, neighbors) = attached(py, || {
-        Ok((
-            simplices_of(&simplices, npoints)?,
-            rows(&neighbors, "neighbors")?,
-        ))
-    })?;
+) -> Outcome<Table<i32>> {
+    let (simplices, neighbors) = (
+        simplices_of(&simplices, npoints)?,
+        rows(&neighbors, "neighbors")?,
+    );
     let found = watched(py, |watch| {
         measure::faces3(simplices, neighbors, npoints, workers, watch)
     })?;
@@ -74,23 +70,21 @@ pub fn around(
     py: Python<'_>,
     edges: PyReadonlyArray2<'_, i32>,
     npoints: usize,
-) -> PyResult<(Column<i32>, Column<i32>)> {
-    let edges: &[[i32; 2]] = attached(py, || rows(&edges, "edges"))?;
+) -> Outcome<(Column<i32>, Column<i32>)> {
+    let edges: &[[i32; 2]] = rows(&edges, "edges")?;
     let (starts, found) = watched(py, |watch| measure::around(edges, npoints, watch))?;
     Ok((column(py, starts), column(py, found)))
 }
 
 /// Calls a measure of the core on simplices.
-fn measured<R: Send, E: Into<Error>, const D: usize, const N: usize>(
+fn measured<R: Send, const D: usize, const N: usize>(
     py: Python<'_>,
     points: &PyReadonlyArray2<'_, f64>,
     simplices: &PyReadonlyArray2<'_, i32>,
-    of: impl FnOnce(&[[f64; D]], &[[i32; N]], &Watch) -> Result<R, E> + Send,
-) -> PyResult<R> {
-    let (points, simplices) = attached(py, || {
-        let points: &[[f64; D]] = rows(points, "points")?;
-        Ok((points, simplices_of(simplices, points.len())?))
-    })?;
+    of: impl FnOnce(&[[f64; D]], &[[i32; N]], &Watch) -> Result<R> + Send,
+) -> Outcome<R> {
+    let points: &[[f64; D]] = rows(points, "points")?;
+    let simplices = simplices_of(simplices, points.len())?;
     watched(py, |watch| of(points, simplices, watch))
 }
 
@@ -101,7 +95,7 @@ pub fn areas2(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Column<f64>> {
+) -> Outcome<Column<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::areas(points, simplices, workers, watch)
     })?;
@@ -115,7 +109,7 @@ pub fn volumes3(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Column<f64>> {
+) -> Outcome<Column<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::volumes(points, simplices, workers, watch)
     })?;
@@ -129,7 +123,7 @@ pub fn face_areas3(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Column<f64>> {
+) -> Outcome<Column<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::face_areas(points, simplices, workers, watch)
     })?;
@@ -143,7 +137,7 @@ pub fn face_normals3(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Table<f64>> {
+) -> Outcome<Table<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::face_normals(points, simplices, workers, watch)
     })?;
@@ -157,7 +151,7 @@ pub fn circumcenters2(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Table<f64>> {
+) -> Outcome<Table<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::circumcenters2(points, simplices, workers, watch)
     })?;
@@ -171,7 +165,7 @@ pub fn circumcenters3(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Table<f64>> {
+) -> Outcome<Table<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::circumcenters3(points, simplices, workers, watch)
     })?;
@@ -185,7 +179,7 @@ pub fn qualities2(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Vec<Column<f64>>> {
+) -> Outcome<Vec<Column<f64>>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::qualities2(points, simplices, workers, watch)
     })?;
@@ -199,7 +193,7 @@ pub fn qualities3(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Vec<Column<f64>>> {
+) -> Outcome<Vec<Column<f64>>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::qualities3(points, simplices, workers, watch)
     })?;
@@ -213,7 +207,7 @@ pub fn dihedral_angles3(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Table<f64>> {
+) -> Outcome<Table<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::dihedral_angles(points, simplices, workers, watch)
     })?;
@@ -228,7 +222,7 @@ pub fn below2(
     simplices: PyReadonlyArray2<'_, i32>,
     squared_cosine: f64,
     workers: usize,
-) -> PyResult<Column<i32>> {
+) -> Outcome<Column<i32>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::below(points, simplices, squared_cosine, workers, watch)
     })?;
@@ -242,7 +236,7 @@ pub fn transforms2(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Py<PyArray3<f64>>> {
+) -> Outcome<Py<PyArray3<f64>>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::transforms2(points, simplices, workers, watch)
     })?;
@@ -258,7 +252,7 @@ pub fn transforms3(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Py<PyArray3<f64>>> {
+) -> Outcome<Py<PyArray3<f64>>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::transforms3(points, simplices, workers, watch)
     })?;

@@ -1,12 +1,12 @@
 //! Grids of cells on the sphere, and the areas that two of them share.
 
-use delone::{Error, Result};
+use delone_core::error::Result;
 use delone_core::overlap::{Checked, Grid, Polygons, Rows, check, overlaps};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, column, flat, rows};
-use crate::errors::raise;
+use crate::errors::Outcome;
 use crate::signals::watched;
 
 /// The arrays of a grid.
@@ -44,7 +44,7 @@ enum Lent<'py> {
 }
 
 impl Given {
-    fn lent<'py>(&self, py: Python<'py>) -> PyResult<Lent<'py>> {
+    fn lent<'py>(&self, py: Python<'py>) -> Outcome<Lent<'py>> {
         use numpy::PyArrayMethods;
         Ok(match self {
             Given::Polygons {
@@ -181,9 +181,9 @@ impl CellGrid {
     }
 
     /// Areas and faults; sides that cross are looked for if `crossing`.
-    fn check(&self, py: Python<'_>, crossing: bool, workers: usize) -> PyResult<CheckedCells> {
+    fn check(&self, py: Python<'_>, crossing: bool, workers: usize) -> Outcome<CheckedCells> {
         let lent = self.0.lent(py)?;
-        let grid = lent.grid().map_err(|e: Error| raise(py, &e))?;
+        let grid = lent.grid()?;
         let found: Checked = watched(py, |watch| check(&grid, crossing, workers, watch))?;
         Ok(CheckedCells {
             areas: column(py, found.areas),
@@ -195,10 +195,10 @@ impl CellGrid {
     }
 
     /// What the cells share with those of another grid; cells with faults share nothing.
-    fn overlaps(&self, py: Python<'_>, other: &Self, workers: usize) -> PyResult<SharedCells> {
+    fn overlaps(&self, py: Python<'_>, other: &Self, workers: usize) -> Outcome<SharedCells> {
         let (lent, beside) = (self.0.lent(py)?, other.0.lent(py)?);
-        let grid = lent.grid().map_err(|e| raise(py, &e))?;
-        let target = beside.grid().map_err(|e| raise(py, &e))?;
+        let grid = lent.grid()?;
+        let target = beside.grid()?;
         let found = watched(py, |watch| overlaps(&grid, &target, workers, watch))?;
         Ok(SharedCells {
             indptr: column(py, found.starts),

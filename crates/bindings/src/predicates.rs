@@ -1,6 +1,6 @@
 //! The predicates over arrays of points.
 
-use delone::{Error, Result};
+use delone_core::error::{Error, Result};
 use delone_core::memory::with_room;
 use delone_predicates as exact;
 use delone_predicates::Sign;
@@ -8,24 +8,21 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, column, rows};
-use crate::errors::{detached, raise};
+use crate::errors::{Outcome, detached};
 
 /// One sign per row of `M` arrays of `D`-dimensional points.
 fn signs<const D: usize, const M: usize>(
     py: Python<'_>,
     arguments: [&PyReadonlyArray2<'_, f64>; M],
     sign: impl Fn([[f64; D]; M]) -> Sign + Send + Sync,
-) -> PyResult<Column<i8>> {
+) -> Outcome<Column<i8>> {
     let mut columns: [&[[f64; D]]; M] = [&[]; M];
     for (column, argument) in columns.iter_mut().zip(arguments) {
-        *column = rows(argument, "argument").map_err(|e| raise(py, &e))?;
+        *column = rows(argument, "argument")?;
     }
     let n = columns[0].len();
     if columns.iter().any(|c| c.len() != n) {
-        return Err(raise(
-            py,
-            &Error::Shape("arguments differ in length".into()),
-        ));
+        return Err(Error::Shape("arguments differ in length".into()).into());
     }
     let signs = detached(py, || -> Result<_> {
         let mut signs = with_room(n)?;
@@ -42,7 +39,7 @@ pub fn orient2d(
     a: PyReadonlyArray2<'_, f64>,
     b: PyReadonlyArray2<'_, f64>,
     c: PyReadonlyArray2<'_, f64>,
-) -> PyResult<Column<i8>> {
+) -> Outcome<Column<i8>> {
     signs(py, [&a, &b, &c], |[a, b, c]| exact::orient2d(a, b, c))
 }
 
@@ -55,7 +52,7 @@ pub fn incircle(
     c: PyReadonlyArray2<'_, f64>,
     d: PyReadonlyArray2<'_, f64>,
     canonical: bool,
-) -> PyResult<Column<i8>> {
+) -> Outcome<Column<i8>> {
     let sign = if canonical {
         exact::incircle_canonical
     } else {
@@ -72,7 +69,7 @@ pub fn orient3d(
     b: PyReadonlyArray2<'_, f64>,
     c: PyReadonlyArray2<'_, f64>,
     d: PyReadonlyArray2<'_, f64>,
-) -> PyResult<Column<i8>> {
+) -> Outcome<Column<i8>> {
     signs(py, [&a, &b, &c, &d], |[a, b, c, d]| {
         exact::orient3d(a, b, c, d)
     })
@@ -88,7 +85,7 @@ pub fn insphere(
     d: PyReadonlyArray2<'_, f64>,
     e: PyReadonlyArray2<'_, f64>,
     canonical: bool,
-) -> PyResult<Column<i8>> {
+) -> Outcome<Column<i8>> {
     let sign = if canonical {
         exact::insphere_canonical
     } else {

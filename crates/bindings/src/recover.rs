@@ -1,12 +1,12 @@
 //! Recovered faces as arrays.
 
-use delone::Error;
+use delone_core::error::Error;
 use delone_core::recover::{Counts, Recovered, Task, recover};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, in_range, numbers, rows, table};
-use crate::errors::raise;
+use crate::errors::Outcome;
 use crate::signals::watched;
 
 /// What happened during a recovery of faces.
@@ -63,7 +63,7 @@ pub fn recover_faces<'py>(
     max_points: usize,
     flips: bool,
     workers: usize,
-) -> PyResult<RecoveredFaces> {
+) -> Outcome<RecoveredFaces> {
     let task = || -> Result<Task<'_>, Error> {
         let points = rows(&points, "points")?;
         let faces = rows(&faces, "faces")?;
@@ -76,13 +76,13 @@ pub fn recover_faces<'py>(
             workers,
         })
     };
-    let task = task().map_err(|e| raise(py, &e))?;
+    let task = task()?;
     let made = watched(py, |watch| recover(task, watch))?;
     arrays_of(py, made, task.points.len())
 }
 
 /// The result as Python arrays.
-fn arrays_of(py: Python<'_>, made: Recovered, given: usize) -> PyResult<RecoveredFaces> {
+fn arrays_of(py: Python<'_>, made: Recovered, given: usize) -> Outcome<RecoveredFaces> {
     Ok(RecoveredFaces {
         nadded: made.points.len().saturating_sub(given),
         points: table(py, made.points)?,

@@ -3,18 +3,17 @@
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
-use delone::arrays::{Domain, Lines, Refined, Rounds, Samples};
-use delone::{Error, Options, Result};
+use delone_core::error::{Error, Result};
 use delone_core::memory::copied;
-use delone_core::refine::judge;
 use delone_core::refine::smooth::{self, Target};
+use delone_core::refine::{Lines, Refined, Rounds, Samples, Task, judge, refine_telling};
 use delone_core::watch::Watch;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, flat, in_range, numbers, rows, table};
-use crate::errors::{attached, raise};
-use crate::given::pairs;
+use crate::arrays::{Column, Table, column, each_in_range, flat, numbers, rows, table};
+use crate::errors::Outcome;
+use crate::given::{checked, pairs, simplices_of, unequal};
 use crate::live::{broken, locked};
 use crate::signals::{stoppable, watched};
 
@@ -46,20 +45,32 @@ struct Given<'py> {
     lines: Option<OfLines<'py>>,
 }
 
+/// What a refinement must reach, see `Task`.
+#[derive(Clone, Copy)]
+struct Bounds {
+    min_angle: f64,
+    circles: bool,
+    sizes_yield: bool,
+    max_vertices: usize,
+}
+
 /// Pairs of vertices: the segments, and the ends of lines.
 type Pairs = (Vec<[u32; 2]>, Option<Vec<[u32; 2]>>);
 
 impl Given<'_> {
-    fn pairs(&self, py: Python<'_>) -> PyResult<Pairs> {
-        attached(py, || {
-            let n = rows::<f64, 2>(&self.points, "points")?.len();
-            let ends = self.lines.as_ref().map(|l| pairs(&l.1, n, "ends"));
-            Ok((pairs(&self.segments, n, "segments")?, ends.transpose()?))
-        })
+    fn pairs(&self) -> Result<Pairs> {
+        let n = rows::<f64, 2>(&self.points, "points")?.len();
+        let ends = self.lines.as_ref().map(|l| pairs(&l.1, n, "ends"));
+        Ok((pairs(&self.segments, n, "segments")?, ends.transpose()?))
     }
 
-    /// The domain, without areas.
-    fn domain<'a>(&'a self, (segments, ends): &'a Pairs) -> Result<Domain<'a>> {
+    /// The task, after a check of all arrays.
+    fn task<'a>(
+        &'a self,
+        (segments, ends): &'a Pairs,
+        areas: &'a [f64],
+        bounds: Bounds,
+    ) -> Result<Task<'a>> {
         let lines = match (&self.lines, ends) {
             (Some((of, _, on)), Some(ends)) => Some(Lines {
                 of: flat(of, "of")?,
@@ -68,15 +79,34 @@ impl Given<'_> {
             }),
             _ => None,
         };
-        Ok(Domain {
-            points: rows(&self.points, "points")?,
-            simplices: rows(&self.simplices, "simplices")?,
-            neighbors: Some(rows(&self.neighbors, "neighbors")?),
-            labels: flat(&self.labels, "labels")?,
+        let given = checked(&self.points, &self.simplices, &self.neighbors)?;
+        let (labels, frozen) = (flat(&self.labels, "labels")?, flat(&self.frozen, "frozen")?);
+        let mut fit = labels.len() == given.simplices.len();
+        if let Some(lines) = &lines {
+            let count = lines.ends.len();
+            each_in_range(lines.of, 0, count, "of")?;
+            each_in_range(lines.on, -1, count, "on")?;
+            fit &= lines.of.len() == segments.len() && lines.on.len() == given.points.len();
+            fit &= frozen.len() == count;
+        } else {
+            fit &= frozen.len() == segments.len();
+        }
+        if !fit {
+            return Err(unequal());
+        }
+        Ok(Task {
+            points: given.points,
+            simplices: given.simplices,
+            neighbors: Some(given.neighbors),
+            labels,
+            areas,
             segments,
             lines,
-            frozen: flat(&self.frozen, "frozen")?,
-            ..Domain::default()
+            frozen,
+            min_angle: bounds.min_angle,
+            circles: bounds.circles,
+            sizes_yield: bounds.sizes_yield,
+            max_vertices: bounds.max_vertices,
         })
     }
 }
@@ -132,7 +162,7 @@ pub fn refine2<'py>(
     circles: bool,
     sizes_yield: bool,
     progress: Option<Py<PyAny>>,
-) -> PyResult<RefinedMesh> {
+) -> Outcome<RefinedMesh> {
     let given = Given {
         points,
         simplices,
@@ -142,29 +172,31 @@ pub fn refine2<'py>(
         frozen,
         lines,
     };
-    let pairs = given.pairs(py)?;
-    let domain = attached(py, || {
-        Ok(Domain {
-            areas: flat(&areas, "areas")?,
-            circles,
-            sizes_yield,
-            ..given.domain(&pairs)?
-        })
-    })?;
+    let pairs = given.pairs()?;
+    let bounds = Bounds {
+        min_angle,
+        circles,
+        sizes_yield,
+        max_vertices,
+    };
+    let task = given.task(&pairs, flat(&areas, "areas")?, bounds)?;
+    if task.areas.len() != task.simplices.len() {
+        return Err(unequal().into());
+    }
     let reporter = progress.map(Reporter::new);
     let outcome = stoppable(py, |stop| {
-        let tell = |added: usize, smallest: &mut dyn FnMut() -> f64| {
+        let stop = || reporter.as_ref().is_some_and(Reporter::failed) || stop();
+        let watch = Watch::new(&stop);
+        let mut tell = |added: usize, smallest: &mut dyn FnMut() -> f64| {
             if let Some(reporter) = &reporter {
                 reporter.tell(added, smallest);
             }
+            watch.check()
         };
-        let stop = || reporter.as_ref().is_some_and(Reporter::failed) || stop();
-        let options = Options::new().interrupt(&stop).progress(&tell);
-        let options = options.min_angle(min_angle).max_points(max_vertices);
-        options.refine(domain)
+        refine_telling(task, &watch, &mut tell)
     });
     if let Some(error) = reporter.and_then(Reporter::exception) {
-        return Err(error);
+        return Err(error.into());
     }
     arrays_of(py, outcome?)
 }
@@ -187,7 +219,7 @@ impl Refinement2 {
         min_angle: f64,
         circles: bool,
         sizes_yield: bool,
-    ) -> PyResult<Self> {
+    ) -> Outcome<Self> {
         let (points, simplices, neighbors, labels, segments, frozen) = domain;
         let given = Given {
             points,
@@ -198,28 +230,28 @@ impl Refinement2 {
             frozen,
             lines: Some(lines),
         };
-        let pairs = given.pairs(py)?;
-        let (domain, samples) = attached(py, || {
-            let domain = Domain {
-                circles,
-                sizes_yield,
-                ..given.domain(&pairs)?
-            };
-            let samples = Samples {
-                positions: rows(&samples.0, "positions")?,
-                areas: flat(&samples.1, "areas")?,
-            };
-            Ok((domain, samples))
-        })?;
-        let rounds = stoppable(py, |stop| {
-            let options = Options::new().interrupt(stop).min_angle(min_angle);
-            options.rounds(domain, samples)
-        })?;
+        let pairs = given.pairs()?;
+        // The areas are those of the samples, and each round has its own limit on vertices.
+        let bounds = Bounds {
+            min_angle,
+            circles,
+            sizes_yield,
+            max_vertices: usize::MAX,
+        };
+        let samples = Samples {
+            positions: rows(&samples.0, "positions")?,
+            areas: flat(&samples.1, "areas")?,
+        };
+        if samples.areas.len() != samples.positions.len() {
+            return Err(unequal().into());
+        }
+        let task = given.task(&pairs, &[], bounds)?;
+        let rounds = watched(py, |watch| Rounds::new(task, samples, watch))?;
         Ok(Self(Mutex::new(rounds)))
     }
 
     /// The centers, (k, 2), and the labels, (k,), of triangles that are new since the last call.
-    fn fresh(&self, py: Python<'_>, workers: usize) -> PyResult<(Table<f64>, Column<i32>)> {
+    fn fresh(&self, py: Python<'_>, workers: usize) -> Outcome<(Table<f64>, Column<i32>)> {
         let found = locked(&self.0, py, usize::MAX, |rounds, watch| {
             rounds.fresh(workers, watch)
         })?;
@@ -227,8 +259,8 @@ impl Refinement2 {
     }
 
     /// Sets the areas wanted at these centers; returns whether all triangles comply.
-    fn comply(&self, py: Python<'_>, wanted: PyReadonlyArray1<'_, f64>) -> PyResult<bool> {
-        let wanted = attached(py, || flat(&wanted, "wanted"))?;
+    fn comply(&self, py: Python<'_>, wanted: PyReadonlyArray1<'_, f64>) -> Outcome<bool> {
+        let wanted = flat(&wanted, "wanted")?;
         locked(&self.0, py, usize::MAX, |rounds, watch| {
             rounds.comply(wanted, watch)
         })
@@ -241,7 +273,7 @@ impl Refinement2 {
         py: Python<'_>,
         max_vertices: usize,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(bool, usize)> {
+    ) -> Outcome<(bool, usize)> {
         let reporter = progress.map(Reporter::new);
         let outcome = stoppable(py, |stop| -> Result<_> {
             let mut tell = |added: usize, smallest: &mut dyn FnMut() -> f64| {
@@ -256,13 +288,13 @@ impl Refinement2 {
             Ok((done, rounds.added()))
         });
         match reporter.and_then(Reporter::exception) {
-            Some(error) => Err(error),
+            Some(error) => Err(error.into()),
             None => outcome,
         }
     }
 
     /// The triangulation, with the vertices of all rounds.
-    fn export(&self, py: Python<'_>) -> PyResult<RefinedMesh> {
+    fn export(&self, py: Python<'_>) -> Outcome<RefinedMesh> {
         let made = locked(&self.0, py, usize::MAX, Rounds::export)?;
         arrays_of(py, made)
     }
@@ -309,7 +341,7 @@ impl Reporter {
 }
 
 /// The result as Python arrays.
-fn arrays_of(py: Python<'_>, made: Refined) -> PyResult<RefinedMesh> {
+fn arrays_of(py: Python<'_>, made: Refined) -> Outcome<RefinedMesh> {
     Ok(RefinedMesh {
         added: table(py, made.added)?,
         on: column(py, made.on),
@@ -344,14 +376,9 @@ pub fn judge2<'py>(
     points: PyReadonlyArray2<'py, f64>,
     simplices: PyReadonlyArray2<'py, i32>,
     cos2: f64,
-) -> PyResult<JudgedTriangles> {
-    let given = || -> Result<_> {
-        let all = rows(&points, "points")?;
-        let simplices: &[[i32; 3]] = rows(&simplices, "simplices")?;
-        in_range(simplices, 0, all.len(), "simplices")?;
-        Ok((all, simplices))
-    };
-    let (points, simplices) = given().map_err(|e| raise(py, &e))?;
+) -> Outcome<JudgedTriangles> {
+    let points = rows(&points, "points")?;
+    let simplices = simplices_of(&simplices, points.len())?;
     let found = watched(py, |watch| judge(points, simplices, cos2, watch))?;
     Ok(JudgedTriangles {
         below: numbers(py, found.below),
@@ -387,26 +414,21 @@ pub fn smooth2(
     target: &str,
     rounds: usize,
     workers: usize,
-) -> PyResult<SmoothedMesh> {
-    let (mesh, free, target) = attached(py, || {
-        let mesh = smooth::Domain {
-            points: copied(rows(&points, "points")?)?,
-            simplices: copied(rows(&simplices, "simplices")?)?,
-            neighbors: copied(rows(&neighbors, "neighbors")?)?,
-            sides: copied(rows(&sides, "sides")?)?,
-        };
-        let (count, free) = (mesh.simplices.len(), flat(&free, "free")?);
-        in_range(&mesh.simplices, 0, mesh.points.len(), "simplices")?;
-        in_range(&mesh.neighbors, -1, count, "neighbors")?;
-        let whole = mesh.neighbors.len() == count
-            && mesh.sides.len() == count
-            && free.len() == mesh.points.len();
-        let target = Target::named(target);
-        match target.filter(|_| whole) {
-            Some(target) => Ok((mesh, free, target)),
-            None => Err(Error::Shape("the arrays of a mesh differ in length".into())),
-        }
-    })?;
+) -> Outcome<SmoothedMesh> {
+    let given = checked(&points, &simplices, &neighbors)?;
+    let (sides, free) = (rows(&sides, "sides")?, flat(&free, "free")?);
+    if sides.len() != given.simplices.len() || free.len() != given.points.len() {
+        return Err(unequal().into());
+    }
+    let Some(target) = Target::named(target) else {
+        return Err(Error::Shape(format!("unknown target {target:?}")).into());
+    };
+    let mesh = smooth::Domain {
+        points: copied(given.points)?,
+        simplices: copied(given.simplices)?,
+        neighbors: copied(given.neighbors)?,
+        sides: copied(sides)?,
+    };
     let rules = smooth::Rules {
         free,
         cos2,

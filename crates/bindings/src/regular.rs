@@ -1,12 +1,12 @@
 //! Regular triangulations of weighted points, and triangulations of periodic points, as arrays.
 
-use delone::Error;
+use delone_core::error::Error;
 use delone_core::{regular, regular3 as space, voronoi};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, numbers, rows, table};
-use crate::errors::attached;
+use crate::errors::Outcome;
 use crate::given::finite_weights;
 use crate::signals::watched;
 
@@ -30,11 +30,9 @@ pub fn regular2(
     points: PyReadonlyArray2<'_, f64>,
     weights: PyReadonlyArray1<'_, f64>,
     workers: usize,
-) -> PyResult<RegularTriangulation> {
-    let (points, weights) = attached(py, || {
-        let points = rows(&points, "points")?;
-        Ok((points, finite_weights(Some(&weights), points.len())?))
-    })?;
+) -> Outcome<RegularTriangulation> {
+    let points = rows(&points, "points")?;
+    let weights = finite_weights(Some(&weights), points.len())?;
     let made = watched(py, |watch| {
         regular::regular(points, weights, workers, watch)
     })?;
@@ -53,11 +51,9 @@ pub fn regular3(
     points: PyReadonlyArray2<'_, f64>,
     weights: PyReadonlyArray1<'_, f64>,
     workers: usize,
-) -> PyResult<RegularTriangulation> {
-    let (points, weights) = attached(py, || {
-        let points = rows(&points, "points")?;
-        Ok((points, finite_weights(Some(&weights), points.len())?))
-    })?;
+) -> Outcome<RegularTriangulation> {
+    let points = rows(&points, "points")?;
+    let weights = finite_weights(Some(&weights), points.len())?;
     let made = watched(py, |watch| space::regular(points, weights, workers, watch))?;
     Ok(RegularTriangulation {
         simplices: table(py, made.tetrahedra.simplices)?,
@@ -91,11 +87,9 @@ pub fn periodic2(
     weights: Option<PyReadonlyArray1<'_, f64>>,
     periods: [f64; 2],
     workers: usize,
-) -> PyResult<PeriodicTriangulation> {
-    let (points, point_weights) = attached(py, || {
-        let points = rows(&points, "points")?;
-        Ok((points, finite_weights(weights.as_ref(), points.len())?))
-    })?;
+) -> Outcome<PeriodicTriangulation> {
+    let points = rows(&points, "points")?;
+    let point_weights = finite_weights(weights.as_ref(), points.len())?;
     let made = watched(py, |watch| {
         regular::periodic(points, point_weights, periods, workers, watch)
     })?;
@@ -125,29 +119,19 @@ pub fn periodic_centers2(
     corners: PyReadonlyArray2<'_, i32>,
     apexes: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<(Table<f64>, Table<bool>)> {
-    let (points, point_weights, corners, apexes) = attached(py, || {
-        let points = rows(&points, "points")?;
-        let point_weights = finite_weights(weights.as_ref(), points.len())?;
-        let (corners, apexes) = (
-            rows::<i32, 3>(&corners, "corners")?,
-            rows(&apexes, "apexes")?,
-        );
-        let right = |t: &[i32; 3]| {
-            t[0] >= 0
-                && (t[0] as usize) < points.len()
-                && t[1..].iter().all(|k| (-9..=9).contains(k))
-        };
-        if corners.len() == apexes.len()
-            && corners.len() % 3 == 0
-            && corners.iter().chain(apexes).all(right)
-        {
-            return Ok((points, point_weights, corners, apexes));
-        }
-        Err(Error::Shape(
-            "copies must be rows and shifts of -9 to 9 periods".into(),
-        ))
-    })?;
+) -> Outcome<(Table<f64>, Table<bool>)> {
+    let points = rows(&points, "points")?;
+    let point_weights = finite_weights(weights.as_ref(), points.len())?;
+    let corners = rows::<i32, 3>(&corners, "corners")?;
+    let apexes = rows(&apexes, "apexes")?;
+    let right = |t: &[i32; 3]| {
+        t[0] >= 0 && (t[0] as usize) < points.len() && t[1..].iter().all(|k| (-9..=9).contains(k))
+    };
+    let paired = corners.len() == apexes.len() && corners.len() % 3 == 0;
+    if !paired || !corners.iter().chain(apexes).all(right) {
+        let text = "copies must be rows and shifts of -9 to 9 periods";
+        return Err(Error::Shape(text.into()).into());
+    }
     let (centers, shared) = watched(py, |watch| {
         voronoi::centers(
             points,

@@ -1,13 +1,13 @@
 //! What is wrong with regular and with periodic triangulations, as arrays.
 
-use delone::Error;
+use delone_core::error::Error;
 use delone_core::regular::{self, Wrapped};
 use delone_core::regular3 as space;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, in_range, number_rows, numbers, rows};
-use crate::errors::attached;
+use crate::errors::Outcome;
 use crate::given::{checked, finite_weights, unequal};
 use crate::signals::watched;
 use crate::space::{Faults3, faults3};
@@ -70,11 +70,9 @@ pub fn validate_regular2(
     weights: PyReadonlyArray1<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     neighbors: PyReadonlyArray2<'_, i32>,
-) -> PyResult<RegularFaults2> {
-    let (given, point_weights) = attached(py, || {
-        let given = checked::<2, 3>(&points, &simplices, &neighbors)?;
-        Ok((given, finite_weights(Some(&weights), given.points.len())?))
-    })?;
+) -> Outcome<RegularFaults2> {
+    let given = checked::<2, 3>(&points, &simplices, &neighbors)?;
+    let point_weights = finite_weights(Some(&weights), given.points.len())?;
     let found = watched(py, |watch| regular::validate(given, point_weights, watch))?;
     Ok(RegularFaults2 {
         faults: Py::new(py, faults2(py, found.faults)?)?,
@@ -91,11 +89,9 @@ pub fn validate_regular3(
     weights: PyReadonlyArray1<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     neighbors: PyReadonlyArray2<'_, i32>,
-) -> PyResult<RegularFaults3> {
-    let (given, point_weights) = attached(py, || {
-        let given = checked::<3, 4>(&points, &simplices, &neighbors)?;
-        Ok((given, finite_weights(Some(&weights), given.points.len())?))
-    })?;
+) -> Outcome<RegularFaults3> {
+    let given = checked::<3, 4>(&points, &simplices, &neighbors)?;
+    let point_weights = finite_weights(Some(&weights), given.points.len())?;
     let found = watched(py, |watch| space::validate(given, point_weights, watch))?;
     Ok(RegularFaults3 {
         faults: Py::new(py, faults3(py, found.faults)?)?,
@@ -117,28 +113,26 @@ pub fn validate_periodic2(
     offsets: PyReadonlyArray2<'_, i32>,
     neighbors: PyReadonlyArray2<'_, i32>,
     partners: PyReadonlyArray2<'_, i32>,
-) -> PyResult<PeriodicFaults> {
-    let given = attached(py, || {
-        let given = checked::<2, 3>(&points, &simplices, &neighbors)?;
-        let count = given.simplices.len();
-        let wrapped = Wrapped {
-            points: given.points,
-            weights: finite_weights(weights.as_ref(), given.points.len())?,
-            periods,
-            simplices: given.simplices,
-            offsets: rows(&offsets, "offsets")?,
-            neighbors: given.neighbors,
-            partners: rows(&partners, "partners")?,
-        };
-        in_range(wrapped.partners, -1, 3 * count, "partners")?;
-        if wrapped.offsets.len() != count || wrapped.partners.len() != count {
-            return Err(unequal());
-        }
-        if !periods.iter().all(|x| *x >= 0.0 && x.is_finite()) {
-            return Err(Error::Shape("periods are not finite lengths".into()));
-        }
-        Ok(wrapped)
-    })?;
+) -> Outcome<PeriodicFaults> {
+    let given = checked::<2, 3>(&points, &simplices, &neighbors)?;
+    let count = given.simplices.len();
+    let wrapped = Wrapped {
+        points: given.points,
+        weights: finite_weights(weights.as_ref(), given.points.len())?,
+        periods,
+        simplices: given.simplices,
+        offsets: rows(&offsets, "offsets")?,
+        neighbors: given.neighbors,
+        partners: rows(&partners, "partners")?,
+    };
+    in_range(wrapped.partners, -1, 3 * count, "partners")?;
+    if wrapped.offsets.len() != count || wrapped.partners.len() != count {
+        return Err(unequal().into());
+    }
+    if !periods.iter().all(|x| *x >= 0.0 && x.is_finite()) {
+        return Err(Error::Shape("periods are not finite lengths".into()).into());
+    }
+    let given = wrapped;
     let found = watched(py, |watch| regular::validate_periodic(given, watch))?;
     Ok(PeriodicFaults {
         offsets: numbers(py, found.offsets),

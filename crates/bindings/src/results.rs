@@ -1,6 +1,6 @@
 //! Results that Python can also construct: from a file, from a pickle, or from arrays.
 
-use delone::{Error, Result};
+use delone_core::error::{Error, Result};
 use numpy::{Element, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
@@ -14,22 +14,22 @@ macro_rules! made_of_arrays {
         impl $name {
             #[new]
             #[expect(clippy::too_many_arguments, reason = "one array each")]
-            fn new(py: Python<'_>, $($field: $kind),+) -> PyResult<Self> {
+            fn new(py: Python<'_>, $($field: $kind),+) -> crate::errors::Outcome<Self> {
                 let made = Self { $($field),+ };
-                made.check(py).map_err(|e| crate::errors::raise(py, &e))?;
+                made.check(py)?;
                 Ok(made)
             }
 
             /// All arrays, in the order of the arguments of the constructor.
-            fn arrays<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, pyo3::types::PyTuple>> {
-                pyo3::types::PyTuple::new(py, [$(self.$field.clone_ref(py).into_any()),+])
+            fn arrays<'py>(&self, py: Python<'py>) -> crate::errors::Outcome<Bound<'py, pyo3::types::PyTuple>> {
+                Ok(pyo3::types::PyTuple::new(py, [$(self.$field.clone_ref(py).into_any()),+])?)
             }
 
             /// The arguments for unpickling.
             fn __getnewargs__<'py>(
                 &self,
                 py: Python<'py>,
-            ) -> PyResult<Bound<'py, pyo3::types::PyTuple>> {
+            ) -> crate::errors::Outcome<Bound<'py, pyo3::types::PyTuple>> {
                 self.arrays(py)
             }
         }

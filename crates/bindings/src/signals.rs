@@ -5,11 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::current;
 use std::time::{Duration, Instant};
 
-use delone::{Error, Options, Result};
+use crate::errors::{Outcome, attached, detached};
+use delone_core::error::Result;
 use delone_core::watch::Watch;
 use pyo3::prelude::*;
-
-use crate::errors::{attached, detached};
 
 /// Minimum time between two checks of Python's signals: a check takes the GIL.
 const BETWEEN: Duration = Duration::from_millis(50);
@@ -18,48 +17,34 @@ const BETWEEN: Duration = Duration::from_millis(50);
 pub type Stop<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// Runs `work` without the GIL, with checks of Python's signals.
-pub fn stoppable<T: Send, E: Into<Error>>(
+pub fn stoppable<T: Send>(
     py: Python<'_>,
-    work: impl FnOnce(Stop<'_>) -> Result<T, E> + Send,
-) -> PyResult<T> {
+    work: impl FnOnce(Stop<'_>) -> Result<T> + Send,
+) -> Outcome<T> {
     let signals = Signals::new();
     let outcome = detached(py, || work(&|| signals.stop()));
     match signals.exception() {
-        Some(signal) => Err(signal),
+        Some(signal) => Err(signal.into()),
         None => outcome,
     }
 }
 
-/// The same, with options for the crate `delone`.
-pub fn optioned<T: Send>(
-    py: Python<'_>,
-    workers: usize,
-    work: impl FnOnce(Options<'_>) -> Result<T> + Send,
-) -> PyResult<T> {
-    stoppable(py, |stop| {
-        work(Options::new().threads(workers).interrupt(stop))
-    })
-}
-
 /// The same, with a watch for the core.
-pub fn watched<T: Send, E: Into<Error>>(
+pub fn watched<T: Send>(
     py: Python<'_>,
-    work: impl FnOnce(&Watch) -> Result<T, E> + Send,
-) -> PyResult<T> {
+    work: impl FnOnce(&Watch) -> Result<T> + Send,
+) -> Outcome<T> {
     stoppable(py, |stop| work(&Watch::new(stop)))
 }
 
 /// The same with the GIL, for calls that are usually short. Threads that `work` starts do not check
 /// signals, because they cannot take the GIL.
-pub fn watched_attached<T, E: Into<Error>>(
-    py: Python<'_>,
-    work: impl FnOnce(&Watch) -> Result<T, E>,
-) -> PyResult<T> {
+pub fn watched_attached<T>(work: impl FnOnce(&Watch) -> Result<T>) -> Outcome<T> {
     let (signals, own) = (Signals::new(), current().id());
     let stop = || (current().id() == own && signals.stop()) || signals.stopped();
-    let outcome = attached(py, || work(&Watch::new(&stop)).map_err(Into::into));
+    let outcome = attached(|| work(&Watch::new(&stop)));
     match signals.exception() {
-        Some(signal) => Err(signal),
+        Some(signal) => Err(signal.into()),
         None => outcome,
     }
 }

@@ -1,14 +1,15 @@
 //! 3-D triangulations as arrays.
 
-use delone::Point3;
+use delone_core::Point3;
+use delone_core::delaunay3::triangulate;
 use delone_core::delaunay3::validate::{Findings3, validate};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, number_rows, numbers, rows};
-use crate::errors::raise;
+use crate::errors::Outcome;
 use crate::given::checked;
-use crate::signals::{optioned, watched};
+use crate::signals::watched;
 use crate::triangulation::{Triangulation, arrays_of};
 
 /// The Delaunay triangulation of 3-D points.
@@ -17,10 +18,10 @@ pub fn triangulate3(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     workers: usize,
-) -> PyResult<Triangulation> {
-    let points: &[Point3] = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let made = optioned(py, workers, |options| options.triangulate(points))?;
-    arrays_of(py, made.into())
+) -> Outcome<Triangulation> {
+    let points: &[Point3] = rows(&points, "points")?;
+    let made = watched(py, |watch| triangulate(points, workers, watch))?;
+    arrays_of(py, made.arrays, &made.duplicates, &made.stages)
 }
 
 /// Faults of a 3-D triangulation; arrays are empty if there are none.
@@ -51,14 +52,14 @@ pub fn validate3<'py>(
     points: PyReadonlyArray2<'py, f64>,
     simplices: PyReadonlyArray2<'py, i32>,
     neighbors: PyReadonlyArray2<'py, i32>,
-) -> PyResult<Faults3> {
-    let given = checked(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
+) -> Outcome<Faults3> {
+    let given = checked(&points, &simplices, &neighbors)?;
     let found = watched(py, |watch| validate(given, watch))?;
     faults3(py, found)
 }
 
 /// What is wrong, as arrays.
-pub fn faults3(py: Python<'_>, found: Findings3) -> PyResult<Faults3> {
+pub fn faults3(py: Python<'_>, found: Findings3) -> Outcome<Faults3> {
     Ok(Faults3 {
         orientation: numbers(py, found.orientation),
         facets: number_rows(py, &found.facets)?,

@@ -1,7 +1,8 @@
 //! Triangulations of directions as arrays.
 
-use delone::{Error, Point3, Result};
+use delone_core::Point3;
 use delone_core::arrays::Arrays;
+use delone_core::error::{Error, Result};
 use delone_core::interpolate_sphere::{Kind, Queries, weights};
 use delone_core::memory::copied;
 use delone_core::sphere::angles::{Measure, directions};
@@ -16,7 +17,8 @@ use crate::arrays::{
     Column, Table, column, flat, in_range, number_rows, numbers, rows, shaped, table,
 };
 use crate::constrained::ConstrainedTriangulation;
-use crate::errors::raise;
+use crate::errors::Outcome;
+use crate::given::{pairs, unequal};
 use crate::signals::watched;
 
 /// A Delaunay triangulation of directions.
@@ -36,8 +38,8 @@ pub fn sphere_delaunay(
     py: Python<'_>,
     vectors: PyReadonlyArray2<'_, f64>,
     workers: usize,
-) -> PyResult<SphereTriangulation> {
-    let vectors = rows(&vectors, "vectors").map_err(|e| raise(py, &e))?;
+) -> Outcome<SphereTriangulation> {
+    let vectors = rows(&vectors, "vectors")?;
     let made = watched(py, |watch| triangulate(vectors, workers, watch))?;
     Ok(SphereTriangulation {
         simplices: table(py, made.arrays.simplices)?,
@@ -53,14 +55,9 @@ pub fn sphere_constrained(
     vectors: PyReadonlyArray2<'_, f64>,
     segments: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<ConstrainedTriangulation> {
-    let checked = (|| {
-        let (vectors, segments) = (rows(&vectors, "vectors")?, rows(&segments, "segments")?);
-        in_range::<2>(segments, 0, vectors.len(), "segments")?;
-        let own: Vec<[u32; 2]> = segments.iter().map(|s| s.map(|v| v as u32)).collect();
-        Ok((vectors, own))
-    })();
-    let (vectors, segments) = checked.map_err(|e| raise(py, &e))?;
+) -> Outcome<ConstrainedTriangulation> {
+    let vectors = rows(&vectors, "vectors")?;
+    let segments = pairs(&segments, vectors.len(), "segments")?;
     let made = watched(py, |watch| constrain(vectors, &segments, workers, watch))?;
     Ok(ConstrainedTriangulation {
         added: table::<f64, 2>(py, Vec::new())?,
@@ -85,8 +82,8 @@ pub fn sphere_directions(
     lonlat: PyReadonlyArray2<'_, f64>,
     degrees: bool,
     workers: usize,
-) -> PyResult<Table<f64>> {
-    let lonlat = rows(&lonlat, "lonlat").map_err(|e| raise(py, &e))?;
+) -> Outcome<Table<f64>> {
+    let lonlat = rows(&lonlat, "lonlat")?;
     let measure = if degrees {
         Measure::Degrees
     } else {
@@ -102,8 +99,8 @@ pub fn sphere_units(
     py: Python<'_>,
     vectors: PyReadonlyArray2<'_, f64>,
     workers: usize,
-) -> PyResult<Table<f64>> {
-    let vectors = rows(&vectors, "vectors").map_err(|e| raise(py, &e))?;
+) -> Outcome<Table<f64>> {
+    let vectors = rows(&vectors, "vectors")?;
     let (heads, _) = watched(py, |watch| {
         rays::check(vectors)?;
         rays::units(vectors, workers, watch)
@@ -118,8 +115,8 @@ pub fn sphere_areas(
     vectors: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Column<f64>> {
-    let (vectors, simplices) = given(&vectors, &simplices).map_err(|e| raise(py, &e))?;
+) -> Outcome<Column<f64>> {
+    let (vectors, simplices) = given(&vectors, &simplices)?;
     let found = watched(py, |watch| {
         measure::areas(vectors, simplices, workers, watch)
     })?;
@@ -133,8 +130,8 @@ pub fn sphere_circumcenters(
     vectors: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Table<f64>> {
-    let (vectors, simplices) = given(&vectors, &simplices).map_err(|e| raise(py, &e))?;
+) -> Outcome<Table<f64>> {
+    let (vectors, simplices) = given(&vectors, &simplices)?;
     let found = watched(py, |watch| {
         measure::circumcenters(vectors, simplices, workers, watch)
     })?;
@@ -176,14 +173,14 @@ pub fn sphere_dual(
     neighbors: PyReadonlyArray2<'_, i32>,
     merged: bool,
     workers: usize,
-) -> PyResult<SphereDual> {
-    let (vectors, simplices) = given(&vectors, &simplices).map_err(|e| raise(py, &e))?;
-    let neighbors: &[[i32; 3]] = rows(&neighbors, "neighbors").map_err(|e| raise(py, &e))?;
+) -> Outcome<SphereDual> {
+    let (vectors, simplices) = given(&vectors, &simplices)?;
+    let neighbors: &[[i32; 3]] = rows(&neighbors, "neighbors")?;
     if neighbors.len() != simplices.len() {
         let error = Error::Shape("simplices and neighbors must be equally many".into());
-        return Err(raise(py, &error));
+        return Err(error.into());
     }
-    in_range(neighbors, -1, simplices.len(), "neighbors").map_err(|e| raise(py, &e))?;
+    in_range(neighbors, -1, simplices.len(), "neighbors")?;
     let (facets, made) = watched(py, |watch| {
         let facets = void::complete(vectors, simplices, neighbors, watch)?;
         let made = dual::dual(
@@ -194,7 +191,7 @@ pub fn sphere_dual(
             workers,
             watch,
         )?;
-        delone_core::error::Result::Ok((facets, made))
+        Result::Ok((facets, made))
     })?;
     Ok(SphereDual {
         simplices: table(py, facets.simplices)?,
@@ -217,13 +214,9 @@ pub fn sphere_spans(
     vectors: PyReadonlyArray2<'_, f64>,
     around: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Table<f64>> {
-    let checked = (|| {
-        let (vectors, around) = (rows(&vectors, "vectors")?, rows(&around, "around")?);
-        in_range(around, 0, vectors.len(), "around")?;
-        Ok((vectors, around))
-    })();
-    let (vectors, around): (&[Point3], &[[i32; 4]]) = checked.map_err(|e| raise(py, &e))?;
+) -> Outcome<Table<f64>> {
+    let (vectors, around) = (rows(&vectors, "vectors")?, rows(&around, "around")?);
+    in_range::<4>(around, 0, vectors.len(), "around")?;
     let found = watched(py, |watch| span::spans(vectors, around, workers, watch))?;
     table(py, found)
 }
@@ -254,19 +247,13 @@ impl SphereLocator {
         simplices: PyReadonlyArray2<'_, i32>,
         neighbors: PyReadonlyArray2<'_, i32>,
         workers: usize,
-    ) -> PyResult<Self> {
-        let made = (|| {
-            let (vectors, simplices) = given(&vectors, &simplices)?;
-            let neighbors: &[[i32; 3]] = rows(&neighbors, "neighbors")?;
-            if simplices.is_empty() || neighbors.len() != simplices.len() {
-                return Err(Error::Shape(
-                    "simplices and neighbors must be equally many".into(),
-                ));
-            }
-            in_range(neighbors, -1, simplices.len(), "neighbors")?;
-            Ok((vectors, simplices, neighbors))
-        })();
-        let (vectors, simplices, neighbors) = made.map_err(|e| raise(py, &e))?;
+    ) -> Outcome<Self> {
+        let (vectors, simplices) = given(&vectors, &simplices)?;
+        let neighbors: &[[i32; 3]] = rows(&neighbors, "neighbors")?;
+        if simplices.is_empty() || neighbors.len() != simplices.len() {
+            return Err(unequal().into());
+        }
+        in_range(neighbors, -1, simplices.len(), "neighbors")?;
         let index = watched(py, |watch| {
             let arrays = Arrays {
                 simplices: copied(simplices)?,
@@ -283,7 +270,7 @@ impl SphereLocator {
         py: Python<'_>,
         xi: PyReadonlyArray2<'_, f64>,
         workers: usize,
-    ) -> PyResult<Column<i32>> {
+    ) -> Outcome<Column<i32>> {
         self.column(py, &xi, |index, xi, watch| index.find(xi, workers, watch))
     }
 
@@ -297,16 +284,13 @@ impl SphereLocator {
         simplex: PyReadonlyArray1<'_, i32>,
         sloped: bool,
         workers: usize,
-    ) -> PyResult<SphereWeights> {
+    ) -> Outcome<SphereWeights> {
         let kind = Kind::named(kind)
             .ok_or_else(|| PyValueError::new_err(format!("unknown kind {kind:?}")))?;
-        let queries = (|| {
-            Ok(Queries {
-                vectors: rows(&xi, "xi")?,
-                simplices: flat(&simplex, "simplex")?,
-            })
-        })();
-        let queries = queries.map_err(|e| raise(py, &e))?;
+        let queries = Queries {
+            vectors: rows(&xi, "xi")?,
+            simplices: flat(&simplex, "simplex")?,
+        };
         let found = watched(py, |watch| {
             weights(&self.0, kind, queries, sloped, workers, watch)
         })?;
@@ -330,7 +314,7 @@ impl SphereLocator {
         py: Python<'_>,
         xi: PyReadonlyArray2<'_, f64>,
         workers: usize,
-    ) -> PyResult<Column<i32>> {
+    ) -> Outcome<Column<i32>> {
         self.column(py, &xi, |index, xi, watch| {
             index.nearest(xi, workers, watch)
         })
@@ -342,11 +326,9 @@ impl SphereLocator {
         &self,
         py: Python<'_>,
         xi: &PyReadonlyArray2<'_, f64>,
-        answer: impl Fn(&Index, Vec<Point3>, &Watch) -> delone_core::error::Result<Vec<i32>>
-        + Sync
-        + Send,
-    ) -> PyResult<Column<i32>> {
-        let xi = rows(xi, "xi").map_err(|e| raise(py, &e))?;
+        answer: impl Fn(&Index, Vec<Point3>, &Watch) -> Result<Vec<i32>> + Sync + Send,
+    ) -> Outcome<Column<i32>> {
+        let xi = rows(xi, "xi")?;
         let found = watched(py, |watch| answer(&self.0, copied(xi)?, watch))?;
         Ok(column(py, found))
     }

@@ -1,12 +1,13 @@
 //! Checks of surfaces of triangles in 3-D as arrays.
 
-use delone::{Error, Point3, Result};
+use delone_core::Point3;
+use delone_core::error::Result;
 use delone_core::surface::{self, Checked, Options, Pairs, Resolved};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, in_range, number_rows, numbers, rows, table};
-use crate::errors::attached;
+use crate::errors::Outcome;
 use crate::signals::watched;
 
 /// Pairs of faces that cross or touch.
@@ -61,7 +62,7 @@ pub struct CheckedSurface {
     pub sign: i8,
 }
 
-fn pairs_of(py: Python<'_>, pairs: Pairs) -> PyResult<Py<FacePairs>> {
+fn pairs_of(py: Python<'_>, pairs: Pairs) -> Outcome<Py<FacePairs>> {
     let faces: Vec<[u32; 2]> = pairs.first.iter().map(|pair| pair.faces).collect();
     let kinds = pairs.first.iter().map(|pair| pair.kind as u8).collect();
     let crossing = pairs.first.iter().map(|pair| !pair.touching).collect();
@@ -72,14 +73,14 @@ fn pairs_of(py: Python<'_>, pairs: Pairs) -> PyResult<Py<FacePairs>> {
         counts: column(py, pairs.counts.to_vec()),
         ncrossing: pairs.crossing,
     };
-    Py::new(py, made)
+    Ok(Py::new(py, made)?)
 }
 
 /// Points and faces, borrowed and checked.
 fn borrowed<'a>(
     points: &'a PyReadonlyArray2<'_, f64>,
     faces: &'a PyReadonlyArray2<'_, i32>,
-) -> Result<(&'a [Point3], &'a [[i32; 3]]), Error> {
+) -> Result<(&'a [Point3], &'a [[i32; 3]])> {
     let points: &[Point3] = rows(points, "points")?;
     let faces = rows(faces, "faces")?;
     in_range(faces, 0, points.len(), "faces")?;
@@ -94,8 +95,8 @@ pub fn check_surface3(
     faces: PyReadonlyArray2<'_, i32>,
     limit: usize,
     workers: usize,
-) -> PyResult<CheckedSurface> {
-    let (points, faces) = attached(py, || borrowed(&points, &faces))?;
+) -> Outcome<CheckedSurface> {
+    let (points, faces) = borrowed(&points, &faces)?;
     let options = Options { limit, workers };
     let found: Checked = watched(py, |watch| surface::check(points, faces, options, watch))?;
     Ok(CheckedSurface {
@@ -130,8 +131,8 @@ pub fn resolve_touches3(
     faces: PyReadonlyArray2<'_, i32>,
     limit: usize,
     workers: usize,
-) -> PyResult<(Option<Parts>, Py<FacePairs>)> {
-    let (points, faces) = attached(py, || borrowed(&points, &faces))?;
+) -> Outcome<(Option<Parts>, Py<FacePairs>)> {
+    let (points, faces) = borrowed(&points, &faces)?;
     let options = Options { limit, workers };
     let (made, pairs) = watched(py, |watch| {
         surface::resolve_touches(points, faces, options, watch)
@@ -140,7 +141,7 @@ pub fn resolve_touches3(
     Ok((parts, pairs_of(py, pairs)?))
 }
 
-fn parts_of(py: Python<'_>, made: &Resolved) -> PyResult<Parts> {
+fn parts_of(py: Python<'_>, made: &Resolved) -> Outcome<Parts> {
     let faces = made.faces.iter().map(|face| face.map(|v| v as i32));
     let source = made.source.iter().map(|&row| row as i32).collect();
     Ok((table(py, faces.collect())?, column(py, source)))

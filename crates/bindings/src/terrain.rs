@@ -1,14 +1,14 @@
 //! Contours of triangulated surfaces, and volumes between them.
 
-use delone::{Error, Result};
 use delone_core::arrays::Given;
 use delone_core::contour;
+use delone_core::error::{Error, Result};
 use delone_core::overlay::{self, Other, Surface};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, flat, table};
-use crate::errors::attached;
+use crate::errors::Outcome;
 use crate::given::{checked, unequal};
 use crate::signals::watched;
 
@@ -72,13 +72,11 @@ pub fn contour_lines2(
     limit: usize,
     collapsed: PyReadonlyArray1<'_, bool>,
     far: bool,
-) -> PyResult<ContourLines> {
-    let (surface, levels) = attached(py, || {
-        Ok((
-            surface.surface()?,
-            (levels_of(&levels)?, flat(&collapsed, "collapsed")?),
-        ))
-    })?;
+) -> Outcome<ContourLines> {
+    let (surface, levels) = (
+        surface.surface()?,
+        (levels_of(&levels)?, flat(&collapsed, "collapsed")?),
+    );
     let found = watched(py, |watch| {
         contour::lines(surface.given, surface.heights, levels, far, limit, watch)
     })?;
@@ -99,13 +97,11 @@ pub fn contour_bands2(
     limit: usize,
     collapsed: PyReadonlyArray1<'_, bool>,
     far: bool,
-) -> PyResult<ContourBands> {
-    let (surface, levels) = attached(py, || {
-        Ok((
-            surface.surface()?,
-            (levels_of(&levels)?, flat(&collapsed, "collapsed")?),
-        ))
-    })?;
+) -> Outcome<ContourBands> {
+    let (surface, levels) = (
+        surface.surface()?,
+        (levels_of(&levels)?, flat(&collapsed, "collapsed")?),
+    );
     let found = watched(py, |watch| {
         contour::bands(surface.given, surface.heights, levels, far, limit, watch)
     })?;
@@ -151,15 +147,13 @@ pub fn volumes2(
     plane: [f64; 3],
     region: Option<Sheet<'_>>,
     workers: usize,
-) -> PyResult<[Column<f64>; 5]> {
-    let (surface, other, region) = attached(py, || {
-        let other = match &other {
-            Some(sheet) => Other::Surface(sheet.surface()?),
-            None => Other::Plane(plane),
-        };
-        let region = region.as_ref().map(Sheet::given).transpose()?;
-        Ok((surface.surface()?, other, region))
-    })?;
+) -> Outcome<[Column<f64>; 5]> {
+    let other = match &other {
+        Some(sheet) => Other::Surface(sheet.surface()?),
+        None => Other::Plane(plane),
+    };
+    let region = region.as_ref().map(Sheet::given).transpose()?;
+    let surface = surface.surface()?;
     let found = watched(py, |watch| {
         overlay::volumes(surface, other, region, workers, watch)
     })?;

@@ -2,17 +2,19 @@
 
 use std::time::Duration;
 
-use delone::{Method, Point2, Tiling};
+use delone_core::Point2;
+use delone_core::arrays::Arrays;
 use delone_core::delaunay2::validate::{Findings, validate};
+use delone_core::delaunay2::{Method, triangulate};
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::arrays::{Column, Table, number_rows, numbers, rows, table};
-use crate::errors::raise;
+use crate::errors::Outcome;
 use crate::given::checked;
-use crate::signals::{optioned, watched};
+use crate::signals::watched;
 
 /// Names of the methods of `triangulate2`.
 #[pyfunction]
@@ -40,7 +42,7 @@ pub struct Triangulation {
 }
 
 /// Pairs of stage names and seconds.
-pub fn seconds(py: Python<'_>, stages: &[(&'static str, Duration)]) -> PyResult<Py<PyTuple>> {
+pub fn seconds(py: Python<'_>, stages: &[(&'static str, Duration)]) -> Outcome<Py<PyTuple>> {
     let pairs = stages
         .iter()
         .map(|(name, time)| (*name, time.as_secs_f64()));
@@ -54,28 +56,25 @@ pub fn triangulate2(
     points: PyReadonlyArray2<'_, f64>,
     method: &str,
     workers: usize,
-) -> PyResult<Triangulation> {
+) -> Outcome<Triangulation> {
     let method = method_of(method)?;
-    let points: &[Point2] = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let made = optioned(py, workers, |options| {
-        options.method(method).triangulate(points)
-    })?;
-    arrays_of(py, made.into())
+    let points: &[Point2] = rows(&points, "points")?;
+    let made = watched(py, |watch| triangulate(points, method, workers, watch))?;
+    arrays_of(py, made.arrays, &made.duplicates, &made.stages)
 }
 
 /// A triangulation as arrays.
-pub fn arrays_of<const D: usize, const N: usize>(
+pub fn arrays_of<const N: usize>(
     py: Python<'_>,
-    made: Tiling<'_, D, N>,
-) -> PyResult<Triangulation> {
-    let duplicates = number_rows(py, made.duplicates())?;
-    let stages = seconds(py, made.stages())?;
-    let (simplices, neighbors) = made.into_arrays();
+    arrays: Arrays<N>,
+    duplicates: &[[u32; 2]],
+    stages: &[(&'static str, Duration)],
+) -> Outcome<Triangulation> {
     Ok(Triangulation {
-        simplices: table(py, simplices)?,
-        neighbors: table(py, neighbors)?,
-        duplicates,
-        stages,
+        simplices: table(py, arrays.simplices)?,
+        neighbors: table(py, arrays.neighbors)?,
+        duplicates: number_rows(py, duplicates)?,
+        stages: seconds(py, stages)?,
     })
 }
 
@@ -109,14 +108,14 @@ pub fn validate2<'py>(
     points: PyReadonlyArray2<'py, f64>,
     simplices: PyReadonlyArray2<'py, i32>,
     neighbors: PyReadonlyArray2<'py, i32>,
-) -> PyResult<Faults2> {
-    let given = checked(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
+) -> Outcome<Faults2> {
+    let given = checked(&points, &simplices, &neighbors)?;
     let found = watched(py, |watch| validate(given, watch))?;
     faults2(py, found)
 }
 
 /// What is wrong, as arrays.
-pub fn faults2(py: Python<'_>, found: Findings) -> PyResult<Faults2> {
+pub fn faults2(py: Python<'_>, found: Findings) -> Outcome<Faults2> {
     Ok(Faults2 {
         orientation: numbers(py, found.orientation),
         edges: number_rows(py, &found.edges)?,

@@ -1,7 +1,7 @@
 //! 2-D Voronoi and power diagrams, and polygons clipped from them, as arrays.
 
-use delone::arrays::Diagram2 as Dual;
-use delone::{Dimension, Error, Point2, Result, Tiling, Triangulation, Voronoi};
+use delone_core::Point2;
+use delone_core::error::{Error, Result};
 use delone_core::voronoi::{self, Cells, Convex, Given, Outline};
 use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -9,10 +9,10 @@ use pyo3::prelude::*;
 use crate::arrays::{
     Column, Table, are_starts, column, each_in_range, flat, in_range, rows, table,
 };
-use crate::errors::{attached, detached};
+use crate::errors::{Outcome, detached};
 use crate::given::{checked, unequal, weights_of};
 use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
-use crate::signals::{optioned, watched};
+use crate::signals::watched;
 
 /// The triangulation whose dual is computed.
 pub(crate) fn given<'a, const D: usize, const N: usize>(
@@ -27,31 +27,6 @@ pub(crate) fn given<'a, const D: usize, const N: usize>(
         weights: weights_of(weights, found.points.len())?,
         simplices: found.simplices,
         neighbors: found.neighbors,
-    })
-}
-
-/// The diagram of a Delaunay triangulation.
-pub(crate) fn delaunay<T, const D: usize, const N: usize>(
-    points: &PyReadonlyArray2<'_, f64>,
-    simplices: &PyReadonlyArray2<'_, i32>,
-    neighbors: &PyReadonlyArray2<'_, i32>,
-    workers: usize,
-) -> PyResult<T>
-where
-    [f64; D]: Dimension<N>,
-    T: for<'t> From<Voronoi<'t, D, N>> + Send,
-{
-    let py = points.py();
-    let (points, simplices, neighbors) = attached(py, || {
-        Ok((
-            rows(points, "points")?,
-            rows(simplices, "simplices")?,
-            rows(neighbors, "neighbors")?,
-        ))
-    })?;
-    optioned(py, workers, |options| {
-        let tiling = Tiling::from_arrays(points, simplices, neighbors)?;
-        Ok(options.voronoi(&Triangulation::trusted(tiling))?.into())
     })
 }
 
@@ -116,7 +91,7 @@ impl Diagram2 {
         ])
     }
 
-    fn lend<'py>(&self, py: Python<'py>) -> PyResult<Lent2<'py>> {
+    fn lend<'py>(&self, py: Python<'py>) -> Outcome<Lent2<'py>> {
         Ok(Lent2 {
             vertices: self.vertices.bind(py).try_readonly()?,
             sites: self.sites.bind(py).try_readonly()?,
@@ -178,15 +153,9 @@ pub fn voronoi2(
     simplices: PyReadonlyArray2<'_, i32>,
     neighbors: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Diagram2> {
-    let made: Dual = if weights.is_none() {
-        delaunay(&points, &simplices, &neighbors, workers)?
-    } else {
-        let given = attached(py, || {
-            given(&points, weights.as_ref(), &simplices, &neighbors)
-        })?;
-        watched(py, |watch| voronoi::diagram(given, workers, watch))?
-    };
+) -> Outcome<Diagram2> {
+    let given = given(&points, weights.as_ref(), &simplices, &neighbors)?;
+    let made = watched(py, |watch| voronoi::diagram(given, workers, watch))?;
     Ok(Diagram2 {
         vertices: table(py, made.vertices)?,
         simplex_vertex: column(py, made.triangle_vertex),
@@ -222,12 +191,10 @@ pub fn voronoi_clip2(
     diagram: &Bound<'_, Diagram2>,
     bounds: [f64; 4],
     workers: usize,
-) -> PyResult<ClippedCells2> {
+) -> Outcome<ClippedCells2> {
     let lent = diagram.get().lend(py)?;
-    let cells = attached(py, || {
-        let points = rows(&points, "points")?;
-        lent.cells(points, weights_of(weights.as_ref(), points.len())?)
-    })?;
+    let points = rows(&points, "points")?;
+    let cells = lent.cells(points, weights_of(weights.as_ref(), points.len())?)?;
     let [left, bottom, right, top] = bounds;
     let made = watched(py, |watch| {
         voronoi::clip(cells, [left, bottom], [right, top], workers, watch)
@@ -250,7 +217,7 @@ pub struct CellMeasures2 {
     pub perimeters: Column<f64>,
 }
 
-fn measured(py: Python<'_>, made: voronoi::Measures) -> PyResult<CellMeasures2> {
+fn measured(py: Python<'_>, made: voronoi::Measures) -> Outcome<CellMeasures2> {
     Ok(CellMeasures2 {
         areas: column(py, made.areas),
         centroids: table(py, made.centroids)?,
@@ -265,12 +232,9 @@ pub fn measures2(
     starts: PyReadonlyArray1<'_, i32>,
     corners: PyReadonlyArray2<'_, f64>,
     workers: usize,
-) -> PyResult<CellMeasures2> {
-    let (starts, corners) = attached(py, || {
-        let (starts, corners) = (flat(&starts, "starts")?, rows(&corners, "corners")?);
-        are_starts(starts, corners.len())?;
-        Ok((starts, corners))
-    })?;
+) -> Outcome<CellMeasures2> {
+    let (starts, corners) = (flat(&starts, "starts")?, rows(&corners, "corners")?);
+    are_starts(starts, corners.len())?;
     let made = watched(py, |watch| {
         voronoi::measures(starts, corners, workers, watch)
     })?;
@@ -286,16 +250,14 @@ pub fn touched2(
     corners: PyReadonlyArray2<'_, f64>,
     ridges: PyReadonlyArray1<'_, i32>,
     segments: PyReadonlyArray2<'_, f64>,
-) -> PyResult<(Column<i32>, usize)> {
-    let (starts, corners, ridges, segments) = attached(py, || {
-        let (starts, corners) = (flat(&starts, "starts")?, rows(&corners, "corners")?);
-        are_starts(starts, corners.len())?;
-        let ridges = flat(&ridges, "ridges")?;
-        if ridges.len() != corners.len() {
-            return Err(Error::Shape("ridges and corners differ in length".into()));
-        }
-        Ok((starts, corners, ridges, rows(&segments, "segments")?))
-    })?;
+) -> Outcome<(Column<i32>, usize)> {
+    let (starts, corners) = (flat(&starts, "starts")?, rows(&corners, "corners")?);
+    are_starts(starts, corners.len())?;
+    let ridges = flat(&ridges, "ridges")?;
+    if ridges.len() != corners.len() {
+        return Err(Error::Shape("ridges and corners differ in length".into()).into());
+    }
+    let segments = rows(&segments, "segments")?;
     let (groups, count) = detached(py, || voronoi::touched(starts, corners, ridges, segments))?;
     Ok((column(py, groups), count))
 }
@@ -333,26 +295,23 @@ pub fn pieces2<'py>(
     rings: PyReadonlyArray1<'py, i32>,
     outline: PyReadonlyArray2<'py, f64>,
     workers: usize,
-) -> PyResult<CellPieces2> {
-    let (cells, rows, inside, outline) = attached(py, || {
-        let cells = Convex {
-            starts: flat(&starts, "starts")?,
-            corners: crate::arrays::rows(&corners, "corners")?,
-            ridges: flat(&ridges, "ridges")?,
-        };
-        are_starts(cells.starts, cells.corners.len())?;
-        let outline = Outline {
-            starts: flat(&rings, "rings")?,
-            points: crate::arrays::rows(&outline, "outline")?,
-        };
-        are_starts(outline.starts, outline.points.len())?;
-        let (rows, inside) = (flat(&rows, "rows")?, flat(&inside, "inside")?);
-        each_in_range(rows, 0, cells.starts.len() - 1, "rows")?;
-        if cells.ridges.len() != cells.corners.len() || rows.len() != inside.len() {
-            return Err(unequal());
-        }
-        Ok((cells, rows, inside, outline))
-    })?;
+) -> Outcome<CellPieces2> {
+    let cells = Convex {
+        starts: flat(&starts, "starts")?,
+        corners: crate::arrays::rows(&corners, "corners")?,
+        ridges: flat(&ridges, "ridges")?,
+    };
+    are_starts(cells.starts, cells.corners.len())?;
+    let outline = Outline {
+        starts: flat(&rings, "rings")?,
+        points: crate::arrays::rows(&outline, "outline")?,
+    };
+    are_starts(outline.starts, outline.points.len())?;
+    let (rows, inside) = (flat(&rows, "rows")?, flat(&inside, "inside")?);
+    each_in_range(rows, 0, cells.starts.len() - 1, "rows")?;
+    if cells.ridges.len() != cells.corners.len() || rows.len() != inside.len() {
+        return Err(unequal().into());
+    }
     let made = watched(py, |watch| {
         voronoi::pieces(cells, rows, inside, outline, workers, watch)
     })?;

@@ -1,7 +1,7 @@
 //! 3-D Voronoi and power diagrams, their measures, and cells clipped to a polyhedron, as arrays.
 
-use delone::arrays::Diagram3 as Dual;
-use delone::{Point3, Result};
+use delone_core::Point3;
+use delone_core::error::Result;
 use delone_core::voronoi3::{self as dual, Cells, Clip, Measures};
 use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -9,11 +9,11 @@ use pyo3::prelude::*;
 use crate::arrays::{
     Column, Table, are_starts, column, each_in_range, flat, in_range, rows, table,
 };
-use crate::errors::attached;
+use crate::errors::Outcome;
 use crate::given::{unequal, weights_of};
 use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
 use crate::signals::watched;
-use crate::voronoi::{delaunay, given};
+use crate::voronoi::given;
 
 /// A 3-D Voronoi or power diagram.
 #[pyclass(frozen, get_all, module = "delone._core")]
@@ -72,7 +72,7 @@ impl Diagram3 {
         ])
     }
 
-    fn lend<'py>(&self, py: Python<'py>) -> PyResult<Lent3<'py>> {
+    fn lend<'py>(&self, py: Python<'py>) -> Outcome<Lent3<'py>> {
         Ok(Lent3 {
             vertices: self.vertices.bind(py).try_readonly()?,
             sites: self.sites.bind(py).try_readonly()?,
@@ -134,15 +134,9 @@ pub fn voronoi3(
     simplices: PyReadonlyArray2<'_, i32>,
     neighbors: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Diagram3> {
-    let made: Dual = if weights.is_none() {
-        delaunay(&points, &simplices, &neighbors, workers)?
-    } else {
-        let given = attached(py, || {
-            given(&points, weights.as_ref(), &simplices, &neighbors)
-        })?;
-        watched(py, |watch| dual::diagram(given, workers, watch))?
-    };
+) -> Outcome<Diagram3> {
+    let given = given(&points, weights.as_ref(), &simplices, &neighbors)?;
+    let made = watched(py, |watch| dual::diagram(given, workers, watch))?;
     Ok(Diagram3 {
         vertices: table(py, made.vertices)?,
         simplex_vertex: column(py, made.simplex_vertex),
@@ -172,7 +166,7 @@ pub struct CellMeasures3 {
     pub centroids: Table<f64>,
 }
 
-fn measured(py: Python<'_>, made: Measures) -> PyResult<CellMeasures3> {
+fn measured(py: Python<'_>, made: Measures) -> Outcome<CellMeasures3> {
     Ok(CellMeasures3 {
         ridge_areas: column(py, made.ridge_areas),
         volumes: column(py, made.volumes),
@@ -189,12 +183,10 @@ pub fn measures3(
     weights: Option<PyReadonlyArray1<'_, f64>>,
     diagram: &Bound<'_, Diagram3>,
     workers: usize,
-) -> PyResult<CellMeasures3> {
+) -> Outcome<CellMeasures3> {
     let lent = diagram.get().lend(py)?;
-    let cells = attached(py, || {
-        let points = rows(&points, "points")?;
-        lent.cells(points, weights_of(weights.as_ref(), points.len())?)
-    })?;
+    let points = rows(&points, "points")?;
+    let cells = lent.cells(points, weights_of(weights.as_ref(), points.len())?)?;
     let made = watched(py, |watch| dual::measures(cells, workers, watch))?;
     measured(py, made)
 }
@@ -234,25 +226,22 @@ pub fn voronoi_clip3<'py>(
     clip_corners: PyReadonlyArray1<'py, i32>,
     clip_planes: PyReadonlyArray2<'py, f64>,
     workers: usize,
-) -> PyResult<ClippedCells3> {
+) -> Outcome<ClippedCells3> {
     let lent = diagram.get().lend(py)?;
-    let (cells, clip) = attached(py, || {
-        let clip = Clip {
-            points: rows(&clip_points, "clip_points")?,
-            starts: flat(&clip_starts, "clip_starts")?,
-            corners: flat(&clip_corners, "clip_corners")?,
-            planes: rows(&clip_planes, "clip_planes")?,
-        };
-        are_starts(clip.starts, clip.corners.len())?;
-        each_in_range(clip.corners, 0, clip.points.len(), "clip_corners")?;
-        let full = clip.starts.windows(2).all(|w| w[1] - w[0] > 2);
-        if full && clip.starts.len() == clip.planes.len() + 1 {
-            let points = rows(&points, "points")?;
-            let point_weights = weights_of(weights.as_ref(), points.len())?;
-            return Ok((lent.cells(points, point_weights)?, clip));
-        }
-        Err(unequal())
-    })?;
+    let clip = Clip {
+        points: rows(&clip_points, "clip_points")?,
+        starts: flat(&clip_starts, "clip_starts")?,
+        corners: flat(&clip_corners, "clip_corners")?,
+        planes: rows(&clip_planes, "clip_planes")?,
+    };
+    are_starts(clip.starts, clip.corners.len())?;
+    each_in_range(clip.corners, 0, clip.points.len(), "clip_corners")?;
+    let full = clip.starts.windows(2).all(|w| w[1] - w[0] > 2);
+    if !full || clip.starts.len() != clip.planes.len() + 1 {
+        return Err(unequal().into());
+    }
+    let points = rows(&points, "points")?;
+    let cells = lent.cells(points, weights_of(weights.as_ref(), points.len())?)?;
     let made = watched(py, |watch| dual::clip(cells, clip, workers, watch))?;
     Ok(ClippedCells3 {
         measures: Py::new(py, measured(py, made.measures)?)?,

@@ -1,6 +1,7 @@
 //! What a call returns: arrays by number, or an error with the class and text of Python's.
 
-use delone::{Error, Point2, Result};
+use delone_core::error::Error;
+use delone_predicates::Point2;
 use wasm_bindgen::prelude::*;
 
 /// Arrays, each of which JavaScript takes once, or an error.
@@ -51,88 +52,42 @@ impl Answer {
 /// Arrays of integers, and of doubles.
 pub type Arrays = (Vec<Vec<i32>>, Vec<Vec<f64>>);
 
+/// Why a call has no result: an error of the core, or an argument that is out of range, with its row.
+pub enum Failure {
+    Core(Error),
+    Input(String, Option<usize>),
+}
+
+/// The result of a call.
+pub type Outcome<T> = Result<T, Failure>;
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Self::Core(error)
+    }
+}
+
 /// Runs `work`.
-pub fn answer(work: impl FnOnce() -> Result<Arrays>) -> Answer {
+pub fn answer(work: impl FnOnce() -> Outcome<Arrays>) -> Answer {
     match work() {
         Ok((integers, numbers)) => Answer {
             integers,
             numbers,
             ..Answer::default()
         },
-        Err(error) => {
-            let (class, message, rows) = described(&error);
-            Answer {
-                class,
-                message,
-                rows: rows.into_iter().map(|row| row as i32).collect(),
-                ..Answer::default()
-            }
-        }
+        Err(Failure::Core(error)) => Answer {
+            class: error.class(),
+            message: error.to_string(),
+            rows: signed(error.rows().to_vec()),
+            ..Answer::default()
+        },
+        Err(Failure::Input(message, row)) => Answer {
+            class: "InputError",
+            message,
+            rows: row.into_iter().map(|row| row as i32).collect(),
+            ..Answer::default()
+        },
     }
-}
-
-/// Class, text and rows, as in the bindings for Python.
-fn described(error: &Error) -> (&'static str, String, Vec<usize>) {
-    let text = error.to_string();
-    match error {
-        Error::NonFinite { rows, count, .. } => {
-            let it = if *count == 1 {
-                "; drop or repair it"
-            } else {
-                ": drop or repair them"
-            };
-            ("NonFiniteError", text + it, rows.clone())
-        }
-        Error::TooFew {
-            rows, dimension: 2, ..
-        } => {
-            let hint = ": at least three that are not collinear are needed";
-            ("DegenerateInputError", text + hint, rows.clone())
-        }
-        Error::TooFew { rows, .. } => {
-            let hint = ": at least four that are not coplanar are needed";
-            ("DegenerateInputError", text + hint, rows.clone())
-        }
-        Error::Collinear { rows, .. } => {
-            let message = format!(
-                "all {} distinct points lie on one line, so there is no triangle; `error.chain` \
-                 has their rows in order along it",
-                rows.len()
-            );
-            ("DegenerateInputError", message, rows.clone())
-        }
-        Error::Coplanar { rows, .. } => {
-            let hint = ", so there is no tetrahedron; triangulate them in 2-D, in that plane";
-            ("DegenerateInputError", text + hint, rows.clone())
-        }
-        Error::TooLarge { .. } => ("LimitError", text + ": triangulate fewer points", vec![]),
-        Error::Crossing { pairs, points, .. } => (
-            "CrossingSegmentsError",
-            crossing(pairs, points),
-            pairs.as_flattened().to_vec(),
-        ),
-        Error::Budget { segments, .. } => {
-            let hint = ": allow more, or make the input simpler there";
-            ("BudgetExceededError", text + hint, segments.clone())
-        }
-        Error::NoSuchPoint { segment, .. } => ("ShapeError", text, vec![*segment]),
-        Error::Shape(_) => ("ShapeError", text, vec![]),
-        Error::Seed { hole, .. } => ("InputError", text, vec![*hole]),
-        Error::EmptyDomain | Error::Option(_) => ("InputError", text, vec![]),
-        Error::Memory { .. } => ("MemoryError", text, vec![]),
-        _ => ("InternalError", text, vec![]),
-    }
-}
-
-/// Names the first pair of segments that cross.
-fn crossing(pairs: &[[usize; 2]], points: &[Point2]) -> String {
-    let (count, [s, t]) = (pairs.len(), pairs.first().copied().unwrap_or_default());
-    let [x, y] = points.first().copied().unwrap_or_default();
-    let what = match count {
-        1 => format!("segments {s} and {t} cross at ({x}, {y})"),
-        _ => format!("{count} pairs of segments cross, first {s} and {t} at ({x}, {y})"),
-    };
-    format!("{what}; crossing=\"split\" makes crossings vertices")
 }
 
 /// Pairs of a flat array.

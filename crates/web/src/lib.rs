@@ -1,8 +1,9 @@
-//! The crate `delone` in WebAssembly: flat arrays in, an `Answer` out. One thread.
+//! The core in WebAssembly: flat arrays in, an `Answer` out. One thread.
 //!
 //! `js/delone.js` wraps these functions; nothing else calls them. No algorithm lives here.
 
 mod answer;
+mod domain;
 mod live;
 mod mesh;
 mod plane;

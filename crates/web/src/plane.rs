@@ -1,13 +1,16 @@
 //! 2-D triangulations: triangles, cells, circles, location.
 
-use delone::arrays::Diagram2;
-use delone::{Error, Location, Method, Options, Point2, Result, Tiling, Triangulation};
-use delone_core::voronoi;
+use delone_core::arrays::Given;
+use delone_core::delaunay2::{self, Method, Triangulation};
+use delone_core::error::{Error, Result};
+use delone_core::locate::{self, Batch, Kept, Locator};
+use delone_core::points::scan;
 use delone_core::watch::Watch;
-use delone_core::{hull, measure};
+use delone_core::{hull, measure, voronoi};
+use delone_predicates::Point2;
 use wasm_bindgen::prelude::*;
 
-use crate::answer::{Answer, answer, pairs, repeats, rows, signed};
+use crate::answer::{Answer, Failure, Outcome, answer, pairs, repeats, rows, signed};
 
 /// Names of the methods.
 #[wasm_bindgen]
@@ -31,8 +34,8 @@ pub fn triangulate(xy: &[f64], method: &str) -> Answer {
         let points = pairs(xy);
         let made = delaunay(points, method)?;
         let hull = extreme(points)?;
-        let duplicates = repeats(made.duplicates());
-        let (triangles, neighbors) = Tiling::from(made).into_arrays();
+        let duplicates = repeats(&made.duplicates);
+        let (triangles, neighbors) = (made.arrays.simplices, made.arrays.neighbors);
         let arrays = [triangles.into_flattened(), neighbors.into_flattened()];
         Ok(([&arrays[..], &[hull, duplicates]].concat(), vec![]))
     })
@@ -43,7 +46,7 @@ pub fn triangulate(xy: &[f64], method: &str) -> Answer {
 pub fn convex_hull(xy: &[f64]) -> Answer {
     answer(|| {
         let points = pairs(xy);
-        Tiling::<2, 3>::from_arrays(points, &[], &[])?;
+        scan(points)?;
         let hull = extreme(points)?;
         if hull.len() < 3 {
             delaunay(points, "auto")?;
@@ -56,22 +59,34 @@ fn extreme(points: &[Point2]) -> Result<Vec<i32>> {
     Ok(signed(hull::hull2(points, &Watch::idle())?.0))
 }
 
-fn delaunay<'a>(points: &'a [Point2], method: &str) -> Result<Triangulation<'a>> {
+fn delaunay(points: &[Point2], method: &str) -> Outcome<Triangulation> {
     let names: Vec<String> = Method::NAMES
         .iter()
         .map(|(n, _)| format!("'{n}'"))
         .collect();
     let text = || format!("method must be one of {}, got '{method}'", names.join(", "));
-    let method = Method::named(method).ok_or_else(|| Error::Option(text()))?;
-    Options::new().threads(1).method(method).triangulate(points)
+    let method = Method::named(method).ok_or_else(|| Failure::Input(text(), None))?;
+    Ok(delaunay2::triangulate(points, method, 1, &Watch::idle())?)
 }
 
-/// Checked triangles without neighbors.
+/// Checked triangles.
 fn triangles<'a>(points: &[Point2], flat: &'a [i32]) -> Result<&'a [[i32; 3]]> {
+    scan(points)?;
     let triangles = rows::<3>(flat);
-    let alone = vec![[-1; 3]; triangles.len()];
-    Tiling::from_arrays(points, triangles, &alone)?;
+    require_range(triangles, 0, points.len(), "simplices")?;
     Ok(triangles)
+}
+
+/// Checks that every entry lies in `from..to`.
+fn require_range(table: &[[i32; 3]], from: i32, to: usize, name: &str) -> Result<()> {
+    let outside = |v: &i32| *v < from || i64::from(*v) >= to as i64;
+    match table.iter().position(|row| row.iter().any(outside)) {
+        None => Ok(()),
+        Some(row) => {
+            let text = format!("{name}: row {row} has an entry outside {from}..{to}");
+            Err(Error::Shape(text))
+        }
+    }
 }
 
 /// Numbers: centers.
@@ -103,11 +118,20 @@ pub fn cells(xy: &[f64], left: f64, bottom: f64, right: f64, top: f64) -> Answer
     answer(|| {
         let points = pairs(xy);
         let made = delaunay(points, "auto")?;
-        let options = Options::new().threads(1);
-        let diagram = Diagram2::from(options.voronoi(&made)?);
         let (low, high) = ([left, bottom], [right, top]);
-        // This call checks the box.
-        options.voronoi(&made)?.clip(low, high)?;
+        let valid = |k: usize| low[k].is_finite() && high[k].is_finite() && low[k] < high[k];
+        if !(valid(0) && valid(1)) {
+            let text = format!("the box from {low:?} to {high:?} has no finite positive area");
+            return Err(Failure::Input(text, None));
+        }
+        let watch = Watch::idle();
+        let dual = voronoi::Given {
+            points,
+            weights: &[],
+            simplices: &made.arrays.simplices,
+            neighbors: &made.arrays.neighbors,
+        };
+        let diagram = voronoi::diagram(dual, 1, &watch)?;
         let (ridges, regions) = (&diagram.ridges, &diagram.regions);
         let cells = voronoi::Cells {
             points,
@@ -122,7 +146,6 @@ pub fn cells(xy: &[f64], left: f64, bottom: f64, right: f64, top: f64) -> Answer
             entry_vertices: &regions.vertices,
             entry_ridges: &regions.ridges,
         };
-        let watch = Watch::idle();
         let cut = voronoi::clip(cells, low, high, 1, &watch)?;
         let measures = voronoi::measures(&cut.starts, &cut.points, 1, &watch)?;
         let (mut starts, mut across) = (vec![0], vec![]);
@@ -154,32 +177,47 @@ pub fn cells(xy: &[f64], left: f64, bottom: f64, right: f64, top: f64) -> Answer
 pub fn locate(xy: &[f64], corners: &[i32], neighbors: &[i32], queries: &[f64]) -> Answer {
     answer(|| {
         let (points, queries) = (pairs(xy), pairs(queries));
-        let tiling = Tiling::from_arrays(points, rows(corners), rows(neighbors))?;
-        let (mut triangle, mut weights) = (vec![], vec![]);
-        for place in tiling.locate(queries)? {
-            match place {
-                Location::Inside {
-                    simplex,
-                    weights: w,
-                } => {
-                    triangle.push(simplex as i32);
-                    weights.extend(w);
-                }
-                Location::Outside { .. } => {
-                    triangle.push(-1);
-                    weights.extend([f64::NAN; 3]);
-                }
-            }
+        let given = Given {
+            points,
+            simplices: triangles(points, corners)?,
+            neighbors: rows(neighbors),
+        };
+        if given.neighbors.len() != given.simplices.len() {
+            return Err(Error::Shape("neighbors and simplices differ in length".into()).into());
         }
-        Ok((vec![triangle, nearest(points, queries)?], vec![weights]))
+        require_range(given.neighbors, -1, given.simplices.len(), "neighbors")?;
+        let found = located(given, queries, locate::coordinates)?;
+        let nearest = nearest(points, queries)?;
+        Ok((vec![found.triangle, nearest], vec![found.weights]))
+    })
+}
+
+/// What `locate` finds for queries.
+pub fn located<T>(
+    given: Given<2, 3>,
+    queries: &[Point2],
+    locate: impl Fn(&Batch) -> Result<T>,
+) -> Result<T> {
+    scan(queries)?;
+    let watch = Watch::idle();
+    let index = Kept::of(&given, &watch)?;
+    locate(&Batch {
+        locator: Locator::new(given, &index, &watch),
+        queries,
+        workers: 1,
+        watch: &watch,
     })
 }
 
 /// The nearest of all points, in their own Delaunay triangulation.
-fn nearest(points: &[Point2], queries: &[Point2]) -> Result<Vec<i32>> {
+fn nearest(points: &[Point2], queries: &[Point2]) -> Outcome<Vec<i32>> {
     let made = delaunay(points, "auto")?;
-    let found = made.nearest(queries)?;
-    Ok(found.into_iter().map(|row| row as i32).collect())
+    let given = Given {
+        points,
+        simplices: &made.arrays.simplices,
+        neighbors: &made.arrays.neighbors,
+    };
+    Ok(located(given, queries, locate::nearest)?)
 }
 
 /// Flips from the given triangles to the Delaunay triangulation. Integers: triangles, and for each

@@ -1,7 +1,6 @@
 //! Signs of determinants: exact, canonical, and in plain floating point.
 
-use delone::predicates::{incircle, orient2d};
-use delone_predicates::incircle_canonical;
+use delone_predicates::{incircle, incircle_canonical, orient2d};
 use wasm_bindgen::prelude::*;
 
 use crate::answer::pairs;

@@ -1,8 +1,10 @@
 //! 3-D triangulations.
 
-use delone::{Options, Point3, Tiling};
+use delone_core::arrays::OUTWARD;
+use delone_core::delaunay3::triangulate;
 use delone_core::measure;
 use delone_core::watch::Watch;
+use delone_predicates::Point3;
 use wasm_bindgen::prelude::*;
 
 use crate::answer::{Answer, answer, repeats};
@@ -13,16 +15,16 @@ use crate::answer::{Answer, answer, repeats};
 pub fn tetrahedra(xyz: &[f64]) -> Answer {
     answer(|| {
         let points: &[Point3] = xyz.as_chunks().0;
-        let made = Options::new().threads(1).triangulate(points)?;
-        let hull = made
-            .boundary()?
-            .as_flattened()
-            .iter()
-            .map(|&v| v as i32)
-            .collect();
-        let duplicates = repeats(made.duplicates());
-        let (simplices, neighbors) = Tiling::from(made).into_arrays();
         let watch = Watch::idle();
+        let made = triangulate(points, 1, &watch)?;
+        let (simplices, neighbors) = (made.arrays.simplices, made.arrays.neighbors);
+        let mut hull = vec![];
+        for (corners, across) in simplices.iter().zip(&neighbors) {
+            for k in (0..4).filter(|&k| across[k] < 0) {
+                hull.extend(OUTWARD[k].map(|i| corners[i]));
+            }
+        }
+        let duplicates = repeats(&made.duplicates);
         let volumes = measure::volumes(points, &simplices, 1, &watch)?;
         let [low, high, ..] = measure::qualities3(points, &simplices, 1, &watch)?;
         let integers = vec![
