@@ -77,6 +77,14 @@ def test_the_order_of_bounds_is_that_of_cells() -> None:
     assert np.allclose(radians.areas, grid.areas, rtol=1e-14)
 
 
+def test_centers_are_halfway_between_bounds() -> None:
+    grid = Grid.from_lonlat([100, 200, 300], [0, 60, 90])
+    assert grid.centers_lonlat.tolist() == [[150, 30], [-110, 30], [150, 75], [-110, 75]]
+    assert grid.bounds is not None
+    assert [edges.tolist() for edges in grid.bounds] == [[100, 200, 300], [0, 60, 90]]
+    assert Grid.from_healpix(1).bounds is None
+
+
 def test_a_latitude_beyond_a_pole_by_rounding_is_the_pole() -> None:
     lat = np.radians(LAT.astype(np.float32)).astype(np.float64)
     grid = Grid.from_lonlat(LON, np.degrees(lat))

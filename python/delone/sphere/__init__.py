@@ -14,7 +14,8 @@ from delone.sphere.constrained import ConstrainedDelaunay
 from delone.sphere.coordinates import LongitudeWarning
 from delone.sphere.delaunay import Delaunay
 from delone.sphere.geometry import from_geometry
-from delone.sphere.grid import Grid, GridFaults, GridReport
+from delone.sphere.grid import Grid
+from delone.sphere.grid_report import GridFaults, GridReport
 from delone.sphere.interpolation import Linear, NaturalNeighbor, Nearest
 from delone.sphere.overlaps import OverlapReport, Overlaps
 from delone.sphere.sides import PolygonWarning

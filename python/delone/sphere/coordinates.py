@@ -47,9 +47,17 @@ class LongitudeWarning(UserWarning):
 
 
 def directions_of(
-    lonlat: ArrayLike | None, xyz: ArrayLike | None, *, degrees: bool, workers: int | None
+    lonlat: ArrayLike | None,
+    xyz: ArrayLike | None,
+    *,
+    degrees: bool,
+    workers: int | None,
+    any_turns: bool = False,
 ) -> Floats:
-    """Return the vectors of one of two kinds of input, (n, 3), which nobody else can change."""
+    """Return the vectors of one of two kinds of input, (n, 3), which nobody else can change.
+
+    Longitudes of more than one turn cause a warning, unless `any_turns`, as corners of cells have.
+    """
     if (lonlat is None) == (xyz is None):
         given = "neither" if lonlat is None else "both"
         raise DtypeError(f"give one of lonlat=(n, 2) and xyz=(n, 3), got {given}")
@@ -65,7 +73,8 @@ def directions_of(
         raise ShapeError(f"lonlat must have shape (n, 2), got {angles.shape}: see xyz")
     require_finite(angles, name="lonlat")
     _refuse_angles(angles, degrees=degrees, name="lonlat")
-    _warn_of_turns(angles, degrees=degrees)
+    if not any_turns:
+        _warn_of_turns(angles, degrees=degrees)
     return _core.sphere_directions(angles, degrees, as_workers(workers))
 
 

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_choice, as_number, as_workers
+from delone._arrays import as_choice, as_flag, as_number, as_workers
 from delone.counting import agreed, counted
 from delone.errors import DirectionError, InputError, ShapeError
-from delone.immutable import Immutable, ReadOnly, kept, sealed
+from delone.immutable import Immutable, kept, sealed
 from delone.sphere import rings as rings_of
 from delone.sphere.coordinates import lonlat_of, units_of
+from delone.sphere.formats import Choices, read_cells
 from delone.sphere.gaussian import gaussian_bounds
+from delone.sphere.grid_report import GridFaults, GridReport
 from delone.sphere.healpix import healpix_corners
 from delone.sphere.rings import as_bounds, as_corners, as_starts, merged_corners
 
@@ -23,12 +24,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from delone.sphere.formats import Cells
     from delone.sphere.voronoi import Voronoi
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int64]
+    Flags = NDArray[np.bool_]
 
-__all__ = ["Grid", "GridFaults", "GridReport"]
+__all__ = ["Grid"]
 
 # What is wrong with a cell, in the order of the core's numbers, and the cure.
 _FAULTS = {
@@ -38,81 +41,7 @@ _FAULTS = {
 }
 # Cells of one grid that share more of the smaller one than this overlap; less is a rounding.
 _SHARED = 1e-12
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class GridReport(ReadOnly):
-    """What was done to the corners of a grid, and which cells are special.
-
-    Attributes
-    ----------
-    merged : int
-        Corners that were moved to an earlier corner within `merge`.
-    repeated : int
-        Corners that repeat the one before in their cell, and are ignored.
-    turned : ndarray of int64
-        Cells whose corners are clockwise, and are taken in the other direction.
-    empty : ndarray of int64
-        Cells with fewer than three distinct corners, or without area; they share nothing.
-    concave : ndarray of int64
-        Cells that are concave or have several rings, or have more than 64 corners.
-
-    Examples
-    --------
-    >>> from delone import sphere
-    >>> corners = [(1, 0, 0), (0, 0, 1), (0, 1, 0)]
-    >>> sphere.Grid.from_mesh(corners, [0, 3]).report
-    <GridReport: 1 cell turned>
-    """
-
-    merged: int
-    repeated: int
-    turned: Indices
-    empty: Indices
-    concave: Indices
-
-    def __repr__(self) -> str:
-        parts = [f"{counted(self.merged, 'corner')} merged"] if self.merged else []
-        if self.repeated:
-            parts.append(f"{counted(self.repeated, 'repeated corner')} ignored")
-        for name in ("turned", "empty", "concave"):
-            if count := len(getattr(self, name)):
-                parts.append(f"{counted(count, 'cell')} {name}")
-        return f"<GridReport: {', '.join(parts) or 'nothing special'}>"
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class GridFaults(ReadOnly):
-    """What `Grid.validate` finds; truthy if no cells overlap.
-
-    Attributes
-    ----------
-    overlapping : ndarray of int64, shape (k, 2)
-        Pairs of cells that share more than 1e-12 of the smaller one.
-    covered : float
-        The fraction of the sphere that the cells cover, where overlaps count twice.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone import sphere
-    >>> grid = sphere.Grid.from_lonlat(np.arange(0, 361, 30), np.arange(0, 91, 30))
-    >>> faults = grid.validate()
-    >>> bool(faults), round(faults.covered, 12)
-    (True, 0.5)
-    """
-
-    overlapping: Indices
-    covered: float
-
-    def __bool__(self) -> bool:
-        return not len(self.overlapping)
-
-    def __repr__(self) -> str:
-        pairs = f"{counted(len(self.overlapping), 'pair')} of cells overlap"
-        if not len(self.overlapping):
-            pairs = "no cells overlap"
-        return f"<GridFaults: {pairs}, {100 * self.covered:.6g} % of the sphere>"
+_NONE = np.zeros(0, dtype=np.int64)
 
 
 class Grid(Immutable):
@@ -120,25 +49,31 @@ class Grid(Immutable):
 
     Make one with a class method:
 
-    - `lonlat`: between meridians and parallels, by bounds
-    - `curvilinear`: quadrilaterals, by two-dimensional arrays of corners
-    - `mesh`: any polygons, by their corners
-    - `polygons`: shapely geometries and GeoDataFrames
-    - `voronoi`: the cells of a `delone.sphere.Voronoi` diagram
-    - `healpix`: the pixels of HEALPix
-    - `gaussian`: a Gaussian grid, full or reduced
+    - `from_dataset`: the grid of a model in a dataset of xarray, by its convention
+    - `from_lonlat`: between meridians and parallels, by bounds
+    - `from_curvilinear`: quadrilaterals, by two-dimensional arrays of corners
+    - `from_mesh`: any polygons, by their corners
+    - `from_polygons`: shapely geometries and GeoDataFrames
+    - `from_voronoi`: the cells of a `delone.sphere.Voronoi` diagram
+    - `from_healpix`: the pixels of HEALPix
+    - `from_gaussian`: a Gaussian grid, full or reduced
 
     Attributes
     ----------
     ncells : int
         Number of cells.
     shape : tuple of int
-        Shape of fields on the grid: (rows, columns) for `lonlat`, `curvilinear` and a full
-        Gaussian grid, else (ncells,). Cells are numbered in row-major order.
+        Shape of fields on the grid: (rows, columns) for cells in rows and columns, else (ncells,).
+        Cells are numbered in row-major order.
     areas : ndarray of float64, shape (ncells,)
         Areas in steradians.
     edges : {"parallel", "arc"}
         What sides are: meridians and parallels, or arcs of great circles.
+    mask : ndarray of bool, shape (ncells,), or None
+        Which cells take part, where a dataset says so: for `Overlaps.to_weights`.
+    bounds : pair of ndarray of float64, or None
+        Edges between columns and between rows, in degrees, of cells between meridians and parallels
+        in rows and columns.
     report : GridReport
         What was done to corners, with counts and rows.
 
@@ -165,19 +100,21 @@ class Grid(Immutable):
     True
     """
 
-    __slots__ = ("_arrays", "_edges", "_made", "_merged", "_shape", "_workers")
+    __slots__ = ("_arrays", "_bounds", "_edges", "_made", "_mask", "_merged", "_shape", "_workers")
 
     _arrays: tuple[Any, ...]
+    _bounds: tuple[Floats, Floats] | None
     _edges: str
     _made: _core.CellGrid
+    _mask: Flags | None
     _merged: int
     _shape: tuple[int, ...]
     _workers: int | None
 
     def __init__(self) -> None:
         raise InputError(
-            "make a Grid with a class method: Grid.from_lonlat, .curvilinear, .mesh, .polygons, "
-            ".voronoi, .healpix or .gaussian"
+            "make a Grid with a class method: Grid.from_dataset, from_lonlat, from_curvilinear, "
+            "from_mesh, from_polygons, from_voronoi, from_healpix or from_gaussian"
         )
 
     @classmethod
@@ -188,6 +125,9 @@ class Grid(Immutable):
         shape: tuple[int, ...],
         merged: int,
         workers: int | None,
+        *,
+        bounds: tuple[Floats, Floats] | None = None,
+        mask: Flags | None = None,
     ) -> Self:
         """Return a grid of arrays for the core."""
         as_workers(workers)
@@ -196,8 +136,10 @@ class Grid(Immutable):
         build = _core.CellGrid.rows if edges == "parallel" else _core.CellGrid.polygons
         made._hold(
             arrays=arrays,
+            bounds=None if bounds is None else (sealed(bounds[0]), sealed(bounds[1])),
             edges=edges,
             made=build(*arrays),
+            mask=None if mask is None else sealed(mask),
             merged=merged,
             shape=shape,
             workers=workers,
@@ -206,7 +148,8 @@ class Grid(Immutable):
         return made
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _again, (self._edges, self._arrays, self._shape, self._merged, self._workers)
+        parts = self._edges, self._arrays, self._shape, self._merged, self._workers
+        return _again, (parts, self._bounds, self._mask)
 
     def __repr__(self) -> str:
         size = f" ({' x '.join(map(str, self._shape))})" if len(self._shape) > 1 else ""
@@ -215,6 +158,104 @@ class Grid(Immutable):
 
     def __len__(self) -> int:
         return self.ncells
+
+    @classmethod
+    def from_dataset(
+        cls,
+        ds: Any,
+        *,
+        name: str | None = None,
+        coords: tuple[str, str] | None = None,
+        edges: str | None = None,
+        degrees: bool | None = None,
+        infer_bounds: bool = False,
+        merge: float = 1e-12,
+        workers: int | None = None,
+    ) -> Self:
+        """Return the grid of a model, by the convention of its dataset.
+
+        Parameters
+        ----------
+        ds : xarray.Dataset, xarray.DataArray or uxarray.Grid
+            With longitudes, latitudes and bounds of the CF conventions, or a mesh of UGRID, SCRIP,
+            ESMF, MPAS, ICON, FESOM, Exodus, OASIS, GEOS-CS or HEALPix. Of uxarray also what has
+            ``uxgrid``.
+        name : str, optional
+            Which of several grids: a mesh of UGRID, a grid of OASIS, or a variable with values.
+        coords : pair of str, optional
+            Names of the longitude and the latitude of centers, where there are several.
+        edges : {"parallel", "arc"}, optional
+            What sides are. By default "parallel" for CF rows and columns, and "arc" else. SCRIP
+            grids can have "parallel", too.
+        degrees : bool, optional
+            Whether angles without an attribute ``units`` are in degrees. By default they are
+            refused, unless the convention fixes their unit.
+        infer_bounds : bool, optional
+            Whether cells without bounds get some, halfway between centers; see Notes.
+        merge : float, optional
+            Corners nearer than this, in radians, become one. 0 for none.
+        workers : int, optional
+            Maximum number of threads; by default one per core.
+
+        Returns
+        -------
+        Grid
+            Its shape is that of fields. `mask` is the one of the dataset.
+
+        Raises
+        ------
+        InputError
+            No grid is found, or several; bounds or units are missing; a node is out of range.
+        DirectionError, ShapeError, DtypeError, NonFiniteError
+            As for `from_curvilinear`.
+
+        Notes
+        -----
+        Numbers of nodes start where the dataset or its convention says. Padding after the corners
+        of a cell is ignored; cells without corners are empty.
+
+        Bounds are inferred by one rule. In one dimension they are halfway between neighbors, the
+        outer ones as far from their center as the inner ones; latitudes beyond a pole are the pole.
+        In two dimensions corners are in the middle of four centers, and outer ones mirror them.
+
+        Bounds of neighboring columns or rows that differ by a rounding of their dtype become one.
+
+        Examples
+        --------
+        >>> import numpy as np, xarray
+        >>> from delone import sphere
+        >>> ds = xarray.Dataset(
+        ...     coords={
+        ...         "lon": ("lon", np.arange(0.5, 360), {"units": "degrees_east"}),
+        ...         "lat": ("lat", np.arange(-89.5, 90), {"units": "degrees_north"}),
+        ...     }
+        ... )
+        >>> sphere.Grid.from_dataset(ds, infer_bounds=True)
+        <Grid of 64800 cells (180 x 360), parallels>
+        """
+        near = _as_merge(merge)
+        kind = None if edges is None else as_choice(edges, ("parallel", "arc"), name="edges")
+        unit = None if degrees is None else as_flag(degrees, name="degrees")
+        infer = as_flag(infer_bounds, name="infer_bounds")
+        return cls._of_cells(
+            read_cells(ds, Choices(name, coords, kind, unit, infer, near, workers)), near, workers
+        )
+
+    @classmethod
+    def _of_cells(cls, cells: Cells, merge: float, workers: int | None) -> Self:
+        """Return the grid of what a reader has found."""
+        if cells.columns is not None and cells.rows is not None:
+            columns = as_bounds(cells.columns, name="lon", degrees=True)
+            rows = as_bounds(cells.rows, name="lat", degrees=True)
+            return cls._product(columns, rows, cells.merged, workers, cells.mask)
+        assert cells.nodes is not None
+        assert cells.starts is not None
+        vectors, merged = merged_corners(cells.nodes, 0.0 if cells.shared else merge)
+        if cells.corners is not None:
+            vectors = vectors[cells.corners]
+        arrays = _alone(vectors, cells.starts)
+        merged += cells.merged
+        return cls._of("arc", arrays, cells.shape, merged, workers, mask=cells.mask)
 
     @classmethod
     def from_lonlat(
@@ -253,8 +294,22 @@ class Grid(Immutable):
         """
         columns = as_bounds(lon, name="lon", degrees=degrees)
         rows = as_bounds(lat, name="lat", degrees=degrees)
+        return cls._product(columns, rows, 0, workers)
+
+    @classmethod
+    def _product(
+        cls,
+        columns: Floats,
+        rows: Floats,
+        merged: int,
+        workers: int | None,
+        mask: Flags | None = None,
+    ) -> Self:
+        """Return the cells between edges of columns and of rows."""
         arrays = rings_of.rows(rows, [columns] * (len(rows) - 1))
-        return cls._of("parallel", arrays, (len(rows) - 1, len(columns) - 1), 0, workers)
+        shape = len(rows) - 1, len(columns) - 1
+        bounds = columns, rows
+        return cls._of("parallel", arrays, shape, merged, workers, bounds=bounds, mask=mask)
 
     @classmethod
     def from_gaussian(
@@ -297,9 +352,10 @@ class Grid(Immutable):
         <Grid of 28480 cells, parallels>
         """
         rows, columns = gaussian_bounds(n, points)
+        if points is None:
+            return cls._product(columns[0], rows, 0, workers)
         arrays = rings_of.rows(rows, columns)
-        shape = (2 * n, 4 * n) if points is None else (arrays[-1],)
-        return cls._of("parallel", arrays, shape, 0, workers)
+        return cls._of("parallel", arrays, (arrays[-1],), 0, workers)
 
     @classmethod
     def from_curvilinear(
@@ -374,7 +430,7 @@ class Grid(Immutable):
         lonlat : array_like, shape (k, 2) or (n, c, 2), optional
             Longitudes and latitudes instead of `xyz`.
         merge, degrees, workers
-            As for `curvilinear`.
+            As for `from_curvilinear`.
 
         Returns
         -------
@@ -384,7 +440,7 @@ class Grid(Immutable):
         Raises
         ------
         DirectionError
-            As for `curvilinear`, or a vector is zero.
+            As for `from_curvilinear`, or a vector is zero.
         ShapeError, DtypeError, NonFiniteError
             Arrays have other shapes, or a corner is not a number.
 
@@ -419,7 +475,7 @@ class Grid(Immutable):
             Polygons and multipolygons of shapely, one cell each; None and empty ones are empty
             cells. Geographic reference systems only.
         merge, degrees, workers
-            As for `curvilinear`.
+            As for `from_curvilinear`.
 
         Returns
         -------
@@ -432,7 +488,7 @@ class Grid(Immutable):
         InputError
             A geometry is not a polygon, or its reference system is projected.
         DirectionError
-            As for `curvilinear`.
+            As for `from_curvilinear`.
         MissingExtraError
             shapely is not installed.
 
@@ -541,10 +597,7 @@ class Grid(Immutable):
     ) -> Self:
         """Return the grid of cells of one ring each."""
         vectors, merged = merged_corners(vectors, _as_merge(merge))
-        count = len(starts) - 1
-        cells = np.arange(count + 1, dtype=np.int64)
-        holes = np.zeros(count, dtype=np.bool_)
-        return cls._of("arc", (vectors, starts, cells, holes), shape, merged, workers)
+        return cls._of("arc", _alone(vectors, starts), shape, merged, workers)
 
     def _refuse_faults(self) -> None:
         """Raise an error for cells that cannot be used."""
@@ -583,6 +636,16 @@ class Grid(Immutable):
         return self._edges
 
     @property
+    def mask(self) -> Flags | None:
+        """Which cells take part, (ncells,), as a dataset says; None if it does not."""
+        return self._mask
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats] | None:
+        """Edges between columns and between rows, in degrees; None of other cells."""
+        return self._bounds
+
+    @property
     @kept
     def areas(self) -> Floats:
         """Areas in steradians, (ncells,); 0 of empty cells."""
@@ -599,6 +662,7 @@ class Grid(Immutable):
             turned=np.flatnonzero(known.turned),
             empty=np.flatnonzero(known.faults == 1),
             concave=np.flatnonzero(known.concave),
+            masked=np.flatnonzero(~self._mask) if self._mask is not None else _NONE,
         )
 
     @property
@@ -619,8 +683,13 @@ class Grid(Immutable):
     def centers_lonlat(self) -> Floats:
         """Longitudes and latitudes of a place in the middle of each cell, (ncells, 2), in degrees.
 
-        The mean direction of the corners; NaN for cells without corners.
+        Halfway between bounds in rows and columns, else the mean direction of the corners; NaN for
+        cells without corners.
         """
+        if self._bounds is not None:
+            lon, lat = (edges[:-1] + np.diff(edges) / 2 for edges in self._bounds)
+            x, y = np.meshgrid(np.where(lon > 180, lon - 360, lon), lat)
+            return sealed(np.column_stack((x.ravel(), y.ravel())))
         vectors, starts, cells = self.rings
         total = np.concatenate((np.zeros((1, 3)), np.cumsum(vectors, axis=0)))
         sums = np.diff(total[starts[cells]], axis=0)
@@ -702,6 +771,13 @@ class Grid(Immutable):
         return beside(shapes, data, "EPSG:4326" if crs is None else crs, of="cells")
 
 
+def _alone(vectors: Floats, starts: Indices) -> tuple[Any, ...]:
+    """Return the arrays of the core for cells of one ring each."""
+    count = len(starts) - 1
+    cells = np.arange(count + 1, dtype=np.int64)
+    return vectors, starts, cells, np.zeros(count, dtype=np.bool_)
+
+
 def _as_merge(merge: float) -> float:
     """Return the distance within which corners become one."""
     value = as_number(merge, name="merge")
@@ -711,9 +787,10 @@ def _as_merge(merge: float) -> float:
 
 
 def _again(
-    edges: str, arrays: tuple[Any, ...], shape: tuple[int, ...], merged: int, workers: int | None
+    parts: tuple[Any, ...], bounds: tuple[Floats, Floats] | None, mask: Flags | None
 ) -> Grid:
     """Return a pickled grid."""
+    edges, arrays, *rest = parts
     if len(arrays) != 4 + (edges == "parallel"):
         raise ShapeError("a pickled Grid is incomplete")
-    return Grid._of(edges, arrays, shape, merged, workers)
+    return Grid._of(edges, arrays, *rest, bounds=bounds, mask=mask)

@@ -58,15 +58,17 @@ def as_bounds(values: ArrayLike, *, name: str, degrees: bool) -> Floats:
     require_finite(flat.reshape(-1, 1), name=name)
     if array.ndim == 2 and array.shape[1] == 2:
         first, second = flat.reshape(-1, 2).T
-        if len(first) > 1 and not np.array_equal(first[1:], second[:-1]):
-            # Bounds may be ordered against their sequence.
-            first, second = second, first
-            if not np.array_equal(first[1:], second[:-1]):
-                at = int(np.flatnonzero(first[1:] != second[:-1])[0])
-                raise InputError(
-                    f"{name}: the bounds of entries {at} and {at + 1} do not meet: give edges, or "
-                    "make cells with gaps by Grid.from_mesh"
-                )
+        # Bounds may be ordered against their sequence.
+        orders = (first, second), (second, first)
+        apart = [one[1:] != other[:-1] for one, other in orders]
+        best = int(apart[1].sum() < apart[0].sum())
+        first, second = orders[best]
+        if apart[best].any():
+            at = int(np.flatnonzero(apart[best])[0])
+            raise InputError(
+                f"{name}: the bounds of entries {at} and {at + 1} do not meet: give edges, or "
+                "make cells with gaps by Grid.from_mesh"
+            )
         flat = np.concatenate((first, second[-1:]))
     elif array.ndim != 1:
         raise ShapeError(f"{name} must have shape (n + 1,) or (n, 2), got {array.shape}")

@@ -1,0 +1,12 @@
+"""Grids of models in datasets of xarray: which convention a dataset follows, and its cells.
+
+Each file reads a family of conventions; `reading` recognizes them. Nothing is guessed: units,
+first numbers and fill values are those that a dataset states or that its convention fixes.
+"""
+
+from __future__ import annotations
+
+from delone.sphere.formats.cells import Cells, Choices
+from delone.sphere.formats.reading import read_cells
+
+__all__ = ["Cells", "Choices", "read_cells"]

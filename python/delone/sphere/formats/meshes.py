@@ -1,0 +1,301 @@
+"""Conventions with nodes and connectivity: UGRID, ESMF, MPAS, ICON, FESOM, Exodus, and uxarray."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.errors import InputError, ShapeError
+from delone.interpolate.places import is_angle
+from delone.sphere.formats.cells import Cells, flags_of
+from delone.sphere.formats.variables import (
+    attribute,
+    connected,
+    in_degrees,
+    numbers,
+    places,
+    ragged,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.sphere.formats.cells import Choices
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int64]
+    Variables = dict[str, Any]
+
+__all__ = [
+    "read_esmf",
+    "read_exodus",
+    "read_fesom",
+    "read_icon",
+    "read_mpas",
+    "read_ugrid",
+    "read_uxarray",
+    "topologies",
+]
+
+
+def _nodes(
+    variables: Variables, names: tuple[str, str], choices: Choices, *, fixed: bool | None = None
+) -> Floats:
+    """Return the places of nodes by their longitudes and latitudes."""
+    for name in names:
+        if name not in variables:
+            raise InputError(f"the dataset has no variable {name!r:.60}")
+    degrees = [
+        in_degrees(variables[name], axis, name, choices, fixed=fixed)
+        for axis, name in enumerate(names)
+    ]
+    lon, lat = (numbers(variables[name], name) for name in names)
+    return places(lon, lat, (degrees[0], degrees[1]), names, choices)
+
+
+def topologies(variables: Variables) -> list[str]:
+    """Return the names of the meshes of UGRID that have faces."""
+    return [
+        name
+        for name, part in variables.items()
+        if part.attrs.get("cf_role") == "mesh_topology" and "face_node_connectivity" in part.attrs
+    ]
+
+
+def read_ugrid(variables: Variables, choices: Choices) -> Cells:
+    """Read the faces of a mesh of UGRID."""
+    known = topologies(variables)
+    name = choices.name
+    if name is not None and name not in known and name in variables:
+        name = variables[name].attrs.get("mesh", name)
+    if name is None and len(known) == 1:
+        name = known[0]
+    if name not in known:
+        said = "give name=" if name is None else f"none is {name!r:.40}"
+        raise InputError(f"the dataset has the meshes {', '.join(known)} of UGRID: {said}")
+    topology = variables[name].attrs
+    nodes = str(topology.get("node_coordinates", "")).split()
+    if len(nodes) != 2:
+        raise InputError(f"{name}: node_coordinates must name two variables, got {nodes}")
+    for each in nodes:
+        if each not in variables:
+            raise InputError(f"{name}: the dataset has no variable {each!r:.60}, its coordinate")
+    # Usually the longitude comes first, but attributes decide.
+    if is_angle(variables[nodes[0]], 1) and is_angle(variables[nodes[1]], 0):
+        nodes.reverse()
+    elif not (is_angle(variables[nodes[0]], 0) and is_angle(variables[nodes[1]], 1)):
+        raise InputError(
+            f"{name}: {nodes[0]} and {nodes[1]} say neither by standard_name nor by units which "
+            "is the longitude and which is the latitude"
+        )
+    vectors = _nodes(variables, (nodes[0], nodes[1]), choices)
+    faces = str(topology["face_node_connectivity"])
+    if faces not in variables:
+        raise InputError(f"{name}: the dataset has no variable {faces!r:.60}, its faces")
+    table = variables[faces]
+    along = topology.get("face_dimension")
+    transposed = table.ndim == 2 and along == table.dims[1] != table.dims[0]
+    corners, starts = connected(
+        table,
+        faces,
+        len(vectors),
+        start=int(table.attrs.get("start_index", 0)),
+        transposed=transposed,
+    )
+    centers = str(topology.get("face_coordinates", "")).split()
+    return Cells(
+        format="UGRID",
+        dims=(table.dims[1 if transposed else 0],),
+        shape=(len(starts) - 1,),
+        nodes=vectors,
+        corners=corners,
+        starts=starts,
+        coords=_ordered(variables, centers),
+    )
+
+
+def _ordered(variables: Variables, names: list[str]) -> tuple[str, str] | None:
+    """Return the longitude and the latitude of two names, or None."""
+    if len(names) != 2 or not set(names) <= set(variables):
+        return None
+    for a, b in (names, names[::-1]):
+        if is_angle(variables[a], 0) and is_angle(variables[b], 1):
+            return a, b
+    return None
+
+
+def read_esmf(variables: Variables, choices: Choices) -> Cells:
+    """Read a mesh in the format of ESMF; numbers of nodes start at 1."""
+    given = variables["nodeCoords"]
+    both = numbers(given, "nodeCoords")
+    if both.ndim != 2 or both.shape[1] != 2:
+        raise ShapeError(f"nodeCoords must have shape (n, 2), got {both.shape}")
+    known = in_degrees(given, 0, "nodeCoords", choices)
+    names = "nodeCoords[:, 0]", "nodeCoords[:, 1]"
+    vectors = places(both[:, 0], both[:, 1], (known, known), names, choices)
+    table = variables["elementConn"]
+    start = int(table.attrs.get("start_index", 1))
+    counts = variables.get("numElementConn")
+    lengths = None if counts is None else numbers(counts, "numElementConn")
+    options: dict[str, Any] = {"start": start, "counts": lengths}
+    if table.ndim == 1 and counts is not None:
+        corners, starts = ragged(table, "elementConn", len(vectors), **options)
+        dims = counts.dims
+    else:
+        corners, starts = connected(table, "elementConn", len(vectors), **options)
+        dims = table.dims[:1]
+    count = len(starts) - 1
+    return Cells(
+        format="ESMF",
+        dims=dims,
+        shape=(count,),
+        nodes=vectors,
+        corners=corners,
+        starts=starts,
+        mask=flags_of(variables.get("elementMask"), count),
+    )
+
+
+def read_mpas(variables: Variables, choices: Choices, attributes: dict[str, Any]) -> Cells:
+    """Read the cells of MPAS: numbers start at 1, and angles are in radians."""
+    if str(attributes.get("on_a_sphere", "YES")).strip().upper() not in {"YES", "Y"}:
+        raise InputError("the mesh of MPAS is planar (on_a_sphere is not YES)")
+    axes = "xVertex", "yVertex", "zVertex"
+    if set(axes) <= set(variables):
+        vectors = np.column_stack([numbers(variables[name], name) for name in axes])
+        vectors = vectors.astype(np.float64)
+    else:
+        vectors = _nodes(variables, ("lonVertex", "latVertex"), choices, fixed=False)
+    table = variables["verticesOnCell"]
+    counts = numbers(variables["nEdgesOnCell"], "nEdgesOnCell")
+    corners, starts = connected(table, "verticesOnCell", len(vectors), start=1, counts=counts)
+    return Cells(
+        format="MPAS",
+        dims=table.dims[:1],
+        shape=(len(starts) - 1,),
+        nodes=vectors,
+        corners=corners,
+        starts=starts,
+        coords=("lonCell", "latCell") if {"lonCell", "latCell"} <= set(variables) else None,
+    )
+
+
+def read_icon(variables: Variables, choices: Choices) -> Cells:
+    """Read the triangles of ICON: (3, cell), numbers from 1, angles in radians."""
+    vectors = _nodes(variables, ("vlon", "vlat"), choices, fixed=False)
+    table = variables["vertex_of_cell"]
+    centers = variables.get("clon")
+    along = None if centers is None or centers.ndim != 1 else centers.dims[0]
+    if table.ndim != 2 or 3 not in table.shape:
+        raise ShapeError(f"vertex_of_cell must have shape (3, cell), got {table.shape}")
+    # The axis of cells is that of their centers; without these, the file's order is (3, cell).
+    transposed = table.dims[0] != along and table.shape[0] == 3
+    corners, starts = connected(
+        table, "vertex_of_cell", len(vectors), start=1, transposed=transposed
+    )
+    return Cells(
+        format="ICON",
+        dims=(table.dims[1 if transposed else 0],),
+        shape=(len(starts) - 1,),
+        nodes=vectors,
+        corners=corners,
+        starts=starts,
+        coords=("clon", "clat") if {"clon", "clat"} <= set(variables) else None,
+    )
+
+
+def read_fesom(variables: Variables, choices: Choices) -> Cells:
+    """Read the triangles of FESOM: numbers from 1, angles in degrees."""
+    vectors = _nodes(variables, ("lon", "lat"), choices, fixed=True)
+    table = variables["triag_nodes"]
+    transposed = table.ndim == 2 and table.shape[0] == 3 and table.shape[1] != 3
+    corners, starts = connected(table, "triag_nodes", len(vectors), start=1, transposed=transposed)
+    return Cells(
+        format="FESOM",
+        dims=(table.dims[1 if transposed else 0],),
+        shape=(len(starts) - 1,),
+        nodes=vectors,
+        corners=corners,
+        starts=starts,
+    )
+
+
+def read_exodus(variables: Variables, choices: Choices) -> Cells:
+    """Read the elements of all blocks of Exodus; numbers start at 1."""
+    vectors = _exodus_nodes(variables)
+    blocks = sorted(
+        (int(name[7:]), name)
+        for name in variables
+        if name.startswith("connect") and name[7:].isdigit()
+    )
+    corners, lengths = [], []
+    for number, name in blocks:
+        kinds = variables.get(f"edge_type{number}")
+        if kinds is not None and np.any(kinds.values == 1) and choices.edges != "arc":
+            raise InputError(
+                f'edge_type{number} says that sides are parallels: give edges="arc" to take them '
+                "as arcs of great circles, or make the grid by Grid.from_lonlat"
+            )
+        counts = variables.get(f"ebepecnt{number}")
+        if counts is not None:
+            flat, starts = ragged(
+                variables[name], name, len(vectors), start=1, counts=numbers(counts, "ebepecnt")
+            )
+        else:
+            # Here 0 is padding, and numbers start at 1.
+            width = variables[name].shape[1]
+            table = numbers(variables[name], name)
+            flat, starts = connected(
+                variables[name],
+                name,
+                len(vectors),
+                start=1,
+                counts=np.where(table > 0, np.arange(1, width + 1), 0).max(axis=1, initial=0),
+            )
+        corners.append(flat)
+        lengths.append(np.diff(starts))
+    every = np.concatenate(lengths)
+    return Cells(
+        format="Exodus",
+        dims=(),
+        shape=(len(every),),
+        nodes=vectors,
+        corners=np.concatenate(corners),
+        starts=np.concatenate(([0], np.cumsum(every))).astype(np.int64),
+    )
+
+
+def _exodus_nodes(variables: Variables) -> Floats:
+    """Return the nodes of Exodus, which are vectors."""
+    if "coord" in variables:
+        found = numbers(variables["coord"], "coord").T
+    else:
+        names = "coordx", "coordy", "coordz"
+        missing = [name for name in names if name not in variables]
+        if missing:
+            raise InputError(f"Exodus: the dataset has no variable {missing[0]}")
+        found = np.column_stack([numbers(variables[name], name) for name in names])
+    if found.ndim != 2 or found.shape[1] != 3:
+        raise ShapeError(f"Exodus: nodes must have three coordinates, got shape {found.shape}")
+    return found.astype(np.float64)
+
+
+def read_uxarray(given: Any, choices: Choices) -> Cells:
+    """Read a grid of uxarray by its attributes; its longitudes are in degrees."""
+    table = given.face_node_connectivity
+    lon, lat = given.node_lon, given.node_lat
+    variables = {"node_lon": lon, "node_lat": lat}
+    vectors = _nodes(variables, ("node_lon", "node_lat"), choices, fixed=True)
+    start = attribute(table, "start_index")
+    corners, starts = connected(
+        table, "face_node_connectivity", len(vectors), start=0 if start is None else int(start)
+    )
+    return Cells(
+        format="uxarray",
+        dims=("n_face",),
+        shape=(len(starts) - 1,),
+        nodes=vectors,
+        corners=corners,
+        starts=starts,
+    )

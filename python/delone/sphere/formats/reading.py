@@ -1,0 +1,110 @@
+"""Recognizes the convention of a dataset by its variables, and reads the cells."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from delone.errors import InputError
+from delone.sphere.formats import corners, meshes, structured
+from delone.sphere.formats.variables import variables_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from delone.sphere.formats.cells import Cells, Choices
+
+    Variables = dict[str, Any]
+
+__all__ = ["read_cells"]
+
+
+class _Format(NamedTuple):
+    """A convention: what it is known by, and what reads it."""
+
+    name: str
+    wanted: str
+    known: Callable[[Variables], Any]
+    read: Callable[[Variables, Choices], Cells]
+
+
+def _has(*names: str) -> Callable[[Variables], bool]:
+    return lambda variables: set(names) <= set(variables)
+
+
+# The special ones first: many of them have longitudes and latitudes as well.
+_FORMATS = (
+    _Format(
+        "UGRID",
+        "a variable with cf_role mesh_topology and face_node_connectivity",
+        meshes.topologies,
+        meshes.read_ugrid,
+    ),
+    _Format("SCRIP", "grid_corner_lon, grid_corner_lat", corners.scrip_names, corners.read_scrip),
+    _Format("ESMF", "nodeCoords, elementConn", _has("nodeCoords", "elementConn"), meshes.read_esmf),
+    _Format(
+        "ICON",
+        "vlon, vlat, vertex_of_cell",
+        _has("vlon", "vlat", "vertex_of_cell"),
+        meshes.read_icon,
+    ),
+    _Format(
+        "ICON",
+        "clon_vertices, clat_vertices",
+        _has("clon_vertices", "clat_vertices"),
+        corners.read_icon_corners,
+    ),
+    _Format(
+        "GEOS-CS", "corner_lons, corner_lats", _has("corner_lons", "corner_lats"), corners.read_geos
+    ),
+    _Format("OASIS", "NAME.clo, NAME.cla", corners.oasis_grids, corners.read_oasis),
+    _Format(
+        "HEALPix",
+        "a grid mapping named healpix",
+        structured.healpix_mapping,
+        structured.read_healpix,
+    ),
+)
+_LAST = (
+    _Format("FESOM", "lon, lat, triag_nodes", _has("lon", "lat", "triag_nodes"), meshes.read_fesom),
+    _Format(
+        "Exodus",
+        "connect1, and coord or coordx, coordy, coordz",
+        lambda v: "connect1" in v and ("coord" in v or "coordx" in v),
+        meshes.read_exodus,
+    ),
+)
+
+
+def read_cells(given: Any, choices: Choices) -> Cells:
+    """Return the cells of a dataset of xarray, or of a grid of uxarray."""
+    grid = getattr(given, "uxgrid", given)
+    if hasattr(grid, "face_node_connectivity") and hasattr(grid, "node_lon"):
+        return meshes.read_uxarray(grid, choices)
+    variables = variables_of(given)
+    if choices.coords is not None:
+        return structured.read_bounds(variables, choices)
+    for each in _FORMATS:
+        if each.known(variables):
+            return each.read(variables, choices)
+    if {"verticesOnCell", "nEdgesOnCell"} <= set(variables):
+        return meshes.read_mpas(variables, choices, dict(given.attrs))
+    for each in _LAST:
+        # Bounds of cells around nodes are preferred to triangles between them.
+        if each.known(variables) and not _has_bounds(variables):
+            return each.read(variables, choices)
+    if structured.centers(variables, choices) is not None:
+        return structured.read_bounds(variables, choices)
+    listed = "; ".join(f"{each.name} ({each.wanted})" for each in (*_FORMATS, *_LAST))
+    raise InputError(
+        f"the dataset has no grid: looked for {listed}; MPAS (verticesOnCell, nEdgesOnCell); and "
+        "for longitudes and latitudes by standard_name, units, or the names lon and lat. Its "
+        f"variables: {', '.join(variables) or 'none'}"[:900]
+    )
+
+
+def _has_bounds(variables: Variables) -> bool:
+    """Return whether lon and lat have bounds."""
+    return all(
+        name in variables and structured.bounds_name(variables, name) is not None
+        for name in ("lon", "lat")
+    )

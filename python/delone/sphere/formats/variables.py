@@ -1,0 +1,226 @@
+"""Variables of datasets: units, places of corners, and numbers of nodes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.counting import agreed, counted
+from delone.errors import DirectionError, DtypeError, InputError, NonFiniteError, ShapeError
+from delone.interpolate.places import unit_of
+from delone.sphere.coordinates import directions_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.sphere.formats.cells import Choices
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int64]
+    Flags = NDArray[np.bool_]
+
+__all__ = [
+    "attribute",
+    "connected",
+    "in_degrees",
+    "numbers",
+    "padded",
+    "places",
+    "ragged",
+    "variables_of",
+]
+
+# Latitudes beyond a pole by a rounding of float32 mean the pole.
+_BEYOND = 1 + 2.0**-22
+
+
+def variables_of(given: Any) -> dict[str, Any]:
+    """Return the variables of a dataset, or the coordinates of an array, by name."""
+    if hasattr(given, "data_vars"):
+        return {str(name): part for name, part in given.variables.items()}
+    if hasattr(given, "coords") and hasattr(given, "dims"):
+        return {str(name): part.variable for name, part in given.coords.items()}
+    raise DtypeError(
+        "the dataset must be an xarray.Dataset, such as xarray.open_dataset(path), a DataArray, or "
+        f"a grid of uxarray; got {type(given).__name__}"
+    )
+
+
+def attribute(variable: Any, name: str) -> Any:
+    """Return an attribute, which xarray may have moved to the encoding; None without."""
+    return variable.attrs.get(name, variable.encoding.get(name))
+
+
+def in_degrees(
+    variable: Any, axis: int, name: str, choices: Choices, *, fixed: bool | None = None
+) -> bool:
+    """Return whether a longitude (axis 0) or latitude (1) is in degrees rather than radians.
+
+    By its units; without, by what the caller says, or by what the convention fixes.
+    """
+    said = unit_of(variable, axis)
+    if said in {"degrees", "radians"}:
+        if choices.degrees not in {None, said == "degrees"}:
+            raise InputError(
+                f"{name} has the units {variable.attrs['units']!r:.40}, which degrees="
+                f"{choices.degrees} contradicts"
+            )
+        return said == "degrees"
+    if said is not None:
+        raise InputError(
+            f"{name} has the units {said!r:.40}, not degrees or radians: transform it to "
+            "longitudes and latitudes"
+        )
+    if choices.degrees is not None:
+        return choices.degrees
+    if fixed is None:
+        raise InputError(f"{name} has no attribute units: give degrees=True or degrees=False")
+    return fixed
+
+
+def numbers(variable: Any, name: str) -> NDArray[Any]:
+    """Return the real numbers of a variable."""
+    values = np.asarray(variable.values)
+    if values.dtype.kind not in "iuf":
+        raise DtypeError(f"{name} must have real numbers, got {values.dtype}")
+    return values
+
+
+def places(
+    lon: NDArray[Any],
+    lat: NDArray[Any],
+    degrees: tuple[bool, bool],
+    names: tuple[str, str],
+    choices: Choices,
+) -> Floats:
+    """Return the vectors of longitudes and latitudes, (n, 3)."""
+    if lon.shape != lat.shape:
+        raise ShapeError(f"{names[0]} has shape {lon.shape}, and {names[1]} {lat.shape}")
+    one, two = lon.ravel(), lat.ravel()
+    if degrees[0] != degrees[1]:
+        one, two = (
+            values if known else np.degrees(values)
+            for values, known in zip((one, two), degrees, strict=True)
+        )
+    both = np.column_stack((one, two))
+    for name, column in zip(names, both.T, strict=True):
+        _refuse(~np.isfinite(column), name, "not finite", error=NonFiniteError)
+    pole = 90.0 if any(degrees) else np.pi / 2
+    far = np.abs(both[:, 1])
+    hint = "beyond a pole: are these the right units?"
+    _refuse(far > pole * _BEYOND, names[1], hint, error=DirectionError)
+    beyond = far > pole
+    both[beyond, 1] = np.copysign(pole, both[beyond, 1])
+    if not len(both):
+        return np.zeros((0, 3))
+    return directions_of(both, None, degrees=any(degrees), workers=choices.workers, any_turns=True)
+
+
+def _refuse(wrong: Flags, name: str, what: str, *, error: type[Any]) -> None:
+    """Raise an error for the rows of a variable, if there are any."""
+    rows = np.flatnonzero(wrong)
+    if len(rows):
+        count = len(rows)
+        entries = agreed(count, "entry is", "entries are")
+        raise error(
+            f"{name}: {count} {entries} {what}; first {rows[0]}", rows=rows[:10], count=count
+        )
+
+
+def padded(lon: NDArray[Any], lat: NDArray[Any], names: tuple[str, str]) -> tuple[Flags, Indices]:
+    """Return which corners of (n, k) there are, and where those of each cell start.
+
+    NaN after the last corner of a cell is padding.
+    """
+    if lon.shape != lat.shape:
+        raise ShapeError(f"{names[0]} has shape {lon.shape}, and {names[1]} {lat.shape}")
+    absent = np.isnan(lon) & np.isnan(lat)
+    return _trailing(absent, names[0])
+
+
+def _trailing(absent: Flags, name: str) -> tuple[Flags, Indices]:
+    """Return what is there, and the starts of rows, of a table padded at the ends of rows."""
+    holes = (absent[:, :-1] & ~absent[:, 1:]).any(axis=1)
+    if holes.any():
+        row = int(np.flatnonzero(holes)[0])
+        raise InputError(f"{name}: cell {row} has a missing corner before others")
+    there = ~absent
+    starts = np.concatenate(([0], np.cumsum(there.sum(axis=1)))).astype(np.int64)
+    return there, starts
+
+
+def connected(
+    variable: Any,
+    name: str,
+    nodes: int,
+    *,
+    start: int,
+    counts: NDArray[Any] | None = None,
+    transposed: bool = False,
+) -> tuple[Indices, Indices]:
+    """Return the nodes of all cells in sequence, and where those of each cell start.
+
+    Rows are padded by the declared fill value, by NaN, or by numbers below 0; or the numbers of
+    their corners are given.
+    """
+    table = numbers(variable, name)
+    table = table.T if transposed else table
+    if table.ndim != 2:
+        raise ShapeError(f"{name} must have two axes, got shape {table.shape}")
+    filled = _filled(variable, table)
+    if counts is None:
+        there, starts = _trailing(filled, name)
+    else:
+        sizes = np.asarray(counts).astype(np.int64)
+        if sizes.shape != table.shape[:1] or (sizes < 0).any() or (
+            sizes > table.shape[1]
+        ).any():  # fmt: skip
+            raise ShapeError(f"the numbers of corners do not fit {name} of shape {table.shape}")
+        there = np.arange(table.shape[1]) < sizes[:, None]
+        starts = np.concatenate(([0], np.cumsum(sizes))).astype(np.int64)
+    return _nodes(table[there], name, nodes, start, starts), starts
+
+
+def _filled(variable: Any, table: NDArray[Any]) -> Flags:
+    """Return which entries are padding."""
+    found: Flags
+    if table.dtype.kind == "f":
+        found = np.isnan(table) | (table < 0)
+        return found
+    found = table == np.iinfo(table.dtype).max
+    if table.dtype.kind == "i":
+        found |= table < 0
+    for name in ("_FillValue", "missing_value"):
+        fill = attribute(variable, name)
+        if fill is not None and np.ndim(fill) == 0:
+            found |= table == fill
+    return found
+
+
+def ragged(
+    variable: Any, name: str, nodes: int, *, start: int, counts: NDArray[Any]
+) -> tuple[Indices, Indices]:
+    """Return the nodes of all cells and their starts, from a flat list."""
+    flat = numbers(variable, name)
+    starts = np.concatenate(([0], np.cumsum(np.asarray(counts).astype(np.int64))))
+    if flat.ndim != 1 or (np.diff(starts) < 0).any() or starts[-1] != len(flat):
+        raise ShapeError(f"the numbers of corners do not add up to the {flat.size} of {name}")
+    return _nodes(flat, name, nodes, start, starts), starts
+
+
+def _nodes(entries: NDArray[Any], name: str, nodes: int, start: int, starts: Indices) -> Indices:
+    """Return numbers from 0, or refuse one that is out of range by its cell."""
+    with np.errstate(invalid="ignore"):
+        found = np.asarray(entries).astype(np.int64)
+        wrong = (found < start) | (found >= nodes + start) | (found != entries)
+    if wrong.any():
+        at = int(np.flatnonzero(wrong)[0])
+        cell = int(np.searchsorted(starts, at, side="right")) - 1
+        rows = np.unique(np.searchsorted(starts, np.flatnonzero(wrong), side="right") - 1)
+        count = counted(len(rows), "cell")
+        raise InputError(
+            f"{name}: {count} {agreed(len(rows), 'has', 'have')} a node out of range {start} to "
+            f"{nodes - 1 + start}; first cell {cell}, node {entries[at]}"
+        )
+    return found - start

@@ -1,0 +1,96 @@
+"""What is told of the cells of a grid: what was done to corners, and which cells overlap."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from delone.counting import counted
+from delone.immutable import ReadOnly
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Indices = NDArray[np.int64]
+
+__all__ = ["GridFaults", "GridReport"]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class GridReport(ReadOnly):
+    """What was done to the corners of a grid, and which cells are special.
+
+    Attributes
+    ----------
+    merged : int
+        Corners that were moved to an earlier corner within `merge`, and bounds to those of a
+        neighbor; of meshes, nodes.
+    repeated : int
+        Corners that repeat the one before in their cell, and are ignored.
+    turned : ndarray of int64
+        Cells whose corners are clockwise, and are taken in the other direction.
+    empty : ndarray of int64
+        Cells with fewer than three distinct corners, or without area; they share nothing.
+    concave : ndarray of int64
+        Cells that are concave or have several rings, or have more than 64 corners.
+    masked : ndarray of int64
+        Cells that do not take part, as a dataset says.
+
+    Examples
+    --------
+    >>> from delone import sphere
+    >>> corners = [(1, 0, 0), (0, 0, 1), (0, 1, 0)]
+    >>> sphere.Grid.from_mesh(corners, [0, 3]).report
+    <GridReport: 1 cell turned>
+    """
+
+    merged: int
+    repeated: int
+    turned: Indices
+    empty: Indices
+    concave: Indices
+    masked: Indices
+
+    def __repr__(self) -> str:
+        parts = [f"{counted(self.merged, 'corner')} merged"] if self.merged else []
+        if self.repeated:
+            parts.append(f"{counted(self.repeated, 'repeated corner')} ignored")
+        for name in ("turned", "empty", "concave", "masked"):
+            if count := len(getattr(self, name)):
+                parts.append(f"{counted(count, 'cell')} {name}")
+        return f"<GridReport: {', '.join(parts) or 'nothing special'}>"
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class GridFaults(ReadOnly):
+    """What `Grid.validate` finds; truthy if no cells overlap.
+
+    Attributes
+    ----------
+    overlapping : ndarray of int64, shape (k, 2)
+        Pairs of cells that share more than 1e-12 of the smaller one.
+    covered : float
+        The fraction of the sphere that the cells cover, where overlaps count twice.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone import sphere
+    >>> grid = sphere.Grid.from_lonlat(np.arange(0, 361, 30), np.arange(0, 91, 30))
+    >>> faults = grid.validate()
+    >>> bool(faults), round(faults.covered, 12)
+    (True, 0.5)
+    """
+
+    overlapping: Indices
+    covered: float
+
+    def __bool__(self) -> bool:
+        return not len(self.overlapping)
+
+    def __repr__(self) -> str:
+        pairs = f"{counted(len(self.overlapping), 'pair')} of cells overlap"
+        if not len(self.overlapping):
+            pairs = "no cells overlap"
+        return f"<GridFaults: {pairs}, {100 * self.covered:.6g} % of the sphere>"
