@@ -78,6 +78,7 @@ help:
 	@echo 'make release-check  sdist and wheels for Linux as published, installed and tested; 15 minutes'
 	@echo 'make web     the core as a module for pages, into target/web (crates/web/build.sh says how)'
 	@echo 'make map     the charts and tables of modules in architecture/map.md'
+	@echo 'make stub    the types of the compiled module, from the source of the bindings'
 	@echo 'make build   the package alone, installed into .venv in development mode'
 	@echo 'make clean   remove everything that these made'
 
@@ -260,6 +261,9 @@ mutants: environment
 # The map needs Python alone.
 map:
 	$(PYTHON) tests/oracles/structure.py
+
+stub: environment
+	$(BIN)/python crates/bindings/stub.py
 
 fuzz: need
 	fuzz/run.sh $(FUZZ_SECONDS)

@@ -1,6 +1,9 @@
-"""The compiled core. All arrays are C-contiguous; inputs must have the dtypes given here."""
+"""The compiled core. All arrays are C-contiguous; inputs must have the dtypes given here.
 
-from collections.abc import Callable
+Written by crates/bindings/stub.py from the source of the bindings; changes here are lost.
+"""
+
+from collections.abc import Callable, Sequence
 from typing import Final, Protocol, final
 
 import numpy as np
@@ -182,22 +185,484 @@ __all__ = [
 
 __version__: Final[str]
 
-@final
-class Triangulation:
-    """A Delaunay triangulation of either dimension d."""
+class _Sheet(Protocol):
+    """A triangulation and, if there are any, the heights of its points."""
 
     @property
+    def points(self) -> NDArray[np.float64]: ...
+    @property
+    def simplices(self) -> NDArray[np.int32]: ...
+    @property
+    def neighbors(self) -> NDArray[np.int32]: ...
+    @property
+    def heights(self) -> NDArray[np.float64]: ...
+
+@final
+class CellGrid:
+    """The cells of a grid on the sphere."""
+
+    @staticmethod
+    def polygons(
+        vectors: NDArray[np.float64],
+        rings: NDArray[np.int64],
+        cells: NDArray[np.int64],
+        holes: NDArray[np.bool_],
+    ) -> CellGrid:
+        """Cells with arcs of great circles as sides: corners, where their rings start, where the
+        rings of cells start, and whether rings are holes.
+        """
+    @staticmethod
+    def rows(
+        tangents: NDArray[np.float64],
+        starts: NDArray[np.int64],
+        meridians: NDArray[np.float64],
+        numbers: NDArray[np.int32],
+        count: int,
+    ) -> CellGrid:
+        """Cells between meridians and parallels, by rows: tangents of latitudes, where the
+        meridians of rows start, their directions, the number of the cell east of each or -1,
+        and how many cells there are.
+        """
+    def check(self, crossing: bool, workers: int) -> CheckedCells:
+        """Areas and faults; sides that cross are looked for if `crossing`."""
+    def overlaps(self, other: CellGrid, workers: int) -> SharedCells:
+        """What the cells share with those of another grid; cells with faults share nothing."""
+
+@final
+class CellMeasures2:
+    """Measures of polygons."""
+
+    @property
+    def areas(self) -> NDArray[np.float64]:
+        """Areas, (c,)."""
+    @property
+    def centroids(self) -> NDArray[np.float64]:
+        """Centroids, (c, 2)."""
+    @property
+    def perimeters(self) -> NDArray[np.float64]:
+        """Perimeters, (c,)."""
+
+@final
+class CellMeasures3:
+    """Measures of cells, and of ridges."""
+
+    @property
+    def ridge_areas(self) -> NDArray[np.float64]:
+        """The area of each ridge, (r,)."""
+    @property
+    def volumes(self) -> NDArray[np.float64]:
+        """Volumes, (c,)."""
+    @property
+    def areas(self) -> NDArray[np.float64]:
+        """Areas of surfaces, (c,)."""
+    @property
+    def centroids(self) -> NDArray[np.float64]:
+        """Centroids, (c, 3)."""
+
+@final
+class CellPieces2:
+    """Polygons clipped to an outline."""
+
+    @property
+    def left(self) -> NDArray[np.int8]:
+        """For each polygon what is left: -1 (unknown), 0 (nothing), 1 (all) or 2 (parts), (k,)."""
+    @property
+    def cells(self) -> NDArray[np.int64]:
+        """Start of the parts of each polygon, and the end, (k + 1,)."""
+    @property
+    def parts(self) -> NDArray[np.int64]:
+        """Start of the rings of each part, and the end."""
+    @property
+    def rings(self) -> NDArray[np.int64]:
+        """Start of the corners of each ring, and the end."""
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The corners, (p, 2)."""
+    @property
+    def ridges(self) -> NDArray[np.int32]:
+        """The ridge along the edge that starts at each corner, negative for none, (p,)."""
+    @property
+    def measures(self) -> CellMeasures2:
+        """Measures of each clipped polygon."""
+
+@final
+class CheckedCells:
+    """What is known of each cell of a grid."""
+
+    @property
+    def areas(self) -> NDArray[np.float64]:
+        """Areas in steradians, 0 of cells that have none, (n,)."""
+    @property
+    def faults(self) -> NDArray[np.uint8]:
+        """0, 1 for empty cells, 2 for opposite ends of a side, 3 for cells beyond a hemisphere, 4
+        for sides that cross, (n,).
+        """
+    @property
+    def turned(self) -> NDArray[np.bool_]:
+        """Whether outer rings were clockwise, (n,)."""
+    @property
+    def concave(self) -> NDArray[np.bool_]:
+        """Whether cells are concave, or have several rings, (n,)."""
+    @property
+    def repeated(self) -> int:
+        """How many corners repeat the one before."""
+
+@final
+class CheckedSurface:
+    """What a surface is."""
+
+    @property
+    def duplicate_points(self) -> NDArray[np.int32]:
+        """Rows of points with the first rows of the same coordinates, (k, 2)."""
+    @property
+    def repeats(self) -> NDArray[np.int32]:
+        """Faces that use a vertex twice, (k,)."""
+    @property
+    def collinear(self) -> NDArray[np.int32]:
+        """Other faces without area, (k,)."""
+    @property
+    def duplicate_faces(self) -> NDArray[np.int32]:
+        """Rows of faces with the first rows of the same vertices, (k, 2)."""
+    @property
+    def pairs(self) -> FacePairs:
+        """Pairs that cross or touch."""
+    @property
+    def nedges(self) -> int:
+        """The number of edges."""
+    @property
+    def boundary(self) -> NDArray[np.int32]:
+        """Edges of one face, (k, 2)."""
+    @property
+    def many(self) -> NDArray[np.int32]:
+        """Edges of three faces or more, (k, 2)."""
+    @property
+    def unbalanced(self) -> NDArray[np.int32]:
+        """Edges that are not passed equally often in both directions, (k, 2)."""
+    @property
+    def not_fans(self) -> NDArray[np.int32]:
+        """Vertices whose faces do not form one fan, (k,)."""
+    @property
+    def component(self) -> NDArray[np.int32]:
+        """The component of each face, -1 of degenerate ones, (m,)."""
+    @property
+    def ncomponents(self) -> int:
+        """The number of components."""
+    @property
+    def nregions(self) -> int | None:
+        """The number of regions that are separated from the outside; None if faces cross."""
+    @property
+    def dangling(self) -> NDArray[np.int32]:
+        """Faces with the same region on both sides, (k,)."""
+    @property
+    def volume(self) -> float:
+        """The signed volume."""
+    @property
+    def sign(self) -> int:
+        """The exact sign of the volume."""
+
+@final
+class ClippedCells2:
+    """Cells clipped to a box: convex polygons."""
+
+    @property
+    def starts(self) -> NDArray[np.int32]:
+        """Start of the corners of each cell, and the end, (c + 1,)."""
+    @property
+    def corners(self) -> NDArray[np.float64]:
+        """The corners, counter-clockwise, (p, 2)."""
+    @property
+    def ridges(self) -> NDArray[np.int32]:
+        """The ridge along the edge that starts at each corner, -1 for the box, (p,)."""
+
+@final
+class ClippedCells3:
+    """Cells clipped to a convex polyhedron."""
+
+    @property
+    def measures(self) -> CellMeasures3:
+        """Measures of each clipped cell and ridge."""
+    @property
+    def cut(self) -> NDArray[np.int32]:
+        """The cells that were clipped, (b,)."""
+    @property
+    def point_starts(self) -> NDArray[np.int32]:
+        """Start of the corners of each of these, and the end, (b + 1,)."""
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The corners, (p, 3)."""
+    @property
+    def face_starts(self) -> NDArray[np.int32]:
+        """Start of the faces of each of these, and the end, (b + 1,)."""
+    @property
+    def corner_starts(self) -> NDArray[np.int32]:
+        """Start of the corners of each face, and the end, (f + 1,)."""
+    @property
+    def corners(self) -> NDArray[np.int32]:
+        """The corners of faces, as rows of `points`, counter-clockwise from outside."""
+    @property
+    def labels(self) -> NDArray[np.int32]:
+        """The ridge of each face, negative for a face of the polyhedron, (f,)."""
+
+@final
+class ConstrainedTriangulation:
+    """A constrained Delaunay triangulation of the whole hull."""
+
+    @property
+    def added(self) -> NDArray[np.float64]:
+        """Added vertices, (a, 2)."""
+    @property
     def simplices(self) -> NDArray[np.int32]:
-        """Vertices of the simplices, (m, d + 1)."""
+        """Vertices of the triangles; added vertices follow the input, (m, 3)."""
     @property
     def neighbors(self) -> NDArray[np.int32]:
-        """The simplex opposite each vertex, -1 outside, (m, d + 1)."""
+        """The triangle opposite each vertex, -1 outside, (m, 3)."""
+    @property
+    def constrained(self) -> NDArray[np.bool_]:
+        """Whether the edge opposite each vertex is a subsegment, (m, 3)."""
     @property
     def duplicates(self) -> NDArray[np.int32]:
         """Rows that repeat earlier rows, and the first of these, (k, 2)."""
     @property
-    def stages(self) -> tuple[tuple[str, float], ...]:
-        """Pairs of stage name and seconds."""
+    def segments(self) -> NDArray[np.int32]:
+        """The subsegments, (q, 2)."""
+    @property
+    def source_start(self) -> NDArray[np.int64]:
+        """Start of the rows that cover each subsegment in `source`, and the end, (q + 1,)."""
+    @property
+    def source(self) -> NDArray[np.int32]:
+        """The rows of segments that cover subsegments, (c,)."""
+    @property
+    def forward(self) -> NDArray[np.bool_]:
+        """Whether each of these has the direction of the subsegment, (c,)."""
+    @property
+    def zero(self) -> NDArray[np.int32]:
+        """Rows of segments of zero length, (k,)."""
+    @property
+    def through(self) -> NDArray[np.int32]:
+        """Rows of segments, and input vertices inside them, (k, 2)."""
+    @property
+    def crossings(self) -> NDArray[np.int32]:
+        """Pairs of rows of segments that cross, and the vertex at the crossing, (k, 3)."""
+    def __new__(
+        cls,
+        added: NDArray[np.float64],
+        simplices: NDArray[np.int32],
+        neighbors: NDArray[np.int32],
+        constrained: NDArray[np.bool_],
+        duplicates: NDArray[np.int32],
+        segments: NDArray[np.int32],
+        source_start: NDArray[np.int64],
+        source: NDArray[np.int32],
+        forward: NDArray[np.bool_],
+        zero: NDArray[np.int32],
+        through: NDArray[np.int32],
+        crossings: NDArray[np.int32],
+    ) -> ConstrainedTriangulation: ...
+    def arrays(self) -> tuple[NDArray[np.generic], ...]:
+        """All arrays, in the order of the arguments of the constructor."""
+    def __getnewargs__(self) -> tuple[NDArray[np.generic], ...]:
+        """The arguments for unpickling."""
+
+@final
+class ContourBands:
+    """Bands between levels as polygons: runs of rings, which are runs of coordinates."""
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Coordinates of all rings, (p, 2). Each ring ends with its first point."""
+    @property
+    def rings(self) -> NDArray[np.int64]:
+        """The start of each ring in the points, and the end of the last, (r + 1,)."""
+    @property
+    def polygons(self) -> NDArray[np.int64]:
+        """The start of each polygon in the rings, and the end of the last, (k + 1,)."""
+    @property
+    def bands(self) -> NDArray[np.int32]:
+        """The band of each polygon, ascending, (k,)."""
+    @property
+    def tangled(self) -> NDArray[np.int32]:
+        """Triangles in which bands would overlap; if there are any, there are no bands, (t,)."""
+
+@final
+class ContourLines:
+    """Contour lines as runs of coordinates."""
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Coordinates of all lines, (p, 2). A ring ends with its first point."""
+    @property
+    def starts(self) -> NDArray[np.int64]:
+        """The start of each line, and the end of the last, (k + 1,)."""
+    @property
+    def levels(self) -> NDArray[np.int32]:
+        """The number of the level of each line, ascending, (k,)."""
+    @property
+    def tangled(self) -> NDArray[np.int32]:
+        """Triangles in which lines would cross; if there are any, there are no lines, (t,)."""
+
+@final
+class CornerWeights:
+    """Weights of Clough-Tocher interpolation."""
+
+    @property
+    def simplex(self) -> NDArray[np.int32]:
+        """The triangle that contains each query, -1 outside, (q,)."""
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """Weights of values at its corners, (q, 3)."""
+    @property
+    def slopes(self) -> NDArray[np.float64]:
+        """Weights of gradients at its corners, (q, 3, 2)."""
+
+@final
+class DeepestPoints:
+    """Points in conflict with triangles, those deepest in circles first."""
+
+    @property
+    def starts(self) -> NDArray[np.int64]:
+        """Start of the points of each triangle, and the end, (m + 1,)."""
+    @property
+    def rows(self) -> NDArray[np.int32]:
+        """Rows of points, (k,)."""
+    @property
+    def complete(self) -> NDArray[np.bool_]:
+        """Whether these are all points in conflict with the triangle, (m,)."""
+
+@final
+class Diagram2:
+    """A 2-D Voronoi or power diagram."""
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """Vertices of cells, (k, 2)."""
+    @property
+    def simplex_vertex(self) -> NDArray[np.int32]:
+        """The vertex of each triangle, -1 beyond the range of doubles, (m,)."""
+    @property
+    def sites(self) -> NDArray[np.int32]:
+        """The two sites of each ridge, (r, 2)."""
+    @property
+    def ends(self) -> NDArray[np.int32]:
+        """The two ends of each ridge: a vertex, or ~i for ray i, (r, 2)."""
+    @property
+    def rays(self) -> NDArray[np.float64]:
+        """Directions of the rays, (q, 2)."""
+    @property
+    def beyond(self) -> NDArray[np.float64]:
+        """The vertex beyond the range of doubles at the end of each ray, NaN if none, (q, 2)."""
+    @property
+    def region(self) -> NDArray[np.int32]:
+        """The cell of each point, -1 for none, (n,)."""
+    @property
+    def site(self) -> NDArray[np.int32]:
+        """The point of each cell, (c,)."""
+    @property
+    def region_starts(self) -> NDArray[np.int32]:
+        """Start of the entries of each cell, and the end, (c + 1,)."""
+    @property
+    def region_vertices(self) -> NDArray[np.int32]:
+        """Entries: vertices, counter-clockwise, -1 for an end at infinity, (e,)."""
+    @property
+    def region_ridges(self) -> NDArray[np.int32]:
+        """Entries: the ridge that starts at each vertex, (e,)."""
+    def __new__(
+        cls,
+        vertices: NDArray[np.float64],
+        simplex_vertex: NDArray[np.int32],
+        sites: NDArray[np.int32],
+        ends: NDArray[np.int32],
+        rays: NDArray[np.float64],
+        beyond: NDArray[np.float64],
+        region: NDArray[np.int32],
+        site: NDArray[np.int32],
+        region_starts: NDArray[np.int32],
+        region_vertices: NDArray[np.int32],
+        region_ridges: NDArray[np.int32],
+    ) -> Diagram2: ...
+    def arrays(self) -> tuple[NDArray[np.generic], ...]:
+        """All arrays, in the order of the arguments of the constructor."""
+    def __getnewargs__(self) -> tuple[NDArray[np.generic], ...]:
+        """The arguments for unpickling."""
+
+@final
+class Diagram3:
+    """A 3-D Voronoi or power diagram."""
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """Vertices of cells, (k, 3)."""
+    @property
+    def simplex_vertex(self) -> NDArray[np.int32]:
+        """The vertex of each tetrahedron, -1 beyond the range of doubles, (m,)."""
+    @property
+    def sites(self) -> NDArray[np.int32]:
+        """The two sites of each ridge, (r, 2)."""
+    @property
+    def ridge_starts(self) -> NDArray[np.int32]:
+        """Start of the entries of each ridge, and the end, (r + 1,)."""
+    @property
+    def ridge_entries(self) -> NDArray[np.int32]:
+        """Entries: a vertex, or ~i for ray i, at both ends of an open ridge."""
+    @property
+    def rays(self) -> NDArray[np.float64]:
+        """Directions of the rays, (q, 3)."""
+    @property
+    def region(self) -> NDArray[np.int32]:
+        """The cell of each point, -1 for none, (n,)."""
+    @property
+    def site(self) -> NDArray[np.int32]:
+        """The point of each cell, (c,)."""
+    @property
+    def region_starts(self) -> NDArray[np.int32]:
+        """Start of the vertices of each cell, and the end, (c + 1,)."""
+    @property
+    def region_vertices(self) -> NDArray[np.int32]:
+        """Vertices of cells, ascending, -1 first if a cell is unbounded."""
+    @property
+    def region_ridge_starts(self) -> NDArray[np.int32]:
+        """Start of the ridges of each cell, and the end, (c + 1,)."""
+    @property
+    def region_ridges(self) -> NDArray[np.int32]:
+        """Ridges of cells, ascending."""
+    def __new__(
+        cls,
+        vertices: NDArray[np.float64],
+        simplex_vertex: NDArray[np.int32],
+        sites: NDArray[np.int32],
+        ridge_starts: NDArray[np.int32],
+        ridge_entries: NDArray[np.int32],
+        rays: NDArray[np.float64],
+        region: NDArray[np.int32],
+        site: NDArray[np.int32],
+        region_starts: NDArray[np.int32],
+        region_vertices: NDArray[np.int32],
+        region_ridge_starts: NDArray[np.int32],
+        region_ridges: NDArray[np.int32],
+    ) -> Diagram3: ...
+    def arrays(self) -> tuple[NDArray[np.generic], ...]:
+        """All arrays, in the order of the arguments of the constructor."""
+    def __getnewargs__(self) -> tuple[NDArray[np.generic], ...]:
+        """The arguments for unpickling."""
+
+@final
+class FacePairs:
+    """Pairs of faces that cross or touch."""
+
+    @property
+    def faces(self) -> NDArray[np.int32]:
+        """Rows of both faces, the smaller first, (p, 2)."""
+    @property
+    def kinds(self) -> NDArray[np.uint8]:
+        """The kind of each pair, (p,)."""
+    @property
+    def crossing(self) -> NDArray[np.bool_]:
+        """Whether they cross, (p,)."""
+    @property
+    def counts(self) -> NDArray[np.uint64]:
+        """The number of all pairs of each kind, (6,)."""
+    @property
+    def ncrossing(self) -> int:
+        """The number of all pairs that cross."""
 
 @final
 class Faults2:
@@ -261,69 +726,454 @@ class Faults3:
         """Pairs of cospherical tetrahedra that are not canonical, (k, 2)."""
 
 @final
-class RegularTriangulation:
-    """The regular triangulation of weighted points, of either dimension d."""
-
-    @property
-    def simplices(self) -> NDArray[np.int32]:
-        """Vertices of the simplices, (m, d + 1)."""
-    @property
-    def neighbors(self) -> NDArray[np.int32]:
-        """The simplex opposite each vertex, -1 outside, (m, d + 1)."""
-    @property
-    def chain(self) -> NDArray[np.int32]:
-        """Rows that are not hidden, in order along the line, if all points are collinear, (k,)."""
-    @property
-    def stands_for(self) -> NDArray[np.int32]:
-        """The row that represents each point, -1 for hidden points, (n,)."""
-
-@final
-class PeriodicTriangulation:
-    """A triangulation of periodic points: one triangle of each class of translates."""
+class FlippedTriangulation:
+    """A triangulation made canonical by flips."""
 
     @property
     def simplices(self) -> NDArray[np.int32]:
         """Vertices of the triangles, (m, 3)."""
     @property
-    def offsets(self) -> NDArray[np.int32]:
-        """The number of periods by which each corner is shifted, x and y by turns, (m, 6)."""
+    def neighbors(self) -> NDArray[np.int32]:
+        """The triangle opposite each vertex, -1 outside, (m, 3)."""
+    @property
+    def flips(self) -> int:
+        """Number of flips."""
+    @property
+    def sequence(self) -> NDArray[np.int32] | None:
+        """The vertices of each flip, (flips, 4); None if they were not recorded."""
+
+@final
+class Hull3:
+    """The convex hull of 3-D points."""
+
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the triangles of facets, (m, 3)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The triangle opposite each vertex, (m, 3)."""
+    @property
+    def facet_of(self) -> NDArray[np.int32]:
+        """The facet of each triangle, (m,)."""
+    @property
+    def polygons(self) -> NDArray[np.int32]:
+        """Vertices of all facets, one facet after the other, (k,)."""
+    @property
+    def starts(self) -> NDArray[np.int32]:
+        """Start of the vertices of each facet, and the end, (f + 1,)."""
+    @property
+    def duplicates(self) -> NDArray[np.int32]:
+        """Rows that repeat earlier rows, and the first of these, (d, 2)."""
+
+@final
+class ImprovedMesh:
+    """Improved tetrahedra."""
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Coordinates, (n, 3)."""
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the tetrahedra, (m, 4)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The tetrahedron opposite each vertex, -1 outside, (m, 4)."""
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """The weight of each point, 0 for most, (n,)."""
+    @property
+    def labels(self) -> NDArray[np.int32]:
+        """The label of each tetrahedron, (m,)."""
+    @property
+    def counts(self) -> ImprovementCounts:
+        """Numbers of changes."""
+    @property
+    def exhausted(self) -> bool:
+        """Whether the limit on passes was reached while passes still made progress."""
+
+@final
+class ImprovementCounts:
+    """Numbers of changes to tetrahedra, by kind."""
+
+    @property
+    def edges(self) -> int:
+        """Edges removed."""
+    @property
+    def boundary(self) -> int:
+        """Edges of the boundary among these."""
+    @property
+    def faces(self) -> int:
+        """Faces removed."""
+    @property
+    def moves(self) -> int:
+        """Vertices moved."""
+    @property
+    def weights(self) -> int:
+        """Weights assigned."""
+    @property
+    def passes(self) -> int:
+        """Passes."""
+    @property
+    def refused(self) -> int:
+        """Changes rejected."""
+
+@final
+class JudgedTriangles:
+    """Triangles with small, extreme or unknown angles."""
+
+    @property
+    def below(self) -> NDArray[np.int32]:
+        """Those with an angle below the bound, (k,)."""
+    @property
+    def extremes(self) -> NDArray[np.int32]:
+        """Those that include the smallest and the largest angle, (e,)."""
+    @property
+    def beyond(self) -> NDArray[np.int32]:
+        """Those that are beyond the range of doubles, (b,)."""
+
+@final
+class Live2:
+    """A 2-D Delaunay triangulation that is edited."""
+
+    def __new__(
+        cls,
+        points: NDArray[np.float64],
+        handles: NDArray[np.int64] | None,
+        total: int,
+        workers: int,
+    ) -> Live2:
+        """The triangulation of points with these handles, ascending, before the handle `total`."""
+    def counts(self) -> list[int]:
+        """Numbers: points, vertices, triangles, and the next handle."""
+    @property
+    def edits(self) -> int:
+        """How many edits are complete."""
+    def insert(self, points: NDArray[np.float64], workers: int) -> NDArray[np.int64]:
+        """Inserts points and returns their handles."""
+    def remove(self, handles: NDArray[np.int64], workers: int) -> None:
+        """Removes points."""
+    def remove_with_segments(self, handles: NDArray[np.int64], workers: int) -> NDArray[np.int64]:
+        """Removes points and the segments that end there, and returns the handles of these."""
+    def relocate(
+        self, handles: NDArray[np.int64], points: NDArray[np.float64], workers: int
+    ) -> None:
+        """Moves points."""
+    def faults(self, handles: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+        """Which of these handles are not there, or are named earlier."""
+    def points(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """The handles, ascending, and their points."""
+    def arrays(self) -> LiveArrays2:
+        """The present triangulation; no triangles if all points are on one line."""
+    def split_crossings(self, split: bool) -> None:
+        """Chooses whether crossings of segments are split."""
+    def constraints(self) -> list[bool]:
+        """Whether there are segments, and whether crossings are split."""
+    def insert_segments(self, ends: NDArray[np.int64], workers: int) -> NDArray[np.int64]:
+        """Inserts segments between points and returns their handles."""
+    def remove_segments(self, handles: NDArray[np.int64], workers: int) -> None:
+        """Removes segments."""
+    def adopt_segments(
+        self,
+        known: tuple[NDArray[np.int64], NDArray[np.int64]],
+        total: int,
+        crossings: tuple[NDArray[np.int64], NDArray[np.float64]],
+        workers: int,
+    ) -> None:
+        """Inserts segments with known handles, ascending, before the handle `total`; crossings at
+        known places get their handles again.
+        """
+    def segments(self) -> LiveSegments2:
+        """The segments and their crossings."""
+    def segment_faults(self, handles: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+        """Which of these handles of segments are not there, or are named earlier."""
+    def held(self, handles: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Which of these handles of points are ends of segments, each with one, or crossings, with
+        -1.
+        """
+    def corners(self, xi: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """The handles of the corners of a triangle that contains each query, -1 outside, and
+        weights.
+        """
+    def weights(
+        self, xi: NDArray[np.float64], known: int
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64], int, NDArray[np.int64] | None]:
+        """The same, and the number of edits so far; and if that is not `known`, the handles of all
+        points.
+        """
+    def nearest(self, xi: NDArray[np.float64]) -> NDArray[np.int64]:
+        """The handle of the nearest point to each query, -1 if there is none."""
+    def changes(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The triangles that were removed and added since the last call, as handles."""
+    def state(self) -> LiveState2:
+        """The present state."""
+    def restore(self, state: LiveState2, known: int | None = None) -> bool:
+        """Restores a state; not if `known` is given and is not the number of edits so far. Whether
+        it was restored.
+        """
+
+@final
+class Live3:
+    """A 3-D Delaunay triangulation that is edited."""
+
+    def __new__(
+        cls,
+        points: NDArray[np.float64],
+        handles: NDArray[np.int64] | None,
+        total: int,
+        workers: int,
+    ) -> Live3:
+        """The triangulation of points with these handles, ascending, before the handle `total`."""
+    def counts(self) -> list[int]:
+        """Numbers: points, vertices, tetrahedra, and the next handle."""
+    @property
+    def edits(self) -> int:
+        """How many edits are complete."""
+    def insert(self, points: NDArray[np.float64], workers: int) -> NDArray[np.int64]:
+        """Inserts points and returns their handles."""
+    def remove(self, handles: NDArray[np.int64], workers: int) -> None:
+        """Removes points."""
+    def relocate(
+        self, handles: NDArray[np.int64], points: NDArray[np.float64], workers: int
+    ) -> None:
+        """Moves points."""
+    def faults(self, handles: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+        """Which of these handles are not there, or are named earlier."""
+    def points(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """The handles, ascending, and their points."""
+    def arrays(self) -> LiveArrays3:
+        """The present triangulation; no tetrahedra if all points are in one plane."""
+    def corners(self, xi: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """The handles of the corners of a tetrahedron that contains each query, -1 outside, and
+        weights.
+        """
+    def weights(
+        self, xi: NDArray[np.float64], known: int
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64], int, NDArray[np.int64] | None]:
+        """The same, and the number of edits so far; and if that is not `known`, the handles of all
+        points.
+        """
+    def nearest(self, xi: NDArray[np.float64]) -> NDArray[np.int64]:
+        """The handle of the nearest point to each query, -1 if there is none."""
+    def changes(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The tetrahedra that were removed and added since the last call, as handles."""
+    def state(self) -> LiveState3:
+        """The present state."""
+    def restore(self, state: LiveState3, known: int | None = None) -> bool:
+        """Restores a state; not if `known` is given and is not the number of edits so far. Whether
+        it was restored.
+        """
+
+@final
+class LiveArrays2:
+    """The present triangulation."""
+
+    @property
+    def handles(self) -> NDArray[np.int64]:
+        """The handles of the points, ascending, (n,)."""
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The points, (n, 2)."""
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Triangles as rows of these, (m, 3)."""
     @property
     def neighbors(self) -> NDArray[np.int32]:
         """The triangle opposite each vertex, -1 outside, (m, 3)."""
     @property
-    def partners(self) -> NDArray[np.int32]:
-        """The same with its corner, 3 t + k, (m, 3)."""
+    def constrained(self) -> NDArray[np.bool_] | None:
+        """Whether the edge opposite each vertex is part of a segment; None without segments."""
     @property
-    def chain(self) -> NDArray[np.int32]:
-        """Rows that are not hidden, in order along the line, if there is no triangle, (k,)."""
+    def duplicates(self) -> NDArray[np.int32]:
+        """Rows that repeat earlier rows, and the first of these, (k, 2)."""
 
 @final
-class RegularFaults2:
-    """What is wrong with a 2-D regular triangulation."""
+class LiveArrays3:
+    """The present triangulation."""
 
     @property
-    def faults(self) -> Faults2:
-        """Faults as without weights; `missing` has points outside all triangles."""
+    def handles(self) -> NDArray[np.int64]:
+        """The handles of the points, ascending, (n,)."""
     @property
-    def hidden(self) -> NDArray[np.int32]:
-        """Rows that should be vertices though triangles cover them, (k,)."""
+    def points(self) -> NDArray[np.float64]:
+        """The points, (n, 3)."""
     @property
-    def stands_for(self) -> NDArray[np.int32]:
-        """The row that stands for each point, (n,)."""
+    def simplices(self) -> NDArray[np.int32]:
+        """Tetrahedra as rows of these, (m, 4)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The tetrahedron opposite each vertex, -1 outside, (m, 4)."""
+    @property
+    def duplicates(self) -> NDArray[np.int32]:
+        """Rows that repeat earlier rows, and the first of these, (k, 2)."""
 
 @final
-class RegularFaults3:
-    """What is wrong with a 3-D regular triangulation."""
+class LiveSegments2:
+    """The segments of a triangulation."""
 
     @property
-    def faults(self) -> Faults3:
-        """Faults as without weights; `missing` has points outside all tetrahedra."""
+    def handles(self) -> NDArray[np.int64]:
+        """The handles of segments, ascending, (s,)."""
     @property
-    def hidden(self) -> NDArray[np.int32]:
-        """Rows that should be vertices though tetrahedra cover them, (k,)."""
+    def ends(self) -> NDArray[np.int64]:
+        """The handles of their ends, (s, 2)."""
     @property
-    def stands_for(self) -> NDArray[np.int32]:
-        """The row that stands for each point, (n,)."""
+    def crossings(self) -> NDArray[np.int64]:
+        """Two segments, and the handle of the vertex where they cross, (c, 3)."""
+    @property
+    def added(self) -> NDArray[np.int64]:
+        """The handles of vertices that only crossings need, (v,)."""
+    @property
+    def total(self) -> int:
+        """The next handle of a segment."""
+
+@final
+class LiveState2:
+    """A state of a `Live2`, which never changes."""
+
+    def open(self) -> Live2:
+        """A triangulation of its own in this state."""
+    def own_bytes(self, other: LiveState2) -> int:
+        """Bytes that are not shared with another state."""
+
+@final
+class LiveState3:
+    """A state of a `Live3`, which never changes."""
+
+    def open(self) -> Live3:
+        """A triangulation of its own in this state."""
+    def own_bytes(self, other: LiveState3) -> int:
+        """Bytes that are not shared with another state."""
+
+@final
+class Location2:
+    """Locations of queries in triangles."""
+
+    @property
+    def simplex(self) -> NDArray[np.int32]:
+        """The triangle that contains each query, -1 outside, (q,)."""
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """Weights of its corners, NaN outside, (q, 3)."""
+    @property
+    def beside(self) -> NDArray[np.int32]:
+        """Outside, the triangle at the nearest point of the boundary; else -1, (q,)."""
+    @property
+    def edge(self) -> NDArray[np.int32]:
+        """Outside, the boundary edge with that point; else -1, (q, 2)."""
+    @property
+    def along(self) -> NDArray[np.float64]:
+        """Outside, the position of the point along that edge, from 0 to 1; else NaN, (q,)."""
+
+@final
+class Location3:
+    """Locations of queries in tetrahedra."""
+
+    @property
+    def simplex(self) -> NDArray[np.int32]:
+        """The tetrahedron that contains each query, -1 outside, (q,)."""
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """Weights of its corners, NaN outside, (q, 4)."""
+    @property
+    def beside(self) -> NDArray[np.int32]:
+        """Outside, the tetrahedron at the nearest point of the boundary; else -1, (q,)."""
+    @property
+    def face(self) -> NDArray[np.int32]:
+        """Outside, the boundary face with that point; else -1, (q, 3)."""
+    @property
+    def shares(self) -> NDArray[np.float64]:
+        """Outside, the weights of its corners; else NaN, (q, 3)."""
+
+@final
+class Locator2:
+    """A triangulation that is kept for many calls."""
+
+    def __new__(
+        cls, points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
+    ) -> Locator2: ...
+    def find(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]:
+        """For each query, the first triangle that contains it, or -1."""
+    def locate(self, xi: NDArray[np.float64], workers: int) -> Location2:
+        """Triangles with barycentric coordinates, and outside the nearest boundary point."""
+    def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]:
+        """The nearest vertex to each query, in a Delaunay triangulation."""
+    def along(self, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.int32]:
+        """The triangles along the segment from `a` to `b`."""
+    def linear(
+        self, values: NDArray[np.float64], xi: NDArray[np.float64], order: int, workers: int
+    ) -> NDArray[np.float64]:
+        """Linear interpolation: values, or gradients."""
+    def clough_tocher(
+        self,
+        values: NDArray[np.float64],
+        gradients: NDArray[np.float64],
+        xi: NDArray[np.float64],
+        barrier: NDArray[np.bool_] | None,
+        order: int,
+        workers: int,
+    ) -> NDArray[np.float64]:
+        """Clough-Tocher interpolation: values, gradients or Hessians."""
+    def clough_tocher_weights(
+        self, xi: NDArray[np.float64], barrier: NDArray[np.bool_] | None, workers: int
+    ) -> CornerWeights:
+        """The weights of Clough-Tocher interpolation."""
+    def natural(
+        self, kind: str, xi: NDArray[np.float64], barrier: NDArray[np.bool_] | None, workers: int
+    ) -> NaturalWeights:
+        """The weights of natural neighbors."""
+    def natural_values(
+        self,
+        kind: str,
+        values: NDArray[np.float64],
+        gradients: NDArray[np.float64] | None,
+        xi: NDArray[np.float64],
+        barrier: NDArray[np.bool_] | None,
+        order: int,
+        workers: int,
+    ) -> NDArray[np.float64]:
+        """Natural neighbor interpolation: values, gradients or Hessians."""
+    def leave_one_out(self, kind: str, workers: int) -> WeightRows:
+        """For each vertex, the weights of the others."""
+
+@final
+class Locator3:
+    """A 3-D triangulation that is kept for many calls."""
+
+    def __new__(
+        cls, points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
+    ) -> Locator3: ...
+    def find(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]:
+        """For each query, the first tetrahedron that contains it, or -1."""
+    def within(
+        self, xi: NDArray[np.float64], workers: int
+    ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+        """Tetrahedra with barycentric coordinates."""
+    def locate(self, xi: NDArray[np.float64], workers: int) -> Location3:
+        """Tetrahedra with barycentric coordinates, and outside the nearest boundary point."""
+    def laplace(self, xi: NDArray[np.float64], workers: int) -> NaturalWeights:
+        """Laplace weights of natural neighbors, as compressed rows, and the tetrahedra of queries."""
+    def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]:
+        """The nearest vertex to each query, in a Delaunay triangulation."""
+
+@final
+class NaturalWeights:
+    """Weights of natural neighbors as compressed rows."""
+
+    @property
+    def indptr(self) -> NDArray[np.int64]:
+        """Start of the neighbors of each query, and the end, (q + 1,)."""
+    @property
+    def indices(self) -> NDArray[np.int32]:
+        """The neighbors, (k,)."""
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """Their weights, (k,)."""
+    @property
+    def slopes(self) -> NDArray[np.float64] | None:
+        """Weights of their gradients, (k, 2); None if the kind has none."""
+    @property
+    def simplex(self) -> NDArray[np.int32]:
+        """The simplex that contains each query, -1 outside, (q,)."""
 
 @final
 class PeriodicFaults:
@@ -331,7 +1181,7 @@ class PeriodicFaults:
 
     @property
     def offsets(self) -> NDArray[np.int32]:
-        """Triangles with impossible offsets; if any, nothing else is checked, (k,)."""
+        """Triangles with impossible offsets; if there are any, nothing else is checked, (k,)."""
     @property
     def orientation(self) -> NDArray[np.int32]:
         """Triangles that are not counter-clockwise, (k,)."""
@@ -358,160 +1208,93 @@ class PeriodicFaults:
         """Pairs of triangles on a tie that are not canonical, (k, 2)."""
     @property
     def count(self) -> NDArray[np.int32]:
-        """Numbers of triangles expected and found, (2,), where they differ; else (0,)."""
+        """Numbers of triangles expected and found, (2,), where they differ; otherwise (0,)."""
     @property
     def layers(self) -> NDArray[np.int32]:
-        """How often the triangles cover the plane, (1,), if not once; else (0,)."""
+        """How often the triangles cover the plane, (1,), if not once; otherwise (0,)."""
 
 @final
-class Hull3:
-    """The convex hull of 3-D points."""
-
-    @property
-    def simplices(self) -> NDArray[np.int32]:
-        """Vertices of the triangles of facets, (m, 3)."""
-    @property
-    def neighbors(self) -> NDArray[np.int32]:
-        """The triangle opposite each vertex, (m, 3)."""
-    @property
-    def facet_of(self) -> NDArray[np.int32]:
-        """The facet of each triangle, (m,)."""
-    @property
-    def polygons(self) -> NDArray[np.int32]:
-        """Vertices of all facets, one facet after the other, (k,)."""
-    @property
-    def starts(self) -> NDArray[np.int32]:
-        """Start of the vertices of each facet, and the end, (f + 1,)."""
-    @property
-    def duplicates(self) -> NDArray[np.int32]:
-        """Rows that repeat earlier rows, and the first of these, (d, 2)."""
-
-@final
-class SphereTriangulation:
-    """A Delaunay triangulation of directions."""
-
-    @property
-    def simplices(self) -> NDArray[np.int32]:
-        """Vertices of the triangles, counter-clockwise seen from outside, (m, 3)."""
-    @property
-    def neighbors(self) -> NDArray[np.int32]:
-        """The triangle opposite each vertex, -1 beyond a hull, (m, 3)."""
-    @property
-    def duplicates(self) -> NDArray[np.int32]:
-        """Rows that repeat the direction of earlier rows, and the first of these, (d, 2)."""
-
-@final
-class SphereDual:
-    """The Voronoi diagram of directions."""
-
-    @property
-    def simplices(self) -> NDArray[np.int32]:
-        """Facets of the convex hull: the triangles, and those across a void, (f, 3)."""
-    @property
-    def neighbors(self) -> NDArray[np.int32]:
-        """The facet opposite each corner, (f, 3)."""
-    @property
-    def vertex(self) -> NDArray[np.int32]:
-        """The vertex of each facet, (f,)."""
-    @property
-    def facet(self) -> NDArray[np.int32]:
-        """The first facet of each vertex, (k,)."""
-    @property
-    def around(self) -> NDArray[np.int32]:
-        """The edge of each ridge, and the corners to its left and right, (r, 4)."""
-    @property
-    def ends(self) -> NDArray[np.int32]:
-        """The vertices of each ridge, to the left and right of its edge, (r, 2)."""
-    @property
-    def cell(self) -> NDArray[np.int32]:
-        """The cell of each row, -1 if it is not a corner, (n,)."""
-    @property
-    def starts(self) -> NDArray[np.int32]:
-        """Where the entries of each cell begin."""
-    @property
-    def vertices(self) -> NDArray[np.int32]:
-        """The vertices of cells, counter-clockwise."""
-    @property
-    def ridges(self) -> NDArray[np.int32]:
-        """The ridges that follow them."""
-
-@final
-class FlippedTriangulation:
-    """A triangulation made canonical by flips."""
+class PeriodicTriangulation:
+    """A triangulation of periodic points: one triangle of each class of translates."""
 
     @property
     def simplices(self) -> NDArray[np.int32]:
         """Vertices of the triangles, (m, 3)."""
     @property
+    def offsets(self) -> NDArray[np.int32]:
+        """The number of periods by which each corner is shifted, x and y by turns, (m, 6)."""
+    @property
     def neighbors(self) -> NDArray[np.int32]:
         """The triangle opposite each vertex, -1 outside, (m, 3)."""
     @property
-    def flips(self) -> int:
-        """Number of flips."""
+    def partners(self) -> NDArray[np.int32]:
+        """The same with its corner, 3 t + k, (m, 3)."""
     @property
-    def sequence(self) -> NDArray[np.int32] | None:
-        """The vertices of each flip, (flips, 4); None if they were not recorded."""
+    def chain(self) -> NDArray[np.int32]:
+        """Rows that are not hidden, in order along the line, if there is no triangle, (k,)."""
 
 @final
-class ConstrainedTriangulation:
-    """A constrained Delaunay triangulation of the whole hull."""
+class RecoveredFaces:
+    """Tetrahedra that have given faces."""
 
     @property
-    def added(self) -> NDArray[np.float64]:
-        """Added vertices, (a, 2)."""
+    def points(self) -> NDArray[np.float64]:
+        """The points given, followed by those that were added, (n + k, 3)."""
     @property
-    def simplices(self) -> NDArray[np.int32]:
-        """Vertices of the triangles; added vertices follow the input, (m, 3)."""
+    def tetrahedra(self) -> NDArray[np.int32]:
+        """Vertices of the tetrahedra, (t, 4)."""
     @property
     def neighbors(self) -> NDArray[np.int32]:
-        """The triangle opposite each vertex, -1 outside, (m, 3)."""
+        """The tetrahedron opposite each vertex, -1 if there is none, (t, 4)."""
     @property
-    def constrained(self) -> NDArray[np.bool_]:
-        """Whether the edge opposite each vertex is a subsegment, (m, 3)."""
+    def walls(self) -> NDArray[np.int32]:
+        """The row of the face opposite each vertex, -1 if there is none, (t, 4)."""
     @property
-    def duplicates(self) -> NDArray[np.int32]:
-        """Rows that repeat earlier rows, and the first of these, (k, 2)."""
+    def nadded(self) -> int:
+        """How many points were added."""
     @property
-    def segments(self) -> NDArray[np.int32]:
-        """The subsegments, (q, 2)."""
+    def counts(self) -> RecoveryCounts:
+        """What happened."""
     @property
-    def source_start(self) -> NDArray[np.int64]:
-        """Start of the rows of each subsegment in `source`, and the end, (q + 1,)."""
+    def crowded(self) -> NDArray[np.int32]:
+        """Rows of faces near which no double is left for a point, (k,): then there are no
+        tetrahedra.
+        """
+
+@final
+class RecoveryCounts:
+    """What happened during a recovery of faces."""
+
     @property
-    def source(self) -> NDArray[np.int32]:
-        """The rows of segments that cover subsegments, (c,)."""
+    def missing_edges(self) -> int:
+        """Edges of faces that the Delaunay triangulation lacks."""
     @property
-    def forward(self) -> NDArray[np.bool_]:
-        """Whether each of these has the direction of the subsegment, (c,)."""
+    def missing_faces(self) -> int:
+        """Faces that it lacks."""
     @property
-    def zero(self) -> NDArray[np.int32]:
-        """Rows of segments of zero length, (k,)."""
+    def flips(self) -> int:
+        """Changes by flips."""
     @property
-    def through(self) -> NDArray[np.int32]:
-        """Rows of segments, and input vertices inside them, (k, 2)."""
+    def flipped_edges(self) -> int:
+        """Edges recovered by flips."""
     @property
-    def crossings(self) -> NDArray[np.int32]:
-        """Pairs of rows of segments that cross, and the vertex at the crossing, (k, 3)."""
-    def __new__(
-        cls,
-        added: NDArray[np.float64],
-        simplices: NDArray[np.int32],
-        neighbors: NDArray[np.int32],
-        constrained: NDArray[np.bool_],
-        duplicates: NDArray[np.int32],
-        segments: NDArray[np.int32],
-        source_start: NDArray[np.int64],
-        source: NDArray[np.int32],
-        forward: NDArray[np.bool_],
-        zero: NDArray[np.int32],
-        through: NDArray[np.int32],
-        crossings: NDArray[np.int32],
-    ) -> ConstrainedTriangulation:
-        """Check the shapes of the arrays."""
-    def arrays(self) -> tuple[NDArray[np.generic], ...]:
-        """All arrays, in the order of the arguments of the constructor."""
-    def __getnewargs__(self) -> tuple[NDArray[np.generic], ...]:
-        """The arguments for unpickling."""
+    def flipped_faces(self) -> int:
+        """Faces recovered by flips."""
+    @property
+    def segment_points(self) -> int:
+        """Points that were put on edges for a time."""
+    @property
+    def face_points(self) -> int:
+        """Points that were put in faces for a time."""
+    @property
+    def suppressed(self) -> int:
+        """Sectors whose point on the boundary moved into the inside."""
+    @property
+    def joined(self) -> int:
+        """Sectors that were joined to a vertex without a point."""
+    @property
+    def thinned(self) -> int:
+        """Points inside that were taken away again."""
 
 @final
 class RefinedMesh:
@@ -552,23 +1335,6 @@ class RefinedMesh:
         """Whether the limit on vertices was reached."""
 
 @final
-class SmoothedMesh:
-    """A mesh whose free vertices have moved."""
-
-    @property
-    def points(self) -> NDArray[np.float64]:
-        """The coordinates, (n, 2)."""
-    @property
-    def simplices(self) -> NDArray[np.int32]:
-        """Vertices of the triangles, each in the region that it was in before, (m, 3)."""
-    @property
-    def neighbors(self) -> NDArray[np.int32]:
-        """The triangle opposite each vertex, -1 outside, (m, 3)."""
-    @property
-    def sides(self) -> NDArray[np.int32]:
-        """The line under the edge opposite each vertex, or -1, (m, 3)."""
-
-@final
 class Refinement2:
     """A refinement in rounds, between which areas are sampled."""
 
@@ -588,1114 +1354,68 @@ class Refinement2:
         circles: bool,
         sizes_yield: bool,
     ) -> Refinement2:
-        """A domain (points, simplices, neighbors, labels, segments, frozen), lines, and samples."""
+        """A domain `(points, simplices, neighbors, labels, segments, frozen)` with lines;
+        `samples` are positions in it and the largest areas of triangles there.
+        """
     def fresh(self, workers: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-        """The centers, (k, 2), and labels, (k,), of triangles that are new since the last call."""
+        """The centers, (k, 2), and the labels, (k,), of triangles that are new since the last
+        call.
+        """
     def comply(self, wanted: NDArray[np.float64]) -> bool:
-        """Set the areas wanted at these centers; return whether all triangles comply."""
+        """Sets the areas wanted at these centers; returns whether all triangles comply."""
     def refine(
         self, max_vertices: int, progress: Callable[[int, float], object] | None
     ) -> tuple[bool, int]:
-        """One round; return whether the limit was enough, and the vertices added in all rounds."""
+        """One round; returns whether `max_vertices`, the number of vertices to add, was enough,
+        and the number of vertices added in all rounds.
+        """
     def export(self) -> RefinedMesh:
         """The triangulation, with the vertices of all rounds."""
 
 @final
-class JudgedTriangles:
-    """Triangles with small, extreme or unknown angles."""
+class RegularFaults2:
+    """What is wrong with a 2-D regular triangulation."""
 
     @property
-    def below(self) -> NDArray[np.int32]:
-        """Those with an angle below the bound, (k,)."""
+    def faults(self) -> Faults2:
+        """Faults as without weights; `missing` has points outside all triangles."""
     @property
-    def extremes(self) -> NDArray[np.int32]:
-        """Those that include the smallest and the largest angle, (e,)."""
+    def hidden(self) -> NDArray[np.int32]:
+        """Rows that should be vertices though triangles cover them, (k,)."""
     @property
-    def beyond(self) -> NDArray[np.int32]:
-        """Those that are beyond the range of doubles, (b,)."""
-
-@final
-class ImprovementCounts:
-    """Numbers of changes to tetrahedra, by kind."""
-
-    @property
-    def edges(self) -> int:
-        """Edges removed."""
-    @property
-    def boundary(self) -> int:
-        """Edges of the boundary among these."""
-    @property
-    def faces(self) -> int:
-        """Faces removed."""
-    @property
-    def moves(self) -> int:
-        """Vertices moved."""
-    @property
-    def weights(self) -> int:
-        """Weights assigned."""
-    @property
-    def passes(self) -> int:
-        """Passes."""
-    @property
-    def refused(self) -> int:
-        """Changes rejected."""
+    def stands_for(self) -> NDArray[np.int32]:
+        """The row that stands for each point, (n,)."""
 
 @final
-class FacePairs:
-    """Pairs of faces that cross or touch."""
+class RegularFaults3:
+    """What is wrong with a 3-D regular triangulation."""
 
     @property
-    def faces(self) -> NDArray[np.int32]:
-        """Rows of both faces, the smaller first, (p, 2)."""
+    def faults(self) -> Faults3:
+        """Faults as without weights; `missing` has points outside all tetrahedra."""
     @property
-    def kinds(self) -> NDArray[np.uint8]:
-        """The kind of each pair, (p,)."""
+    def hidden(self) -> NDArray[np.int32]:
+        """Rows that should be vertices though tetrahedra cover them, (k,)."""
     @property
-    def crossing(self) -> NDArray[np.bool_]:
-        """Whether they cross, (p,)."""
-    @property
-    def counts(self) -> NDArray[np.uint64]:
-        """The number of all pairs of each kind, (6,)."""
-    @property
-    def ncrossing(self) -> int:
-        """The number of all pairs that cross."""
+    def stands_for(self) -> NDArray[np.int32]:
+        """The row that stands for each point, (n,)."""
 
 @final
-class CheckedSurface:
-    """What a surface is."""
+class RegularTriangulation:
+    """The regular triangulation of weighted points, of either dimension d."""
 
-    @property
-    def duplicate_points(self) -> NDArray[np.int32]:
-        """Rows of points with the first rows of the same coordinates, (k, 2)."""
-    @property
-    def repeats(self) -> NDArray[np.int32]:
-        """Faces that use a vertex twice, (k,)."""
-    @property
-    def collinear(self) -> NDArray[np.int32]:
-        """Other faces without area, (k,)."""
-    @property
-    def duplicate_faces(self) -> NDArray[np.int32]:
-        """Rows of faces with the first rows of the same vertices, (k, 2)."""
-    @property
-    def pairs(self) -> FacePairs:
-        """Pairs that cross or touch."""
-    @property
-    def nedges(self) -> int:
-        """The number of edges."""
-    @property
-    def boundary(self) -> NDArray[np.int32]:
-        """Edges of one face, (k, 2)."""
-    @property
-    def many(self) -> NDArray[np.int32]:
-        """Edges of three faces or more, (k, 2)."""
-    @property
-    def unbalanced(self) -> NDArray[np.int32]:
-        """Edges that are not passed equally often in both directions, (k, 2)."""
-    @property
-    def not_fans(self) -> NDArray[np.int32]:
-        """Vertices whose faces do not form one fan, (k,)."""
-    @property
-    def component(self) -> NDArray[np.int32]:
-        """The component of each face, -1 of degenerate ones, (m,)."""
-    @property
-    def ncomponents(self) -> int:
-        """The number of components."""
-    @property
-    def nregions(self) -> int | None:
-        """The number of regions that are separated from the outside; None if faces cross."""
-    @property
-    def dangling(self) -> NDArray[np.int32]:
-        """Faces with the same region on both sides, (k,)."""
-    @property
-    def volume(self) -> float:
-        """The signed volume."""
-    @property
-    def sign(self) -> int:
-        """The exact sign of the volume."""
-
-@final
-class ImprovedMesh:
-    """Improved tetrahedra."""
-
-    @property
-    def points(self) -> NDArray[np.float64]:
-        """Coordinates, (n, 3)."""
     @property
     def simplices(self) -> NDArray[np.int32]:
-        """Vertices of the tetrahedra, (m, 4)."""
+        """Vertices of the simplices, (m, d + 1)."""
     @property
     def neighbors(self) -> NDArray[np.int32]:
-        """The tetrahedron opposite each vertex, -1 outside, (m, 4)."""
+        """The simplex opposite each vertex, -1 outside, (m, d + 1)."""
     @property
-    def weights(self) -> NDArray[np.float64]:
-        """The weight of each point, 0 for most, (n,)."""
+    def chain(self) -> NDArray[np.int32]:
+        """Rows that are not hidden, in order along the line, if all points are collinear, (k,)."""
     @property
-    def labels(self) -> NDArray[np.int32]:
-        """The label of each tetrahedron, (m,)."""
-    @property
-    def counts(self) -> ImprovementCounts:
-        """Numbers of changes."""
-    @property
-    def exhausted(self) -> bool:
-        """Whether the limit on passes was reached while passes still made progress."""
-
-@final
-class Diagram2:
-    """A 2-D Voronoi or power diagram."""
-
-    @property
-    def vertices(self) -> NDArray[np.float64]:
-        """Vertices of cells, (k, 2)."""
-    @property
-    def simplex_vertex(self) -> NDArray[np.int32]:
-        """The vertex of each triangle, -1 beyond the range of doubles, (m,)."""
-    @property
-    def sites(self) -> NDArray[np.int32]:
-        """The two sites of each ridge, (r, 2)."""
-    @property
-    def ends(self) -> NDArray[np.int32]:
-        """The two ends of each ridge: a vertex, or ~i for ray i, (r, 2)."""
-    @property
-    def rays(self) -> NDArray[np.float64]:
-        """Directions of the rays, (q, 2)."""
-    @property
-    def beyond(self) -> NDArray[np.float64]:
-        """The vertex beyond the range of doubles at the end of each ray, NaN if none, (q, 2)."""
-    @property
-    def region(self) -> NDArray[np.int32]:
-        """The cell of each point, -1 for none, (n,)."""
-    @property
-    def site(self) -> NDArray[np.int32]:
-        """The point of each cell, (c,)."""
-    @property
-    def region_starts(self) -> NDArray[np.int32]:
-        """Start of the entries of each cell, and the end, (c + 1,)."""
-    @property
-    def region_vertices(self) -> NDArray[np.int32]:
-        """Entries: vertices, counter-clockwise, -1 for an end at infinity, (e,)."""
-    @property
-    def region_ridges(self) -> NDArray[np.int32]:
-        """Entries: the ridge that starts at each vertex, (e,)."""
-    def __new__(
-        cls,
-        vertices: NDArray[np.float64],
-        simplex_vertex: NDArray[np.int32],
-        sites: NDArray[np.int32],
-        ends: NDArray[np.int32],
-        rays: NDArray[np.float64],
-        beyond: NDArray[np.float64],
-        region: NDArray[np.int32],
-        site: NDArray[np.int32],
-        region_starts: NDArray[np.int32],
-        region_vertices: NDArray[np.int32],
-        region_ridges: NDArray[np.int32],
-    ) -> Diagram2:
-        """Check the shapes of the arrays."""
-    def arrays(self) -> tuple[NDArray[np.generic], ...]:
-        """All arrays, in the order of the arguments of the constructor."""
-    def __getnewargs__(self) -> tuple[NDArray[np.generic], ...]:
-        """The arguments for unpickling."""
-
-@final
-class ClippedCells2:
-    """Cells clipped to a box: convex polygons."""
-
-    @property
-    def starts(self) -> NDArray[np.int32]:
-        """Start of the corners of each cell, and the end, (c + 1,)."""
-    @property
-    def corners(self) -> NDArray[np.float64]:
-        """The corners, counter-clockwise, (p, 2)."""
-    @property
-    def ridges(self) -> NDArray[np.int32]:
-        """The ridge along the edge that starts at each corner, or -1, (p,)."""
-
-@final
-class CellMeasures2:
-    """Measures of polygons."""
-
-    @property
-    def areas(self) -> NDArray[np.float64]:
-        """Areas, (c,)."""
-    @property
-    def centroids(self) -> NDArray[np.float64]:
-        """Centroids, (c, 2)."""
-    @property
-    def perimeters(self) -> NDArray[np.float64]:
-        """Perimeters, (c,)."""
-
-@final
-class CellPieces2:
-    """Polygons clipped to an outline."""
-
-    @property
-    def left(self) -> NDArray[np.int8]:
-        """For each polygon what is left: -1 (unknown), 0 (nothing), 1 (all) or 2 (parts), (k,)."""
-    @property
-    def cells(self) -> NDArray[np.int64]:
-        """Start of the parts of each polygon, and the end, (k + 1,)."""
-    @property
-    def parts(self) -> NDArray[np.int64]:
-        """Start of the rings of each part, and the end."""
-    @property
-    def rings(self) -> NDArray[np.int64]:
-        """Start of the corners of each ring, and the end."""
-    @property
-    def points(self) -> NDArray[np.float64]:
-        """The corners, (p, 2)."""
-    @property
-    def ridges(self) -> NDArray[np.int32]:
-        """The ridge along the edge that starts at each corner, negative for none, (p,)."""
-    @property
-    def measures(self) -> CellMeasures2:
-        """Measures of each clipped polygon."""
-
-@final
-class Diagram3:
-    """A 3-D Voronoi or power diagram."""
-
-    @property
-    def vertices(self) -> NDArray[np.float64]:
-        """Vertices of cells, (k, 3)."""
-    @property
-    def simplex_vertex(self) -> NDArray[np.int32]:
-        """The vertex of each tetrahedron, -1 beyond the range of doubles, (m,)."""
-    @property
-    def sites(self) -> NDArray[np.int32]:
-        """The two sites of each ridge, (r, 2)."""
-    @property
-    def ridge_starts(self) -> NDArray[np.int32]:
-        """Start of the entries of each ridge, and the end, (r + 1,)."""
-    @property
-    def ridge_entries(self) -> NDArray[np.int32]:
-        """A vertex, or ~i for ray i, at both ends of an open ridge."""
-    @property
-    def rays(self) -> NDArray[np.float64]:
-        """Directions of the rays, (q, 3)."""
-    @property
-    def region(self) -> NDArray[np.int32]:
-        """The cell of each point, -1 for none, (n,)."""
-    @property
-    def site(self) -> NDArray[np.int32]:
-        """The point of each cell, (c,)."""
-    @property
-    def region_starts(self) -> NDArray[np.int32]:
-        """Start of the vertices of each cell, and the end, (c + 1,)."""
-    @property
-    def region_vertices(self) -> NDArray[np.int32]:
-        """Vertices of cells, ascending, -1 first if a cell is unbounded."""
-    @property
-    def region_ridge_starts(self) -> NDArray[np.int32]:
-        """Start of the ridges of each cell, and the end, (c + 1,)."""
-    @property
-    def region_ridges(self) -> NDArray[np.int32]:
-        """Ridges of cells, ascending."""
-    def __new__(
-        cls,
-        vertices: NDArray[np.float64],
-        simplex_vertex: NDArray[np.int32],
-        sites: NDArray[np.int32],
-        ridge_starts: NDArray[np.int32],
-        ridge_entries: NDArray[np.int32],
-        rays: NDArray[np.float64],
-        region: NDArray[np.int32],
-        site: NDArray[np.int32],
-        region_starts: NDArray[np.int32],
-        region_vertices: NDArray[np.int32],
-        region_ridge_starts: NDArray[np.int32],
-        region_ridges: NDArray[np.int32],
-    ) -> Diagram3:
-        """Check the shapes of the arrays."""
-    def arrays(self) -> tuple[NDArray[np.generic], ...]:
-        """All arrays, in the order of the arguments of the constructor."""
-    def __getnewargs__(self) -> tuple[NDArray[np.generic], ...]:
-        """The arguments for unpickling."""
-
-@final
-class CellMeasures3:
-    """Measures of cells, and of ridges."""
-
-    @property
-    def ridge_areas(self) -> NDArray[np.float64]:
-        """The area of each ridge, (r,)."""
-    @property
-    def volumes(self) -> NDArray[np.float64]:
-        """Volumes, (c,)."""
-    @property
-    def areas(self) -> NDArray[np.float64]:
-        """Areas of surfaces, (c,)."""
-    @property
-    def centroids(self) -> NDArray[np.float64]:
-        """Centroids, (c, 3)."""
-
-@final
-class ClippedCells3:
-    """Cells clipped to a convex polyhedron."""
-
-    @property
-    def measures(self) -> CellMeasures3:
-        """Measures of each clipped cell and ridge."""
-    @property
-    def cut(self) -> NDArray[np.int32]:
-        """The cells that were clipped, (b,)."""
-    @property
-    def point_starts(self) -> NDArray[np.int32]:
-        """Start of the corners of each of these, and the end, (b + 1,)."""
-    @property
-    def points(self) -> NDArray[np.float64]:
-        """The corners, (p, 3)."""
-    @property
-    def face_starts(self) -> NDArray[np.int32]:
-        """Start of the faces of each of these, and the end, (b + 1,)."""
-    @property
-    def corner_starts(self) -> NDArray[np.int32]:
-        """Start of the corners of each face, and the end, (f + 1,)."""
-    @property
-    def corners(self) -> NDArray[np.int32]:
-        """Corners of faces, as rows of `points`, counter-clockwise from outside."""
-    @property
-    def labels(self) -> NDArray[np.int32]:
-        """The ridge of each face, negative for a face of the polyhedron, (f,)."""
-
-@final
-class Location2:
-    """Locations of queries in triangles."""
-
-    @property
-    def simplex(self) -> NDArray[np.int32]:
-        """The triangle that contains each query, -1 outside, (q,)."""
-    @property
-    def weights(self) -> NDArray[np.float64]:
-        """Weights of its corners, NaN outside, (q, 3)."""
-    @property
-    def beside(self) -> NDArray[np.int32]:
-        """Outside, the triangle at the nearest point of the boundary; else -1, (q,)."""
-    @property
-    def edge(self) -> NDArray[np.int32]:
-        """Outside, the boundary edge with that point; else -1, (q, 2)."""
-    @property
-    def along(self) -> NDArray[np.float64]:
-        """Outside, the position of the point along that edge, from 0 to 1; else NaN, (q,)."""
-
-@final
-class Location3:
-    """Locations of queries in tetrahedra."""
-
-    @property
-    def simplex(self) -> NDArray[np.int32]:
-        """The tetrahedron that contains each query, -1 outside, (q,)."""
-    @property
-    def weights(self) -> NDArray[np.float64]:
-        """Weights of its corners, NaN outside, (q, 4)."""
-    @property
-    def beside(self) -> NDArray[np.int32]:
-        """Outside, the tetrahedron at the nearest boundary point; else -1, (q,)."""
-    @property
-    def face(self) -> NDArray[np.int32]:
-        """Outside, the boundary face with that point; else -1, (q, 3)."""
-    @property
-    def shares(self) -> NDArray[np.float64]:
-        """Outside, the weights of its corners; else NaN, (q, 3)."""
-
-@final
-class CornerWeights:
-    """Weights of Clough-Tocher interpolation."""
-
-    @property
-    def simplex(self) -> NDArray[np.int32]:
-        """The triangle that contains each query, -1 outside, (q,)."""
-    @property
-    def weights(self) -> NDArray[np.float64]:
-        """Weights of values at its corners, (q, 3)."""
-    @property
-    def slopes(self) -> NDArray[np.float64]:
-        """Weights of gradients at its corners, (q, 3, 2)."""
-
-@final
-class NaturalWeights:
-    """Weights of natural neighbors as compressed rows."""
-
-    @property
-    def indptr(self) -> NDArray[np.int64]:
-        """Start of the neighbors of each query, and the end, (q + 1,)."""
-    @property
-    def indices(self) -> NDArray[np.int32]:
-        """The neighbors, (k,)."""
-    @property
-    def weights(self) -> NDArray[np.float64]:
-        """Their weights, (k,)."""
-    @property
-    def slopes(self) -> NDArray[np.float64] | None:
-        """Weights of their gradients, (k, 2); None if the kind has none."""
-    @property
-    def simplex(self) -> NDArray[np.int32]:
-        """The simplex that contains each query, -1 outside, (q,)."""
-
-@final
-class WeightRows:
-    """Weights as compressed rows."""
-
-    @property
-    def indptr(self) -> NDArray[np.int64]:
-        """Start of the entries of each row, and the end, (n + 1,)."""
-    @property
-    def indices(self) -> NDArray[np.int32]:
-        """Vertices, (k,)."""
-    @property
-    def weights(self) -> NDArray[np.float64]:
-        """Their weights, (k,)."""
-
-@final
-class DeepestPoints:
-    """Points in conflict with triangles, those deepest in circles first."""
-
-    @property
-    def starts(self) -> NDArray[np.int64]:
-        """Start of the points of each triangle, and the end, (m + 1,)."""
-    @property
-    def rows(self) -> NDArray[np.int32]:
-        """Rows of points, (k,)."""
-    @property
-    def complete(self) -> NDArray[np.bool_]:
-        """Whether these are all points in conflict with the triangle, (m,)."""
-
-@final
-class ContourLines:
-    """Contour lines as runs of coordinates."""
-
-    @property
-    def points(self) -> NDArray[np.float64]:
-        """Coordinates of all lines, (p, 2). A ring ends with its first point."""
-    @property
-    def starts(self) -> NDArray[np.int64]:
-        """The start of each line, and the end of the last, (k + 1,)."""
-    @property
-    def levels(self) -> NDArray[np.int32]:
-        """The number of the level of each line, ascending, (k,)."""
-    @property
-    def tangled(self) -> NDArray[np.int32]:
-        """Triangles in which lines would cross; if there are any, there are no lines, (t,)."""
-
-@final
-class ContourBands:
-    """Bands between levels as polygons: runs of rings, which are runs of coordinates."""
-
-    @property
-    def points(self) -> NDArray[np.float64]:
-        """Coordinates of all rings, (p, 2). Each ring ends with its first point."""
-    @property
-    def rings(self) -> NDArray[np.int64]:
-        """The start of each ring in the points, and the end of the last, (r + 1,)."""
-    @property
-    def polygons(self) -> NDArray[np.int64]:
-        """The start of each polygon in the rings, and the end of the last, (k + 1,)."""
-    @property
-    def bands(self) -> NDArray[np.int32]:
-        """The band of each polygon, ascending, (k,)."""
-    @property
-    def tangled(self) -> NDArray[np.int32]:
-        """Triangles in which bands would overlap; if there are any, there are no bands, (t,)."""
-
-class _Sheet(Protocol):
-    """A triangulation and the heights of its points."""
-
-    @property
-    def points(self) -> NDArray[np.float64]: ...
-    @property
-    def simplices(self) -> NDArray[np.int32]: ...
-    @property
-    def neighbors(self) -> NDArray[np.int32]: ...
-    @property
-    def heights(self) -> NDArray[np.float64]: ...
-
-def contour_lines2(
-    surface: _Sheet,
-    levels: NDArray[np.float64],
-    limit: int,
-    collapsed: NDArray[np.bool_],
-    far: bool,
-) -> ContourLines: ...
-def contour_bands2(
-    surface: _Sheet,
-    levels: NDArray[np.float64],
-    limit: int,
-    collapsed: NDArray[np.bool_],
-    far: bool,
-) -> ContourBands: ...
-def volumes2(
-    surface: _Sheet,
-    other: _Sheet | None,
-    plane: list[float],
-    region: _Sheet | None,
-    workers: int,
-) -> tuple[
-    NDArray[np.float64],
-    NDArray[np.float64],
-    NDArray[np.float64],
-    NDArray[np.float64],
-    NDArray[np.float64],
-]: ...
-def methods2() -> list[str]: ...
-def triangulate2(points: NDArray[np.float64], method: str, workers: int) -> Triangulation: ...
-def validate2(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
-) -> Faults2: ...
-def triangulate3(points: NDArray[np.float64], workers: int) -> Triangulation: ...
-def validate3(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
-) -> Faults3: ...
-def validate_regular2(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-) -> RegularFaults2: ...
-def validate_regular3(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-) -> RegularFaults3: ...
-def validate_periodic2(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    periods: tuple[float, float],
-    simplices: NDArray[np.int32],
-    offsets: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    partners: NDArray[np.int32],
-) -> PeriodicFaults: ...
-def fault2(
-    points: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    workers: int,
-) -> tuple[str, int] | None: ...
-def fault3(
-    points: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    workers: int,
-) -> tuple[str, int] | None: ...
-
-_Tiling = tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]
-_Adjacency = tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]
-
-def graph_components(edges: NDArray[np.int32], npoints: int) -> NDArray[np.int32]: ...
-def proximity2(
-    graph: _Adjacency, name: str, beta: float, closed: bool, workers: int
-) -> NDArray[np.int32]: ...
-def antipodes2(
-    graph: _Adjacency,
-    simplices: NDArray[np.int32] | None,
-    neighbors: NDArray[np.int32] | None,
-    workers: int,
-) -> NDArray[np.int32]: ...
-def spanning2(graph: _Adjacency, workers: int) -> NDArray[np.int32]: ...
-def knn2(
-    points: NDArray[np.float64], k: int, directed: bool, workers: int
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...
-def influence2(
-    points: NDArray[np.float64], closed: bool, workers: int
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...
-def not_longer2(
-    points: NDArray[np.float64],
-    edges: NDArray[np.int32],
-    ends: NDArray[np.float64],
-    workers: int,
-) -> NDArray[np.int32]: ...
-def proximity3(
-    graph: _Adjacency, name: str, beta: float, closed: bool, workers: int
-) -> NDArray[np.int32]: ...
-def antipodes3(
-    graph: _Adjacency,
-    simplices: NDArray[np.int32] | None,
-    neighbors: NDArray[np.int32] | None,
-    workers: int,
-) -> NDArray[np.int32]: ...
-def spanning3(graph: _Adjacency, workers: int) -> NDArray[np.int32]: ...
-def knn3(
-    points: NDArray[np.float64], k: int, directed: bool, workers: int
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...
-def influence3(
-    points: NDArray[np.float64], closed: bool, workers: int
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...
-def not_longer3(
-    points: NDArray[np.float64],
-    edges: NDArray[np.int32],
-    ends: NDArray[np.float64],
-    workers: int,
-) -> NDArray[np.int32]: ...
-def spanning_triangles2(tiling: _Tiling, workers: int) -> NDArray[np.int32]: ...
-def of_triangles2(
-    tiling: _Tiling, name: str, beta: float, closed: bool, workers: int
-) -> NDArray[np.int32]: ...
-
-_Tower = tuple[
-    NDArray[np.int32],
-    NDArray[np.int32],
-    NDArray[np.int32],
-    NDArray[np.int32],
-    NDArray[np.int32],
-    NDArray[np.int32],
-    NDArray[np.float64],
-    NDArray[np.float64],
-    tuple[int, int],
-]
-
-def linkage2(
-    points: NDArray[np.float64],
-    edges: NDArray[np.int32],
-    duplicates: NDArray[np.int32],
-    workers: int,
-) -> NDArray[np.float64]: ...
-def linkage3(
-    points: NDArray[np.float64],
-    edges: NDArray[np.int32],
-    duplicates: NDArray[np.int32],
-    workers: int,
-) -> NDArray[np.float64]: ...
-def condensed2(
-    points: NDArray[np.float64], k: int, least: int, number: float, workers: int
-) -> _Tower: ...
-def condensed3(
-    points: NDArray[np.float64], k: int, least: int, number: float, workers: int
-) -> _Tower: ...
-def density2(
-    points: NDArray[np.float64], eps: float, k: int, workers: int
-) -> tuple[NDArray[np.int32], NDArray[np.bool_]]: ...
-def density3(
-    points: NDArray[np.float64], eps: float, k: int, workers: int
-) -> tuple[NDArray[np.int32], NDArray[np.bool_]]: ...
-
-_Valued = tuple[NDArray[np.int32], NDArray[np.float64]]
-
-def alpha_flat2(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    workers: int,
-) -> tuple[NDArray[np.float64], _Valued]: ...
-def alpha_edges2(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    edges: NDArray[np.int32],
-    workers: int,
-) -> NDArray[np.float64]: ...
-def alpha_vertices2(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    edges: NDArray[np.int32],
-    values: NDArray[np.float64],
-) -> NDArray[np.float64]: ...
-def alpha_counts2(
-    order: NDArray[np.int32], neighbors: NDArray[np.int32], outside: bool
-) -> NDArray[np.int32]: ...
-def alpha_labels2(kept: NDArray[np.bool_], neighbors: NDArray[np.int32]) -> NDArray[np.int32]: ...
-def alpha_flat3(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    workers: int,
-) -> tuple[NDArray[np.float64], _Valued]: ...
-def alpha_edges3(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    edges: NDArray[np.int32],
-    workers: int,
-) -> NDArray[np.float64]: ...
-def alpha_vertices3(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    edges: NDArray[np.int32],
-    values: NDArray[np.float64],
-) -> NDArray[np.float64]: ...
-def alpha_counts3(
-    order: NDArray[np.int32], neighbors: NDArray[np.int32], outside: bool
-) -> NDArray[np.int32]: ...
-def alpha_labels3(kept: NDArray[np.bool_], neighbors: NDArray[np.int32]) -> NDArray[np.int32]: ...
-def alpha_solid3(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    workers: int,
-) -> tuple[NDArray[np.float64], _Valued, _Valued]: ...
-def alpha_torus2(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    periods: tuple[float, float],
-    simplices: NDArray[np.int32],
-    offsets: NDArray[np.int32],
-    partners: NDArray[np.int32],
-    workers: int,
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int32]]: ...
-def alpha_rings2(
-    points: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    labels: NDArray[np.int32],
-) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.bool_]]: ...
-def dig2(
-    points: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    name: str,
-    value: float,
-    holes: bool,
-) -> NDArray[np.bool_]: ...
-def dig3(
-    points: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    name: str,
-    value: float,
-) -> NDArray[np.bool_]: ...
-def around(
-    edges: NDArray[np.int32], npoints: int
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...
-def edges2(
-    simplices: NDArray[np.int32], neighbors: NDArray[np.int32], npoints: int, workers: int
-) -> NDArray[np.int32]: ...
-def edges3(simplices: NDArray[np.int32], npoints: int, workers: int) -> NDArray[np.int32]: ...
-def faces3(
-    simplices: NDArray[np.int32], neighbors: NDArray[np.int32], npoints: int, workers: int
-) -> NDArray[np.int32]: ...
-def below2(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], squared_cosine: float, workers: int
-) -> NDArray[np.int32]: ...
-def areas2(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]: ...
-def volumes3(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]: ...
-def face_areas3(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]: ...
-def face_normals3(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]: ...
-def circumcenters2(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]: ...
-def circumcenters3(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]: ...
-def qualities2(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> list[NDArray[np.float64]]: ...
-def qualities3(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> list[NDArray[np.float64]]: ...
-def dihedral_angles3(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]: ...
-def transforms2(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]: ...
-def transforms3(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]: ...
-def find_simplex2(
-    points: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    xi: NDArray[np.float64],
-    workers: int,
-) -> NDArray[np.int32]: ...
-def constrained2(
-    points: NDArray[np.float64],
-    segments: NDArray[np.int32],
-    split: bool,
-    conforming: bool,
-    max_vertices: int,
-    method: str,
-    workers: int,
-) -> tuple[ConstrainedTriangulation, tuple[tuple[str, float], ...]]: ...
-def components2(
-    neighbors: NDArray[np.int32], constrained: NDArray[np.bool_]
-) -> NDArray[np.int32]: ...
-def numbered_components(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], component: NDArray[np.int32]
-) -> NDArray[np.int32]: ...
-
-_Parts = tuple[
-    NDArray[np.int32],
-    NDArray[np.int32],
-    NDArray[np.bool_],
-    NDArray[np.int32],
-    NDArray[np.int32],
-]
-_Covers = tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32]]
-
-def components_beside2(parts: _Parts) -> NDArray[np.int32]: ...
-def components_inside2(parts: _Parts, covers: _Covers, first: int) -> NDArray[np.int32]: ...
-def odd_pairs2(covers: _Covers) -> NDArray[np.int32]: ...
-def facet_rows(
-    facets: NDArray[np.int32], wanted: NDArray[np.int32], npoints: int, directed: bool
-) -> NDArray[np.int32]: ...
-def facet_neighbors(simplices: NDArray[np.int32], npoints: int) -> NDArray[np.int32]: ...
-def polygon2(
-    points: NDArray[np.float64], starts: NDArray[np.int32], nonzero: bool
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]: ...
-def ring2(points: object) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None: ...
-def disks2(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> NDArray[np.float64]: ...
-def within2(
-    points: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    own: int,
-    bounds: tuple[float, float, float, float],
-    workers: int,
-) -> NDArray[np.bool_]: ...
-def deepest2(
-    points: NDArray[np.float64], corners: NDArray[np.float64], most: int, workers: int
-) -> DeepestPoints: ...
-
-@final
-class Live2:
-    """A 2-D Delaunay triangulation that is edited."""
-
-    def __new__(
-        cls,
-        points: NDArray[np.float64],
-        handles: NDArray[np.int64] | None,
-        total: int,
-        workers: int,
-    ) -> Live2: ...
-    def counts(self) -> list[int]: ...
-    @property
-    def edits(self) -> int:
-        """How many edits are complete."""
-    def insert(self, points: NDArray[np.float64], workers: int) -> NDArray[np.int64]: ...
-    def remove(self, handles: NDArray[np.int64], workers: int) -> None: ...
-    def remove_with_segments(
-        self, handles: NDArray[np.int64], workers: int
-    ) -> NDArray[np.int64]: ...
-    def relocate(
-        self, handles: NDArray[np.int64], points: NDArray[np.float64], workers: int
-    ) -> None: ...
-    def faults(self, handles: NDArray[np.int64]) -> list[NDArray[np.int64]]: ...
-    def points(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]: ...
-    def arrays(self) -> LiveArrays2: ...
-    def corners(self, xi: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]: ...
-    def weights(
-        self, xi: NDArray[np.float64], known: int
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64], int, NDArray[np.int64] | None]: ...
-    def nearest(self, xi: NDArray[np.float64]) -> NDArray[np.int64]: ...
-    def changes(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]: ...
-    def state(self) -> LiveState2: ...
-    def restore(self, state: LiveState2, known: int | None = None) -> bool: ...
-    def split_crossings(self, split: bool) -> None: ...
-    def constraints(self) -> list[bool]: ...
-    def insert_segments(self, ends: NDArray[np.int64], workers: int) -> NDArray[np.int64]: ...
-    def remove_segments(self, handles: NDArray[np.int64], workers: int) -> None: ...
-    def adopt_segments(
-        self,
-        known: tuple[NDArray[np.int64], NDArray[np.int64]],
-        total: int,
-        crossings: tuple[NDArray[np.int64], NDArray[np.float64]],
-        workers: int,
-    ) -> None: ...
-    def segments(self) -> LiveSegments2: ...
-    def segment_faults(self, handles: NDArray[np.int64]) -> list[NDArray[np.int64]]: ...
-    def held(self, handles: NDArray[np.int64]) -> NDArray[np.int64]: ...
-
-@final
-class LiveSegments2:
-    """The segments of a triangulation."""
-
-    @property
-    def handles(self) -> NDArray[np.int64]:
-        """The handles of segments, ascending, (s,)."""
-    @property
-    def ends(self) -> NDArray[np.int64]:
-        """The handles of their ends, (s, 2)."""
-    @property
-    def crossings(self) -> NDArray[np.int64]:
-        """Two segments, and the handle of the vertex where they cross, (c, 3)."""
-    @property
-    def added(self) -> NDArray[np.int64]:
-        """The handles of vertices that only crossings need, (v,)."""
-    @property
-    def total(self) -> int:
-        """The next handle of a segment."""
-
-@final
-class LiveArrays2:
-    """The present triangulation."""
-
-    @property
-    def handles(self) -> NDArray[np.int64]:
-        """The handles of the points, ascending, (n,)."""
-    @property
-    def points(self) -> NDArray[np.float64]:
-        """The points, (n, 2)."""
-    @property
-    def simplices(self) -> NDArray[np.int32]:
-        """Triangles as rows of these, (m, 3)."""
-    @property
-    def neighbors(self) -> NDArray[np.int32]:
-        """The triangle opposite each vertex, -1 outside, (m, 3)."""
-    @property
-    def constrained(self) -> NDArray[np.bool_] | None:
-        """Whether the edge opposite each vertex is part of a segment; None without segments."""
-    @property
-    def duplicates(self) -> NDArray[np.int32]:
-        """Rows that repeat earlier rows, and the first of these, (k, 2)."""
-
-@final
-class LiveState2:
-    """A state of a `Live2`, which never changes."""
-
-    def open(self) -> Live2: ...
-    def own_bytes(self, other: LiveState2) -> int: ...
-
-@final
-class Live3:
-    """A 3-D Delaunay triangulation that is edited."""
-
-    def __new__(
-        cls,
-        points: NDArray[np.float64],
-        handles: NDArray[np.int64] | None,
-        total: int,
-        workers: int,
-    ) -> Live3: ...
-    def counts(self) -> list[int]: ...
-    @property
-    def edits(self) -> int:
-        """How many edits are complete."""
-    def insert(self, points: NDArray[np.float64], workers: int) -> NDArray[np.int64]: ...
-    def remove(self, handles: NDArray[np.int64], workers: int) -> None: ...
-    def relocate(
-        self, handles: NDArray[np.int64], points: NDArray[np.float64], workers: int
-    ) -> None: ...
-    def faults(self, handles: NDArray[np.int64]) -> list[NDArray[np.int64]]: ...
-    def points(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]: ...
-    def arrays(self) -> LiveArrays3: ...
-    def corners(self, xi: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]: ...
-    def weights(
-        self, xi: NDArray[np.float64], known: int
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64], int, NDArray[np.int64] | None]: ...
-    def nearest(self, xi: NDArray[np.float64]) -> NDArray[np.int64]: ...
-    def changes(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]: ...
-    def state(self) -> LiveState3: ...
-    def restore(self, state: LiveState3, known: int | None = None) -> bool: ...
-
-@final
-class LiveArrays3:
-    """The present triangulation."""
-
-    @property
-    def handles(self) -> NDArray[np.int64]:
-        """The handles of the points, ascending, (n,)."""
-    @property
-    def points(self) -> NDArray[np.float64]:
-        """The points, (n, 3)."""
-    @property
-    def simplices(self) -> NDArray[np.int32]:
-        """Tetrahedra as rows of these, (m, 4)."""
-    @property
-    def neighbors(self) -> NDArray[np.int32]:
-        """The tetrahedron opposite each vertex, -1 outside, (m, 4)."""
-    @property
-    def duplicates(self) -> NDArray[np.int32]:
-        """Rows that repeat earlier rows, and the first of these, (k, 2)."""
-
-@final
-class LiveState3:
-    """A state of a `Live3`, which never changes."""
-
-    def open(self) -> Live3: ...
-    def own_bytes(self, other: LiveState3) -> int: ...
-
-@final
-class Locator2:
-    def __new__(
-        cls,
-        points: NDArray[np.float64],
-        simplices: NDArray[np.int32],
-        neighbors: NDArray[np.int32],
-    ) -> Locator2: ...
-    def find(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
-    def locate(self, xi: NDArray[np.float64], workers: int) -> Location2: ...
-    def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
-    def along(self, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.int32]: ...
-    def linear(
-        self, values: NDArray[np.float64], xi: NDArray[np.float64], order: int, workers: int
-    ) -> NDArray[np.float64]: ...
-    def clough_tocher(
-        self,
-        values: NDArray[np.float64],
-        gradients: NDArray[np.float64],
-        xi: NDArray[np.float64],
-        barrier: NDArray[np.bool_] | None,
-        order: int,
-        workers: int,
-    ) -> NDArray[np.float64]: ...
-    def clough_tocher_weights(
-        self, xi: NDArray[np.float64], barrier: NDArray[np.bool_] | None, workers: int
-    ) -> CornerWeights: ...
-    def natural(
-        self,
-        kind: str,
-        xi: NDArray[np.float64],
-        barrier: NDArray[np.bool_] | None,
-        workers: int,
-    ) -> NaturalWeights: ...
-    def natural_values(
-        self,
-        kind: str,
-        values: NDArray[np.float64],
-        gradients: NDArray[np.float64] | None,
-        xi: NDArray[np.float64],
-        barrier: NDArray[np.bool_] | None,
-        order: int,
-        workers: int,
-    ) -> NDArray[np.float64]: ...
-    def leave_one_out(self, kind: str, workers: int) -> WeightRows: ...
-
-def hull2(points: NDArray[np.float64]) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...
-def hull3(points: NDArray[np.float64]) -> Hull3 | None: ...
-
-@final
-class Locator3:
-    def __new__(
-        cls,
-        points: NDArray[np.float64],
-        simplices: NDArray[np.int32],
-        neighbors: NDArray[np.int32],
-    ) -> Locator3: ...
-    def find(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
-    def within(
-        self, xi: NDArray[np.float64], workers: int
-    ) -> tuple[NDArray[np.int32], NDArray[np.float64]]: ...
-    def locate(self, xi: NDArray[np.float64], workers: int) -> Location3: ...
-    def laplace(self, xi: NDArray[np.float64], workers: int) -> NaturalWeights: ...
-    def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
-
-@final
-class CheckedCells:
-    """What is known of each cell of a grid."""
-
-    @property
-    def areas(self) -> NDArray[np.float64]:
-        """Areas in steradians, 0 of cells that have none, (n,)."""
-    @property
-    def faults(self) -> NDArray[np.uint8]:
-        """0, 1 empty, 2 opposite ends of a side, 3 beyond a hemisphere, 4 crossing sides, (n,)."""
-    @property
-    def turned(self) -> NDArray[np.bool_]:
-        """Whether outer rings were clockwise, (n,)."""
-    @property
-    def concave(self) -> NDArray[np.bool_]:
-        """Whether cells are concave, or have several rings, (n,)."""
-    @property
-    def repeated(self) -> int:
-        """How many corners repeat the one before."""
+    def stands_for(self) -> NDArray[np.int32]:
+        """The row that represents each point, -1 for hidden points, (n,)."""
 
 @final
 class SharedCells:
@@ -1718,38 +1438,97 @@ class SharedCells:
         """Sums over the cells of the second grid, (m,)."""
 
 @final
-class CellGrid:
-    """The cells of a grid on the sphere."""
+class SmoothedMesh:
+    """A mesh whose free vertices have moved."""
 
-    @staticmethod
-    def polygons(
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The coordinates, (n, 2)."""
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the triangles, each in the region that it was in before, (m, 3)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The triangle opposite each vertex, -1 outside, (m, 3)."""
+    @property
+    def sides(self) -> NDArray[np.int32]:
+        """The line under the edge opposite each vertex, or -1, (m, 3)."""
+
+@final
+class SphereDual:
+    """The Voronoi diagram of directions."""
+
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Facets of the convex hull: the triangles, and those across a void, (f, 3)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The facet opposite each corner, (f, 3)."""
+    @property
+    def vertex(self) -> NDArray[np.int32]:
+        """The vertex of each facet, (f,)."""
+    @property
+    def facet(self) -> NDArray[np.int32]:
+        """The first facet of each vertex, (k,)."""
+    @property
+    def around(self) -> NDArray[np.int32]:
+        """The edge of each ridge, and the corners to its left and right, (r, 4)."""
+    @property
+    def ends(self) -> NDArray[np.int32]:
+        """The vertices of each ridge, to the left and right of its edge, (r, 2)."""
+    @property
+    def cell(self) -> NDArray[np.int32]:
+        """The cell of each row, -1 if it is not a corner, (n,)."""
+    @property
+    def starts(self) -> NDArray[np.int32]:
+        """Where the entries of each cell begin."""
+    @property
+    def vertices(self) -> NDArray[np.int32]:
+        """The vertices of cells, counter-clockwise."""
+    @property
+    def ridges(self) -> NDArray[np.int32]:
+        """The ridges that follow them."""
+
+@final
+class SphereLocator:
+    """A triangulation of directions that is kept for many calls."""
+
+    def __new__(
+        cls,
         vectors: NDArray[np.float64],
-        rings: NDArray[np.int64],
-        cells: NDArray[np.int64],
-        holes: NDArray[np.bool_],
-    ) -> CellGrid:
-        """Cells with arcs of great circles as sides.
-
-        They have corners, starts of rings in these, starts of cells in rings, and whether rings
-        are holes.
+        simplices: NDArray[np.int32],
+        neighbors: NDArray[np.int32],
+        workers: int,
+    ) -> SphereLocator: ...
+    def find(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]:
+        """For each vector, the first triangle that contains its direction, or -1."""
+    def weights(
+        self,
+        kind: str,
+        xi: NDArray[np.float64],
+        simplex: NDArray[np.int32],
+        sloped: bool,
+        workers: int,
+    ) -> SphereWeights:
+        """The weights of vertices at vectors, each of which is in or at a triangle, or -1 for
+        none; and if `sloped` their derivatives.
         """
-    @staticmethod
-    def rows(
-        tangents: NDArray[np.float64],
-        starts: NDArray[np.int64],
-        meridians: NDArray[np.float64],
-        numbers: NDArray[np.int32],
-        count: int,
-    ) -> CellGrid:
-        """Cells between meridians and parallels, by rows.
+    def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]:
+        """The vertex nearest to the direction of each vector."""
 
-        They have tangents of latitudes, starts of rows in meridians, directions of these, the
-        number of the cell east of each or -1, and a count.
-        """
-    def check(self, crossing: bool, workers: int) -> CheckedCells:
-        """Areas and faults; sides that cross are looked for if `crossing`."""
-    def overlaps(self, other: CellGrid, workers: int) -> SharedCells:
-        """What the cells share with those of another grid; cells with faults share nothing."""
+@final
+class SphereTriangulation:
+    """A Delaunay triangulation of directions."""
+
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the triangles, counter-clockwise seen from outside, (m, 3)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The triangle opposite each vertex, -1 beyond a hull, (m, 3)."""
+    @property
+    def duplicates(self) -> NDArray[np.int32]:
+        """Rows that repeat the direction of earlier rows, and the first of these, (d, 2)."""
 
 @final
 class SphereWeights:
@@ -1766,52 +1545,676 @@ class SphereWeights:
         """Their weights, (k,)."""
     @property
     def slopes(self) -> NDArray[np.float64] | None:
-        """Derivatives towards east and north, per radian, (k, 2); None if not wanted."""
+        """Derivatives of the weights towards east and north, per radian, (k, 2); None if not
+        wanted.
+        """
 
 @final
-class SphereLocator:
-    def __new__(
-        cls,
-        vectors: NDArray[np.float64],
-        simplices: NDArray[np.int32],
-        neighbors: NDArray[np.int32],
-        workers: int,
-    ) -> SphereLocator: ...
-    def weights(
-        self,
-        kind: str,
-        xi: NDArray[np.float64],
-        simplex: NDArray[np.int32],
-        sloped: bool,
-        workers: int,
-    ) -> SphereWeights: ...
-    def find(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
-    def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
+class Triangulation:
+    """A Delaunay triangulation of either dimension d."""
 
-def sphere_delaunay(vectors: NDArray[np.float64], workers: int) -> SphereTriangulation: ...
-def sphere_constrained(
-    vectors: NDArray[np.float64], segments: NDArray[np.int32], workers: int
-) -> ConstrainedTriangulation: ...
-def sphere_directions(
-    lonlat: NDArray[np.float64], degrees: bool, workers: int
-) -> NDArray[np.float64]: ...
-def sphere_units(vectors: NDArray[np.float64], workers: int) -> NDArray[np.float64]: ...
-def sphere_areas(
-    vectors: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]: ...
-def sphere_circumcenters(
-    vectors: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]: ...
-def sphere_dual(
-    vectors: NDArray[np.float64],
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the simplices, (m, d + 1)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The simplex opposite each vertex, -1 outside, (m, d + 1)."""
+    @property
+    def duplicates(self) -> NDArray[np.int32]:
+        """Rows that repeat earlier rows, and the first of these, (k, 2)."""
+    @property
+    def stages(self) -> tuple[tuple[str, float], ...]:
+        """Pairs of stage name and seconds."""
+
+@final
+class WeightRows:
+    """Weights as compressed rows."""
+
+    @property
+    def indptr(self) -> NDArray[np.int64]:
+        """Start of the entries of each row, and the end, (n + 1,)."""
+    @property
+    def indices(self) -> NDArray[np.int32]:
+        """Vertices, (k,)."""
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """Their weights, (k,)."""
+
+def alpha_counts2(
+    order: NDArray[np.int32], neighbors: NDArray[np.int32], outside: bool
+) -> NDArray[np.int32]:
+    """The numbers of components of the first simplices of an order."""
+
+def alpha_counts3(
+    order: NDArray[np.int32], neighbors: NDArray[np.int32], outside: bool
+) -> NDArray[np.int32]:
+    """The numbers of components of the first simplices of an order."""
+
+def alpha_edges2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    edges: NDArray[np.int32],
+    workers: int,
+) -> NDArray[np.float64]:
+    """The values of edges without cofaces."""
+
+def alpha_edges3(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    edges: NDArray[np.int32],
+    workers: int,
+) -> NDArray[np.float64]:
+    """The values of edges without cofaces."""
+
+def alpha_flat2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
     simplices: NDArray[np.int32],
     neighbors: NDArray[np.int32],
-    merged: bool,
     workers: int,
-) -> SphereDual: ...
-def sphere_spans(
-    vectors: NDArray[np.float64], around: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]: ...
+) -> tuple[NDArray[np.float64], tuple[NDArray[np.int32], NDArray[np.float64]]]:
+    """The values of triangles and their edges."""
+
+def alpha_flat3(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    workers: int,
+) -> tuple[NDArray[np.float64], tuple[NDArray[np.int32], NDArray[np.float64]]]:
+    """The values of triangles and their edges."""
+
+def alpha_labels2(kept: NDArray[np.bool_], neighbors: NDArray[np.int32]) -> NDArray[np.int32]:
+    """The component of each simplex that is kept, -1 of others."""
+
+def alpha_labels3(kept: NDArray[np.bool_], neighbors: NDArray[np.int32]) -> NDArray[np.int32]:
+    """The component of each simplex that is kept, -1 of others."""
+
+def alpha_rings2(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    labels: NDArray[np.int32],
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.bool_]]:
+    """`(vertices, starts, parts, outer)`: the rings of the components of triangles."""
+
+def alpha_solid3(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    workers: int,
+) -> tuple[
+    NDArray[np.float64],
+    tuple[NDArray[np.int32], NDArray[np.float64]],
+    tuple[NDArray[np.int32], NDArray[np.float64]],
+]:
+    """The values of tetrahedra, their faces and their edges."""
+
+def alpha_torus2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    periods: Sequence[float],
+    simplices: NDArray[np.int32],
+    offsets: NDArray[np.int32],
+    partners: NDArray[np.int32],
+    workers: int,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int32]]:
+    """`(triangles, edges, conflicts)`: the values of periodic triangles, (m,), and of the
+    edges opposite their corners, (m, 3), and whether (tail, head) of these are in conflict
+    with the other, (3 m, 2).
+    """
+
+def alpha_vertices2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    edges: NDArray[np.int32],
+    values: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """The values of points, from those of edges."""
+
+def alpha_vertices3(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    edges: NDArray[np.int32],
+    values: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """The values of points, from those of edges."""
+
+def antipodes2(
+    graph: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
+    simplices: NDArray[np.int32] | None,
+    neighbors: NDArray[np.int32] | None,
+    workers: int,
+) -> NDArray[np.int32]:
+    """The pairs with an empty open diametral ball that are no Delaunay edges."""
+
+def antipodes3(
+    graph: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
+    simplices: NDArray[np.int32] | None,
+    neighbors: NDArray[np.int32] | None,
+    workers: int,
+) -> NDArray[np.int32]:
+    """The pairs with an empty open diametral ball that are no Delaunay edges."""
+
+def areas2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]:
+    """The areas of triangles."""
+
+def around(edges: NDArray[np.int32], npoints: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """The neighbors of each vertex along the edges of `edges2` or `edges3`: `(indptr,
+    indices)`.
+    """
+
+def below2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], squared_cosine: float, workers: int
+) -> NDArray[np.int32]:
+    """1 for triangles with an angle below a bound, given by its squared cosine; else 0."""
+
+def check_surface3(
+    points: NDArray[np.float64], faces: NDArray[np.int32], limit: int, workers: int
+) -> CheckedSurface:
+    """Checks a surface; at most `limit` pairs are returned."""
+
+def circumcenters2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]:
+    """The centers of the circles through the corners of triangles."""
+
+def circumcenters3(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]:
+    """The centers of the spheres through the corners of tetrahedra."""
+
+def combine2(
+    indptr: NDArray[np.int64],
+    indices: NDArray[np.int32],
+    weights: NDArray[np.float64],
+    values: NDArray[np.float64],
+    slopes: NDArray[np.float64] | None,
+    gradients: NDArray[np.float64] | None,
+    workers: int,
+) -> NDArray[np.float64]:
+    """Sums of weights times values, row by row."""
+
+def components2(neighbors: NDArray[np.int32], constrained: NDArray[np.bool_]) -> NDArray[np.int32]:
+    """Components of triangles that share unconstrained edges."""
+
+def components_beside2(
+    parts: tuple[
+        NDArray[np.int32],
+        NDArray[np.int32],
+        NDArray[np.bool_],
+        NDArray[np.int32],
+        NDArray[np.int32],
+    ],
+) -> NDArray[np.int32]:
+    """The components to the left and right of each subsegment, (q, 2)."""
+
+def components_inside2(
+    parts: tuple[
+        NDArray[np.int32],
+        NDArray[np.int32],
+        NDArray[np.bool_],
+        NDArray[np.int32],
+        NDArray[np.int32],
+    ],
+    covers: tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32]],
+    first: int,
+) -> NDArray[np.int32]:
+    """Pairs of a component and a polygon whose rings contain it, ascending, (k, 2); `first` is
+    in none.
+    """
+
+def condensed2(
+    points: NDArray[np.float64], k: int, least: int, number: float, workers: int
+) -> tuple[
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.float64],
+    NDArray[np.float64],
+    tuple[int, int],
+]:
+    """The condensed tree by mutual reachability, and the levels below and up to a number; of
+    at least two points, with `k` rows at most as many.
+    """
+
+def condensed3(
+    points: NDArray[np.float64], k: int, least: int, number: float, workers: int
+) -> tuple[
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.int32],
+    NDArray[np.float64],
+    NDArray[np.float64],
+    tuple[int, int],
+]:
+    """The condensed tree by mutual reachability, and the levels below and up to a number; of
+    at least two points, with `k` rows at most as many.
+    """
+
+def constrained2(
+    points: NDArray[np.float64],
+    segments: NDArray[np.int32],
+    split: bool,
+    conforming: bool,
+    max_vertices: int,
+    method: str,
+    workers: int,
+) -> tuple[ConstrainedTriangulation, tuple[tuple[str, float], ...]]:
+    """The constrained triangulation of points and segments, as arrays that cannot be made
+    writeable, and the seconds of its stages.
+    """
+
+def contour_bands2(
+    surface: _Sheet,
+    levels: NDArray[np.float64],
+    limit: int,
+    collapsed: NDArray[np.bool_],
+    far: bool,
+) -> ContourBands:
+    """The bands of a surface between levels, below the first and above the last; see
+    `contour_lines2`.
+    """
+
+def contour_lines2(
+    surface: _Sheet,
+    levels: NDArray[np.float64],
+    limit: int,
+    collapsed: NDArray[np.bool_],
+    far: bool,
+) -> ContourLines:
+    """The contour lines of a surface, with higher ground to their left. Those in triangles of
+    `collapsed`, which may be empty, pass through vertices; `far` allows to unite points of
+    lines that are far apart.
+    """
+
+def deepest2(
+    points: NDArray[np.float64], corners: NDArray[np.float64], most: int, workers: int
+) -> DeepestPoints:
+    """For each triangle (rows of six coordinates), up to `most` points in conflict, and
+    whether these are all.
+    """
+
+def density2(
+    points: NDArray[np.float64], eps: float, k: int, workers: int
+) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
+    """For each row, the first row of its cluster or -1, and whether it is a core point."""
+
+def density3(
+    points: NDArray[np.float64], eps: float, k: int, workers: int
+) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
+    """For each row, the first row of its cluster or -1, and whether it is a core point."""
+
+def dig2(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    name: str,
+    value: float,
+    holes: bool,
+) -> NDArray[np.bool_]:
+    """Which triangles of a concave hull remain."""
+
+def dig3(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    name: str,
+    value: float,
+) -> NDArray[np.bool_]:
+    """Which tetrahedra of a concave hull remain."""
+
+def dihedral_angles3(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]:
+    """The dihedral angles of tetrahedra at the edges 01, 02, 03, 12, 13 and 23."""
+
+def disks2(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Center and radius of disks that contain the closed circumdisks; an infinite radius means
+    the whole plane.
+    """
+
+def edges2(
+    simplices: NDArray[np.int32], neighbors: NDArray[np.int32], npoints: int, workers: int
+) -> NDArray[np.int32]:
+    """Every edge of triangles once: the smaller vertex first, rows ascending."""
+
+def edges3(simplices: NDArray[np.int32], npoints: int, workers: int) -> NDArray[np.int32]:
+    """Every edge of tetrahedra once: the smaller vertex first, rows ascending."""
+
+def face_areas3(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]:
+    """The areas of triangles in 3-D."""
+
+def face_normals3(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]:
+    """The unit normals of triangles in 3-D."""
+
+def faces3(
+    simplices: NDArray[np.int32], neighbors: NDArray[np.int32], npoints: int, workers: int
+) -> NDArray[np.int32]:
+    """Every face of tetrahedra once: vertices and rows ascending."""
+
+def facet_neighbors(simplices: NDArray[np.int32], npoints: int) -> NDArray[np.int32]:
+    """The simplex opposite each vertex, -1 if there is none: of triangles, of the same
+    orientation, or of tetrahedra.
+    """
+
+def facet_rows(
+    facets: NDArray[np.int32], wanted: NDArray[np.int32], npoints: int, directed: bool
+) -> NDArray[np.int32]:
+    """The first row of `facets`, (k, 2) or (k, 3), that is each of `wanted`, -1 where there is
+    none; with the same order of vertices if they are `directed`.
+    """
+
+def fault2(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    workers: int,
+) -> tuple[str, int] | None:
+    """The first fault of triangles: `("neighbors", row)` or `("orientation", row)`; None if
+    there is none.
+    """
+
+def fault3(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    workers: int,
+) -> tuple[str, int] | None:
+    """The same for tetrahedra."""
+
+def find_simplex2(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    xi: NDArray[np.float64],
+    workers: int,
+) -> NDArray[np.int32]:
+    """For each query, the first triangle that contains it, or -1."""
+
+def gradients_global2(
+    points: NDArray[np.float64],
+    indptr: NDArray[np.int32],
+    indices: NDArray[np.int32],
+    values: NDArray[np.float64],
+    tol: float,
+    maxiter: int,
+    workers: int,
+    floor: float | None = None,
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Gradients of minimal bending energy, and the number of sweeps for each column."""
+
+def gradients_local2(
+    points: NDArray[np.float64],
+    indptr: NDArray[np.int32],
+    indices: NDArray[np.int32],
+    values: NDArray[np.float64],
+    degree: int,
+    workers: int,
+) -> NDArray[np.float64]:
+    """Gradients of polynomials fitted around each vertex."""
+
+def gradients_local3(
+    points: NDArray[np.float64],
+    indptr: NDArray[np.int32],
+    indices: NDArray[np.int32],
+    values: NDArray[np.float64],
+    vertices: NDArray[np.int32],
+    workers: int,
+) -> NDArray[np.float64]:
+    """Gradients of linear functions fitted around some vertices of a 3-D triangulation."""
+
+def graph_components(edges: NDArray[np.int32], npoints: int) -> NDArray[np.int32]:
+    """The number of the connected component of each row."""
+
+def hull2(points: NDArray[np.float64]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """The extreme points in 2-D, counter-clockwise, and the rows that repeat them."""
+
+def hull3(points: NDArray[np.float64]) -> Hull3 | None:
+    """The hull of 3-D points; None if they span no volume."""
+
+def improve3(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    labels: NDArray[np.int32],
+    fixed: NDArray[np.bool_],
+    min_angle: float,
+    flips: bool,
+    smooth: bool,
+    exude: bool,
+    turn: bool,
+    passes: int,
+    progress: Callable[[int, int], object] | None = None,
+) -> ImprovedMesh:
+    """Improves tetrahedra. `progress` is called after each pass with its number and the number
+    of tetrahedra below the bound.
+    """
+
+def incircle(
+    a: NDArray[np.float64],
+    b: NDArray[np.float64],
+    c: NDArray[np.float64],
+    d: NDArray[np.float64],
+    canonical: bool,
+) -> NDArray[np.int8]:
+    """Signs of d relative to the circle through a, b, c."""
+
+def influence2(
+    points: NDArray[np.float64], closed: bool, workers: int
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """The edges of the sphere of influence graph, and the duplicates."""
+
+def influence3(
+    points: NDArray[np.float64], closed: bool, workers: int
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """The edges of the sphere of influence graph, and the duplicates."""
+
+def insphere(
+    a: NDArray[np.float64],
+    b: NDArray[np.float64],
+    c: NDArray[np.float64],
+    d: NDArray[np.float64],
+    e: NDArray[np.float64],
+    canonical: bool,
+) -> NDArray[np.int8]:
+    """Signs of e relative to the sphere through a, b, c, d."""
+
+def judge2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], cos2: float
+) -> JudgedTriangles:
+    """The triangles with an angle below a bound, given by its squared cosine; those that
+    include the smallest and the largest angle; and those beyond the range of doubles.
+    """
+
+def knn2(
+    points: NDArray[np.float64], k: int, directed: bool, workers: int
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """The edges to the k nearest neighbors, and the duplicates."""
+
+def knn3(
+    points: NDArray[np.float64], k: int, directed: bool, workers: int
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """The edges to the k nearest neighbors, and the duplicates."""
+
+def lawson2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], record: bool
+) -> FlippedTriangulation:
+    """The canonical triangulation by flips, the number of flips, and their sequence if
+    recorded.
+    """
+
+def linkage2(
+    points: NDArray[np.float64],
+    edges: NDArray[np.int32],
+    duplicates: NDArray[np.int32],
+    workers: int,
+) -> NDArray[np.float64]:
+    """The merges of single linkage, from the edges of the spanning tree and duplicates."""
+
+def linkage3(
+    points: NDArray[np.float64],
+    edges: NDArray[np.int32],
+    duplicates: NDArray[np.int32],
+    workers: int,
+) -> NDArray[np.float64]:
+    """The merges of single linkage, from the edges of the spanning tree and duplicates."""
+
+def measures2(
+    starts: NDArray[np.int32], corners: NDArray[np.float64], workers: int
+) -> CellMeasures2:
+    """The measures of polygons."""
+
+def measures3(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    diagram: Diagram3,
+    workers: int,
+) -> CellMeasures3:
+    """The measures of the cells of a diagram and of its ridges."""
+
+def methods2() -> list[str]:
+    """Names of the methods of `triangulate2`."""
+
+def neighbors2(simplices: NDArray[np.int32], npoints: int) -> NDArray[np.int32]:
+    """The triangle across the edge opposite each corner, -1 outside."""
+
+def not_longer2(
+    points: NDArray[np.float64], edges: NDArray[np.int32], ends: NDArray[np.float64], workers: int
+) -> NDArray[np.int32]:
+    """The edges that are not longer than the one between two points."""
+
+def not_longer3(
+    points: NDArray[np.float64], edges: NDArray[np.int32], ends: NDArray[np.float64], workers: int
+) -> NDArray[np.int32]:
+    """The edges that are not longer than the one between two points."""
+
+def numbered_components(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], component: NDArray[np.int32]
+) -> NDArray[np.int32]:
+    """Components of triangles in 2-D or 3-D, numbered in the order of their smallest
+    triangles, which depends on coordinates only.
+    """
+
+def odd_pairs2(
+    covers: tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32]],
+) -> NDArray[np.int32]:
+    """Pairs of a subsegment and a polygon of which an odd number of sides cover it, ascending,
+    (k, 2).
+    """
+
+def of_triangles2(
+    tiling: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]],
+    name: str,
+    beta: float,
+    closed: bool,
+    workers: int,
+) -> NDArray[np.int32]:
+    """The edges of triangles that no opposite corner removes, by the name of a rule."""
+
+def orient2d(
+    a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]
+) -> NDArray[np.int8]:
+    """Orientation signs of the triangles a, b, c."""
+
+def orient3d(
+    a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64], d: NDArray[np.float64]
+) -> NDArray[np.int8]:
+    """Orientation signs of the tetrahedra a, b, c, d."""
+
+def periodic2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    periods: Sequence[float],
+    workers: int,
+) -> PeriodicTriangulation:
+    """The Delaunay triangulation (with weights the regular one) of points that repeat after
+    `periods`, 0 for none; points must lie within one period.
+    """
+
+def periodic_centers2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    periods: Sequence[float],
+    corners: NDArray[np.int32],
+    apexes: NDArray[np.int32],
+    workers: int,
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """`(centers, shared)`: the center of each triangle of copies, and whether the neighbor
+    across each edge, with a given apex, has the same center; corners and apexes are rows
+    and shifts, three per triangle.
+    """
+
+def pieces2(
+    starts: NDArray[np.int32],
+    corners: NDArray[np.float64],
+    ridges: NDArray[np.int32],
+    rows: NDArray[np.int32],
+    inside: NDArray[np.bool_],
+    rings: NDArray[np.int32],
+    outline: NDArray[np.float64],
+    workers: int,
+) -> CellPieces2:
+    """Clips the polygons `rows` to an outline: rings with their inside to the left. `inside`
+    is whether the outline contains the first corner of each of these polygons.
+    """
+
+def polygon2(
+    points: NDArray[np.float64], starts: NDArray[np.int32], nonzero: bool
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """The triangles inside rings, and the vertices added where they cross."""
+
+def proximity2(
+    graph: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
+    name: str,
+    beta: float,
+    closed: bool,
+    workers: int,
+) -> NDArray[np.int32]:
+    """The Delaunay edges whose region is empty."""
+
+def proximity3(
+    graph: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
+    name: str,
+    beta: float,
+    closed: bool,
+    workers: int,
+) -> NDArray[np.int32]:
+    """The Delaunay edges whose region is empty."""
+
+def qualities2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> list[NDArray[np.float64]]:
+    """Smallest and largest angle, area, ratio of radii and of edges of triangles."""
+
+def qualities3(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> list[NDArray[np.float64]]:
+    """Smallest and largest dihedral angle, volume, ratio of radii and of edges of tetrahedra."""
+
+def recover_faces(
+    points: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    max_points: int,
+    flips: bool,
+    workers: int,
+) -> RecoveredFaces:
+    """Tetrahedra that have all faces, which may meet in common vertices and edges only. What
+    can be reached from far outside without crossing a face is left out.
+    """
+
 def refine2(
     points: NDArray[np.float64],
     simplices: NDArray[np.int32],
@@ -1826,7 +2229,34 @@ def refine2(
     circles: bool = False,
     sizes_yield: bool = False,
     progress: Callable[[int, float], object] | None = None,
-) -> RefinedMesh: ...
+) -> RefinedMesh:
+    """Refines a triangulation. `progress` is called with the number of added vertices and the
+    current smallest angle.
+    """
+
+def regular2(
+    points: NDArray[np.float64], weights: NDArray[np.float64], workers: int
+) -> RegularTriangulation:
+    """The regular triangulation of weighted 2-D points; a chain of rows if all are collinear."""
+
+def regular3(
+    points: NDArray[np.float64], weights: NDArray[np.float64], workers: int
+) -> RegularTriangulation:
+    """The regular triangulation of weighted 3-D points."""
+
+def resolve_touches3(
+    points: NDArray[np.float64], faces: NDArray[np.int32], limit: int, workers: int
+) -> tuple[tuple[NDArray[np.int32], NDArray[np.int32]] | None, FacePairs]:
+    """`(parts, pairs)`: the faces subdivided where they touch, None if some cross, and at most
+    `limit` pairs.
+    """
+
+def ring2(points: object) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
+    """A read-only copy of the points and the triangles of one ring; None unless the ring is
+    known to be simple and `points` is a contiguous array of doubles.  It holds the GIL:
+    such rings are short, and releasing it would cost as much as triangulating.
+    """
+
 def smooth2(
     points: NDArray[np.float64],
     simplices: NDArray[np.int32],
@@ -1837,172 +2267,182 @@ def smooth2(
     target: str,
     rounds: int,
     workers: int,
-) -> SmoothedMesh: ...
-def judge2(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], cos2: float
-) -> JudgedTriangles: ...
-def check_surface3(
-    points: NDArray[np.float64], faces: NDArray[np.int32], limit: int, workers: int
-) -> CheckedSurface: ...
-def resolve_touches3(
-    points: NDArray[np.float64], faces: NDArray[np.int32], limit: int, workers: int
-) -> tuple[tuple[NDArray[np.int32], NDArray[np.int32]] | None, FacePairs]: ...
+) -> SmoothedMesh:
+    """Moves free vertices of a mesh toward better positions; `cos2` is the squared cosine of
+    the bound.
+    """
 
-@final
-class RecoveryCounts:
-    """What happened during a recovery of faces."""
-
-    @property
-    def missing_edges(self) -> int: ...
-    @property
-    def missing_faces(self) -> int: ...
-    @property
-    def flips(self) -> int: ...
-    @property
-    def flipped_edges(self) -> int: ...
-    @property
-    def flipped_faces(self) -> int: ...
-    @property
-    def segment_points(self) -> int: ...
-    @property
-    def face_points(self) -> int: ...
-    @property
-    def suppressed(self) -> int: ...
-    @property
-    def joined(self) -> int: ...
-    @property
-    def thinned(self) -> int: ...
-
-@final
-class RecoveredFaces:
-    """Tetrahedra that have given faces."""
-
-    @property
-    def points(self) -> NDArray[np.float64]:
-        """The points given, followed by those that were added, (n + k, 3)."""
-    @property
-    def tetrahedra(self) -> NDArray[np.int32]:
-        """Vertices of the tetrahedra, (t, 4)."""
-    @property
-    def neighbors(self) -> NDArray[np.int32]:
-        """The tetrahedron opposite each vertex, -1 if there is none, (t, 4)."""
-    @property
-    def walls(self) -> NDArray[np.int32]:
-        """The row of the face opposite each vertex, -1 if there is none, (t, 4)."""
-    @property
-    def nadded(self) -> int:
-        """How many points were added."""
-    @property
-    def counts(self) -> RecoveryCounts:
-        """What happened."""
-    @property
-    def crowded(self) -> NDArray[np.int32]:
-        """Rows of faces near which no double is left for a point; then there are no tetrahedra."""
-
-def recover_faces(
-    points: NDArray[np.float64],
-    faces: NDArray[np.int32],
-    max_points: int,
-    flips: bool,
+def spanning2(
+    graph: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
     workers: int,
-) -> RecoveredFaces: ...
-def improve3(
-    points: NDArray[np.float64],
+) -> NDArray[np.int32]:
+    """The edges of the minimum spanning tree."""
+
+def spanning3(
+    graph: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
+    workers: int,
+) -> NDArray[np.int32]:
+    """The edges of the minimum spanning tree."""
+
+def spanning_triangles2(
+    tiling: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]], workers: int
+) -> NDArray[np.int32]:
+    """The edges of the minimum spanning tree of triangulated 2-D points."""
+
+def sphere_areas(
+    vectors: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]:
+    """Returns the solid angles of triangles, (m,)."""
+
+def sphere_circumcenters(
+    vectors: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]:
+    """Returns the unit vectors at the circumcenters of triangles, (m, 3)."""
+
+def sphere_constrained(
+    vectors: NDArray[np.float64], segments: NDArray[np.int32], workers: int
+) -> ConstrainedTriangulation:
+    """Returns the constrained triangulation of the directions of vectors and arcs between
+    them.
+    """
+
+def sphere_delaunay(vectors: NDArray[np.float64], workers: int) -> SphereTriangulation:
+    """Returns the triangulation of the directions of vectors."""
+
+def sphere_directions(
+    lonlat: NDArray[np.float64], degrees: bool, workers: int
+) -> NDArray[np.float64]:
+    """Returns vectors in the directions of longitudes and latitudes, (n, 3)."""
+
+def sphere_dual(
+    vectors: NDArray[np.float64],
     simplices: NDArray[np.int32],
-    labels: NDArray[np.int32],
-    fixed: NDArray[np.bool_],
-    min_angle: float,
-    flips: bool,
-    smooth: bool,
-    exude: bool,
-    turn: bool,
-    passes: int,
-    progress: Callable[[int, int], object] | None = None,
-) -> ImprovedMesh: ...
-def combine2(
-    indptr: NDArray[np.int64],
-    indices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    merged: bool,
+    workers: int,
+) -> SphereDual:
+    """Returns the dual of a triangulation of at least four directions; facets of one circle
+    share a vertex if `merged`.
+    """
+
+def sphere_spans(
+    vectors: NDArray[np.float64], around: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]:
+    """Returns the length of each ridge, and the area between it and either of its sites, (r,
+    2).
+    """
+
+def sphere_units(vectors: NDArray[np.float64], workers: int) -> NDArray[np.float64]:
+    """Returns the unit vectors of vectors, rounded, (n, 3)."""
+
+def touched2(
+    starts: NDArray[np.int32],
+    corners: NDArray[np.float64],
+    ridges: NDArray[np.int32],
+    segments: NDArray[np.float64],
+) -> tuple[NDArray[np.int32], int]:
+    """For each polygon its connected group of polygons that no segment comes near, or -1; and
+    the number of groups.
+    """
+
+def transforms2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]:
+    """The affine maps of triangles to barycentric coordinates."""
+
+def transforms3(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]:
+    """The affine maps of tetrahedra to barycentric coordinates."""
+
+def triangulate2(points: NDArray[np.float64], method: str, workers: int) -> Triangulation:
+    """The Delaunay triangulation of 2-D points."""
+
+def triangulate3(points: NDArray[np.float64], workers: int) -> Triangulation:
+    """The Delaunay triangulation of 3-D points."""
+
+def validate2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
+) -> Faults2:
+    """Returns the faults of a 2-D triangulation."""
+
+def validate3(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
+) -> Faults3:
+    """Returns the faults of a 3-D triangulation."""
+
+def validate_periodic2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    periods: Sequence[float],
+    simplices: NDArray[np.int32],
+    offsets: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    partners: NDArray[np.int32],
+) -> PeriodicFaults:
+    """What is wrong with a periodic triangulation: periods of 0 stand for none; `offsets` has
+    those of the three corners of each triangle in one row.
+    """
+
+def validate_regular2(
+    points: NDArray[np.float64],
     weights: NDArray[np.float64],
-    values: NDArray[np.float64],
-    slopes: NDArray[np.float64] | None,
-    gradients: NDArray[np.float64] | None,
-    workers: int,
-) -> NDArray[np.float64]: ...
-def gradients_global2(
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+) -> RegularFaults2:
+    """What is wrong with a 2-D regular triangulation."""
+
+def validate_regular3(
     points: NDArray[np.float64],
-    indptr: NDArray[np.int32],
-    indices: NDArray[np.int32],
-    values: NDArray[np.float64],
-    tol: float,
-    maxiter: int,
+    weights: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+) -> RegularFaults3:
+    """What is wrong with a 3-D regular triangulation."""
+
+def volumes2(
+    surface: _Sheet,
+    other: _Sheet | None,
+    plane: Sequence[float],
+    region: _Sheet | None,
     workers: int,
-    floor: float | None = None,
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]: ...
-def gradients_local2(
-    points: NDArray[np.float64],
-    indptr: NDArray[np.int32],
-    indices: NDArray[np.int32],
-    values: NDArray[np.float64],
-    degree: int,
-    workers: int,
-) -> NDArray[np.float64]: ...
-def gradients_local3(
-    points: NDArray[np.float64],
-    indptr: NDArray[np.int32],
-    indices: NDArray[np.int32],
-    values: NDArray[np.float64],
-    vertices: NDArray[np.int32],
-    workers: int,
-) -> NDArray[np.float64]: ...
-def lawson2(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], record: bool
-) -> FlippedTriangulation: ...
-def neighbors2(simplices: NDArray[np.int32], npoints: int) -> NDArray[np.int32]: ...
-def orient2d(
-    a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]
-) -> NDArray[np.int8]: ...
-def incircle(
-    a: NDArray[np.float64],
-    b: NDArray[np.float64],
-    c: NDArray[np.float64],
-    d: NDArray[np.float64],
-    canonical: bool,
-) -> NDArray[np.int8]: ...
-def orient3d(
-    a: NDArray[np.float64],
-    b: NDArray[np.float64],
-    c: NDArray[np.float64],
-    d: NDArray[np.float64],
-) -> NDArray[np.int8]: ...
-def insphere(
-    a: NDArray[np.float64],
-    b: NDArray[np.float64],
-    c: NDArray[np.float64],
-    d: NDArray[np.float64],
-    e: NDArray[np.float64],
-    canonical: bool,
-) -> NDArray[np.int8]: ...
+) -> list[NDArray[np.float64]]:
+    """For each triangle of a surface: the volumes below it and above it up to another surface
+    or to the plane z = c + a x + b y, the areas of both, and the area of the overlap.
+    """
+
+def volumes3(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]:
+    """The volumes of tetrahedra."""
+
 def voronoi2(
     points: NDArray[np.float64],
     weights: NDArray[np.float64] | None,
     simplices: NDArray[np.int32],
     neighbors: NDArray[np.int32],
     workers: int,
-) -> Diagram2: ...
-def voronoi_clip2(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    diagram: Diagram2,
-    bounds: tuple[float, float, float, float],
-    workers: int,
-) -> ClippedCells2: ...
+) -> Diagram2:
+    """The diagram of a triangulation; with weights, of the regular triangulation."""
+
 def voronoi3(
     points: NDArray[np.float64],
     weights: NDArray[np.float64] | None,
     simplices: NDArray[np.int32],
     neighbors: NDArray[np.int32],
     workers: int,
-) -> Diagram3: ...
+) -> Diagram3:
+    """The diagram of a triangulation; with weights, of the regular triangulation."""
+
+def voronoi_clip2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    diagram: Diagram2,
+    bounds: Sequence[float],
+    workers: int,
+) -> ClippedCells2:
+    """The cells of a diagram, clipped to a box."""
+
 def voronoi_clip3(
     points: NDArray[np.float64],
     weights: NDArray[np.float64] | None,
@@ -2012,49 +2452,18 @@ def voronoi_clip3(
     clip_corners: NDArray[np.int32],
     clip_planes: NDArray[np.float64],
     workers: int,
-) -> ClippedCells3: ...
-def measures3(
+) -> ClippedCells3:
+    """The cells of a diagram, clipped to a convex polyhedron given by corners, faces (counter-
+    clockwise from outside, as compressed rows) and the planes n . x <= c of the faces.
+    """
+
+def within2(
     points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    diagram: Diagram3,
+    simplices: NDArray[np.int32],
+    own: int,
+    bounds: Sequence[float],
     workers: int,
-) -> CellMeasures3: ...
-def regular3(
-    points: NDArray[np.float64], weights: NDArray[np.float64], workers: int
-) -> RegularTriangulation: ...
-def measures2(
-    starts: NDArray[np.int32], corners: NDArray[np.float64], workers: int
-) -> CellMeasures2: ...
-def touched2(
-    starts: NDArray[np.int32],
-    corners: NDArray[np.float64],
-    ridges: NDArray[np.int32],
-    segments: NDArray[np.float64],
-) -> tuple[NDArray[np.int32], int]: ...
-def pieces2(
-    starts: NDArray[np.int32],
-    corners: NDArray[np.float64],
-    ridges: NDArray[np.int32],
-    rows: NDArray[np.int32],
-    inside: NDArray[np.bool_],
-    rings: NDArray[np.int32],
-    outline: NDArray[np.float64],
-    workers: int,
-) -> CellPieces2: ...
-def regular2(
-    points: NDArray[np.float64], weights: NDArray[np.float64], workers: int
-) -> RegularTriangulation: ...
-def periodic2(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    periods: tuple[float, float],
-    workers: int,
-) -> PeriodicTriangulation: ...
-def periodic_centers2(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    periods: tuple[float, float],
-    corners: NDArray[np.int32],
-    apexes: NDArray[np.int32],
-    workers: int,
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]: ...
+) -> NDArray[np.bool_]:
+    """Which triangles have their corners among the first `own` points and their disks in a
+    box.
+    """

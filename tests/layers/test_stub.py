@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import importlib.util
 import inspect
 import re
+import shutil
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,6 +14,31 @@ import pytest
 from delone import _core
 
 ROOT = Path(__file__).parents[2]
+BINDINGS = ROOT / "crates" / "bindings"
+
+
+def test_the_stub_is_what_the_source_of_the_bindings_says(tmp_path: Path) -> None:
+    """`make stub` writes it. A changed argument, field or comment makes another stub."""
+    pytest.importorskip("ruff")
+    spec = importlib.util.spec_from_file_location("stub", BINDINGS / "stub.py")
+    assert spec and spec.loader
+    made = importlib.util.module_from_spec(spec)
+    sys.modules["stub"] = made
+    spec.loader.exec_module(made)
+    written = (ROOT / "python" / "delone" / "_core.pyi").read_text(encoding="utf-8")
+    assert made.stub() == written, "run make stub"
+    for name, old, new in (
+        ("hull.rs", "pub facet_of: Column<i32>", "pub facet_of: Column<i64>"),
+        ("alpha.rs", "edges: PyReadonlyArray2<'_, i32>", "pairs: PyReadonlyArray2<'_, i32>"),
+        ("results.rs", "fn arrays<'py>", "fn every<'py>"),
+        ("terrain.rs", "heights: PyReadonlyArray1<'py, f64>,\n}", "}"),
+    ):
+        folder = tmp_path / name.removesuffix(".rs")
+        shutil.copytree(BINDINGS / "src", folder)
+        text = (folder / name).read_text(encoding="utf-8")
+        assert old in text
+        (folder / name).write_text(text.replace(old, new), encoding="utf-8")
+        assert made.stub(folder) != written, name
 
 
 @pytest.mark.parametrize("untyped", [r"\bAny\b", r"\bdict\["])

@@ -8,7 +8,6 @@ use delone_core::constrained::{
 use delone_core::error::{Error, Result};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
 
 use crate::arrays::{
     Column, Table, column, each_in_range, flat, frozen, in_range, rows, sealed, sealed_rows,
@@ -16,7 +15,7 @@ use crate::arrays::{
 };
 use crate::errors::Outcome;
 use crate::given::{pairs, unequal};
-use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
+use crate::results::{Stages, len_of, made_of_arrays, require_equal, rows_of};
 use crate::signals::watched;
 use crate::triangulation::{method_of, seconds};
 
@@ -96,7 +95,7 @@ pub fn constrained2<'py>(
     max_vertices: usize,
     method: &str,
     workers: usize,
-) -> Outcome<(ConstrainedTriangulation, Py<PyTuple>)> {
+) -> Outcome<(ConstrainedTriangulation, Stages)> {
     let method = method_of(method)?;
     let points: &[Point2] = rows(&points, "points")?;
     let segments = pairs(&segments, points.len(), "segments")?;

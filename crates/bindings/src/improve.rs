@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, flat, in_range, rows, table};
 use crate::errors::Outcome;
+use crate::results::Passes;
 use crate::signals::watched;
 
 /// Numbers of changes to tetrahedra, by kind.
@@ -66,7 +67,7 @@ pub fn improve3<'py>(
     exude: bool,
     turn: bool,
     passes: usize,
-    progress: Option<Py<PyAny>>,
+    progress: Option<Passes>,
 ) -> Outcome<ImprovedMesh> {
     let task = || -> Result<Task<'_>> {
         let points = rows(&points, "points")?;

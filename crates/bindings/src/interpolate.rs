@@ -28,8 +28,8 @@ pub type Gradients<'py> = PyReadonlyArray3<'py, f64>;
 /// Closed edges.
 pub type Closed<'py> = PyReadonlyArray2<'py, bool>;
 
-/// An array with two axes, or with three for derivatives.
-type Array = Py<PyAny>;
+/// `NDArray[np.float64]`: two axes, or three for derivatives.
+pub type Array = Py<PyAny>;
 
 fn order_of(order: usize) -> PyResult<Order> {
     Order::of(order).ok_or_else(|| PyValueError::new_err("order must be 0, 1 or 2"))

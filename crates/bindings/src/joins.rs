@@ -5,7 +5,7 @@ use delone_core::joins;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, column, in_range, rows, table};
+use crate::arrays::{Column, Table, column, in_range, rows, table};
 use crate::errors::Outcome;
 use crate::signals::watched;
 
@@ -44,19 +44,19 @@ fn rows_in<const D: usize>(
 /// The simplex opposite each vertex, -1 if there is none: of triangles, of the same orientation, or of
 /// tetrahedra.
 #[pyfunction]
-pub fn facet_neighbors<'py>(
-    py: Python<'py>,
-    simplices: PyReadonlyArray2<'py, i32>,
+pub fn facet_neighbors(
+    py: Python<'_>,
+    simplices: PyReadonlyArray2<'_, i32>,
     npoints: usize,
-) -> Outcome<Bound<'py, PyAny>> {
+) -> Outcome<Table<i32>> {
     if simplices.shape()[1] == 3 {
         let of: &[[i32; 3]] = corners(&simplices, npoints)?;
         let found = watched(py, |watch| joins::neighbors_of_triangles(of, watch))?;
-        return Ok(table(py, found)?.into_bound(py).into_any());
+        return table(py, found);
     }
     let of: &[[i32; 4]] = corners(&simplices, npoints)?;
     let found = watched(py, |watch| joins::neighbors_of_tetrahedra(of, watch))?;
-    Ok(table(py, found)?.into_bound(py).into_any())
+    table(py, found)
 }
 
 fn corners<'a, const N: usize>(

@@ -1,9 +1,8 @@
 //! The bindings between Python and Rust: arrays in, arrays out, errors as Python exceptions. No
 //! algorithm lives here.
 //!
-//! They use the public crate `delone`, and the core only where that crate has nothing: weights,
-//! periodic sets, tiles, interpolation and location with a shared index, hulls, measures, proofs,
-//! clipped cells, terrain, tetrahedral improvement, surfaces, and the sphere.
+//! A function checks its arguments, runs the core without the lock of the interpreter (`signals`), and
+//! makes arrays of the result. `stub.py` writes the types of Python from these files.
 
 mod alpha;
 mod arrays;
@@ -54,177 +53,105 @@ fn version() -> String {
 
 /// The compiled core of delone.
 #[pymodule(gil_used = false)]
-fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
-    m.add("__version__", version())?;
-    m.add_function(wrap_pyfunction!(predicates::orient2d, m)?)?;
-    m.add_function(wrap_pyfunction!(predicates::incircle, m)?)?;
-    m.add_function(wrap_pyfunction!(predicates::orient3d, m)?)?;
-    m.add_function(wrap_pyfunction!(predicates::insphere, m)?)?;
-    m.add_class::<triangulation::Triangulation>()?;
-    m.add_class::<triangulation::Faults2>()?;
-    m.add_class::<space::Faults3>()?;
-    m.add_class::<regular::RegularTriangulation>()?;
-    m.add_class::<regular::PeriodicTriangulation>()?;
-    m.add_class::<regular_faults::RegularFaults2>()?;
-    m.add_class::<regular_faults::RegularFaults3>()?;
-    m.add_class::<regular_faults::PeriodicFaults>()?;
-    m.add_class::<hull::Hull3>()?;
-    m.add_class::<lawson::FlippedTriangulation>()?;
-    m.add_class::<live::Live2>()?;
-    m.add_class::<live::LiveState2>()?;
-    m.add_class::<live::LiveArrays2>()?;
-    m.add_class::<live::LiveSegments2>()?;
-    m.add_class::<live3::Live3>()?;
-    m.add_class::<live3::LiveState3>()?;
-    m.add_class::<live3::LiveArrays3>()?;
-    m.add_class::<constrained::ConstrainedTriangulation>()?;
-    m.add_class::<refine::SmoothedMesh>()?;
-    m.add_class::<refine::RefinedMesh>()?;
-    m.add_class::<refine::Refinement2>()?;
-    m.add_class::<refine::JudgedTriangles>()?;
-    m.add_class::<voronoi::Diagram2>()?;
-    m.add_class::<voronoi::ClippedCells2>()?;
-    m.add_class::<voronoi::CellMeasures2>()?;
-    m.add_class::<voronoi::CellPieces2>()?;
-    m.add_class::<voronoi3::Diagram3>()?;
-    m.add_class::<voronoi3::ClippedCells3>()?;
-    m.add_class::<voronoi3::CellMeasures3>()?;
-    m.add_class::<locate::Location2>()?;
-    m.add_class::<locate3::Location3>()?;
-    m.add_class::<interpolate::CornerWeights>()?;
-    m.add_class::<interpolate::NaturalWeights>()?;
-    m.add_class::<interpolate::WeightRows>()?;
-    m.add_class::<distributed::DeepestPoints>()?;
-    m.add_class::<terrain::ContourLines>()?;
-    m.add_class::<terrain::ContourBands>()?;
-    m.add_class::<sphere::SphereTriangulation>()?;
-    m.add_class::<sphere::SphereLocator>()?;
-    m.add_class::<sphere::SphereDual>()?;
-    m.add_class::<sphere::SphereWeights>()?;
-    m.add_class::<overlap::CellGrid>()?;
-    m.add_class::<overlap::CheckedCells>()?;
-    m.add_class::<overlap::SharedCells>()?;
-    m.add_class::<improve::ImprovedMesh>()?;
-    m.add_class::<improve::ImprovementCounts>()?;
-    m.add_class::<surface::CheckedSurface>()?;
-    m.add_class::<surface::FacePairs>()?;
-    m.add_function(wrap_pyfunction!(surface::check_surface3, m)?)?;
-    m.add_function(wrap_pyfunction!(surface::resolve_touches3, m)?)?;
-    m.add_class::<recover::RecoveredFaces>()?;
-    m.add_class::<recover::RecoveryCounts>()?;
-    m.add_function(wrap_pyfunction!(sphere::sphere_delaunay, m)?)?;
-    m.add_function(wrap_pyfunction!(sphere::sphere_constrained, m)?)?;
-    m.add_function(wrap_pyfunction!(sphere::sphere_directions, m)?)?;
-    m.add_function(wrap_pyfunction!(sphere::sphere_units, m)?)?;
-    m.add_function(wrap_pyfunction!(sphere::sphere_areas, m)?)?;
-    m.add_function(wrap_pyfunction!(sphere::sphere_circumcenters, m)?)?;
-    m.add_function(wrap_pyfunction!(sphere::sphere_dual, m)?)?;
-    m.add_function(wrap_pyfunction!(sphere::sphere_spans, m)?)?;
-    m.add_function(wrap_pyfunction!(terrain::contour_lines2, m)?)?;
-    m.add_function(wrap_pyfunction!(terrain::contour_bands2, m)?)?;
-    m.add_function(wrap_pyfunction!(terrain::volumes2, m)?)?;
-    m.add_function(wrap_pyfunction!(triangulation::methods2, m)?)?;
-    m.add_function(wrap_pyfunction!(triangulation::triangulate2, m)?)?;
-    m.add_function(wrap_pyfunction!(triangulation::validate2, m)?)?;
-    m.add_function(wrap_pyfunction!(space::triangulate3, m)?)?;
-    m.add_function(wrap_pyfunction!(space::validate3, m)?)?;
-    m.add_function(wrap_pyfunction!(regular_faults::validate_regular2, m)?)?;
-    m.add_function(wrap_pyfunction!(regular_faults::validate_regular3, m)?)?;
-    m.add_function(wrap_pyfunction!(regular_faults::validate_periodic2, m)?)?;
-    m.add_function(wrap_pyfunction!(locate::find_simplex2, m)?)?;
-    m.add_function(wrap_pyfunction!(constrained::constrained2, m)?)?;
-    m.add_function(wrap_pyfunction!(constrained::components2, m)?)?;
-    m.add_function(wrap_pyfunction!(constrained::numbered_components, m)?)?;
-    m.add_function(wrap_pyfunction!(constrained::components_beside2, m)?)?;
-    m.add_function(wrap_pyfunction!(constrained::components_inside2, m)?)?;
-    m.add_function(wrap_pyfunction!(constrained::odd_pairs2, m)?)?;
-    m.add_function(wrap_pyfunction!(joins::facet_rows, m)?)?;
-    m.add_function(wrap_pyfunction!(joins::facet_neighbors, m)?)?;
-    m.add_function(wrap_pyfunction!(constrained::polygon2, m)?)?;
-    m.add_function(wrap_pyfunction!(constrained::ring2, m)?)?;
-    m.add_function(wrap_pyfunction!(distributed::disks2, m)?)?;
-    m.add_function(wrap_pyfunction!(distributed::within2, m)?)?;
-    m.add_function(wrap_pyfunction!(distributed::deepest2, m)?)?;
-    m.add_class::<locate::Locator2>()?;
-    m.add_class::<locate3::Locator3>()?;
-    m.add_function(wrap_pyfunction!(interpolate::combine2, m)?)?;
-    m.add_function(wrap_pyfunction!(interpolate::gradients_global2, m)?)?;
-    m.add_function(wrap_pyfunction!(interpolate::gradients_local2, m)?)?;
-    m.add_function(wrap_pyfunction!(interpolate::gradients_local3, m)?)?;
-    m.add_function(wrap_pyfunction!(refine::smooth2, m)?)?;
-    m.add_function(wrap_pyfunction!(refine::refine2, m)?)?;
-    m.add_function(wrap_pyfunction!(refine::judge2, m)?)?;
-    m.add_function(wrap_pyfunction!(improve::improve3, m)?)?;
-    m.add_function(wrap_pyfunction!(recover::recover_faces, m)?)?;
-    m.add_function(wrap_pyfunction!(consistency::fault2, m)?)?;
-    m.add_function(wrap_pyfunction!(consistency::fault3, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::edges2, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::around, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::edges3, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::faces3, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::areas2, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::volumes3, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::face_areas3, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::face_normals3, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::circumcenters2, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::circumcenters3, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::below2, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::qualities2, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::qualities3, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::dihedral_angles3, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::transforms2, m)?)?;
-    m.add_function(wrap_pyfunction!(measure::transforms3, m)?)?;
-    m.add_function(wrap_pyfunction!(alpha::alpha_flat2, m)?)?;
-    m.add_function(wrap_pyfunction!(alpha::alpha_flat3, m)?)?;
-    m.add_function(wrap_pyfunction!(alpha::alpha_edges2, m)?)?;
-    m.add_function(wrap_pyfunction!(alpha::alpha_edges3, m)?)?;
-    m.add_function(wrap_pyfunction!(alpha::alpha_vertices2, m)?)?;
-    m.add_function(wrap_pyfunction!(alpha::alpha_vertices3, m)?)?;
-    m.add_function(wrap_pyfunction!(alpha::alpha_counts2, m)?)?;
-    m.add_function(wrap_pyfunction!(alpha::alpha_counts3, m)?)?;
-    m.add_function(wrap_pyfunction!(alpha::alpha_labels2, m)?)?;
-    m.add_function(wrap_pyfunction!(alpha::alpha_labels3, m)?)?;
-    m.add_function(wrap_pyfunction!(alpha::alpha_solid3, m)?)?;
-    m.add_function(wrap_pyfunction!(alpha::alpha_torus2, m)?)?;
-    m.add_function(wrap_pyfunction!(alpha::alpha_rings2, m)?)?;
-    m.add_function(wrap_pyfunction!(alpha::dig2, m)?)?;
-    m.add_function(wrap_pyfunction!(alpha::dig3, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::proximity2, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::proximity3, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::antipodes2, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::antipodes3, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::spanning2, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::spanning3, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::of_triangles2, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::spanning_triangles2, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::knn2, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::knn3, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::influence2, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::influence3, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::not_longer2, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::not_longer3, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::graph_components, m)?)?;
-    m.add_function(wrap_pyfunction!(cluster::linkage2, m)?)?;
-    m.add_function(wrap_pyfunction!(cluster::linkage3, m)?)?;
-    m.add_function(wrap_pyfunction!(cluster::condensed2, m)?)?;
-    m.add_function(wrap_pyfunction!(cluster::condensed3, m)?)?;
-    m.add_function(wrap_pyfunction!(cluster::density2, m)?)?;
-    m.add_function(wrap_pyfunction!(cluster::density3, m)?)?;
-    m.add_function(wrap_pyfunction!(hull::hull2, m)?)?;
-    m.add_function(wrap_pyfunction!(hull::hull3, m)?)?;
-    m.add_function(wrap_pyfunction!(lawson::lawson2, m)?)?;
-    m.add_function(wrap_pyfunction!(lawson::neighbors2, m)?)?;
-    m.add_function(wrap_pyfunction!(voronoi::voronoi2, m)?)?;
-    m.add_function(wrap_pyfunction!(voronoi::voronoi_clip2, m)?)?;
-    m.add_function(wrap_pyfunction!(voronoi::measures2, m)?)?;
-    m.add_function(wrap_pyfunction!(voronoi3::voronoi3, m)?)?;
-    m.add_function(wrap_pyfunction!(voronoi3::measures3, m)?)?;
-    m.add_function(wrap_pyfunction!(regular::regular3, m)?)?;
-    m.add_function(wrap_pyfunction!(voronoi3::voronoi_clip3, m)?)?;
-    m.add_function(wrap_pyfunction!(voronoi::touched2, m)?)?;
-    m.add_function(wrap_pyfunction!(voronoi::pieces2, m)?)?;
-    m.add_function(wrap_pyfunction!(regular::regular2, m)?)?;
-    m.add_function(wrap_pyfunction!(regular::periodic2, m)?)?;
-    m.add_function(wrap_pyfunction!(regular::periodic_centers2, m)?)?;
-    Ok(())
+mod _core {
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use super::alpha::{
+        alpha_counts2, alpha_counts3, alpha_edges2, alpha_edges3, alpha_flat2, alpha_flat3,
+        alpha_labels2, alpha_labels3, alpha_rings2, alpha_solid3, alpha_torus2, alpha_vertices2,
+        alpha_vertices3, dig2, dig3,
+    };
+    #[pymodule_export]
+    use super::cluster::{condensed2, condensed3, density2, density3, linkage2, linkage3};
+    #[pymodule_export]
+    use super::consistency::{fault2, fault3};
+    #[pymodule_export]
+    use super::constrained::{
+        ConstrainedTriangulation, components_beside2, components_inside2, components2,
+        constrained2, numbered_components, odd_pairs2, polygon2, ring2,
+    };
+    #[pymodule_export]
+    use super::distributed::{DeepestPoints, deepest2, disks2, within2};
+    #[pymodule_export]
+    use super::graphs::{
+        antipodes2, antipodes3, graph_components, influence2, influence3, knn2, knn3, not_longer2,
+        not_longer3, of_triangles2, proximity2, proximity3, spanning_triangles2, spanning2,
+        spanning3,
+    };
+    #[pymodule_export]
+    use super::hull::{Hull3, hull2, hull3};
+    #[pymodule_export]
+    use super::improve::{ImprovedMesh, ImprovementCounts, improve3};
+    #[pymodule_export]
+    use super::interpolate::{
+        CornerWeights, NaturalWeights, WeightRows, combine2, gradients_global2, gradients_local2,
+        gradients_local3,
+    };
+    #[pymodule_export]
+    use super::joins::{facet_neighbors, facet_rows};
+    #[pymodule_export]
+    use super::lawson::{FlippedTriangulation, lawson2, neighbors2};
+    #[pymodule_export]
+    use super::live::{Live2, LiveArrays2, LiveSegments2, LiveState2};
+    #[pymodule_export]
+    use super::live3::{Live3, LiveArrays3, LiveState3};
+    #[pymodule_export]
+    use super::locate::{Location2, Locator2, find_simplex2};
+    #[pymodule_export]
+    use super::locate3::{Location3, Locator3};
+    #[pymodule_export]
+    use super::measure::{
+        areas2, around, below2, circumcenters2, circumcenters3, dihedral_angles3, edges2, edges3,
+        face_areas3, face_normals3, faces3, qualities2, qualities3, transforms2, transforms3,
+        volumes3,
+    };
+    #[pymodule_export]
+    use super::overlap::{CellGrid, CheckedCells, SharedCells};
+    #[pymodule_export]
+    use super::predicates::{incircle, insphere, orient2d, orient3d};
+    #[pymodule_export]
+    use super::recover::{RecoveredFaces, RecoveryCounts, recover_faces};
+    #[pymodule_export]
+    use super::refine::{
+        JudgedTriangles, RefinedMesh, Refinement2, SmoothedMesh, judge2, refine2, smooth2,
+    };
+    #[pymodule_export]
+    use super::regular::{
+        PeriodicTriangulation, RegularTriangulation, periodic_centers2, periodic2, regular2,
+        regular3,
+    };
+    #[pymodule_export]
+    use super::regular_faults::{
+        PeriodicFaults, RegularFaults2, RegularFaults3, validate_periodic2, validate_regular2,
+        validate_regular3,
+    };
+    #[pymodule_export]
+    use super::space::{Faults3, triangulate3, validate3};
+    #[pymodule_export]
+    use super::sphere::{
+        SphereDual, SphereLocator, SphereTriangulation, SphereWeights, sphere_areas,
+        sphere_circumcenters, sphere_constrained, sphere_delaunay, sphere_directions, sphere_dual,
+        sphere_spans, sphere_units,
+    };
+    #[pymodule_export]
+    use super::surface::{CheckedSurface, FacePairs, check_surface3, resolve_touches3};
+    #[pymodule_export]
+    use super::terrain::{ContourBands, ContourLines, contour_bands2, contour_lines2, volumes2};
+    #[pymodule_export]
+    use super::triangulation::{Faults2, Triangulation, methods2, triangulate2, validate2};
+    #[pymodule_export]
+    use super::voronoi::{
+        CellMeasures2, CellPieces2, ClippedCells2, Diagram2, measures2, pieces2, touched2,
+        voronoi_clip2, voronoi2,
+    };
+    #[pymodule_export]
+    use super::voronoi3::{
+        CellMeasures3, ClippedCells3, Diagram3, measures3, voronoi_clip3, voronoi3,
+    };
+
+    #[pymodule_init]
+    fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {
+        m.add("__version__", super::version())
+    }
 }

@@ -9,7 +9,7 @@ use crate::arrays::{Column, Table, column, rows, shaped};
 use crate::errors::Outcome;
 use crate::given::checked;
 use crate::interpolate::{
-    Closed, CornerWeights, Gradients, NaturalWeights, Points, Smooth, Values, WeightRows,
+    Array, Closed, CornerWeights, Gradients, NaturalWeights, Points, Smooth, Values, WeightRows,
     corner_weights_of, leave_one_out_of, linear_of, natural_of, smooth_of,
 };
 use crate::locator::Plane;
@@ -93,7 +93,7 @@ impl Locator2 {
         xi: Points<'_>,
         order: usize,
         workers: usize,
-    ) -> Outcome<Py<PyAny>> {
+    ) -> Outcome<Array> {
         linear_of(py, &self.0, &values, &xi, order, workers)
     }
 
@@ -108,7 +108,7 @@ impl Locator2 {
         barrier: Option<Closed<'_>>,
         order: usize,
         workers: usize,
-    ) -> Outcome<Py<PyAny>> {
+    ) -> Outcome<Array> {
         let given = Smooth {
             values: &values,
             gradients: Some(&gradients),
@@ -155,7 +155,7 @@ impl Locator2 {
         barrier: Option<Closed<'_>>,
         order: usize,
         workers: usize,
-    ) -> Outcome<Py<PyAny>> {
+    ) -> Outcome<Array> {
         let given = Smooth {
             values: &values,
             gradients: gradients.as_ref(),

@@ -15,6 +15,7 @@ use crate::arrays::{Column, Table, column, each_in_range, flat, numbers, rows, t
 use crate::errors::Outcome;
 use crate::given::{checked, pairs, simplices_of, unequal};
 use crate::live::{broken, locked};
+use crate::results::Progress;
 use crate::signals::{stoppable, watched};
 
 /// `(of, ends, on)`: the line of each segment, the ends of lines, the line of each point or -1.
@@ -161,7 +162,7 @@ pub fn refine2<'py>(
     lines: Option<OfLines<'py>>,
     circles: bool,
     sizes_yield: bool,
-    progress: Option<Py<PyAny>>,
+    progress: Option<Progress>,
 ) -> Outcome<RefinedMesh> {
     let given = Given {
         points,
@@ -272,7 +273,7 @@ impl Refinement2 {
         &self,
         py: Python<'_>,
         max_vertices: usize,
-        progress: Option<Py<PyAny>>,
+        progress: Option<Progress>,
     ) -> Outcome<(bool, usize)> {
         let reporter = progress.map(Reporter::new);
         let outcome = stoppable(py, |stop| -> Result<_> {
@@ -302,13 +303,13 @@ impl Refinement2 {
 
 /// Calls a Python function from time to time, until it raises an exception.
 struct Reporter {
-    progress: Py<PyAny>,
+    progress: Progress,
     called: Mutex<Instant>,
     failure: OnceLock<PyErr>,
 }
 
 impl Reporter {
-    fn new(progress: Py<PyAny>) -> Self {
+    fn new(progress: Progress) -> Self {
         Self {
             progress,
             called: Mutex::new(Instant::now()),

@@ -3,9 +3,22 @@
 use delone_core::error::{Error, Result};
 use numpy::{Element, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 use crate::arrays::{Column, Table};
 use crate::given::unequal;
+
+/// `tuple[NDArray[np.generic], ...]`
+pub type Arrays<'py> = Bound<'py, PyTuple>;
+
+/// `tuple[tuple[str, float], ...]`: stages with their seconds.
+pub type Stages = Py<PyTuple>;
+
+/// `Callable[[int, float], object]`: called with the number of vertices added and the smallest angle.
+pub type Progress = Py<PyAny>;
+
+/// `Callable[[int, int], object]`: called with the pass and the number of poor tetrahedra.
+pub type Passes = Py<PyAny>;
 
 /// Gives a class that consists of arrays a constructor, which checks them, and pickling.
 macro_rules! made_of_arrays {
@@ -21,7 +34,7 @@ macro_rules! made_of_arrays {
             }
 
             /// All arrays, in the order of the arguments of the constructor.
-            fn arrays<'py>(&self, py: Python<'py>) -> crate::errors::Outcome<Bound<'py, pyo3::types::PyTuple>> {
+            fn arrays<'py>(&self, py: Python<'py>) -> crate::errors::Outcome<crate::results::Arrays<'py>> {
                 Ok(pyo3::types::PyTuple::new(py, [$(self.$field.clone_ref(py).into_any()),+])?)
             }
 
@@ -29,7 +42,7 @@ macro_rules! made_of_arrays {
             fn __getnewargs__<'py>(
                 &self,
                 py: Python<'py>,
-            ) -> crate::errors::Outcome<Bound<'py, pyo3::types::PyTuple>> {
+            ) -> crate::errors::Outcome<crate::results::Arrays<'py>> {
                 self.arrays(py)
             }
         }

@@ -14,6 +14,7 @@ use pyo3::types::PyTuple;
 use crate::arrays::{Column, Table, number_rows, numbers, rows, table};
 use crate::errors::Outcome;
 use crate::given::checked;
+use crate::results::Stages;
 use crate::signals::watched;
 
 /// Names of the methods of `triangulate2`.
@@ -38,11 +39,11 @@ pub struct Triangulation {
     /// Rows that repeat earlier rows, and the first of these, (k, 2).
     pub duplicates: Table<i32>,
     /// Pairs of stage name and seconds.
-    pub stages: Py<PyTuple>,
+    pub stages: Stages,
 }
 
 /// Pairs of stage names and seconds.
-pub fn seconds(py: Python<'_>, stages: &[(&'static str, Duration)]) -> Outcome<Py<PyTuple>> {
+pub fn seconds(py: Python<'_>, stages: &[(&'static str, Duration)]) -> Outcome<Stages> {
     let pairs = stages
         .iter()
         .map(|(name, time)| (*name, time.as_secs_f64()));
