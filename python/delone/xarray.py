@@ -1,4 +1,4 @@
-"""Interpolation of xarray objects (extra ``xarray``): ``import delone.xarray``.
+"""Interpolation and regridding of xarray objects (extra ``xarray``): ``import delone.xarray``.
 
 The import registers ``.delone`` on DataArray and Dataset.
 
@@ -11,6 +11,9 @@ The import registers ``.delone`` on DataArray and Dataset.
 ... )
 >>> stations.delone.interp([180.0], [0.0]).item()
 2.0
+
+``ds.delone.regrid(target)`` and `Regridder` replace the cells of one grid on the sphere by those of
+another.
 """
 
 from __future__ import annotations
@@ -21,5 +24,12 @@ from delone.interpolate.accessor import (
     VariableWarning,
     VectorWarning,
 )
+from delone.sphere.regridder import Regridder
 
-__all__ = ["ArrayInterpolation", "DatasetInterpolation", "VariableWarning", "VectorWarning"]
+__all__ = [
+    "ArrayInterpolation",
+    "DatasetInterpolation",
+    "Regridder",
+    "VariableWarning",
+    "VectorWarning",
+]

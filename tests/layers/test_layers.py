@@ -47,7 +47,8 @@ PYTHON: tuple[set[str], ...] = (
     {"dynamic", "hull", "periodic", "refine"},
     {"alpha", "graphs", "io"},
     {"voronoi", "interpolate", "cluster", "tetrahedra"},
-    {"compat", "distributed", "explorer", "sphere", "terrain", "xarray"},
+    {"compat", "distributed", "explorer", "sphere", "terrain"},
+    {"xarray"},
     # Data and oracles: nothing that they test may use them, and they use the ground alone.
     {"datasets", "reference", "testing"},
     # The package itself re-exports.

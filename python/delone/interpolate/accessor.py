@@ -1,4 +1,4 @@
-"""Interpolation of xarray objects (extra ``xarray``): ``import delone.xarray``.
+"""Interpolation and regridding of xarray objects (extra ``xarray``): ``import delone.xarray``.
 
 The import registers ``.delone`` on DataArray and Dataset. Scattered points are one dimension with
 two coordinates (``x(station)``, ``y(station)``), or several (curvilinear ``lon(j, i)``,
@@ -241,6 +241,60 @@ class ArrayInterpolation:
         choices = _Choices(coords, method, degrees, missing, options)
         return _grid(self._array, raster, choices)
 
+    def regrid(
+        self,
+        target: Any,
+        *,
+        method: str = "conservative",
+        skipna: bool = False,
+        min_fraction: float = 0.0,
+        fill: Any = None,
+        **options: Any,
+    ) -> Any:
+        """Regrid from the cells of one grid on the sphere to those of another.
+
+        Parameters
+        ----------
+        target : xarray.Dataset, delone.sphere.Grid or str
+            Where values are wanted: what `delone.sphere.Grid.from_dataset` takes, a grid, or its
+            name, such as "1x1" in degrees or "healpix:64".
+        method : str, optional
+            As for `delone.xarray.Regridder`.
+        skipna, min_fraction, fill
+            As for `delone.sphere.Weights.apply`.
+        **options
+            As for `delone.xarray.Regridder`. An array has no bounds unless they are coordinates:
+            regrid the dataset, or give ``infer_bounds=True``.
+
+        Returns
+        -------
+        xarray.DataArray
+            The dimensions of cells are replaced by those of the target; the name, the attributes,
+            the other dimensions and float32 are unchanged. Dask arrays are computed lazily.
+
+        Raises
+        ------
+        InputError
+            As for `delone.xarray.Regridder`.
+
+        Examples
+        --------
+        >>> import numpy as np, xarray
+        >>> import delone.xarray
+        >>> field = xarray.DataArray(
+        ...     np.ones((18, 36), dtype=np.float32),
+        ...     coords=[
+        ...         ("lat", np.arange(-85.0, 90, 10), {"units": "degrees_north"}),
+        ...         ("lon", np.arange(5.0, 360, 10), {"units": "degrees_east"}),
+        ...     ],
+        ... )
+        >>> found = field.delone.regrid("healpix:2", infer_bounds=True)
+        >>> found.dims, found.dtype.name, bool(np.allclose(found, 1))
+        (('cell',), 'float32', True)
+        """
+        made = _regridder(self._array, target, method=method, **options)
+        return made(self._array, skipna=skipna, min_fraction=min_fraction, fill=fill)
+
 
 @xarray.register_dataset_accessor("delone")
 class DatasetInterpolation:
@@ -323,6 +377,25 @@ class DatasetInterpolation:
         raster = {"resolution": resolution, "shape": shape, "bounds": bounds}
         choices = _Choices(coords, method, degrees, missing, options, vectors)
         return _grid(self._dataset, raster, choices)
+
+    def regrid(
+        self,
+        target: Any,
+        *,
+        method: str = "conservative",
+        skipna: bool = False,
+        min_fraction: float = 0.0,
+        fill: Any = None,
+        **options: Any,
+    ) -> Any:
+        """Regrid all variables with the cells to another grid; see `ArrayInterpolation.regrid`."""
+        made = _regridder(self._dataset, target, method=method, **options)
+        return made(self._dataset, skipna=skipna, min_fraction=min_fraction, fill=fill)
+
+
+def _regridder(*args: Any, **options: Any) -> Any:
+    # By its name: that package builds on this one.
+    return importlib.import_module("delone.sphere.regridder").Regridder(*args, **options)
 
 
 class _Choices(NamedTuple):

@@ -7,6 +7,8 @@ first numbers and fill values are those that a dataset states or that its conven
 from __future__ import annotations
 
 from delone.sphere.formats.cells import Cells, Choices
+from delone.sphere.formats.described import describing, kept_of_target
 from delone.sphere.formats.reading import read_cells
+from delone.sphere.formats.variables import variables_of
 
-__all__ = ["Cells", "Choices", "read_cells"]
+__all__ = ["Cells", "Choices", "describing", "kept_of_target", "read_cells", "variables_of"]

@@ -84,13 +84,16 @@ def read_bounds(variables: Variables, choices: Choices) -> Cells:
     return _read_listed(variables, names, choices)
 
 
-def bounds_name(variables: Variables, name: str) -> str | None:
-    """Return the name of the bounds of a coordinate."""
+def bounds_name(variables: Variables, name: str, *, required: bool = True) -> str | None:
+    """Return the name of the bounds of a coordinate; those that it names are `required`."""
     said = attribute(variables[name], "bounds")
+    if said is not None and said not in variables and required:
+        raise InputError(
+            f"{name} has the bounds {said!r:.60}, which the dataset lacks: of an array give the "
+            f"dataset, or {_INFER[5:]}"
+        )
     if said is not None:
-        if said not in variables:
-            raise InputError(f"{name} has the bounds {said!r:.60}, which the dataset lacks")
-        return str(said)
+        return str(said) if said in variables else None
     return next((name + e for e in _ENDINGS if name + e in variables), None)
 
 
@@ -106,7 +109,7 @@ def _read_product(variables: Variables, names: Pair, choices: Choices) -> Cells:
     edges: list[Floats] = []
     merged = 0
     for axis, name in enumerate(names):
-        bounds = bounds_name(variables, name)
+        bounds = bounds_name(variables, name, required=not choices.infer)
         if bounds is None and not choices.infer:
             raise InputError(
                 f"{name} has no bounds: no attribute names them, and there is no variable "
@@ -180,7 +183,7 @@ def _read_listed(variables: Variables, names: Pair, choices: Choices) -> Cells:
     """Read cells whose centers have one or two dimensions in common."""
     own = variables[names[0]]
     rest: dict[str, Any] = {"format": "CF", "dims": own.dims, "shape": own.shape, "coords": names}
-    bounds = [bounds_name(variables, name) for name in names]
+    bounds = [bounds_name(variables, n, required=not choices.infer) for n in names]
     if bounds[0] is None or bounds[1] is None:
         if choices.infer and own.ndim == 2:
             return Cells(**rest, **_between(variables, names, choices))

@@ -1,0 +1,396 @@
+"""The class Regridder: datasets and arrays of xarray from one grid on the sphere to another."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import as_choice, as_flag, as_number
+from delone.counting import counted
+from delone.errors import DtypeError, InputError, ShapeError
+from delone.extras import require
+from delone.georeference import caller_level
+from delone.immutable import Immutable
+from delone.sphere.formats import Choices
+from delone.sphere.overlaps import Overlaps
+from delone.sphere.targets import side_of
+from delone.sphere.weights import METHODS, Weights
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.sphere.grid import Grid
+    from delone.sphere.targets import Side
+
+__all__ = ["Regridder"]
+
+# Attributes of fields that refer to the grid they were on.
+_REFERRING = ("mesh", "location", "grid_mapping", "coordinates", "cell_measures")
+
+
+class Regridder(Immutable):
+    """Regrids datasets and arrays of xarray (extra ``xarray``).
+
+    Parameters
+    ----------
+    source : xarray.Dataset, xarray.DataArray, uxarray.Grid, Grid or str
+        Where fields are: what `Grid.from_dataset` takes, a grid, or its name: "1x1" in degrees of
+        longitude and latitude, "healpix:64", "healpix:64:nested", "n80" and "o80" for Gaussian
+        grids, full and octahedral.
+    target : xarray.Dataset, xarray.DataArray, uxarray.Grid, Grid or str
+        Where they are wanted; as `source`.
+    method : {"conservative", "normalized", "sum", "majority"}, optional
+        As for `Overlaps.to_weights`.
+    source_mask, target_mask : array_like of bool, optional
+        True for cells that take part. By default the masks of the datasets, if they have some.
+    dims : sequence of str, optional
+        Dimensions of fields on the source, in the order of its shape. By default those of the
+        dataset; of a `Grid`, the last dimensions of each field that have its shape.
+    weights : Weights, optional
+        Use these, such as those of a map file, instead of computing some. `method` and masks
+        are theirs.
+    coords, degrees, infer_bounds, merge, workers
+        As for `Grid.from_dataset`; `coords` are those of the source.
+
+    Attributes
+    ----------
+    source, target : Grid
+        The grids.
+    weights : Weights
+        What each source cell contributes.
+
+    Raises
+    ------
+    InputError, DirectionError, ShapeError, DtypeError
+        As for `Grid.from_dataset` and `Overlaps.to_weights`; or `weights` have other sizes.
+    MissingExtraError
+        xarray is not installed.
+
+    Notes
+    -----
+    Fields may be Dask arrays: other dimensions remain chunked, and are computed lazily. The weights
+    are one object of the graph.
+
+    See Also
+    --------
+    Overlaps : The areas that cells share.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray
+    >>> from delone.xarray import Regridder
+    >>> ds = xarray.Dataset(
+    ...     {"rain": (("time", "lat", "lon"), np.ones((2, 180, 360), dtype=np.float32))},
+    ...     coords={
+    ...         "lon": ("lon", np.arange(0.5, 360), {"units": "degrees_east"}),
+    ...         "lat": ("lat", np.arange(-89.5, 90), {"units": "degrees_north"}),
+    ...     },
+    ... )
+    >>> regridder = Regridder(ds, "healpix:8", infer_bounds=True)
+    >>> regridder
+    <Regridder, conservative, 180 x 360 to 768>
+    >>> found = regridder(ds)
+    >>> found.rain.dims, found.rain.dtype.name, bool(np.allclose(found.rain, 1))
+    (('time', 'cell'), 'float32', True)
+    """
+
+    __slots__ = ("_dims", "_sides", "_weights")
+
+    _dims: tuple[Any, ...] | None
+    _sides: tuple[Side, Side]
+    _weights: Weights
+
+    def __init__(
+        self,
+        source: Any,
+        target: Any,
+        *,
+        method: str = "conservative",
+        source_mask: ArrayLike | None = None,
+        target_mask: ArrayLike | None = None,
+        dims: Sequence[Any] | None = None,
+        weights: Weights | None = None,
+        coords: tuple[str, str] | None = None,
+        degrees: bool | None = None,
+        infer_bounds: bool = False,
+        merge: float = 1e-12,
+        workers: int | None = None,
+    ) -> None:
+        require("xarray", extra="xarray", what="regridding datasets")
+        as_choice(method, METHODS, name="method")
+        unit = None if degrees is None else as_flag(degrees, name="degrees")
+        infer = as_flag(infer_bounds, name="infer_bounds")
+        choices = Choices(None, coords, None, unit, infer, as_number(merge, name="merge"), workers)
+        sides = (
+            side_of(source, choices, "source"),
+            side_of(target, choices._replace(coords=None), "target"),
+        )
+        grids = sides[0].grid, sides[1].grid
+        if weights is None:
+            masks = [
+                grid.mask if mask is None else mask
+                for grid, mask in zip(grids, (source_mask, target_mask), strict=True)
+            ]
+            weights = Overlaps(*grids, workers=workers).to_weights(
+                method, source_mask=masks[0], target_mask=masks[1]
+            )
+        else:
+            _require_fit(weights, grids)
+        own = sides[0].dims if dims is None else tuple(dims)
+        if own is not None and len(own) != len(grids[0].grid_shape):
+            raise ShapeError(f"dims must be those of {grids[0].grid_shape}, got {own}")
+        self._hold(dims=own, sides=sides, weights=weights)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self)._again, (self._dims, self._sides, self._weights)
+
+    @classmethod
+    def _again(cls, dims: Any, sides: tuple[Side, Side], weights: Weights) -> Regridder:
+        made = cls.__new__(cls)
+        made._hold(dims=dims, sides=sides, weights=weights)
+        return made
+
+    def __repr__(self) -> str:
+        parts = [self._weights.method]
+        parts.append(
+            " to ".join(" x ".join(map(str, side.grid.grid_shape)) for side in self._sides)
+        )
+        for name, side in zip(("source", "target"), self._sides, strict=True):
+            if count := len(side.grid.report.masked):
+                parts.append(f"{counted(count, f'{name} cell')} masked")
+        return f"<Regridder, {', '.join(parts)}>"
+
+    @property
+    def source(self) -> Grid:
+        """The grid where fields are."""
+        return self._sides[0].grid
+
+    @property
+    def target(self) -> Grid:
+        """The grid where they are wanted."""
+        return self._sides[1].grid
+
+    @property
+    def weights(self) -> Weights:
+        """What each source cell contributes to each target cell."""
+        return self._weights
+
+    def __call__(
+        self, data: Any, *, skipna: bool = False, min_fraction: float = 0.0, fill: Any = None
+    ) -> Any:
+        """Return fields on the target.
+
+        Parameters
+        ----------
+        data : xarray.Dataset or xarray.DataArray
+            Fields on the source.
+        skipna, min_fraction, fill
+            As for `Weights.apply`.
+
+        Returns
+        -------
+        xarray.Dataset or xarray.DataArray
+            The dimensions of the source are replaced by those of the target, at the place of the
+            first of them; names, attributes, other dimensions and float32 are unchanged. Variables
+            of a dataset without dimensions of the source are as they were. What describes the
+            source, such as bounds, is replaced by what describes the target.
+
+        Raises
+        ------
+        ShapeError
+            A field does not have the shape of the source.
+        DtypeError
+            A variable is not numeric.
+        InputError
+            A field keeps a dimension that the target has, too; or as for `Weights.apply`.
+
+        Warns
+        -----
+        delone.xarray.VariableWarning
+            Variables have some dimensions of the source only, and are not in the result.
+        """
+        xarray = require("xarray", extra="xarray", what="regridding datasets")
+        options = {"skipna": skipna, "min_fraction": min_fraction, "fill": fill}
+        if isinstance(data, xarray.Dataset):
+            return self._of_dataset(data, options)
+        if not isinstance(data, xarray.DataArray):
+            raise DtypeError(f"data must be xarray objects, got {type(data).__name__}")
+        dims = self._dims_of(data, data.name)
+        gone = [name for name, part in data.coords.items() if set(part.dims) & set(dims)]
+        return self._of_array(data.drop_vars(gone), dims, options)
+
+    def _dims_of(self, array: Any, name: Any) -> tuple[Any, ...]:
+        """Return the dimensions of a field that are those of the source."""
+        shape = self.source.grid_shape
+        if self._dims is None:
+            if array.shape[len(array.shape) - len(shape) :] == shape:
+                found: tuple[Any, ...] = array.dims[len(array.dims) - len(shape) :]
+                return found
+            raise ShapeError(
+                f"{name!s:.60}: the last dimensions must have the shape {shape} of the source, got "
+                f"{dict(array.sizes)}: name them with dims="
+            )
+        sizes = tuple(array.sizes.get(dim) for dim in self._dims)
+        if sizes != shape:
+            raise ShapeError(
+                f"{name!s:.60} must have the dimensions {self._dims} of shape {shape}, got "
+                f"{dict(array.sizes)}"
+            )
+        return self._dims
+
+    def _of_array(self, array: Any, dims: tuple[Any, ...], options: dict[str, Any]) -> Any:
+        """Return a field without coordinates of the source on the target."""
+        xarray = require("xarray", extra="xarray", what="regridding datasets")
+        target = self._sides[1]
+        assert target.dims is not None
+        name = array.name
+        if array.dtype.kind not in "iufb":
+            raise DtypeError(f"variable {name!s:.60} is not numeric (dtype {array.dtype}): drop it")
+        others = [dim for dim in array.dims if dim not in dims]
+        both = set(others) & set(target.dims)
+        if both:
+            raise InputError(
+                f"{name!s:.60} and the target have the dimension {min(map(str, both))!r:.60}: "
+                "rename one of them"
+            )
+        ordered = array.transpose(*others, *dims)
+        kind = array.dtype
+        if self._weights.method != "majority":
+            kind = np.dtype(np.float32 if kind == np.float32 else np.float64)
+        given = array.variable.chunks is not None
+        options = options | {"count": len(dims), "shape": self.target.grid_shape}
+        if given:
+            data = self._chunked(ordered.data, dims, kind, options)
+        else:
+            data = _last(ordered.values, weights=self._weights, **options)
+        # Where the first dimension of the source was.
+        first = min(array.dims.index(dim) for dim in dims)
+        place = sum(dim not in dims for dim in array.dims[:first])
+        attrs = {key: value for key, value in array.attrs.items() if key not in _REFERRING}
+        found = xarray.DataArray(
+            data,
+            dims=(*others, *target.dims),
+            coords={**array.coords, **target.coords},
+            name=name,
+            attrs=attrs | target.attrs,
+        )
+        return found.transpose(*others[:place], *target.dims, *others[place:])
+
+    def _chunked(
+        self, data: Any, dims: tuple[Any, ...], kind: np.dtype[Any], options: dict[str, Any]
+    ) -> Any:
+        """Return the lazy result of a Dask array, whose last axes are those of the source."""
+        dask = require("dask", extra="dask", what="regridding Dask arrays")
+        arrays = require("dask.array", extra="dask", what="regridding Dask arrays")
+        shape = self.target.grid_shape
+        whole = data.rechunk(dict.fromkeys(range(data.ndim - len(dims), data.ndim), -1))
+        ins = ",".join(f"i{k}" for k in range(len(dims)))
+        outs = ",".join(f"o{k}" for k in range(len(shape)))
+        return arrays.apply_gufunc(
+            _last,
+            f"({ins})->({outs})",
+            whole,
+            output_sizes={f"o{k}": size for k, size in enumerate(shape)},
+            output_dtypes=kind,
+            # One object of the graph, instead of one in each task.
+            weights=dask.delayed(self._weights, traverse=False),
+            **options,
+        )
+
+    def _of_dataset(self, data: Any, options: dict[str, Any]) -> Any:
+        """Return a dataset on the target."""
+        dims = self._dims
+        if dims is None:
+            dims = self._dims_of_dataset(data)
+        source, target = self._sides
+        ours = {str(name) for name in source.describing}
+        fields, partial, gone = [], [], []
+        for name, part in data.variables.items():
+            if str(name) in ours or (name in data.coords and set(part.dims) & set(dims)):
+                gone.append(name)
+            elif set(dims) <= set(part.dims):
+                fields.append(name)
+            elif set(dims) & set(part.dims):
+                partial.append(name)
+        # Bounds of coordinates that go, go with them.
+        bounds = {data[name].attrs.get("bounds") for name in gone}
+        partial = [name for name in partial if name not in bounds]
+        if partial:
+            self._warn(data, partial, dims)
+        plain = data.drop_vars([name for name in gone if name in data.coords])
+        found = {}
+        for name in fields:
+            if name not in bounds:
+                array = plain[name]
+                self._dims_fit(array, name, dims)
+                found[name] = self._of_array(array, dims, options)
+        kept = data.drop_dims([dim for dim in dims if dim in data.dims]).drop_vars(
+            [
+                name
+                for name in gone
+                if name in data.variables and not set(data[name].dims) & set(dims)
+            ]
+        )
+        result = kept.assign(found).assign_coords(target.coords)
+        others = {
+            name: value for name, value in target.others.items() if name not in result.variables
+        }
+        return result.assign(others)
+
+    def _dims_of_dataset(self, data: Any) -> tuple[Any, ...]:
+        """Return the dimensions at the end of a field that has the shape of the source."""
+        shape = self.source.grid_shape
+        found: set[tuple[Any, ...]] = {
+            part.dims[len(part.dims) - len(shape) :]
+            for part in data.data_vars.values()
+            if part.shape[len(part.shape) - len(shape) :] == shape
+        }
+        if len(found) != 1:
+            many = "several" if found else "no"
+            raise ShapeError(
+                f"{many} last dimensions of fields have the shape {shape} of the source: name them "
+                "with dims="
+            )
+        return found.pop()
+
+    def _dims_fit(self, array: Any, name: Any, dims: tuple[Any, ...]) -> None:
+        sizes = tuple(array.sizes[dim] for dim in dims)
+        if sizes != self.source.grid_shape:
+            raise ShapeError(
+                f"{name!s:.60} must have the shape {self.source.grid_shape} along {dims}, got "
+                f"{sizes}"
+            )
+
+    def _warn(self, data: Any, partial: list[Any], dims: tuple[Any, ...]) -> None:
+        from delone.interpolate.accessor import VariableWarning
+
+        listed = ", ".join(f"{name} ({', '.join(map(str, data[name].dims))})" for name in partial)
+        warnings.warn(
+            f"{listed:.160}: not in the result, because fields have the dimensions "
+            f"{', '.join(map(str, dims))}; drop such variables, or expand them",
+            VariableWarning,
+            stacklevel=caller_level(),
+        )
+
+
+def _last(
+    values: NDArray[Any], *, weights: Weights, count: int, shape: tuple[int, ...], **options: Any
+) -> NDArray[Any]:
+    """Regrid along the last axes."""
+    lead = values.shape[: values.ndim - count]
+    found = weights.apply(values.reshape(*lead, -1), **options)
+    return found.reshape(lead + shape)
+
+
+def _require_fit(weights: Weights, grids: tuple[Grid, Grid]) -> None:
+    """Refuse weights of other grids."""
+    if not isinstance(weights, Weights):
+        raise DtypeError(f"weights must be sphere.Weights, got {type(weights).__name__}")
+    counts = len(weights.source_fractions), len(weights.fractions)
+    for name, grid, count in zip(("source", "target"), grids, counts, strict=True):
+        if grid.ncells != count:
+            raise InputError(f"{name} has {grid.ncells} cells, and the weights {count}")
