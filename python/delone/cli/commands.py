@@ -41,6 +41,12 @@ COMMANDS = {
         "globe",
         "Triangulate longitudes and latitudes on the sphere, report, and write meshes.",
     ),
+    "regrid": Listed(
+        "regrid",
+        "regrid",
+        "Regrid the fields of a NetCDF file by the areas that cells share, exactly.",
+        on_rows=False,
+    ),
     "check": Listed(
         "check",
         "check",

@@ -62,6 +62,8 @@ class Regridder(Immutable):
         The grids.
     weights : Weights
         What each source cell contributes.
+    target_dims : tuple
+        Dimensions of results on the target.
 
     Raises
     ------
@@ -179,6 +181,13 @@ class Regridder(Immutable):
         """What each source cell contributes to each target cell."""
         return self._weights
 
+    @property
+    def target_dims(self) -> tuple[Any, ...]:
+        """The dimensions of results on the target."""
+        dims = self._sides[1].dims
+        assert dims is not None
+        return dims
+
     def __call__(
         self, data: Any, *, skipna: bool = False, min_fraction: float = 0.0, fill: Any = None
     ) -> Any:
@@ -245,13 +254,12 @@ class Regridder(Immutable):
     def _of_array(self, array: Any, dims: tuple[Any, ...], options: dict[str, Any]) -> Any:
         """Return a field without coordinates of the source on the target."""
         xarray = require("xarray", extra="xarray", what="regridding datasets")
-        target = self._sides[1]
-        assert target.dims is not None
+        target, on_target = self._sides[1], self.target_dims
         name = array.name
         if array.dtype.kind not in "iufb":
             raise DtypeError(f"variable {name!s:.60} is not numeric (dtype {array.dtype}): drop it")
         others = [dim for dim in array.dims if dim not in dims]
-        both = set(others) & set(target.dims)
+        both = set(others) & set(on_target)
         if both:
             raise InputError(
                 f"{name!s:.60} and the target have the dimension {min(map(str, both))!r:.60}: "
@@ -273,12 +281,12 @@ class Regridder(Immutable):
         attrs = {key: value for key, value in array.attrs.items() if key not in _REFERRING}
         found = xarray.DataArray(
             data,
-            dims=(*others, *target.dims),
+            dims=(*others, *on_target),
             coords={**array.coords, **target.coords},
             name=name,
             attrs=attrs | target.attrs,
         )
-        return found.transpose(*others[:place], *target.dims, *others[place:])
+        return found.transpose(*others[:place], *on_target, *others[place:])
 
     def _chunked(
         self, data: Any, dims: tuple[Any, ...], kind: np.dtype[Any], options: dict[str, Any]

@@ -1,0 +1,276 @@
+"""Regridding of NetCDF files on the sphere: the command ``delone regrid``."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from delone import __version__, sphere
+from delone.atomic import check_target, replacing
+from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.notes import note
+from delone.cli.options import Json, Quiet, Workers, split
+from delone.cli.report import Stopwatch, peak_memory
+from delone.cli.show import print_json, print_report, spinner
+from delone.extras import require
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from delone.cli.show import Row
+
+__all__ = ["regrid"]
+
+_SUFFIXES = (".nc", ".nc4", ".cdf")
+# Arguments in messages, and the options that set them.
+_ARGUMENTS = (
+    (r"infer_bounds=True", "--infer-bounds"),
+    (r"degrees=True or degrees=False", "--degrees or --radians"),
+    (r"\b(dims|coords|name|fill)=", r"--\1"),
+)
+
+
+def regrid(
+    source: Annotated[
+        Path, typer.Argument(metavar="INPUT", help="NetCDF file with fields on a grid.")
+    ],
+    target: Annotated[
+        str,
+        typer.Argument(
+            metavar="TARGET",
+            help="NetCDF file with the grid that is wanted, or its name: 1x1 (degrees of "
+            "longitude and latitude), healpix:64, healpix:64:nested, n80, o80 (Gaussian).",
+        ),
+    ],
+    *,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="OUTPUT", help="NetCDF file to write."),
+    ] = None,
+    method: Annotated[
+        str,
+        typer.Option(
+            help="How values are combined: conservative (integrals remain), normalized (means "
+            "over what is covered), sum (amounts) or majority (categories)."
+        ),
+    ] = "conservative",
+    grid: Annotated[
+        Path | None,
+        typer.Option(help="File with the grid of INPUT, if it is not in INPUT itself."),
+    ] = None,
+    weights: Annotated[
+        Path | None,
+        typer.Option(help="Map file of ESMF or SCRIP with the weights; --method is that of it."),
+    ] = None,
+    save_weights: Annotated[
+        Path | None, typer.Option(help="Map file to write, in the layout of ESMF.")
+    ] = None,
+    variables: Annotated[
+        str | None, typer.Option(help="Variables to regrid: t2m,rain; by default all.")
+    ] = None,
+    skipna: Annotated[
+        bool, typer.Option("--skipna", help="Missing values take no part; else they spread.")
+    ] = False,
+    min_fraction: Annotated[
+        float,
+        typer.Option(help="Target cells of which a smaller fraction has values are missing."),
+    ] = 0.0,
+    fill: Annotated[
+        float | None, typer.Option(help="The value of missing cells, by default NaN.")
+    ] = None,
+    dims: Annotated[
+        str | None, typer.Option(help="Dimensions of fields on the grid of INPUT: lat,lon.")
+    ] = None,
+    coords: Annotated[
+        str | None, typer.Option(help="Longitude and latitude of INPUT, of several: TLONG,TLAT.")
+    ] = None,
+    infer_bounds: Annotated[
+        bool,
+        typer.Option("--infer-bounds", help="Place missing bounds halfway between centers."),
+    ] = False,
+    degrees: Annotated[
+        bool | None,
+        typer.Option("--degrees/--radians", help="The unit of angles that have no units."),
+    ] = None,
+    workers: Workers = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Regrid the fields of a NetCDF file by the areas that cells share, exactly.
+
+    The grids are those of CF, UGRID, SCRIP, ESMF, MPAS, ICON, FESOM, Exodus, OASIS, GEOS-CS and
+    HEALPix. Times, levels, attributes and float32 remain; variables with only some of the
+    dimensions of cells are left out with a note.
+    """
+    named = Path(target)
+    inputs = [path for path in (source, grid, weights, named if named.exists() else None) if path]
+    with writing():
+        protect_inputs([path for path in (output, save_weights) if path], *inputs)
+        for path in (output, save_weights):
+            if path is not None:
+                _require_suffix(path)
+                check_target(path)
+    pair = None if coords is None else _pair(coords)
+    watch = Stopwatch()
+    with spinner(quiet or as_json) as say, _options():
+        say(f"reading {source.name}")
+        with reading(quiet=quiet), watch.stage("read"):
+            whole = _opened(source)
+            fields = _chosen(whole, split(variables), source)
+            own = whole if grid is None else _opened(grid)
+            wanted = _opened(named) if named.exists() else target
+            table = None if weights is None else sphere.Weights.from_netcdf(weights)
+        say("finding weights")
+        with reading(quiet=quiet), watch.stage("weights"):
+            from delone.xarray import Regridder
+
+            regridder = Regridder(
+                own,
+                wanted,
+                method=method,
+                weights=table,
+                dims=split(dims),
+                coords=pair,
+                infer_bounds=infer_bounds,
+                degrees=degrees,
+                workers=workers,
+            )
+        say("regridding")
+        with reading(quiet=quiet), watch.stage("regrid"):
+            options = {"skipna": skipna, "min_fraction": min_fraction, "fill": fill}
+            found = _noted(regridder, fields, options, quiet=quiet)
+        _write(found, whole, output, watch)
+        if save_weights is not None:
+            with writing(), watch.stage(f"write {save_weights.name}"):
+                regridder.weights.to_netcdf(
+                    save_weights, source=regridder.source, target=regridder.target
+                )
+        figures = _figures(source, regridder, fields, found) | {
+            "stages": watch.rows(regridder.target.ncells),
+            "outputs": [str(path) for path in (output, save_weights) if path is not None],
+            "peak_memory_bytes": peak_memory(),
+        }
+    if as_json:
+        print_json(figures)
+    elif not quiet:
+        print_report(str(source), _rows(figures), figures)
+
+
+@contextmanager
+def _options() -> Iterator[None]:
+    """Name options instead of the arguments that messages of the package name."""
+    from delone.errors import InputError
+
+    try:
+        yield
+    except InputError as error:
+        text = str(error)
+        for argument, option in _ARGUMENTS:
+            text = re.sub(argument, option, text)
+        error.args = (text, *error.args[1:])
+        raise
+
+
+def _require_suffix(path: Path) -> None:
+    if path.suffix.lower() not in _SUFFIXES:
+        raise Failure(f"{path}: regrid writes NetCDF, to {' '.join(_SUFFIXES)}", Exit.USAGE)
+
+
+def _pair(text: str) -> tuple[str, str]:
+    names = split(text) or []
+    if len(names) != 2:
+        raise Failure(f"--coords takes a longitude and a latitude, got {text!r:.80}", Exit.USAGE)
+    return names[0], names[1]
+
+
+def _opened(path: Path) -> Any:
+    """Return the dataset of a file; times remain the numbers that they are."""
+    xarray = require("xarray", extra="xarray", what="reading NetCDF files")
+    require("netCDF4", extra="xarray", what="reading NetCDF files")
+    if not path.exists():
+        raise Failure(f"{path}: No such file or directory", Exit.INPUT)
+    try:
+        return xarray.open_dataset(path, engine="netcdf4", decode_times=False)
+    except (OSError, ValueError) as error:
+        raise Failure(f"{path}: not a NetCDF file ({error})", Exit.INPUT) from error
+
+
+def _chosen(fields: Any, names: list[str] | None, source: Path) -> Any:
+    """Return the dataset with some of its fields only."""
+    for name in names or ():
+        if name not in fields.data_vars:
+            known = ", ".join(map(str, fields.data_vars))
+            raise Failure(f"{source}: no variable {name!r:.60}; it has {known:.300}", Exit.USAGE)
+    return fields if names is None else fields[names]
+
+
+def _noted(regridder: Any, fields: Any, options: dict[str, Any], *, quiet: bool) -> Any:
+    """Return the fields on the target, with a note of those that are left out."""
+    from delone.xarray import VariableWarning
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", VariableWarning)
+        found = regridder(fields, **options)
+    for each in caught:
+        note(str(each.message), quiet=quiet)
+    return found
+
+
+def _write(found: Any, fields: Any, output: Path | None, watch: Stopwatch) -> None:
+    if output is None:
+        return
+    unlimited = set(fields.encoding.get("unlimited_dims", ())) & set(found.dims)
+    with writing(), watch.stage(f"write {output.name}"), replacing(output) as temporary:
+        found.to_netcdf(temporary, engine="netcdf4", unlimited_dims=unlimited)
+
+
+def _figures(source: Path, regridder: Any, fields: Any, found: Any) -> dict[str, Any]:
+    weights = regridder.weights
+    covered = weights.target_areas[weights.fractions > 0].sum() / weights.target_areas.sum()
+    on_target = set(regridder.target_dims)
+    regridded = [
+        str(name)
+        for name, part in found.data_vars.items()
+        if name in fields.data_vars and on_target <= set(part.dims)
+    ]
+    return {
+        "delone": __version__,
+        "input": str(source),
+        "method": weights.method,
+        "source": _described(regridder.source),
+        "target": _described(regridder.target),
+        "masked": {
+            "source": len(regridder.source.report.masked),
+            "target": len(regridder.target.report.masked),
+        },
+        "weights": len(weights.values),
+        "target_covered": float(covered),
+        "variables": regridded,
+    }
+
+
+def _described(grid: sphere.Grid) -> dict[str, Any]:
+    return {"cells": grid.ncells, "shape": list(grid.grid_shape), "sides": grid.edges}
+
+
+def _rows(figures: dict[str, Any]) -> list[Row]:
+    rows = []
+    for name in ("source", "target"):
+        side = figures[name]
+        shape = " x ".join(f"{size:,}" for size in side["shape"])
+        sides = "parallels" if side["sides"] == "parallel" else "arcs of great circles"
+        masked = figures["masked"][name]
+        text = f"{shape} cells, {sides}"
+        rows.append((name, f"{text}, {masked:,} masked" if masked else text))
+    return [
+        *rows,
+        ("method", figures["method"]),
+        ("weights", f"{figures['weights']:,}"),
+        ("covered", f"{100 * figures['target_covered']:.6g} % of the target's area has values"),
+        ("variables", f"{', '.join(figures['variables']) or 'none'}"),
+    ]

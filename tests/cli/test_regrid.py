@@ -1,0 +1,156 @@
+"""The command ``delone regrid``: files, weights, variables, and what it refuses."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from delone import sphere
+
+xarray = pytest.importorskip("xarray")
+netcdf = pytest.importorskip("netCDF4")
+import delone.xarray  # noqa: E402, F401  (it registers the accessors)
+
+LON, LAT = np.arange(0, 361, 20.0), np.arange(-90, 91, 20.0)
+
+
+@pytest.fixture
+def model(tmp_path):
+    """Two fields of four times, of which one has missing values."""
+    rng = np.random.default_rng(3)
+    rain = rng.random((4, 9, 18)).astype(np.float32)
+    rain[:, 2:4, 3:9] = np.nan
+    ds = xarray.Dataset(
+        {
+            "rain": (("time", "lat", "lon"), rain, {"units": "mm"}),
+            "height": (("lat", "lon"), rng.random((9, 18))),
+            "lon_bnds": (("lon", "b"), np.column_stack((LON[:-1], LON[1:]))),
+            "lat_bnds": (("lat", "b"), np.column_stack((LAT[:-1], LAT[1:]))),
+        },
+        coords={
+            "lon": ("lon", LON[:-1] + 10, {"units": "degrees_east", "bounds": "lon_bnds"}),
+            "lat": ("lat", LAT[:-1] + 10, {"units": "degrees_north", "bounds": "lat_bnds"}),
+            "time": (
+                "time",
+                np.arange(4.0),
+                {"units": "months since 2001-01-01"},
+            ),
+        },
+    )
+    path = tmp_path / "model.nc"
+    ds.to_netcdf(path, unlimited_dims=["time"])
+    return path
+
+
+def opened(path):
+    with xarray.open_dataset(path, decode_times=False) as ds:
+        return ds.load()
+
+
+def test_a_file_to_a_file(model, tmp_path, figures):
+    out = tmp_path / "out.nc"
+    found = figures("regrid", model, "30x30", "-o", out)
+    ds = opened(out)
+    expected = opened(model).delone.regrid("30x30")
+    assert np.array_equal(ds.rain.values, expected.rain.values, equal_nan=True)
+    assert ds.rain.dtype == np.float32
+    assert ds.rain.attrs == {"units": "mm"}
+    assert ds.rain.dims == ("time", "lat", "lon")
+    # Times in units that nothing decodes remain what they are.
+    assert ds.time.attrs["units"] == "months since 2001-01-01"
+    with netcdf.Dataset(out) as file:
+        assert file.dimensions["time"].isunlimited()
+    assert found["variables"] == ["rain", "height"]
+    assert found["source"] == {"cells": 162, "shape": [9, 18], "sides": "parallel"}
+    assert found["target"]["shape"] == [6, 12]
+    assert found["target_covered"] == pytest.approx(1, rel=1e-14)
+    assert found["weights"] == len(
+        sphere.Overlaps(
+            sphere.Grid.from_lonlat(LON, LAT),
+            sphere.Grid.from_lonlat(np.arange(0, 361, 30), np.arange(-90, 91, 30)),
+        ).areas
+    )
+    assert found["outputs"] == [str(out)]
+
+
+def test_what_is_left_out_is_said(model, tmp_path, command):
+    more = tmp_path / "more.nc"
+    opened(model).assign(zonal=("lat", np.zeros(9))).to_netcdf(more)
+    code, out, err = command("regrid", more, "healpix:2", "-o", tmp_path / "out.nc")
+    assert "zonal" not in opened(tmp_path / "out.nc")
+    assert code == 0
+    assert err.startswith("delone: note: zonal (lat): not in the result")
+    assert command("regrid", more, "healpix:2", "-q") == (0, "", "")
+    assert "9 x 18 cells, parallels" in out
+    assert "48 cells, arcs of great circles" in out
+
+
+def test_weights_in_and_out(model, tmp_path, figures):
+    table, one, two = (tmp_path / name for name in ("map.nc", "one.nc", "two.nc"))
+    options = "--method", "normalized", "--skipna", "--min-fraction", "0.4"
+    found = figures("regrid", model, "healpix:4", *options, "-o", one, "--save-weights", table)
+    assert found["method"] == "normalized"
+    assert found["outputs"] == [str(one), str(table)]
+    weights = sphere.Weights.from_netcdf(table)
+    assert len(weights.values) == found["weights"]
+    # The method is that of the file.
+    again = figures("regrid", model, "healpix:4", "--weights", table, *options[2:], "-o", two)
+    assert again["method"] == "normalized"
+    a, b = opened(one), opened(two)
+    assert a.identical(b)
+    assert np.isnan(a.rain).any()
+    assert not np.isnan(a.height).any()
+
+
+def test_grids_of_other_files_and_variables(model, tmp_path, command, figures):
+    bare, out = tmp_path / "bare.nc", tmp_path / "out.nc"
+    ds = opened(model)
+    ds.drop_vars([*ds.coords, "lon_bnds", "lat_bnds"]).to_netcdf(bare)
+    code, _, err = command("regrid", bare, "30x30", "-o", out)
+    assert code == 2
+    assert "the dataset has no grid" in err
+    found = figures("regrid", bare, model, "--grid", model, "--variables", "height", "-o", out)
+    assert found["variables"] == ["height"]
+    result = opened(out)
+    assert np.allclose(result.height.values, ds.height.values, rtol=1e-14)
+    assert set(result.data_vars) == {"height", "lon_bnds", "lat_bnds"}
+
+
+def test_without_an_output_only_the_report(model, tmp_path, figures):
+    before = sorted(tmp_path.iterdir())
+    assert figures("regrid", model, "1x1")["weights"] == 64800
+    assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "message"),
+    [
+        (("{model}", "7x7"), 2, "7 degrees do not divide"),
+        (("{model}", "nowhere"), 2, "no grid is called 'nowhere'"),
+        (("none.nc", "1x1"), 3, "none.nc: No such file"),
+        (("{text}", "1x1"), 3, "not a NetCDF file"),
+        (("{model}", "{text}"), 3, "not a NetCDF file"),
+        (("{model}", "1x1", "-o", "a.tif"), 2, "regrid writes NetCDF"),
+        (("{model}", "1x1", "-o", "{model}"), 2, "would replace the input"),
+        (("{model}", "1x1", "--coords", "lon"), 2, "a longitude and a latitude"),
+        (("{model}", "1x1", "--variables", "snow"), 2, "no variable 'snow'; it has rain"),
+        (("{model}", "1x1", "--method", "cubic"), 2, "method"),
+        (("{bare}", "1x1"), 2, "give --infer-bounds"),
+        (("{bare}", "1x1", "--infer-bounds", "--radians"), 2, "contradicts"),
+        (("{model}", "1x1", "--weights", "{text}"), 3, "not a NetCDF file"),
+        (("{model}", "1x1", "--min-fraction", "2"), 2, "min_fraction must be from 0 to 1"),
+    ],
+)
+def test_what_is_refused(model, command, arguments, code, message):
+    tmp_path = model.parent
+    bare, text = tmp_path / "bare.nc", tmp_path / "text.nc"
+    ds = opened(model).drop_vars(["lon_bnds", "lat_bnds"])
+    for name in ("lon", "lat"):
+        del ds[name].attrs["bounds"]
+    ds.to_netcdf(bare)
+    text.write_text("no file")
+    given = [str(each).format(model=model, bare=bare, text=text) for each in arguments]
+    found, out, err = command("regrid", *given)
+    assert found == code, err
+    assert message in err
+    assert out == ""
