@@ -86,7 +86,7 @@ ALLOWED: dict[str, dict[str, str]] = {
         "total > _WIDTH": WANTED,
         "lengths > _LONGEST": VALUE,
     },
-    "sphere/crossings.py": {"dot(first, cross(a, x)) > 0": EXACT},
+    "sphere/crossings.py": {"value > 2.0 ** (-44)": FILTER},
     # Of two directions on one meridian, whether they are on the same side of the axis: sums of
     # products with one sign.
     "sphere/flat.py": {"np.dot(tail[:2], head[:2]) > 0": EXACT, "each.area > 0": EMPTY},

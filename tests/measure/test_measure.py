@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, _core, datasets
+from delone.plane.geometry import total
 from delone.plane.quality import below, squared_cosine
 from rational import area, cross, dot, exact, minus, ulps
 
@@ -220,3 +221,25 @@ def test_percentiles_are_those_of_their_names() -> None:
         values = getattr(quality, name)
         for percent in (1, 10, 50, 90, 99):
             assert found[f"p{percent}"] == np.percentile(values, percent), (name, percent)
+
+
+@pytest.mark.parametrize("spread", [3, 60, 1000])
+def test_totals_are_rounded_once(spread: int) -> None:
+    rng = np.random.default_rng(spread)
+    for count in (*range(5), 999, 1001, 5000, 70000, 140000):
+        sizes = np.ldexp(rng.random(count), rng.integers(-spread, 5, count))
+        sizes[rng.random(count) < 0.1] = 0
+        # Ends of a sum halfway between two doubles: what is left decides.
+        sizes = np.append(sizes, [1.0, 2.0**-53, 5e-324][: rng.integers(4)])
+        rng.shuffle(sizes)
+        assert total(sizes) == float(sum(map(Fraction, sizes.tolist()), Fraction(0)))
+
+
+@pytest.mark.parametrize("count", [3, 3000])
+def test_totals_at_the_ends_of_doubles(count: int) -> None:
+    assert total(np.full(count, 5e-324)) == count * 5e-324
+    assert total(np.full(count, 1e308)) == np.inf
+    assert total(np.full(count, 2.0**1000)) == count * 2.0**1000
+    assert total(np.append(np.zeros(count), 1.7e308)) == 1.7e308
+    assert total(np.append(np.zeros(count), np.inf)) == np.inf
+    assert np.isnan(total(np.append(np.zeros(count), np.nan)))

@@ -18,6 +18,7 @@ import pytest
 import delone
 import directions as oracle
 from delone import sphere
+from delone.sphere.crossings import _along
 
 LATTICE = [v for v in itertools.product((-2, -1, 0, 1, 2), repeat=3) if any(v)]
 KINDS = {
@@ -364,6 +365,76 @@ def test_crossings_become_vertices(kind):
             tuple(v) for v in mesh.vectors.tolist()
         }
     assert added > 30
+
+
+def stops_of(kind, rng):
+    """An arc, and directions near it that may be as near to each other as roundings."""
+    a, b = np.array([1.0, 0, rng.random()]), np.array([rng.choice((1e-3, -0.9)), 1, rng.random()])
+    if kind == "equal":
+        # Stops that differ in z alone are at one angle.
+        a, b = np.eye(3)[rng.sample((0, 1), 2)]
+    if kind == "tiny":
+        a, b = a * 2.0**-1060, b * 2.0**900
+    middle = a / np.abs(a).max() + b / np.abs(b).max()
+    middle /= np.abs(middle).max()
+    stops = {tuple(middle.tolist())}
+    for _ in range(rng.randint(1, 8)):
+        step = [rng.randint(-3, 3) * 2.0**-52 for _ in range(3)]
+        if kind == "scattered":
+            step = (rng.uniform(-0.3, 0.3) * (b / np.abs(b).max() - a)).tolist()
+        stops.add(tuple((middle + step).tolist()))
+    return a, b, rng.sample(sorted(stops), len(stops))
+
+
+@pytest.mark.parametrize("kind", ["near", "equal", "tiny", "scattered"])
+def test_stops_are_in_exact_order_along_their_arcs(kind):
+    rng = random.Random(f"stops {kind}")
+    equal = 0
+    vectors, rows, stops, want = [], [], [], []
+    for arc in range(60):
+        a, b, places = stops_of(kind, rng)
+        u = len(vectors)
+        vectors += [a.tolist(), b.tolist(), *map(list, places)]
+        rows += [(u, u + 1), (u + 1, u)]
+        stops += [(2 * arc + k, u + 2 + i) for k in (0, 1) for i in range(len(places))]
+        # The place of a direction on the arc's plane, as a fraction of both ends.
+        p, q = oracle.whole(a.tolist()), oracle.whole(b.tolist())
+        normal = oracle.cross(p, q)
+        angle = {}
+        for i, x in enumerate(map(oracle.whole, places)):
+            left = Fraction(oracle.dot(oracle.cross(x, q), normal))
+            right = Fraction(oracle.dot(oracle.cross(p, x), normal))
+            angle[u + 2 + i] = right / (left + right) if left + right else None
+        equal += len(angle) - len(set(angle.values()))
+        forward = 1 if a.tolist() < b.tolist() else -1
+        order = sorted(angle, key=lambda v: (angle[v], [forward * x for x in vectors[v]]))
+        want += [(2 * arc, v) for v in order] + [(2 * arc + 1, v) for v in order[::-1]]
+    part, stop = _along(np.array(vectors), np.array(rows), np.array(sorted(stops)))
+    assert list(zip(part.tolist(), stop.tolist(), strict=True)) == want
+    assert (equal > 0) == (kind == "equal")
+
+
+def test_crossings_do_not_touch_other_arcs():
+    rng = np.random.default_rng(5)
+    # Short arcs along a parallel, and one that crosses every tenth.
+    lon = np.arange(400) * 0.5
+    ends = np.column_stack((lon, np.full(400, 10.0)))
+    across = [(x, y) for x in lon[::10] + 0.25 for y in (5.0, 15.0)]
+    sides = [(i, i + 1) for i in range(399)]
+    arcs = sides + [(400 + 2 * k, 401 + 2 * k) for k in range(40)]
+    order = rng.permutation(len(arcs))
+    mesh = sphere.ConstrainedDelaunay(
+        lonlat=np.concatenate((ends, across)),
+        segments=[arcs[k] for k in order],
+        crossing="split",
+    )
+    assert mesh.nadded == 40
+    start, source = mesh.segment_source
+    count = np.bincount(source, minlength=len(arcs))
+    crossed = {k for s, t, _ in mesh.report.crossings.tolist() for k in (s, t)}
+    assert {int(order[k]) for k in crossed} == {*range(0, 399, 10), *range(399, 439)}
+    assert [2 if k in crossed else 1 for k in range(len(arcs))] == count.tolist()
+    assert len(start) - 1 == len(mesh.segments) == 399 + 40 + 80
 
 
 def test_the_limit_on_crossings():

@@ -8,9 +8,7 @@ way, round by round, until none cross.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from functools import cmp_to_key
-from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -25,7 +23,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-    from delone.sphere.exact import Vector
 
 __all__ = ["Split", "split"]
 
@@ -49,19 +46,20 @@ class _Parts(NamedTuple):
     rows: Indices
     # (k,): the arc of each.
     owner: Indices
-    # Pairs of arcs, and the row of the vector where they cross.
-    crossings: set[tuple[int, int, int]]
+    # (c, 3): pairs of arcs, and the row of the vector where they cross.
+    crossings: Indices
 
 
 def split(vectors: Floats, rows: Indices, max_points: int, workers: int) -> Split:
     """Return the triangulation of arcs with a vertex at each crossing."""
     count = len(rows)
-    parts = _Parts(vectors, rows, np.arange(count, dtype=np.int32), set())
+    none = np.empty((0, 3), dtype=np.int32)
+    parts = _Parts(vectors, rows, np.arange(count, dtype=np.int32), none)
     for _ in range(_ROUNDS):
         try:
             made = _core.sphere_constrained(parts.vectors, parts.rows, workers)
         except CrossingSegmentsError as error:
-            parts = _parted(parts, error.pairs.tolist())
+            parts = _parted(parts, error.pairs)
             found = len(parts.vectors) - len(vectors)
             if found > max_points:
                 raise BudgetExceededError(
@@ -80,55 +78,111 @@ def split(vectors: Floats, rows: Indices, max_points: int, workers: int) -> Spli
     )
 
 
-def _parted(parts: _Parts, pairs: list[list[int]]) -> _Parts:
-    """Split the parts that cross where they do."""
-    vectors, rows, owner = parts.vectors, parts.rows.tolist(), parts.owner.tolist()
-    known: dict[tuple[float, ...], int] = {}
-    added: list[tuple[float, ...]] = []
-    stops: dict[int, list[int]] = defaultdict(list)
-    crossings = set(parts.crossings)
-    for s, t in pairs:
-        a, b, c, d = (whole(vectors[v].tolist()) for v in (*rows[s], *rows[t]))
-        x = _crossing(a, b, c, d)
-        at = known.setdefault(x, len(vectors) + len(added))
-        if at == len(vectors) + len(added):
-            added.append(x)
-        stops[s].append(at)
-        stops[t].append(at)
-        crossings.add((min(owner[s], owner[t]), max(owner[s], owner[t]), at))
-    vectors = np.concatenate((vectors, np.array(added)))
-    ends, of = [], []
-    for part, (u, v) in enumerate(rows):
-        inside = _along(vectors, u, v, stops[part]) if part in stops else []
-        chain = [u, *inside, v]
-        ends += list(pairwise(chain))
-        of += [owner[part]] * (len(chain) - 1)
-    return _Parts(vectors, np.array(ends, np.int32), np.array(of, np.int32), crossings)
+def _parted(parts: _Parts, pairs: NDArray[np.integer]) -> _Parts:
+    """Split the parts that cross where they do; the others are not looked at."""
+    vectors, rows = parts.vectors, parts.rows
+    places = _crossings(vectors, rows, pairs)
+    # Crossings of several pairs in one place are one vector; rows are by its first pair.
+    number: dict[tuple[float, ...], int] = {}
+    at = np.array([number.setdefault(x, len(number)) for x in places], dtype=np.int32)
+    at += np.int32(len(vectors))
+    vectors = np.concatenate((vectors, np.array(list(number))))
+    arcs = np.sort(parts.owner[pairs], axis=1).astype(np.int32)
+    crossings = np.concatenate((parts.crossings, np.column_stack((arcs, at))))
+    stops = np.unique(np.column_stack((pairs.ravel(), np.repeat(at, 2))), axis=0)
+    part, stop = _along(vectors, rows, stops)
+    # A part with s stops becomes s + 1 rows; the k-th stop is the head of the k-th of them.
+    size = np.ones(len(rows), dtype=np.int64)
+    size += np.bincount(part, minlength=len(rows))
+    new, owner = np.repeat(rows, size, axis=0), np.repeat(parts.owner, size)
+    place = (np.cumsum(size) - size)[part] + _ranks(part)
+    new[place, 1] = stop
+    new[place + 1, 0] = stop
+    return _Parts(vectors, new, owner, crossings)
 
 
-def _along(vectors: Floats, u: int, v: int, stops: list[int]) -> list[int]:
-    """Return the rows of crossings of an arc in their order along it, each once."""
-    if len(stops) == 1:
-        return stops
-    a, b = (whole(vectors[w].tolist()) for w in (u, v))
-    normal = cross(a, b)
+def _crossings(
+    vectors: Floats, rows: Indices, pairs: NDArray[np.integer]
+) -> list[tuple[float, ...]]:
+    """Return the direction inside both parts of each pair: each coordinate by the largest, rounded.
+
+    Computed in integers, of which each vector and each normal is made once.
+    """
+    ends = {part: tuple(rows[part].tolist()) for part in np.unique(pairs).tolist()}
+    used = sorted({v for pair in ends.values() for v in pair})
+    exact = dict(zip(used, map(whole, vectors[used].tolist()), strict=True))
+    normal = {part: cross(exact[u], exact[v]) for part, (u, v) in ends.items()}
+    found = []
+    for s, t in pairs.tolist():
+        a, b = (exact[v] for v in ends[s])
+        # The vector product of both normals is p b - q a; inside the arc it is p > 0, q < 0.
+        n = normal[t]
+        p, q = dot(a, n), dot(b, n)
+        x = [p * j - q * i for i, j in zip(a, b, strict=True)]
+        top = max(map(abs, x)) * (1 if p > 0 else -1)
+        found.append(tuple(k / top + 0.0 for k in x))
+    return found
+
+
+def _along(
+    vectors: Floats, rows: Indices, stops: NDArray[np.integer]
+) -> tuple[NDArray[np.integer], NDArray[np.integer]]:
+    """Return parts and their stops, ascending by part, and along each in order.
+
+    Angles are rounded; the order of each two that follow each other is then checked, and where
+    they are not in order, the stops of the part are sorted exactly.
+    """
+    part, stop = stops.T
+    a, b = (_scaled(vectors[rows[part, k]]) for k in (0, 1))
+    p = vectors[stop]
+    normal = np.cross(a, b)
+    ahead = np.cross(normal, a) / np.linalg.norm(normal, axis=1, keepdims=True)
+    angle = np.arctan2(np.einsum("ij,ij->i", ahead, p), np.einsum("ij,ij->i", a, p))
+    order = np.lexsort((angle, part))
+    part, stop, normal, p = part[order], stop[order], normal[order], p[order]
+    second = np.flatnonzero(part[1:] == part[:-1]) + 1
+    value = np.einsum("ij,ij->i", normal[second], np.cross(p[second - 1], p[second]))
+    # Coordinates are 1 at most, so their products are off by less than 132 units of 2^-53.
+    unsure = np.unique(part[second[~(value > 2.0**-44)]])
+    for each in unsure.tolist():
+        low, high = np.searchsorted(part, (each, each + 1))
+        stop[low:high] = _in_order(vectors, rows[each].tolist(), stop[low:high].tolist())
+    return part, stop
+
+
+def _scaled(vectors: Floats) -> Floats:
+    """Return vectors with a largest coordinate of 1, rounded."""
+    # By a power of two first: the quotient of two tiny numbers may be far from exact.
+    _, exponent = np.frexp(np.abs(vectors).max(axis=1, keepdims=True))
+    near = np.ldexp(vectors, -exponent)
+    scaled: Floats = near / np.abs(near).max(axis=1, keepdims=True)
+    return scaled
+
+
+def _in_order(vectors: Floats, ends: list[int], stops: list[int]) -> list[int]:
+    """Return the rows of crossings of an arc in their order along it, exactly."""
+    u, v = vectors[ends].tolist()
+    normal = cross(whole(u), whole(v))
     place = {w: whole(vectors[w].tolist()) for w in stops}
+    # Stops at the same angle, off the plane of the arc, are ordered by coordinates.
+    forward = 1 if u < v else -1
 
     def before(s: int, t: int) -> int:
         turn = dot(normal, cross(place[s], place[t]))
-        return (turn < 0) - (turn > 0)
+        if turn == 0:
+            return forward if vectors[s].tolist() > vectors[t].tolist() else -forward
+        return -1 if turn > 0 else 1
 
     return sorted(place, key=cmp_to_key(before))
 
 
-def _crossing(a: Vector, b: Vector, c: Vector, d: Vector) -> tuple[float, ...]:
-    """Return the direction inside both arcs: each coordinate by the largest, rounded."""
-    first = cross(a, b)
-    x = cross(first, cross(c, d))
-    # Inside the arc a b it is left of a and right of b, seen along it.
-    ahead = dot(first, cross(a, x)) > 0
-    top = max(map(abs, x)) * (1 if ahead else -1)
-    return tuple(k / top + 0.0 for k in x)
+def _ranks(groups: NDArray[np.integer]) -> NDArray[np.int64]:
+    """Return for each entry of an ascending array how many equal ones are before it."""
+    first = np.flatnonzero(np.diff(groups, prepend=-1))
+    ranks: NDArray[np.int64] = np.arange(len(groups)) - np.repeat(
+        first, np.diff(np.append(first, len(groups)))
+    )
+    return ranks
 
 
 def _without_repeats(
@@ -146,7 +200,8 @@ def _without_repeats(
     rows = new[parts.rows]
     # Of a part without length nothing is left; those that were given so stay.
     kept = (rows[:, 0] != rows[:, 1]) | (parts.rows < count).all(axis=1)
-    crossings = {(s, t, int(new[at])) for s, t, at in parts.crossings}
+    crossings = parts.crossings.copy()
+    crossings[:, 2] = new[crossings[:, 2]]
     return _Parts(parts.vectors[stays], rows[kept], parts.owner[kept], crossings)
 
 
@@ -162,7 +217,6 @@ def _of_rows(
     starts = np.concatenate(([0], np.cumsum(np.bincount(piece[first], minlength=len(start) - 1))))
     through = made.through[made.through[:, 1] < count]
     through = np.column_stack((parts.owner[through[:, 0]], through[:, 1]))
-    crossings = np.array(sorted(parts.crossings), dtype=np.int32).reshape(-1, 3)
     return _core.ConstrainedTriangulation(
         made.added,
         made.simplices,
@@ -175,5 +229,5 @@ def _of_rows(
         made.forward[first],
         np.unique(parts.owner[made.zero]).astype(np.int32),
         np.unique(through, axis=0).astype(np.int32),
-        crossings,
+        np.unique(parts.crossings, axis=0).astype(np.int32),
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -14,6 +13,7 @@ from delone._arrays import as_number, as_workers
 from delone.errors import InputError
 from delone.georeference import caller_level, same_crs
 from delone.immutable import ReadOnly, sealed
+from delone.plane.geometry import total
 from delone.terrain.extent import inside_of_rings
 from delone.terrain.lines import rings_of
 from delone.units import require_same_units
@@ -118,7 +118,7 @@ def volume(tin: Surface, other: Any, region: Any) -> Volume:
             stacklevel=caller_level(),
         )
     # Correctly rounded sums: independent of the order of the triangles.
-    cut, fill, cut_area, fill_area, area = map(math.fsum, found)
+    cut, fill, cut_area, fill_area, area = map(total, found)
     return Volume(
         cut=cut,
         fill=fill,
