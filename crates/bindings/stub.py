@@ -142,7 +142,7 @@ def docstring(text: str, indent: int) -> str:
     quoted = f'"""{text}"""'
     space = " " * indent
     if len(quoted) + indent + 4 > WIDTH:
-        lines = textwrap.wrap(text, WIDTH - indent - 8)
+        lines = textwrap.wrap(text, WIDTH - indent - 12)
         quoted = (
             f'"""{lines[0]}\n' + "".join(f"{space}{line}\n" for line in lines[1:]) + f'{space}"""'
         )

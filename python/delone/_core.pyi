@@ -63,52 +63,39 @@ __all__ = [
     "Triangulation",
     "WeightRows",
     "__version__",
-    "alpha_counts2",
-    "alpha_counts3",
-    "alpha_edges2",
-    "alpha_edges3",
-    "alpha_flat2",
-    "alpha_flat3",
-    "alpha_labels2",
-    "alpha_labels3",
+    "alpha_counts",
+    "alpha_edges",
+    "alpha_flat",
+    "alpha_labels",
     "alpha_rings2",
     "alpha_solid3",
     "alpha_torus2",
-    "alpha_vertices2",
-    "alpha_vertices3",
-    "antipodes2",
-    "antipodes3",
-    "areas2",
+    "alpha_vertices",
+    "antipodes",
     "around",
     "below2",
     "check_surface3",
-    "circumcenters2",
-    "circumcenters3",
+    "circumcenters",
     "combine2",
     "components2",
     "components_beside2",
     "components_inside2",
-    "condensed2",
-    "condensed3",
+    "condensed",
     "constrained2",
     "contour_bands2",
     "contour_lines2",
     "deepest2",
-    "density2",
-    "density3",
-    "dig2",
-    "dig3",
+    "density",
+    "dig",
     "dihedral_angles3",
     "disks2",
-    "edges2",
-    "edges3",
+    "edges",
     "face_areas3",
     "face_normals3",
     "faces3",
     "facet_neighbors",
     "facet_rows",
-    "fault2",
-    "fault3",
+    "fault",
     "find_simplex2",
     "gradients_global2",
     "gradients_local2",
@@ -118,21 +105,17 @@ __all__ = [
     "hull3",
     "improve3",
     "incircle",
-    "influence2",
-    "influence3",
+    "influence",
     "insphere",
     "judge2",
-    "knn2",
-    "knn3",
+    "knn",
     "lawson2",
-    "linkage2",
-    "linkage3",
+    "linkage",
     "measures2",
     "measures3",
     "methods2",
     "neighbors2",
-    "not_longer2",
-    "not_longer3",
+    "not_longer",
     "numbered_components",
     "odd_pairs2",
     "of_triangles2",
@@ -142,19 +125,16 @@ __all__ = [
     "periodic_centers2",
     "pieces2",
     "polygon2",
-    "proximity2",
-    "proximity3",
-    "qualities2",
-    "qualities3",
+    "proximity",
+    "qualities",
     "recover_faces",
     "refine2",
-    "regular2",
-    "regular3",
+    "regular",
     "resolve_touches3",
     "ring2",
+    "sizes",
     "smooth2",
-    "spanning2",
-    "spanning3",
+    "spanning",
     "spanning_triangles2",
     "sphere_areas",
     "sphere_circumcenters",
@@ -165,8 +145,7 @@ __all__ = [
     "sphere_spans",
     "sphere_units",
     "touched2",
-    "transforms2",
-    "transforms3",
+    "transforms",
     "triangulate2",
     "triangulate3",
     "validate2",
@@ -175,7 +154,6 @@ __all__ = [
     "validate_regular2",
     "validate_regular3",
     "volumes2",
-    "volumes3",
     "voronoi2",
     "voronoi3",
     "voronoi_clip2",
@@ -208,8 +186,8 @@ class CellGrid:
         cells: NDArray[np.int64],
         holes: NDArray[np.bool_],
     ) -> CellGrid:
-        """Cells with arcs of great circles as sides: corners, where their rings start, where the
-        rings of cells start, and whether rings are holes.
+        """Cells with arcs of great circles as sides: corners, where their rings start, where
+        the rings of cells start, and whether rings are holes.
         """
     @staticmethod
     def rows(
@@ -220,8 +198,8 @@ class CellGrid:
         count: int,
     ) -> CellGrid:
         """Cells between meridians and parallels, by rows: tangents of latitudes, where the
-        meridians of rows start, their directions, the number of the cell east of each or -1,
-        and how many cells there are.
+        meridians of rows start, their directions, the number of the cell east of each or
+        -1, and how many cells there are.
         """
     def check(self, crossing: bool, workers: int) -> CheckedCells:
         """Areas and faults; sides that cross are looked for if `crossing`."""
@@ -294,8 +272,8 @@ class CheckedCells:
         """Areas in steradians, 0 of cells that have none, (n,)."""
     @property
     def faults(self) -> NDArray[np.uint8]:
-        """0, 1 for empty cells, 2 for opposite ends of a side, 3 for cells beyond a hemisphere, 4
-        for sides that cross, (n,).
+        """0, 1 for empty cells, 2 for opposite ends of a side, 3 for cells beyond a
+        hemisphere, 4 for sides that cross, (n,).
         """
     @property
     def turned(self) -> NDArray[np.bool_]:
@@ -879,16 +857,16 @@ class Live2:
         crossings: tuple[NDArray[np.int64], NDArray[np.float64]],
         workers: int,
     ) -> None:
-        """Inserts segments with known handles, ascending, before the handle `total`; crossings at
-        known places get their handles again.
+        """Inserts segments with known handles, ascending, before the handle `total`; crossings
+        at known places get their handles again.
         """
     def segments(self) -> LiveSegments2:
         """The segments and their crossings."""
     def segment_faults(self, handles: NDArray[np.int64]) -> list[NDArray[np.int64]]:
         """Which of these handles of segments are not there, or are named earlier."""
     def held(self, handles: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Which of these handles of points are ends of segments, each with one, or crossings, with
-        -1.
+        """Which of these handles of points are ends of segments, each with one, or crossings,
+        with -1.
         """
     def corners(self, xi: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """The handles of the corners of a triangle that contains each query, -1 outside, and
@@ -897,8 +875,8 @@ class Live2:
     def weights(
         self, xi: NDArray[np.float64], known: int
     ) -> tuple[NDArray[np.int64], NDArray[np.float64], int, NDArray[np.int64] | None]:
-        """The same, and the number of edits so far; and if that is not `known`, the handles of all
-        points.
+        """The same, and the number of edits so far; and if that is not `known`, the handles of
+        all points.
         """
     def nearest(self, xi: NDArray[np.float64]) -> NDArray[np.int64]:
         """The handle of the nearest point to each query, -1 if there is none."""
@@ -907,8 +885,8 @@ class Live2:
     def state(self) -> LiveState2:
         """The present state."""
     def restore(self, state: LiveState2, known: int | None = None) -> bool:
-        """Restores a state; not if `known` is given and is not the number of edits so far. Whether
-        it was restored.
+        """Restores a state; not if `known` is given and is not the number of edits so far.
+        Whether it was restored.
         """
 
 @final
@@ -943,14 +921,14 @@ class Live3:
     def arrays(self) -> LiveArrays3:
         """The present triangulation; no tetrahedra if all points are in one plane."""
     def corners(self, xi: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """The handles of the corners of a tetrahedron that contains each query, -1 outside, and
-        weights.
+        """The handles of the corners of a tetrahedron that contains each query, -1 outside,
+        and weights.
         """
     def weights(
         self, xi: NDArray[np.float64], known: int
     ) -> tuple[NDArray[np.int64], NDArray[np.float64], int, NDArray[np.int64] | None]:
-        """The same, and the number of edits so far; and if that is not `known`, the handles of all
-        points.
+        """The same, and the number of edits so far; and if that is not `known`, the handles of
+        all points.
         """
     def nearest(self, xi: NDArray[np.float64]) -> NDArray[np.int64]:
         """The handle of the nearest point to each query, -1 if there is none."""
@@ -959,8 +937,8 @@ class Live3:
     def state(self) -> LiveState3:
         """The present state."""
     def restore(self, state: LiveState3, known: int | None = None) -> bool:
-        """Restores a state; not if `known` is given and is not the number of edits so far. Whether
-        it was restored.
+        """Restores a state; not if `known` is given and is not the number of edits so far.
+        Whether it was restored.
         """
 
 @final
@@ -1151,7 +1129,9 @@ class Locator3:
     def locate(self, xi: NDArray[np.float64], workers: int) -> Location3:
         """Tetrahedra with barycentric coordinates, and outside the nearest boundary point."""
     def laplace(self, xi: NDArray[np.float64], workers: int) -> NaturalWeights:
-        """Laplace weights of natural neighbors, as compressed rows, and the tetrahedra of queries."""
+        """Laplace weights of natural neighbors, as compressed rows, and the tetrahedra of
+        queries.
+        """
     def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]:
         """The nearest vertex to each query, in a Delaunay triangulation."""
 
@@ -1366,8 +1346,8 @@ class Refinement2:
     def refine(
         self, max_vertices: int, progress: Callable[[int, float], object] | None
     ) -> tuple[bool, int]:
-        """One round; returns whether `max_vertices`, the number of vertices to add, was enough,
-        and the number of vertices added in all rounds.
+        """One round; returns whether `max_vertices`, the number of vertices to add, was
+        enough, and the number of vertices added in all rounds.
         """
     def export(self) -> RefinedMesh:
         """The triangulation, with the vertices of all rounds."""
@@ -1580,17 +1560,12 @@ class WeightRows:
     def weights(self) -> NDArray[np.float64]:
         """Their weights, (k,)."""
 
-def alpha_counts2(
+def alpha_counts(
     order: NDArray[np.int32], neighbors: NDArray[np.int32], outside: bool
 ) -> NDArray[np.int32]:
     """The numbers of components of the first simplices of an order."""
 
-def alpha_counts3(
-    order: NDArray[np.int32], neighbors: NDArray[np.int32], outside: bool
-) -> NDArray[np.int32]:
-    """The numbers of components of the first simplices of an order."""
-
-def alpha_edges2(
+def alpha_edges(
     points: NDArray[np.float64],
     weights: NDArray[np.float64] | None,
     edges: NDArray[np.int32],
@@ -1598,15 +1573,7 @@ def alpha_edges2(
 ) -> NDArray[np.float64]:
     """The values of edges without cofaces."""
 
-def alpha_edges3(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    edges: NDArray[np.int32],
-    workers: int,
-) -> NDArray[np.float64]:
-    """The values of edges without cofaces."""
-
-def alpha_flat2(
+def alpha_flat(
     points: NDArray[np.float64],
     weights: NDArray[np.float64] | None,
     simplices: NDArray[np.int32],
@@ -1615,19 +1582,7 @@ def alpha_flat2(
 ) -> tuple[NDArray[np.float64], tuple[NDArray[np.int32], NDArray[np.float64]]]:
     """The values of triangles and their edges."""
 
-def alpha_flat3(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    workers: int,
-) -> tuple[NDArray[np.float64], tuple[NDArray[np.int32], NDArray[np.float64]]]:
-    """The values of triangles and their edges."""
-
-def alpha_labels2(kept: NDArray[np.bool_], neighbors: NDArray[np.int32]) -> NDArray[np.int32]:
-    """The component of each simplex that is kept, -1 of others."""
-
-def alpha_labels3(kept: NDArray[np.bool_], neighbors: NDArray[np.int32]) -> NDArray[np.int32]:
+def alpha_labels(kept: NDArray[np.bool_], neighbors: NDArray[np.int32]) -> NDArray[np.int32]:
     """The component of each simplex that is kept, -1 of others."""
 
 def alpha_rings2(
@@ -1661,11 +1616,11 @@ def alpha_torus2(
     workers: int,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int32]]:
     """`(triangles, edges, conflicts)`: the values of periodic triangles, (m,), and of the
-    edges opposite their corners, (m, 3), and whether (tail, head) of these are in conflict
-    with the other, (3 m, 2).
+    edges opposite their corners, (m, 3), and whether (tail, head) of these are in
+    conflict with the other, (3 m, 2).
     """
 
-def alpha_vertices2(
+def alpha_vertices(
     points: NDArray[np.float64],
     weights: NDArray[np.float64] | None,
     edges: NDArray[np.int32],
@@ -1673,39 +1628,16 @@ def alpha_vertices2(
 ) -> NDArray[np.float64]:
     """The values of points, from those of edges."""
 
-def alpha_vertices3(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    edges: NDArray[np.int32],
-    values: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    """The values of points, from those of edges."""
-
-def antipodes2(
+def antipodes(
     graph: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
     simplices: NDArray[np.int32] | None,
     neighbors: NDArray[np.int32] | None,
     workers: int,
 ) -> NDArray[np.int32]:
     """The pairs with an empty open diametral ball that are no Delaunay edges."""
-
-def antipodes3(
-    graph: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
-    simplices: NDArray[np.int32] | None,
-    neighbors: NDArray[np.int32] | None,
-    workers: int,
-) -> NDArray[np.int32]:
-    """The pairs with an empty open diametral ball that are no Delaunay edges."""
-
-def areas2(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]:
-    """The areas of triangles."""
 
 def around(edges: NDArray[np.int32], npoints: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """The neighbors of each vertex along the edges of `edges2` or `edges3`: `(indptr,
-    indices)`.
-    """
+    """The neighbors of each vertex along `edges`: `(indptr, indices)`."""
 
 def below2(
     points: NDArray[np.float64], simplices: NDArray[np.int32], squared_cosine: float, workers: int
@@ -1717,15 +1649,10 @@ def check_surface3(
 ) -> CheckedSurface:
     """Checks a surface; at most `limit` pairs are returned."""
 
-def circumcenters2(
+def circumcenters(
     points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
 ) -> NDArray[np.float64]:
-    """The centers of the circles through the corners of triangles."""
-
-def circumcenters3(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]:
-    """The centers of the spheres through the corners of tetrahedra."""
+    """The centers of the circles or spheres through the corners of simplices."""
 
 def combine2(
     indptr: NDArray[np.int64],
@@ -1763,11 +1690,11 @@ def components_inside2(
     covers: tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32]],
     first: int,
 ) -> NDArray[np.int32]:
-    """Pairs of a component and a polygon whose rings contain it, ascending, (k, 2); `first` is
-    in none.
+    """Pairs of a component and a polygon whose rings contain it, ascending, (k, 2);
+    `first` is in none.
     """
 
-def condensed2(
+def condensed(
     points: NDArray[np.float64], k: int, least: int, number: float, workers: int
 ) -> tuple[
     NDArray[np.int32],
@@ -1780,25 +1707,8 @@ def condensed2(
     NDArray[np.float64],
     tuple[int, int],
 ]:
-    """The condensed tree by mutual reachability, and the levels below and up to a number; of
-    at least two points, with `k` rows at most as many.
-    """
-
-def condensed3(
-    points: NDArray[np.float64], k: int, least: int, number: float, workers: int
-) -> tuple[
-    NDArray[np.int32],
-    NDArray[np.int32],
-    NDArray[np.int32],
-    NDArray[np.int32],
-    NDArray[np.int32],
-    NDArray[np.int32],
-    NDArray[np.float64],
-    NDArray[np.float64],
-    tuple[int, int],
-]:
-    """The condensed tree by mutual reachability, and the levels below and up to a number; of
-    at least two points, with `k` rows at most as many.
+    """The condensed tree by mutual reachability, and the levels below and up to a number;
+    of at least two points, with `k` rows at most as many.
     """
 
 def constrained2(
@@ -1832,9 +1742,9 @@ def contour_lines2(
     collapsed: NDArray[np.bool_],
     far: bool,
 ) -> ContourLines:
-    """The contour lines of a surface, with higher ground to their left. Those in triangles of
-    `collapsed`, which may be empty, pass through vertices; `far` allows to unite points of
-    lines that are far apart.
+    """The contour lines of a surface, with higher ground to their left. Those in triangles
+    of `collapsed`, which may be empty, pass through vertices; `far` allows to unite
+    points of lines that are far apart.
     """
 
 def deepest2(
@@ -1844,17 +1754,12 @@ def deepest2(
     whether these are all.
     """
 
-def density2(
+def density(
     points: NDArray[np.float64], eps: float, k: int, workers: int
 ) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
     """For each row, the first row of its cluster or -1, and whether it is a core point."""
 
-def density3(
-    points: NDArray[np.float64], eps: float, k: int, workers: int
-) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
-    """For each row, the first row of its cluster or -1, and whether it is a core point."""
-
-def dig2(
+def dig(
     points: NDArray[np.float64],
     simplices: NDArray[np.int32],
     neighbors: NDArray[np.int32],
@@ -1862,16 +1767,9 @@ def dig2(
     value: float,
     holes: bool,
 ) -> NDArray[np.bool_]:
-    """Which triangles of a concave hull remain."""
-
-def dig3(
-    points: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    name: str,
-    value: float,
-) -> NDArray[np.bool_]:
-    """Which tetrahedra of a concave hull remain."""
+    """Which simplices of a concave hull remain; `holes` is whether triangles may leave
+    holes.
+    """
 
 def dihedral_angles3(
     points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
@@ -1879,17 +1777,14 @@ def dihedral_angles3(
     """The dihedral angles of tetrahedra at the edges 01, 02, 03, 12, 13 and 23."""
 
 def disks2(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> NDArray[np.float64]:
-    """Center and radius of disks that contain the closed circumdisks; an infinite radius means
-    the whole plane.
+    """Center and radius of disks that contain the closed circumdisks; an infinite radius
+    means the whole plane.
     """
 
-def edges2(
+def edges(
     simplices: NDArray[np.int32], neighbors: NDArray[np.int32], npoints: int, workers: int
 ) -> NDArray[np.int32]:
-    """Every edge of triangles once: the smaller vertex first, rows ascending."""
-
-def edges3(simplices: NDArray[np.int32], npoints: int, workers: int) -> NDArray[np.int32]:
-    """Every edge of tetrahedra once: the smaller vertex first, rows ascending."""
+    """Every edge of triangles or tetrahedra once: the smaller vertex first, rows ascending."""
 
 def face_areas3(
     points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
@@ -1914,27 +1809,19 @@ def facet_neighbors(simplices: NDArray[np.int32], npoints: int) -> NDArray[np.in
 def facet_rows(
     facets: NDArray[np.int32], wanted: NDArray[np.int32], npoints: int, directed: bool
 ) -> NDArray[np.int32]:
-    """The first row of `facets`, (k, 2) or (k, 3), that is each of `wanted`, -1 where there is
-    none; with the same order of vertices if they are `directed`.
+    """The first row of `facets`, (k, 2) or (k, 3), that is each of `wanted`, -1 where
+    there is none; with the same order of vertices if they are `directed`.
     """
 
-def fault2(
+def fault(
     points: NDArray[np.float64],
     simplices: NDArray[np.int32],
     neighbors: NDArray[np.int32],
     workers: int,
 ) -> tuple[str, int] | None:
-    """The first fault of triangles: `("neighbors", row)` or `("orientation", row)`; None if
-    there is none.
+    """The first fault of triangles or tetrahedra: `("neighbors", row)` or `("orientation",
+    row)`; None if there is none.
     """
-
-def fault3(
-    points: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    workers: int,
-) -> tuple[str, int] | None:
-    """The same for tetrahedra."""
 
 def find_simplex2(
     points: NDArray[np.float64],
@@ -1999,8 +1886,8 @@ def improve3(
     passes: int,
     progress: Callable[[int, int], object] | None = None,
 ) -> ImprovedMesh:
-    """Improves tetrahedra. `progress` is called after each pass with its number and the number
-    of tetrahedra below the bound.
+    """Improves tetrahedra. `progress` is called after each pass with its number and the
+    number of tetrahedra below the bound.
     """
 
 def incircle(
@@ -2012,12 +1899,7 @@ def incircle(
 ) -> NDArray[np.int8]:
     """Signs of d relative to the circle through a, b, c."""
 
-def influence2(
-    points: NDArray[np.float64], closed: bool, workers: int
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """The edges of the sphere of influence graph, and the duplicates."""
-
-def influence3(
+def influence(
     points: NDArray[np.float64], closed: bool, workers: int
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """The edges of the sphere of influence graph, and the duplicates."""
@@ -2039,12 +1921,7 @@ def judge2(
     include the smallest and the largest angle; and those beyond the range of doubles.
     """
 
-def knn2(
-    points: NDArray[np.float64], k: int, directed: bool, workers: int
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """The edges to the k nearest neighbors, and the duplicates."""
-
-def knn3(
+def knn(
     points: NDArray[np.float64], k: int, directed: bool, workers: int
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """The edges to the k nearest neighbors, and the duplicates."""
@@ -2056,15 +1933,7 @@ def lawson2(
     recorded.
     """
 
-def linkage2(
-    points: NDArray[np.float64],
-    edges: NDArray[np.int32],
-    duplicates: NDArray[np.int32],
-    workers: int,
-) -> NDArray[np.float64]:
-    """The merges of single linkage, from the edges of the spanning tree and duplicates."""
-
-def linkage3(
+def linkage(
     points: NDArray[np.float64],
     edges: NDArray[np.int32],
     duplicates: NDArray[np.int32],
@@ -2091,12 +1960,7 @@ def methods2() -> list[str]:
 def neighbors2(simplices: NDArray[np.int32], npoints: int) -> NDArray[np.int32]:
     """The triangle across the edge opposite each corner, -1 outside."""
 
-def not_longer2(
-    points: NDArray[np.float64], edges: NDArray[np.int32], ends: NDArray[np.float64], workers: int
-) -> NDArray[np.int32]:
-    """The edges that are not longer than the one between two points."""
-
-def not_longer3(
+def not_longer(
     points: NDArray[np.float64], edges: NDArray[np.int32], ends: NDArray[np.float64], workers: int
 ) -> NDArray[np.int32]:
     """The edges that are not longer than the one between two points."""
@@ -2111,8 +1975,8 @@ def numbered_components(
 def odd_pairs2(
     covers: tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32]],
 ) -> NDArray[np.int32]:
-    """Pairs of a subsegment and a polygon of which an odd number of sides cover it, ascending,
-    (k, 2).
+    """Pairs of a subsegment and a polygon of which an odd number of sides cover it,
+    ascending, (k, 2).
     """
 
 def of_triangles2(
@@ -2140,8 +2004,8 @@ def periodic2(
     periods: Sequence[float],
     workers: int,
 ) -> PeriodicTriangulation:
-    """The Delaunay triangulation (with weights the regular one) of points that repeat after
-    `periods`, 0 for none; points must lie within one period.
+    """The Delaunay triangulation (with weights the regular one) of points that repeat
+    after `periods`, 0 for none; points must lie within one period.
     """
 
 def periodic_centers2(
@@ -2153,8 +2017,8 @@ def periodic_centers2(
     workers: int,
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """`(centers, shared)`: the center of each triangle of copies, and whether the neighbor
-    across each edge, with a given apex, has the same center; corners and apexes are rows
-    and shifts, three per triangle.
+    across each edge, with a given apex, has the same center; corners and apexes are
+    rows and shifts, three per triangle.
     """
 
 def pieces2(
@@ -2167,8 +2031,8 @@ def pieces2(
     outline: NDArray[np.float64],
     workers: int,
 ) -> CellPieces2:
-    """Clips the polygons `rows` to an outline: rings with their inside to the left. `inside`
-    is whether the outline contains the first corner of each of these polygons.
+    """Clips the polygons `rows` to an outline: rings with their inside to the left.
+    `inside` is whether the outline contains the first corner of each of these polygons.
     """
 
 def polygon2(
@@ -2176,7 +2040,7 @@ def polygon2(
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """The triangles inside rings, and the vertices added where they cross."""
 
-def proximity2(
+def proximity(
     graph: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
     name: str,
     beta: float,
@@ -2185,24 +2049,12 @@ def proximity2(
 ) -> NDArray[np.int32]:
     """The Delaunay edges whose region is empty."""
 
-def proximity3(
-    graph: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
-    name: str,
-    beta: float,
-    closed: bool,
-    workers: int,
-) -> NDArray[np.int32]:
-    """The Delaunay edges whose region is empty."""
-
-def qualities2(
+def qualities(
     points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
 ) -> list[NDArray[np.float64]]:
-    """Smallest and largest angle, area, ratio of radii and of edges of triangles."""
-
-def qualities3(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> list[NDArray[np.float64]]:
-    """Smallest and largest dihedral angle, volume, ratio of radii and of edges of tetrahedra."""
+    """Smallest and largest angle (of tetrahedra, dihedral angle), size, ratio of radii and
+    of edges.
+    """
 
 def recover_faces(
     points: NDArray[np.float64],
@@ -2211,8 +2063,8 @@ def recover_faces(
     flips: bool,
     workers: int,
 ) -> RecoveredFaces:
-    """Tetrahedra that have all faces, which may meet in common vertices and edges only. What
-    can be reached from far outside without crossing a face is left out.
+    """Tetrahedra that have all faces, which may meet in common vertices and edges only.
+    What can be reached from far outside without crossing a face is left out.
     """
 
 def refine2(
@@ -2230,32 +2082,34 @@ def refine2(
     sizes_yield: bool = False,
     progress: Callable[[int, float], object] | None = None,
 ) -> RefinedMesh:
-    """Refines a triangulation. `progress` is called with the number of added vertices and the
-    current smallest angle.
+    """Refines a triangulation. `progress` is called with the number of added vertices and
+    the current smallest angle.
     """
 
-def regular2(
+def regular(
     points: NDArray[np.float64], weights: NDArray[np.float64], workers: int
 ) -> RegularTriangulation:
-    """The regular triangulation of weighted 2-D points; a chain of rows if all are collinear."""
-
-def regular3(
-    points: NDArray[np.float64], weights: NDArray[np.float64], workers: int
-) -> RegularTriangulation:
-    """The regular triangulation of weighted 3-D points."""
+    """The regular triangulation of weighted points; in 2-D a chain of rows if all are
+    collinear.
+    """
 
 def resolve_touches3(
     points: NDArray[np.float64], faces: NDArray[np.int32], limit: int, workers: int
 ) -> tuple[tuple[NDArray[np.int32], NDArray[np.int32]] | None, FacePairs]:
-    """`(parts, pairs)`: the faces subdivided where they touch, None if some cross, and at most
-    `limit` pairs.
+    """`(parts, pairs)`: the faces subdivided where they touch, None if some cross, and at
+    most `limit` pairs.
     """
 
 def ring2(points: object) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
-    """A read-only copy of the points and the triangles of one ring; None unless the ring is
-    known to be simple and `points` is a contiguous array of doubles.  It holds the GIL:
-    such rings are short, and releasing it would cost as much as triangulating.
+    """A read-only copy of the points and the triangles of one ring; None unless the ring
+    is known to be simple and `points` is a contiguous array of doubles.  It holds the
+    GIL: such rings are short, and releasing it would cost as much as triangulating.
     """
+
+def sizes(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]:
+    """The areas of triangles, or the volumes of tetrahedra."""
 
 def smooth2(
     points: NDArray[np.float64],
@@ -2268,17 +2122,11 @@ def smooth2(
     rounds: int,
     workers: int,
 ) -> SmoothedMesh:
-    """Moves free vertices of a mesh toward better positions; `cos2` is the squared cosine of
-    the bound.
+    """Moves free vertices of a mesh toward better positions; `cos2` is the squared cosine
+    of the bound.
     """
 
-def spanning2(
-    graph: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
-    workers: int,
-) -> NDArray[np.int32]:
-    """The edges of the minimum spanning tree."""
-
-def spanning3(
+def spanning(
     graph: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
     workers: int,
 ) -> NDArray[np.int32]:
@@ -2321,15 +2169,15 @@ def sphere_dual(
     merged: bool,
     workers: int,
 ) -> SphereDual:
-    """Returns the dual of a triangulation of at least four directions; facets of one circle
-    share a vertex if `merged`.
+    """Returns the dual of a triangulation of at least four directions; facets of one
+    circle share a vertex if `merged`.
     """
 
 def sphere_spans(
     vectors: NDArray[np.float64], around: NDArray[np.int32], workers: int
 ) -> NDArray[np.float64]:
-    """Returns the length of each ridge, and the area between it and either of its sites, (r,
-    2).
+    """Returns the length of each ridge, and the area between it and either of its sites,
+    (r, 2).
     """
 
 def sphere_units(vectors: NDArray[np.float64], workers: int) -> NDArray[np.float64]:
@@ -2341,19 +2189,14 @@ def touched2(
     ridges: NDArray[np.int32],
     segments: NDArray[np.float64],
 ) -> tuple[NDArray[np.int32], int]:
-    """For each polygon its connected group of polygons that no segment comes near, or -1; and
-    the number of groups.
+    """For each polygon its connected group of polygons that no segment comes near, or -1;
+    and the number of groups.
     """
 
-def transforms2(
+def transforms(
     points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
 ) -> NDArray[np.float64]:
-    """The affine maps of triangles to barycentric coordinates."""
-
-def transforms3(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]:
-    """The affine maps of tetrahedra to barycentric coordinates."""
+    """The affine maps of simplices to barycentric coordinates."""
 
 def triangulate2(points: NDArray[np.float64], method: str, workers: int) -> Triangulation:
     """The Delaunay triangulation of 2-D points."""
@@ -2380,8 +2223,8 @@ def validate_periodic2(
     neighbors: NDArray[np.int32],
     partners: NDArray[np.int32],
 ) -> PeriodicFaults:
-    """What is wrong with a periodic triangulation: periods of 0 stand for none; `offsets` has
-    those of the three corners of each triangle in one row.
+    """What is wrong with a periodic triangulation: periods of 0 stand for none; `offsets`
+    has those of the three corners of each triangle in one row.
     """
 
 def validate_regular2(
@@ -2407,14 +2250,10 @@ def volumes2(
     region: _Sheet | None,
     workers: int,
 ) -> list[NDArray[np.float64]]:
-    """For each triangle of a surface: the volumes below it and above it up to another surface
-    or to the plane z = c + a x + b y, the areas of both, and the area of the overlap.
+    """For each triangle of a surface: the volumes below it and above it up to another
+    surface or to the plane z = c + a x + b y, the areas of both, and the area of the
+    overlap.
     """
-
-def volumes3(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
-) -> NDArray[np.float64]:
-    """The volumes of tetrahedra."""
 
 def voronoi2(
     points: NDArray[np.float64],
@@ -2453,8 +2292,9 @@ def voronoi_clip3(
     clip_planes: NDArray[np.float64],
     workers: int,
 ) -> ClippedCells3:
-    """The cells of a diagram, clipped to a convex polyhedron given by corners, faces (counter-
-    clockwise from outside, as compressed rows) and the planes n . x <= c of the faces.
+    """The cells of a diagram, clipped to a convex polyhedron given by corners, faces
+    (counter-clockwise from outside, as compressed rows) and the planes n . x <= c of
+    the faces.
     """
 
 def within2(

@@ -44,13 +44,9 @@ class Dimension:
     boundary: Callable[[Indices, Indices], Indices]
     # Vertices of the boundary.
     hull: Callable[[Floats, Indices], NDArray[np.int64]]
-    # Every edge and every triangle once; also of the number of points.
-    edges: Callable[[Indices, Indices, int, int | None], Indices]
+    # Every triangle once; also of the number of points.
     faces: Callable[[Indices, Indices, int, int | None], Indices]
-    # Areas or volumes, centers, affine maps and shapes, of points and simplices.
-    sizes: Callable[[Floats, Indices, int | None], Floats]
-    circumcenters: Callable[[Floats, Indices, int | None], Floats]
-    transform: Callable[[Floats, Indices, int | None], Floats]
+    # Shapes, of points and simplices.
     quality: Callable[[Floats, Indices, int | None], Measures]
     # The index for point location.
     locator: Callable[[Floats, Indices, Indices], Any]

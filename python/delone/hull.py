@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from delone import _core, predicates
+from delone import _core, measures, predicates
 from delone._arrays import as_workers, require_finite
 from delone.complex import Complex
 from delone.counting import counted
@@ -286,7 +286,7 @@ class ConvexHull(Complex):
         """Every edge of `simplices` once, (k, 2): the smaller vertex first, rows ascending."""
         if self.ndim == 3:
             topology = self._simplices, self._neighbors, self.npoints, as_workers(self._workers)
-            return sealed(_core.edges2(*topology))
+            return sealed(_core.edges(*topology))
         return sealed(np.unique(np.sort(self._simplices, axis=1), axis=0))
 
     @property
@@ -332,11 +332,11 @@ class ConvexHull(Complex):
         if self.ndim == 2:
             fan = np.column_stack((np.full(self.nsimplex, base), self._simplices))
             fan = fan[(self._simplices != base).all(axis=1)]
-            return plane.total(plane.areas(self._points, fan, self._workers))
+            return plane.total(measures.sizes(self._points, fan, self._workers))
         a, b, c = self._simplices.T
         cones = np.column_stack((a, c, b, np.full(self.nsimplex, base)))
         above = predicates.orient3d(*(self._points[cones[:, k]] for k in range(4))) > 0
-        return plane.total(space.volumes(self._points, cones[above], self._workers))
+        return plane.total(measures.sizes(self._points, cones[above], self._workers))
 
     @property
     @kept

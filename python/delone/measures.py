@@ -1,4 +1,8 @@
-"""What measures of simplices have in common, in 2-D and 3-D: summaries and tables."""
+"""Measures of triangles and tetrahedra, and what reports of them have in common.
+
+The core computes them in stages: values that suffer cancellation in thin simplices are computed
+again with more digits. Points must be finite, and simplices exactly positively oriented.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +11,18 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from delone import _core
+from delone._arrays import as_mesh, as_workers
 from delone.counting import counted
 from delone.immutable import ReadOnly
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Measures"]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Measures", "circumcenters", "edges", "sizes", "transform"]
 
 _PERCENTILES = (1, 10, 50, 90, 99)
 # The columns of a table: keys of a summary, and how they are called.
@@ -84,3 +93,30 @@ def _percentiles(values: NDArray[np.float64]) -> NDArray[np.float64]:
         found = np.percentile(values, _PERCENTILES)
     # Between infinity and something else NumPy finds NaN.
     return np.where(np.isnan(found), np.percentile(values, _PERCENTILES, method="higher"), found)
+
+
+def edges(
+    simplices: Indices, neighbors: Indices, npoints: int, workers: int | None = None
+) -> Indices:
+    """Return every edge once, (k, 2): the smaller vertex first, rows ascending. O(m)."""
+    return _core.edges(simplices, neighbors, npoints, as_workers(workers))
+
+
+def sizes(points: Floats, simplices: Indices, workers: int | None = None) -> Floats:
+    """Return areas or volumes; the relative error is below 1e-13 within the range of doubles."""
+    return _core.sizes(*as_mesh(points, simplices), as_workers(workers))
+
+
+def transform(points: Floats, simplices: Indices, workers: int | None = None) -> Floats:
+    """Return affine maps to barycentric coordinates, (m, d + 1, d).
+
+    The inverse of the matrix whose columns are the vectors from the last corner to the others, and
+    below it the last corner. Each row has an error below 1e-13 of its length, in 2-D each entry
+    below 1e-13 of itself, if within doubles.
+    """
+    return _core.transforms(*as_mesh(points, simplices), as_workers(workers))
+
+
+def circumcenters(points: Floats, simplices: Indices, workers: int | None = None) -> Floats:
+    """Return circumcenters, within 4 units in the last place; infinite beyond doubles."""
+    return _core.circumcenters(*as_mesh(points, simplices), as_workers(workers))

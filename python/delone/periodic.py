@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone import _core
+from delone import _core, measures
 from delone._arrays import as_number, as_workers, require_finite
 from delone.complex import Complex
 from delone.counting import counted
@@ -229,7 +229,7 @@ class PeriodicDelaunay(Complex):
     @kept
     def areas(self) -> Floats:
         """Areas of the triangles, (m,), in the square of the unit of the points."""
-        return sealed(PLANE.sizes(*self._separate, self._workers))
+        return sealed(measures.sizes(*self._separate, self._workers))
 
     @kept
     def quality(self) -> Quality:

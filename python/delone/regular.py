@@ -217,8 +217,7 @@ def triangulated(
     """
     threads = as_workers(workers)
     try:
-        regular = _core.regular3 if points.shape[1] == _SPACE else _core.regular2
-        made = regular(points, weights, threads)
+        made = _core.regular(points, weights, threads)
     except InternalError as error:
         error.points = np.column_stack((points, weights))
         raise

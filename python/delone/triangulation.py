@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from delone import location
+from delone import location, measures
 from delone._arrays import as_workers
 from delone.complex import Complex
 from delone.dimension import only
@@ -82,7 +82,7 @@ class Triangulation(Complex):
     def edges(self) -> Indices:
         """Every edge once, (k, 2): the smaller vertex first, rows ascending."""
         topology = self._simplices, self._neighbors, self.npoints, self._workers
-        return sealed(self._dimension.edges(*topology))
+        return sealed(measures.edges(*topology))
 
     @property
     @kept
@@ -136,7 +136,7 @@ class Triangulation(Complex):
         In 2-D entries have a relative error below 1e-13, in 3-D rows have one below 1e-13 of their
         length. Values beyond the range of doubles are infinite.
         """
-        return sealed(self._dimension.transform(self._points, self._simplices, self._workers))
+        return sealed(measures.transform(self._points, self._simplices, self._workers))
 
     @property
     @kept
@@ -146,11 +146,11 @@ class Triangulation(Complex):
         Each coordinate within 4 units in the last place. Those of thin simplices are far away, and
         infinite beyond the range of doubles.
         """
-        return sealed(self._dimension.circumcenters(self._points, self._simplices, self._workers))
+        return sealed(measures.circumcenters(self._points, self._simplices, self._workers))
 
     @kept
     def _sizes(self) -> Floats:
-        return sealed(self._dimension.sizes(self._points, self._simplices, self._workers))
+        return sealed(measures.sizes(self._points, self._simplices, self._workers))
 
     @property
     @only(2, "tetrahedra have `volumes`")

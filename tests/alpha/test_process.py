@@ -35,9 +35,9 @@ def finish(process: subprocess.Popen[str]) -> str:
 @pytest.mark.parametrize(
     ("ndim", "name", "call"),
     [
-        (2, "alpha_flat2", "delone.AlphaComplex(mesh, workers=1)"),
+        (2, "alpha_flat", "delone.AlphaComplex(mesh, workers=1)"),
         (3, "alpha_solid3", "delone.AlphaComplex(mesh, workers=1)"),
-        (2, "dig2", "delone.concave_hull(mesh, ratio=0, holes=True)"),
+        (2, "dig", "delone.concave_hull(mesh, ratio=0, holes=True)"),
     ],
 )
 def test_ctrl_c_ends_one_call(ndim: int, name: str, call: str) -> None:

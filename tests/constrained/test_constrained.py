@@ -113,7 +113,7 @@ class TestHolesAndOutline:
         assert frame.hull.tolist() == [0, 1, 2, 3]
 
     def test_neighbours_are_mutual_around_the_hole(self, frame: ConstrainedDelaunay) -> None:
-        assert _core.fault2(frame.points, frame.simplices, frame.neighbors, 1) is None
+        assert _core.fault(frame.points, frame.simplices, frame.neighbors, 1) is None
 
     def test_the_outline_leaves_out_bays(self) -> None:
         points = [(0, 0), (4, 0), (4, 4), (2, 1), (0, 4)]

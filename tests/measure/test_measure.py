@@ -70,8 +70,8 @@ def flat(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.
 @pytest.mark.parametrize("ndim", [2, 3])
 def test_sizes_and_centers_by_fractions(ndim: int, thickness: float, scale: float) -> None:
     corners = simplices(ndim, thickness, scale)
-    size = {2: _core.areas2, 3: _core.volumes3}[ndim](*flat(corners), 1)
-    center = {2: _core.circumcenters2, 3: _core.circumcenters3}[ndim](*flat(corners), 1)
+    size = _core.sizes(*flat(corners), 1)
+    center = _core.circumcenters(*flat(corners), 1)
     for found, at, each in zip(size, center, corners, strict=True):
         wanted = rounded(abs(determinant(each)) / math.factorial(ndim))
         assert found == pytest.approx(wanted, rel=1e-14, abs=5e-324)
@@ -106,7 +106,7 @@ def _determinant(rows: Any) -> Fraction:
 @pytest.mark.parametrize("ndim", [2, 3])
 def test_transforms_by_fractions(ndim: int, thickness: float, scale: float) -> None:
     corners = simplices(ndim, thickness, scale)
-    maps = {2: _core.transforms2, 3: _core.transforms3}[ndim](*flat(corners), 1)
+    maps = _core.transforms(*flat(corners), 1)
     for found, each in zip(maps, corners, strict=True):
         assert (found[-1] == each[-1]).all()
         p = exact(each)
@@ -175,20 +175,20 @@ def test_many_simplices_are_measured_row_by_row(workers: int) -> None:
     rows = np.random.default_rng(0).integers(0, plane.nsimplex, 200)
     rows[:2] = plane.nsimplex - 1, 1 << 14
     for measure in (
-        _core.areas2,
-        _core.circumcenters2,
-        _columns(_core.qualities2),
-        _core.transforms2,
+        _core.sizes,
+        _core.circumcenters,
+        _columns(_core.qualities),
+        _core.transforms,
     ):
         whole = measure(plane.points, plane.simplices, workers)
         assert (whole[rows] == measure(plane.points, plane.simplices[rows], 1)).all()
     rows = rows % solid.nsimplex
     rows[0] = solid.nsimplex - 1
     for measure in (
-        _core.volumes3,
-        _core.circumcenters3,
-        _columns(_core.qualities3),
-        _core.transforms3,
+        _core.sizes,
+        _core.circumcenters,
+        _columns(_core.qualities),
+        _core.transforms,
         _core.dihedral_angles3,
     ):
         whole = measure(solid.points, solid.simplices, workers)
@@ -199,10 +199,10 @@ def test_many_simplices_are_measured_row_by_row(workers: int) -> None:
 @pytest.mark.sampled(1)
 def test_many_edges_and_faces_are_each_listed_once(workers: int) -> None:
     plane = Delaunay(datasets.uniform(60_000, seed=1))
-    found = _core.edges2(plane.simplices, plane.neighbors, plane.npoints, workers)
+    found = _core.edges(plane.simplices, plane.neighbors, plane.npoints, workers)
     assert (found == distinct(plane.simplices, 2)).all()
     solid = Delaunay(datasets.uniform(30_000, seed=2, ndim=3))
-    found = _core.edges3(solid.simplices, solid.npoints, workers)
+    found = _core.edges(solid.simplices, solid.neighbors, solid.npoints, workers)
     assert (found == distinct(solid.simplices, 2)).all()
     found = _core.faces3(solid.simplices, solid.neighbors, solid.npoints, workers)
     assert (found == distinct(solid.simplices, 3)).all()

@@ -43,7 +43,7 @@ def test_topology_by_definition(name: str) -> None:
         around = {a for e in edges if v in e for a in e if a != v}
         assert indices[indptr[v] : indptr[v + 1]].tolist() == sorted(around)
     assert (topology.neighbors(mesh.simplices) == mesh.neighbors).all()
-    assert _core.fault3(mesh.points, mesh.simplices, mesh.neighbors, 1) is None
+    assert _core.fault(mesh.points, mesh.simplices, mesh.neighbors, 1) is None
     first = mesh.vertex_to_simplex
     assert (mesh.simplices[first] == mesh.duplicate_of[:, None]).any(axis=1).all()
     assert (mesh.coplanar[:, 2] == mesh.duplicate_of[mesh.coplanar[:, 0]]).all()

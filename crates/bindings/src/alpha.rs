@@ -5,7 +5,7 @@ use delone_core::error::{Error, Result};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, flat, in_range, rows, table};
+use crate::arrays::{Column, Table, column, columns, flat, in_dimension, in_range, rows, table};
 use crate::errors::Outcome;
 use crate::given::{checked, finite_weights, simplices_of, unequal};
 use crate::signals::watched;
@@ -19,124 +19,109 @@ type Solid = (Column<f64>, Valued, Valued);
 /// `(vertices, starts, parts, outer)`.
 type Rings = (Column<i32>, Column<i32>, Column<i32>, Column<bool>);
 
-/// The functions of one dimension.
-macro_rules! of_dimension {
-    ($d:literal, $corners:literal, $flat:ident, $edges:ident, $vertices:ident, $counts:ident,
-     $labels:ident) => {
-        /// The values of triangles and their edges.
-        #[pyfunction]
-        pub fn $flat(
-            py: Python<'_>,
-            points: PyReadonlyArray2<'_, f64>,
-            weights: Option<PyReadonlyArray1<'_, f64>>,
-            simplices: PyReadonlyArray2<'_, i32>,
-            neighbors: PyReadonlyArray2<'_, i32>,
-            workers: usize,
-        ) -> Outcome<Flat> {
-            let given = checked::<$d, 3>(&points, &simplices, &neighbors)?;
-            let weights = finite_weights(weights.as_ref(), given.points.len())?;
-            let found = watched(py, |watch| {
-                let sites = Sites {
-                    points: given.points,
-                    weights,
-                };
-                alpha::flat(sites, given.simplices, given.neighbors, workers, watch)
-            })?;
-            let edges = (table(py, found.edges)?, column(py, found.of_edges));
-            Ok((column(py, found.triangles), edges))
-        }
-
-        /// The values of edges without cofaces.
-        #[pyfunction]
-        pub fn $edges(
-            py: Python<'_>,
-            points: PyReadonlyArray2<'_, f64>,
-            weights: Option<PyReadonlyArray1<'_, f64>>,
-            edges: PyReadonlyArray2<'_, i32>,
-            workers: usize,
-        ) -> Outcome<Column<f64>> {
-            let points: &[[f64; $d]] = rows(&points, "points")?;
-            let weights = finite_weights(weights.as_ref(), points.len())?;
-            let sites = Sites { points, weights };
-            let edges = simplices_of::<2>(&edges, points.len())?;
-            let found = watched(py, |watch| alpha::edges(sites, edges, workers, watch))?;
-            Ok(column(py, found))
-        }
-
-        /// The values of points, from those of edges.
-        #[pyfunction]
-        pub fn $vertices(
-            py: Python<'_>,
-            points: PyReadonlyArray2<'_, f64>,
-            weights: Option<PyReadonlyArray1<'_, f64>>,
-            edges: PyReadonlyArray2<'_, i32>,
-            values: PyReadonlyArray1<'_, f64>,
-        ) -> Outcome<Column<f64>> {
-            let points: &[[f64; $d]] = rows(&points, "points")?;
-            let weights = finite_weights(weights.as_ref(), points.len())?;
-            let edges = simplices_of::<2>(&edges, points.len())?;
-            let values = flat(&values, "values")?;
-            if edges.len() != values.len() {
-                return Err(unequal().into());
-            }
-            let sites = Sites { points, weights };
-            let found = watched(py, |watch| alpha::vertices(sites, edges, values, watch))?;
-            Ok(column(py, found))
-        }
-
-        /// The numbers of components of the first simplices of an order.
-        #[pyfunction]
-        pub fn $counts(
-            py: Python<'_>,
-            order: PyReadonlyArray1<'_, i32>,
-            neighbors: PyReadonlyArray2<'_, i32>,
-            outside: bool,
-        ) -> Outcome<Column<i32>> {
-            let neighbors: &[[i32; $corners]] = rows(&neighbors, "neighbors")?;
-            in_range(neighbors, -1, neighbors.len(), "neighbors")?;
-            let order = flat(&order, "order")?;
-            in_range(order.as_chunks::<1>().0, 0, neighbors.len(), "order")?;
-            let found = watched(py, |watch| alpha::counts(order, neighbors, outside, watch))?;
-            Ok(column(py, found))
-        }
-
-        /// The component of each simplex that is kept, -1 of others.
-        #[pyfunction]
-        pub fn $labels(
-            py: Python<'_>,
-            kept: PyReadonlyArray1<'_, bool>,
-            neighbors: PyReadonlyArray2<'_, i32>,
-        ) -> Outcome<Column<i32>> {
-            let neighbors: &[[i32; $corners]] = rows(&neighbors, "neighbors")?;
-            in_range(neighbors, -1, neighbors.len(), "neighbors")?;
-            let kept = flat(&kept, "kept")?;
-            if kept.len() != neighbors.len() {
-                return Err(unequal().into());
-            }
-            let found = watched(py, |watch| alpha::labels(kept, neighbors, watch))?;
-            Ok(column(py, found))
-        }
-    };
+/// The values of triangles and their edges.
+#[pyfunction]
+pub fn alpha_flat(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> Outcome<Flat> {
+    in_dimension!(columns(&points), D, N => {
+        let given = checked::<D, 3>(&points, &simplices, &neighbors)?;
+        let weights = finite_weights(weights.as_ref(), given.points.len())?;
+        let found = watched(py, |watch| {
+            let sites = Sites {
+                points: given.points,
+                weights,
+            };
+            alpha::flat(sites, given.simplices, given.neighbors, workers, watch)
+        })?;
+        let edges = (table(py, found.edges)?, column(py, found.of_edges));
+        Ok((column(py, found.triangles), edges))
+    })
 }
 
-of_dimension!(
-    2,
-    3,
-    alpha_flat2,
-    alpha_edges2,
-    alpha_vertices2,
-    alpha_counts2,
-    alpha_labels2
-);
-of_dimension!(
-    3,
-    4,
-    alpha_flat3,
-    alpha_edges3,
-    alpha_vertices3,
-    alpha_counts3,
-    alpha_labels3
-);
+/// The values of edges without cofaces.
+#[pyfunction]
+pub fn alpha_edges(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
+    edges: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> Outcome<Column<f64>> {
+    in_dimension!(columns(&points), D, N => {
+        let points: &[[f64; D]] = rows(&points, "points")?;
+        let weights = finite_weights(weights.as_ref(), points.len())?;
+        let sites = Sites { points, weights };
+        let edges = simplices_of::<2>(&edges, points.len())?;
+        let found = watched(py, |watch| alpha::edges(sites, edges, workers, watch))?;
+        Ok(column(py, found))
+    })
+}
+
+/// The values of points, from those of edges.
+#[pyfunction]
+pub fn alpha_vertices(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
+    edges: PyReadonlyArray2<'_, i32>,
+    values: PyReadonlyArray1<'_, f64>,
+) -> Outcome<Column<f64>> {
+    in_dimension!(columns(&points), D, N => {
+        let points: &[[f64; D]] = rows(&points, "points")?;
+        let weights = finite_weights(weights.as_ref(), points.len())?;
+        let edges = simplices_of::<2>(&edges, points.len())?;
+        let values = flat(&values, "values")?;
+        if edges.len() != values.len() {
+            return Err(unequal().into());
+        }
+        let sites = Sites { points, weights };
+        let found = watched(py, |watch| alpha::vertices(sites, edges, values, watch))?;
+        Ok(column(py, found))
+    })
+}
+
+/// The numbers of components of the first simplices of an order.
+#[pyfunction]
+pub fn alpha_counts(
+    py: Python<'_>,
+    order: PyReadonlyArray1<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    outside: bool,
+) -> Outcome<Column<i32>> {
+    in_dimension!(columns(&neighbors).wrapping_sub(1), D, N => {
+        let neighbors: &[[i32; N]] = rows(&neighbors, "neighbors")?;
+        in_range(neighbors, -1, neighbors.len(), "neighbors")?;
+        let order = flat(&order, "order")?;
+        in_range(order.as_chunks::<1>().0, 0, neighbors.len(), "order")?;
+        let found = watched(py, |watch| alpha::counts(order, neighbors, outside, watch))?;
+        Ok(column(py, found))
+    })
+}
+
+/// The component of each simplex that is kept, -1 of others.
+#[pyfunction]
+pub fn alpha_labels(
+    py: Python<'_>,
+    kept: PyReadonlyArray1<'_, bool>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+) -> Outcome<Column<i32>> {
+    in_dimension!(columns(&neighbors).wrapping_sub(1), D, N => {
+        let neighbors: &[[i32; N]] = rows(&neighbors, "neighbors")?;
+        in_range(neighbors, -1, neighbors.len(), "neighbors")?;
+        let kept = flat(&kept, "kept")?;
+        if kept.len() != neighbors.len() {
+            return Err(unequal().into());
+        }
+        let found = watched(py, |watch| alpha::labels(kept, neighbors, watch))?;
+        Ok(column(py, found))
+    })
+}
 
 /// The values of tetrahedra, their faces and their edges.
 #[pyfunction]
@@ -241,9 +226,9 @@ fn limit(name: &str, value: f64) -> Result<Limit> {
     }
 }
 
-/// Which triangles of a concave hull remain.
+/// Which simplices of a concave hull remain; `holes` is whether triangles may leave holes.
 #[pyfunction]
-pub fn dig2(
+pub fn dig(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
@@ -252,35 +237,13 @@ pub fn dig2(
     value: f64,
     holes: bool,
 ) -> Outcome<Column<bool>> {
-    let given = checked::<2, 3>(&points, &simplices, &neighbors)?;
     let limit = limit(name, value)?;
-    let found = watched(py, |watch| {
-        alpha::dig2(
-            given.points,
-            given.simplices,
-            given.neighbors,
-            limit,
-            holes,
-            watch,
-        )
-    })?;
-    Ok(column(py, found))
-}
-
-/// Which tetrahedra of a concave hull remain.
-#[pyfunction]
-pub fn dig3(
-    py: Python<'_>,
-    points: PyReadonlyArray2<'_, f64>,
-    simplices: PyReadonlyArray2<'_, i32>,
-    neighbors: PyReadonlyArray2<'_, i32>,
-    name: &str,
-    value: f64,
-) -> Outcome<Column<bool>> {
-    let given = checked::<3, 4>(&points, &simplices, &neighbors)?;
-    let limit = limit(name, value)?;
-    let found = watched(py, |watch| {
-        alpha::dig3(given.points, given.simplices, given.neighbors, limit, watch)
-    })?;
+    let found = if columns(&points) == 2 {
+        let given = checked::<2, 3>(&points, &simplices, &neighbors)?;
+        watched(py, |watch| alpha::dig2(given, limit, holes, watch))?
+    } else {
+        let given = checked::<3, 4>(&points, &simplices, &neighbors)?;
+        watched(py, |watch| alpha::dig3(given, limit, watch))?
+    };
     Ok(column(py, found))
 }

@@ -31,6 +31,41 @@ pub fn rows<'a, T: Element, const D: usize>(
     Ok(flat.as_chunks().0)
 }
 
+/// The number of columns of an array: of points, their coordinates.
+pub fn columns<T: Element>(array: &PyReadonlyArray2<'_, T>) -> usize {
+    array.shape()[1]
+}
+
+/// The result of `$work` in dimension `$d`, 2 or 3: in it `$D` and `$N` are constants, the number of
+/// coordinates and that of the corners of a simplex.
+macro_rules! in_dimension {
+    ($d:expr, $D:ident, $N:ident => $work:expr) => {
+        match $d {
+            2 => {
+                #[allow(dead_code)]
+                const $D: usize = 2;
+                #[allow(dead_code)]
+                const $N: usize = 3;
+                $work
+            }
+            3 => {
+                #[allow(dead_code)]
+                const $D: usize = 3;
+                #[allow(dead_code)]
+                const $N: usize = 4;
+                $work
+            }
+            other => Err(crate::arrays::no_dimension(other).into()),
+        }
+    };
+}
+pub(crate) use in_dimension;
+
+/// The error for points with a number of coordinates that is neither 2 nor 3.
+pub fn no_dimension(columns: usize) -> Error {
+    Error::Shape(format!("points have {columns} coordinates, not 2 or 3"))
+}
+
 /// Rows that are checked together.
 const CHECKED: usize = 1 << 10;
 

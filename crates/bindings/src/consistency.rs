@@ -4,36 +4,28 @@ use delone_core::consistency::{self, Fault};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
+use crate::arrays::columns;
 use crate::errors::Outcome;
 use crate::given::checked;
 use crate::signals::watched;
 
-/// The first fault of triangles: `("neighbors", row)` or `("orientation", row)`; None if there is
-/// none.
+/// The first fault of triangles or tetrahedra: `("neighbors", row)` or `("orientation", row)`; None if
+/// there is none.
 #[pyfunction]
-pub fn fault2(
+pub fn fault(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     neighbors: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> Outcome<Option<(&'static str, usize)>> {
-    let given = checked(&points, &simplices, &neighbors)?;
-    let found = watched(py, |watch| consistency::triangles(given, workers, watch))?;
-    Ok(found.map(named))
-}
-
-/// The same for tetrahedra.
-#[pyfunction]
-pub fn fault3(
-    py: Python<'_>,
-    points: PyReadonlyArray2<'_, f64>,
-    simplices: PyReadonlyArray2<'_, i32>,
-    neighbors: PyReadonlyArray2<'_, i32>,
-    workers: usize,
-) -> Outcome<Option<(&'static str, usize)>> {
-    let given = checked(&points, &simplices, &neighbors)?;
-    let found = watched(py, |watch| consistency::tetrahedra(given, workers, watch))?;
+    let found = if columns(&points) == 2 {
+        let given = checked(&points, &simplices, &neighbors)?;
+        watched(py, |watch| consistency::triangles(given, workers, watch))?
+    } else {
+        let given = checked(&points, &simplices, &neighbors)?;
+        watched(py, |watch| consistency::tetrahedra(given, workers, watch))?
+    };
     Ok(found.map(named))
 }
 

@@ -6,7 +6,8 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{
-    Column, Table, are_starts, column, each_in_range, flat, in_range, number_rows, rows, table,
+    Column, Table, are_starts, column, columns, each_in_range, flat, in_dimension, in_range,
+    number_rows, rows, table,
 };
 use crate::errors::Outcome;
 use crate::given::simplices_of;
@@ -58,157 +59,138 @@ fn region(name: &str, beta: f64) -> Result<Region> {
     }
 }
 
-/// The functions of one dimension.
-macro_rules! of_dimension {
-    ($d:literal, $corners:literal, $proximity:ident, $antipodes:ident, $spanning:ident, $knn:ident,
-     $influence:ident, $not_longer:ident) => {
-        /// The Delaunay edges whose region is empty.
-        #[pyfunction]
-        pub fn $proximity(
-            py: Python<'_>,
-            graph: Adjacency<'_>,
-            name: &str,
-            beta: f64,
-            closed: bool,
-            workers: usize,
-        ) -> Outcome<Table<i32>> {
-            let (skeleton, region) = (graph.skeleton::<$d>()?, region(name, beta)?);
-            let found = watched(py, |watch| {
-                let tree = match region {
-                    Region::Lune(_) => Some(Tree::of(skeleton.points, workers, watch)?),
-                    _ => None,
-                };
-                graphs::filter(&skeleton, region, closed, tree.as_ref(), workers, watch)
-            })?;
-            table(py, found)
-        }
-
-        /// The pairs with an empty open diametral ball that are no Delaunay edges.
-        #[pyfunction]
-        #[pyo3(signature = (graph, simplices, neighbors, workers))]
-        pub fn $antipodes(
-            py: Python<'_>,
-            graph: Adjacency<'_>,
-            simplices: Option<PyReadonlyArray2<'_, i32>>,
-            neighbors: Option<PyReadonlyArray2<'_, i32>>,
-            workers: usize,
-        ) -> Outcome<Table<i32>> {
-            let (skeleton, tiling) = (|| -> Result<_> {
-                let skeleton = graph.skeleton::<$d>()?;
-                let (Some(simplices), Some(neighbors)) = (&simplices, &neighbors) else {
-                    return Ok((skeleton, None));
-                };
-                let simplices: &[[i32; $corners]] = simplices_of(simplices, skeleton.points.len())?;
-                let neighbors: &[[i32; $corners]] = rows(neighbors, "neighbors")?;
-                in_range(neighbors, -1, simplices.len(), "neighbors")?;
-                if neighbors.len() != simplices.len() {
-                    return Err(Error::Shape("neighbors and simplices do not match".into()));
-                }
-                Ok((skeleton, Some((simplices, neighbors))))
-            })()?;
-            let found = watched(py, |watch| {
-                let tree = Tree::of(skeleton.points, workers, watch)?;
-                graphs::antipodes(&skeleton, &tree, tiling, workers, watch)
-            })?;
-            table(py, found)
-        }
-
-        /// The edges of the minimum spanning tree.
-        #[pyfunction]
-        pub fn $spanning(
-            py: Python<'_>,
-            graph: Adjacency<'_>,
-            workers: usize,
-        ) -> Outcome<Table<i32>> {
-            let skeleton = graph.skeleton::<$d>()?;
-            let found = watched(py, |watch| graphs::spanning_tree(&skeleton, workers, watch))?;
-            table(py, found)
-        }
-
-        /// The edges to the k nearest neighbors, and the duplicates.
-        #[pyfunction]
-        pub fn $knn(
-            py: Python<'_>,
-            points: PyReadonlyArray2<'_, f64>,
-            k: usize,
-            directed: bool,
-            workers: usize,
-        ) -> Outcome<Found> {
-            let points: &[[f64; $d]] = rows(&points, "points")?;
-            let list = if directed {
-                Neighbors::Directed
-            } else {
-                Neighbors::Either
+/// The Delaunay edges whose region is empty.
+#[pyfunction]
+pub fn proximity(
+    py: Python<'_>,
+    graph: Adjacency<'_>,
+    name: &str,
+    beta: f64,
+    closed: bool,
+    workers: usize,
+) -> Outcome<Table<i32>> {
+    in_dimension!(columns(&graph.0), D, N => {
+        let (skeleton, region) = (graph.skeleton::<D>()?, region(name, beta)?);
+        let found = watched(py, |watch| {
+            let tree = match region {
+                Region::Lune(_) => Some(Tree::of(skeleton.points, workers, watch)?),
+                _ => None,
             };
-            let (edges, duplicates) = watched(py, |watch| {
-                let tree = Tree::of(points, workers, watch)?;
-                let edges = graphs::nearest(&tree, k, list, points.len(), workers, watch)?;
-                Ok::<_, Error>((edges, tree.duplicates))
-            })?;
-            Ok((table(py, edges)?, number_rows(py, &duplicates)?))
-        }
-
-        /// The edges that are not longer than the one between two points.
-        #[pyfunction]
-        pub fn $not_longer(
-            py: Python<'_>,
-            points: PyReadonlyArray2<'_, f64>,
-            edges: PyReadonlyArray2<'_, i32>,
-            ends: PyReadonlyArray2<'_, f64>,
-            workers: usize,
-        ) -> Outcome<Table<i32>> {
-            let points: &[[f64; $d]] = rows(&points, "points")?;
-            let edges: &[[i32; 2]] = rows(&edges, "edges")?;
-            in_range(edges, 0, points.len(), "edges")?;
-            let ends: &[[f64; $d]; 2] = rows(&ends, "ends")?
-                .try_into()
-                .map_err(|_| Error::Shape("ends has other than two rows".into()))?;
-            let ends = *ends;
-            let found = watched(py, |watch| {
-                graphs::not_longer(points, edges, ends, workers, watch)
-            })?;
-            table(py, found)
-        }
-
-        /// The edges of the sphere of influence graph, and the duplicates.
-        #[pyfunction]
-        pub fn $influence(
-            py: Python<'_>,
-            points: PyReadonlyArray2<'_, f64>,
-            closed: bool,
-            workers: usize,
-        ) -> Outcome<Found> {
-            let points: &[[f64; $d]] = rows(&points, "points")?;
-            let (edges, duplicates) = watched(py, |watch| {
-                let tree = Tree::of(points, workers, watch)?;
-                let edges = graphs::influence(&tree, closed, points.len(), workers, watch)?;
-                Ok::<_, Error>((edges, tree.duplicates))
-            })?;
-            Ok((table(py, edges)?, number_rows(py, &duplicates)?))
-        }
-    };
+            graphs::filter(&skeleton, region, closed, tree.as_ref(), workers, watch)
+        })?;
+        table(py, found)
+    })
 }
 
-of_dimension!(
-    2,
-    3,
-    proximity2,
-    antipodes2,
-    spanning2,
-    knn2,
-    influence2,
-    not_longer2
-);
-of_dimension!(
-    3,
-    4,
-    proximity3,
-    antipodes3,
-    spanning3,
-    knn3,
-    influence3,
-    not_longer3
-);
+/// The pairs with an empty open diametral ball that are no Delaunay edges.
+#[pyfunction]
+#[pyo3(signature = (graph, simplices, neighbors, workers))]
+pub fn antipodes(
+    py: Python<'_>,
+    graph: Adjacency<'_>,
+    simplices: Option<PyReadonlyArray2<'_, i32>>,
+    neighbors: Option<PyReadonlyArray2<'_, i32>>,
+    workers: usize,
+) -> Outcome<Table<i32>> {
+    in_dimension!(columns(&graph.0), D, N => {
+        let (skeleton, tiling) = (|| -> Result<_> {
+            let skeleton = graph.skeleton::<D>()?;
+            let (Some(simplices), Some(neighbors)) = (&simplices, &neighbors) else {
+                return Ok((skeleton, None));
+            };
+            let simplices: &[[i32; N]] = simplices_of(simplices, skeleton.points.len())?;
+            let neighbors: &[[i32; N]] = rows(neighbors, "neighbors")?;
+            in_range(neighbors, -1, simplices.len(), "neighbors")?;
+            if neighbors.len() != simplices.len() {
+                return Err(Error::Shape("neighbors and simplices do not match".into()));
+            }
+            Ok((skeleton, Some((simplices, neighbors))))
+        })()?;
+        let found = watched(py, |watch| {
+            let tree = Tree::of(skeleton.points, workers, watch)?;
+            graphs::antipodes(&skeleton, &tree, tiling, workers, watch)
+        })?;
+        table(py, found)
+    })
+}
+
+/// The edges of the minimum spanning tree.
+#[pyfunction]
+pub fn spanning(py: Python<'_>, graph: Adjacency<'_>, workers: usize) -> Outcome<Table<i32>> {
+    in_dimension!(columns(&graph.0), D, N => {
+        let skeleton = graph.skeleton::<D>()?;
+        let found = watched(py, |watch| graphs::spanning_tree(&skeleton, workers, watch))?;
+        table(py, found)
+    })
+}
+
+/// The edges to the k nearest neighbors, and the duplicates.
+#[pyfunction]
+pub fn knn(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    k: usize,
+    directed: bool,
+    workers: usize,
+) -> Outcome<Found> {
+    in_dimension!(columns(&points), D, N => {
+        let points: &[[f64; D]] = rows(&points, "points")?;
+        let list = if directed {
+            Neighbors::Directed
+        } else {
+            Neighbors::Either
+        };
+        let (edges, duplicates) = watched(py, |watch| {
+            let tree = Tree::of(points, workers, watch)?;
+            let edges = graphs::nearest(&tree, k, list, points.len(), workers, watch)?;
+            Ok::<_, Error>((edges, tree.duplicates))
+        })?;
+        Ok((table(py, edges)?, number_rows(py, &duplicates)?))
+    })
+}
+
+/// The edges that are not longer than the one between two points.
+#[pyfunction]
+pub fn not_longer(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    edges: PyReadonlyArray2<'_, i32>,
+    ends: PyReadonlyArray2<'_, f64>,
+    workers: usize,
+) -> Outcome<Table<i32>> {
+    in_dimension!(columns(&points), D, N => {
+        let points: &[[f64; D]] = rows(&points, "points")?;
+        let edges: &[[i32; 2]] = rows(&edges, "edges")?;
+        in_range(edges, 0, points.len(), "edges")?;
+        let ends: &[[f64; D]; 2] = rows(&ends, "ends")?
+            .try_into()
+            .map_err(|_| Error::Shape("ends has other than two rows".into()))?;
+        let ends = *ends;
+        let found = watched(py, |watch| {
+            graphs::not_longer(points, edges, ends, workers, watch)
+        })?;
+        table(py, found)
+    })
+}
+
+/// The edges of the sphere of influence graph, and the duplicates.
+#[pyfunction]
+pub fn influence(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    closed: bool,
+    workers: usize,
+) -> Outcome<Found> {
+    in_dimension!(columns(&points), D, N => {
+        let points: &[[f64; D]] = rows(&points, "points")?;
+        let (edges, duplicates) = watched(py, |watch| {
+            let tree = Tree::of(points, workers, watch)?;
+            let edges = graphs::influence(&tree, closed, points.len(), workers, watch)?;
+            Ok::<_, Error>((edges, tree.duplicates))
+        })?;
+        Ok((table(py, edges)?, number_rows(py, &duplicates)?))
+    })
+}
 
 /// Points, triangles and their neighbors, as Python has them.
 #[derive(FromPyObject)]

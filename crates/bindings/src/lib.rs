@@ -58,14 +58,13 @@ mod _core {
 
     #[pymodule_export]
     use super::alpha::{
-        alpha_counts2, alpha_counts3, alpha_edges2, alpha_edges3, alpha_flat2, alpha_flat3,
-        alpha_labels2, alpha_labels3, alpha_rings2, alpha_solid3, alpha_torus2, alpha_vertices2,
-        alpha_vertices3, dig2, dig3,
+        alpha_counts, alpha_edges, alpha_flat, alpha_labels, alpha_rings2, alpha_solid3,
+        alpha_torus2, alpha_vertices, dig,
     };
     #[pymodule_export]
-    use super::cluster::{condensed2, condensed3, density2, density3, linkage2, linkage3};
+    use super::cluster::{condensed, density, linkage};
     #[pymodule_export]
-    use super::consistency::{fault2, fault3};
+    use super::consistency::fault;
     #[pymodule_export]
     use super::constrained::{
         ConstrainedTriangulation, components_beside2, components_inside2, components2,
@@ -75,9 +74,8 @@ mod _core {
     use super::distributed::{DeepestPoints, deepest2, disks2, within2};
     #[pymodule_export]
     use super::graphs::{
-        antipodes2, antipodes3, graph_components, influence2, influence3, knn2, knn3, not_longer2,
-        not_longer3, of_triangles2, proximity2, proximity3, spanning_triangles2, spanning2,
-        spanning3,
+        antipodes, graph_components, influence, knn, not_longer, of_triangles2, proximity,
+        spanning, spanning_triangles2,
     };
     #[pymodule_export]
     use super::hull::{Hull3, hull2, hull3};
@@ -102,9 +100,8 @@ mod _core {
     use super::locate3::{Location3, Locator3};
     #[pymodule_export]
     use super::measure::{
-        areas2, around, below2, circumcenters2, circumcenters3, dihedral_angles3, edges2, edges3,
-        face_areas3, face_normals3, faces3, qualities2, qualities3, transforms2, transforms3,
-        volumes3,
+        around, below2, circumcenters, dihedral_angles3, edges, face_areas3, face_normals3, faces3,
+        qualities, sizes, transforms,
     };
     #[pymodule_export]
     use super::overlap::{CellGrid, CheckedCells, SharedCells};
@@ -118,8 +115,7 @@ mod _core {
     };
     #[pymodule_export]
     use super::regular::{
-        PeriodicTriangulation, RegularTriangulation, periodic_centers2, periodic2, regular2,
-        regular3,
+        PeriodicTriangulation, RegularTriangulation, periodic_centers2, periodic2, regular,
     };
     #[pymodule_export]
     use super::regular_faults::{

@@ -6,42 +6,32 @@ use delone_core::watch::Watch;
 use numpy::{PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, rows, shaped, table};
+use crate::arrays::{Column, Table, column, columns, rows, shaped, table};
 use crate::errors::Outcome;
 use crate::given::simplices_of;
 use crate::signals::watched;
 
-/// Every edge of triangles once: the smaller vertex first, rows ascending.
+/// Every edge of triangles or tetrahedra once: the smaller vertex first, rows ascending.
 #[pyfunction]
-pub fn edges2(
+pub fn edges(
     py: Python<'_>,
     simplices: PyReadonlyArray2<'_, i32>,
     neighbors: PyReadonlyArray2<'_, i32>,
     npoints: usize,
     workers: usize,
 ) -> Outcome<Table<i32>> {
-    let (simplices, neighbors) = (
-        simplices_of(&simplices, npoints)?,
-        rows(&neighbors, "neighbors")?,
-    );
-    let found = watched(py, |watch| {
-        measure::edges2(simplices, neighbors, npoints, workers, watch)
-    })?;
-    table(py, found)
-}
-
-/// Every edge of tetrahedra once: the smaller vertex first, rows ascending.
-#[pyfunction]
-pub fn edges3(
-    py: Python<'_>,
-    simplices: PyReadonlyArray2<'_, i32>,
-    npoints: usize,
-    workers: usize,
-) -> Outcome<Table<i32>> {
-    let simplices = simplices_of(&simplices, npoints)?;
-    let found = watched(py, |watch| {
-        measure::edges3(simplices, npoints, workers, watch)
-    })?;
+    let found = if columns(&simplices) == 3 {
+        let simplices = simplices_of(&simplices, npoints)?;
+        let neighbors = rows(&neighbors, "neighbors")?;
+        watched(py, |watch| {
+            measure::edges2(simplices, neighbors, npoints, workers, watch)
+        })?
+    } else {
+        let simplices = simplices_of(&simplices, npoints)?;
+        watched(py, |watch| {
+            measure::edges3(simplices, npoints, workers, watch)
+        })?
+    };
     table(py, found)
 }
 
@@ -64,7 +54,7 @@ pub fn faces3(
     table(py, found)
 }
 
-/// The neighbors of each vertex along the edges of `edges2` or `edges3`: `(indptr, indices)`.
+/// The neighbors of each vertex along `edges`: `(indptr, indices)`.
 #[pyfunction]
 pub fn around(
     py: Python<'_>,
@@ -76,43 +66,35 @@ pub fn around(
     Ok((column(py, starts), column(py, found)))
 }
 
-/// Calls a measure of the core on simplices.
+/// A measure of the core: of points and simplices, with a number of threads.
+type Measure<R, const D: usize, const N: usize> =
+    fn(&[[f64; D]], &[[i32; N]], usize, &Watch) -> Result<R>;
+
+/// Calls a measure of the core.
 fn measured<R: Send, const D: usize, const N: usize>(
     py: Python<'_>,
     points: &PyReadonlyArray2<'_, f64>,
     simplices: &PyReadonlyArray2<'_, i32>,
-    of: impl FnOnce(&[[f64; D]], &[[i32; N]], &Watch) -> Result<R> + Send,
+    workers: usize,
+    of: Measure<R, D, N>,
 ) -> Outcome<R> {
     let points: &[[f64; D]] = rows(points, "points")?;
     let simplices = simplices_of(simplices, points.len())?;
-    watched(py, |watch| of(points, simplices, watch))
+    watched(py, |watch| of(points, simplices, workers, watch))
 }
 
-/// The areas of triangles.
+/// The areas of triangles, or the volumes of tetrahedra.
 #[pyfunction]
-pub fn areas2(
+pub fn sizes(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> Outcome<Column<f64>> {
-    let found = measured(py, &points, &simplices, |points, simplices, watch| {
-        measure::areas(points, simplices, workers, watch)
-    })?;
-    Ok(column(py, found))
-}
-
-/// The volumes of tetrahedra.
-#[pyfunction]
-pub fn volumes3(
-    py: Python<'_>,
-    points: PyReadonlyArray2<'_, f64>,
-    simplices: PyReadonlyArray2<'_, i32>,
-    workers: usize,
-) -> Outcome<Column<f64>> {
-    let found = measured(py, &points, &simplices, |points, simplices, watch| {
-        measure::volumes(points, simplices, workers, watch)
-    })?;
+    let found = match columns(&points) {
+        2 => measured(py, &points, &simplices, workers, measure::areas)?,
+        _ => measured(py, &points, &simplices, workers, measure::volumes)?,
+    };
     Ok(column(py, found))
 }
 
@@ -124,9 +106,7 @@ pub fn face_areas3(
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> Outcome<Column<f64>> {
-    let found = measured(py, &points, &simplices, |points, simplices, watch| {
-        measure::face_areas(points, simplices, workers, watch)
-    })?;
+    let found = measured(py, &points, &simplices, workers, measure::face_areas)?;
     Ok(column(py, found))
 }
 
@@ -138,65 +118,44 @@ pub fn face_normals3(
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> Outcome<Table<f64>> {
-    let found = measured(py, &points, &simplices, |points, simplices, watch| {
-        measure::face_normals(points, simplices, workers, watch)
-    })?;
-    table(py, found)
+    table(
+        py,
+        measured(py, &points, &simplices, workers, measure::face_normals)?,
+    )
 }
 
-/// The centers of the circles through the corners of triangles.
+/// The centers of the circles or spheres through the corners of simplices.
 #[pyfunction]
-pub fn circumcenters2(
+pub fn circumcenters(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> Outcome<Table<f64>> {
-    let found = measured(py, &points, &simplices, |points, simplices, watch| {
-        measure::circumcenters2(points, simplices, workers, watch)
-    })?;
-    table(py, found)
+    match columns(&points) {
+        2 => table(
+            py,
+            measured(py, &points, &simplices, workers, measure::circumcenters2)?,
+        ),
+        _ => table(
+            py,
+            measured(py, &points, &simplices, workers, measure::circumcenters3)?,
+        ),
+    }
 }
 
-/// The centers of the spheres through the corners of tetrahedra.
+/// Smallest and largest angle (of tetrahedra, dihedral angle), size, ratio of radii and of edges.
 #[pyfunction]
-pub fn circumcenters3(
-    py: Python<'_>,
-    points: PyReadonlyArray2<'_, f64>,
-    simplices: PyReadonlyArray2<'_, i32>,
-    workers: usize,
-) -> Outcome<Table<f64>> {
-    let found = measured(py, &points, &simplices, |points, simplices, watch| {
-        measure::circumcenters3(points, simplices, workers, watch)
-    })?;
-    table(py, found)
-}
-
-/// Smallest and largest angle, area, ratio of radii and of edges of triangles.
-#[pyfunction]
-pub fn qualities2(
+pub fn qualities(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> Outcome<Vec<Column<f64>>> {
-    let found = measured(py, &points, &simplices, |points, simplices, watch| {
-        measure::qualities2(points, simplices, workers, watch)
-    })?;
-    Ok(found.into_iter().map(|values| column(py, values)).collect())
-}
-
-/// Smallest and largest dihedral angle, volume, ratio of radii and of edges of tetrahedra.
-#[pyfunction]
-pub fn qualities3(
-    py: Python<'_>,
-    points: PyReadonlyArray2<'_, f64>,
-    simplices: PyReadonlyArray2<'_, i32>,
-    workers: usize,
-) -> Outcome<Vec<Column<f64>>> {
-    let found = measured(py, &points, &simplices, |points, simplices, watch| {
-        measure::qualities3(points, simplices, workers, watch)
-    })?;
+    let found = match columns(&points) {
+        2 => measured(py, &points, &simplices, workers, measure::qualities2)?,
+        _ => measured(py, &points, &simplices, workers, measure::qualities3)?,
+    };
     Ok(found.into_iter().map(|values| column(py, values)).collect())
 }
 
@@ -208,10 +167,10 @@ pub fn dihedral_angles3(
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> Outcome<Table<f64>> {
-    let found = measured(py, &points, &simplices, |points, simplices, watch| {
-        measure::dihedral_angles(points, simplices, workers, watch)
-    })?;
-    table(py, found)
+    table(
+        py,
+        measured(py, &points, &simplices, workers, measure::dihedral_angles)?,
+    )
 }
 
 /// 1 for triangles with an angle below a bound, given by its squared cosine; else 0.
@@ -223,40 +182,37 @@ pub fn below2(
     squared_cosine: f64,
     workers: usize,
 ) -> Outcome<Column<i32>> {
-    let found = measured(py, &points, &simplices, |points, simplices, watch| {
+    let points = rows(&points, "points")?;
+    let simplices = simplices_of(&simplices, points.len())?;
+    let found = watched(py, |watch| {
         measure::below(points, simplices, squared_cosine, workers, watch)
     })?;
     Ok(column(py, found))
 }
 
-/// The affine maps of triangles to barycentric coordinates.
+/// The affine maps of simplices to barycentric coordinates.
 #[pyfunction]
-pub fn transforms2(
+pub fn transforms(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> Outcome<Py<PyArray3<f64>>> {
-    let found = measured(py, &points, &simplices, |points, simplices, watch| {
-        measure::transforms2(points, simplices, workers, watch)
-    })?;
-    let count = found.len();
-    let flat = found.into_flattened().into_flattened();
-    shaped(py, flat, [count, 3, 2])
-}
-
-/// The affine maps of tetrahedra to barycentric coordinates.
-#[pyfunction]
-pub fn transforms3(
-    py: Python<'_>,
-    points: PyReadonlyArray2<'_, f64>,
-    simplices: PyReadonlyArray2<'_, i32>,
-    workers: usize,
-) -> Outcome<Py<PyArray3<f64>>> {
-    let found = measured(py, &points, &simplices, |points, simplices, watch| {
-        measure::transforms3(points, simplices, workers, watch)
-    })?;
-    let count = found.len();
-    let flat = found.into_flattened().into_flattened();
-    shaped(py, flat, [count, 4, 3])
+    let (flat, d) = match columns(&points) {
+        2 => (
+            measured(py, &points, &simplices, workers, measure::transforms2)?
+                .into_flattened()
+                .into_flattened(),
+            2,
+        ),
+        _ => (
+            measured(py, &points, &simplices, workers, measure::transforms3)?
+                .into_flattened()
+                .into_flattened(),
+            3,
+        ),
+    };
+    let count = columns(&simplices) * d;
+    let shape = [flat.len() / count, d + 1, d];
+    shaped(py, flat, shape)
 }

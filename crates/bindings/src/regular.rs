@@ -1,11 +1,11 @@
 //! Regular triangulations of weighted points, and triangulations of periodic points, as arrays.
 
 use delone_core::error::Error;
-use delone_core::{regular, regular3 as space, voronoi};
+use delone_core::{regular as plane, regular3 as space, voronoi};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, numbers, rows, table};
+use crate::arrays::{Column, Table, column, columns, numbers, rows, table};
 use crate::errors::Outcome;
 use crate::given::finite_weights;
 use crate::signals::watched;
@@ -23,35 +23,25 @@ pub struct RegularTriangulation {
     pub stands_for: Column<i32>,
 }
 
-/// The regular triangulation of weighted 2-D points; a chain of rows if all are collinear.
+/// The regular triangulation of weighted points; in 2-D a chain of rows if all are collinear.
 #[pyfunction]
-pub fn regular2(
+pub fn regular(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     weights: PyReadonlyArray1<'_, f64>,
     workers: usize,
 ) -> Outcome<RegularTriangulation> {
-    let points = rows(&points, "points")?;
-    let weights = finite_weights(Some(&weights), points.len())?;
-    let made = watched(py, |watch| {
-        regular::regular(points, weights, workers, watch)
-    })?;
-    Ok(RegularTriangulation {
-        simplices: table(py, made.triangles.simplices)?,
-        neighbors: table(py, made.triangles.neighbors)?,
-        chain: numbers(py, made.chain),
-        stands_for: column(py, made.stands_for),
-    })
-}
-
-/// The regular triangulation of weighted 3-D points.
-#[pyfunction]
-pub fn regular3(
-    py: Python<'_>,
-    points: PyReadonlyArray2<'_, f64>,
-    weights: PyReadonlyArray1<'_, f64>,
-    workers: usize,
-) -> Outcome<RegularTriangulation> {
+    if columns(&points) == 2 {
+        let points = rows(&points, "points")?;
+        let weights = finite_weights(Some(&weights), points.len())?;
+        let made = watched(py, |watch| plane::regular(points, weights, workers, watch))?;
+        return Ok(RegularTriangulation {
+            simplices: table(py, made.triangles.simplices)?,
+            neighbors: table(py, made.triangles.neighbors)?,
+            chain: numbers(py, made.chain),
+            stands_for: column(py, made.stands_for),
+        });
+    }
     let points = rows(&points, "points")?;
     let weights = finite_weights(Some(&weights), points.len())?;
     let made = watched(py, |watch| space::regular(points, weights, workers, watch))?;
@@ -91,7 +81,7 @@ pub fn periodic2(
     let points = rows(&points, "points")?;
     let point_weights = finite_weights(weights.as_ref(), points.len())?;
     let made = watched(py, |watch| {
-        regular::periodic(points, point_weights, periods, workers, watch)
+        plane::periodic(points, point_weights, periods, workers, watch)
     })?;
     let neighbors: Vec<[i32; 3]> = made
         .partners

@@ -116,12 +116,9 @@ def concave_hull(
             made = ConcaveHull._made(sealed(own), nothing, nothing, flat, workers)
             return made._refer(points)
     given = mesh.points, mesh.simplices, mesh.neighbors
-    if mesh.ndim == 2:
-        flags = _core.dig2(*given, name, limit, holes=wants_holes)
-    elif wants_holes:
+    if wants_holes and mesh.ndim != 2:
         raise InputError("holes=True is only available in 2-D: points are 3-D")
-    else:
-        flags = _core.dig3(*given, name, limit)
+    flags = _core.dig(*given, name, limit, wants_holes)
     return ConcaveHull._made(*given, flags, workers)._refer(points)
 
 

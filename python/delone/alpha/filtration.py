@@ -402,10 +402,9 @@ class AlphaComplex(Stored):
         """The numbers of parts, and of holes, after each simplex of the highest dimension."""
         order, _ = self._steps
         neighbors = self._valued.neighbors
-        core = _core.alpha_counts2 if neighbors.shape[1] == 3 else _core.alpha_counts3
-        parts = core(order, neighbors, outside=False)
+        parts = _core.alpha_counts(order, neighbors, outside=False)
         has_outside = bool((neighbors < 0).any())
-        rest = core(np.ascontiguousarray(order[::-1]), neighbors, outside=has_outside)
+        rest = _core.alpha_counts(np.ascontiguousarray(order[::-1]), neighbors, outside=has_outside)
         gaps = np.append(rest[::-1][1:], int(has_outside)) - int(has_outside)
         return parts, gaps.astype(np.int32)
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone import _core
+from delone import _core, measures
 from delone._arrays import as_workers
 from delone.alpha.outline import rings_of
 from delone.alpha.values import simplices_of
@@ -84,8 +84,7 @@ class Kept(Exchanged):
     @kept
     def _labels(self) -> Indices:
         """The part of each triangle or tetrahedron, -1 of those that are not kept."""
-        core = _core.alpha_labels2 if self._neighbors.shape[1] == 3 else _core.alpha_labels3
-        return sealed(core(self._flags, self._neighbors))
+        return sealed(_core.alpha_labels(self._flags, self._neighbors))
 
     @property
     def nparts(self) -> int:
@@ -204,7 +203,7 @@ class Kept(Exchanged):
 
     def _areas(self) -> Floats:
         """The areas of the triangles that are kept."""
-        return plane.areas(self._points, self._solid, self._workers)
+        return measures.sizes(self._points, self._solid, self._workers)
 
     @property
     @kept
@@ -223,7 +222,7 @@ class Kept(Exchanged):
         """The volume of the tetrahedra; 3-D only."""
         if self.ndim == 2:
             raise InputError("a volume is only available in 3-D: `area` is that of the triangles")
-        return plane.total(space.volumes(self._points, self._solid, self._workers))
+        return plane.total(measures.sizes(self._points, self._solid, self._workers))
 
     @property
     @kept

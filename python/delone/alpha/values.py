@@ -97,10 +97,9 @@ def _is_above(along: list[Any], heights: list[Any], i: int, j: int, k: int) -> b
 def _vertices(
     points: Floats, weights: Floats | None, edges: Indices, values: Floats, rows: Indices
 ) -> tuple[Indices, Floats]:
-    core = _core.alpha_vertices2 if points.shape[1] == 2 else _core.alpha_vertices3
     if weights is None:
         return rows[:, None], np.zeros(len(rows))
-    return rows[:, None], core(points, weights, edges, values)[rows]
+    return rows[:, None], _core.alpha_vertices(points, weights, edges, values)[rows]
 
 
 def _seen(points: Floats, simplices: Indices) -> Indices:
@@ -119,8 +118,7 @@ def _of_simplices(
         tetrahedra, (faces, of_faces), (edges, of_edges) = _core.alpha_solid3(*given)
         upper, upper_values = (faces, simplices), (of_faces, tetrahedra)
     else:
-        core = _core.alpha_flat2 if points.shape[1] == 2 else _core.alpha_flat3
-        triangles, (edges, of_edges) = core(*given)
+        triangles, (edges, of_edges) = _core.alpha_flat(*given)
         upper, upper_values = (simplices,), (triangles,)
     rows, own = _vertices(points, weights, edges, of_edges, _seen(points, edges))
     return Valued((rows, edges, *upper), (own, of_edges, *upper_values), neighbors)
@@ -130,8 +128,7 @@ def _of_chain(points: Floats, weights: Floats | None, chain: Indices, workers: i
     """Return a path along a line, a single point, or nothing."""
     edges = np.sort(np.column_stack((chain[:-1], chain[1:])), axis=1).astype(np.int32)
     edges = np.ascontiguousarray(edges[np.lexsort((edges[:, 1], edges[:, 0]))])
-    core = _core.alpha_edges2 if points.shape[1] == 2 else _core.alpha_edges3
-    values = core(points, weights, edges, workers)
+    values = _core.alpha_edges(points, weights, edges, workers)
     rows, own = _vertices(points, weights, edges, values, np.sort(chain).astype(np.int32))
     if not len(edges):
         return Valued((rows,), (own,), np.full((len(rows), 1), -1, dtype=np.int32))

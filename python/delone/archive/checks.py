@@ -295,12 +295,10 @@ def _check_sound(
     points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
 ) -> None:
     """Check that neighbors are mutual and simplices positively oriented; their range is known."""
-    flat = points.shape[1] == 2
-    check = _core.fault2 if flat else _core.fault3
-    fault = check(points, simplices, neighbors, as_workers(None))
+    fault = _core.fault(points, simplices, neighbors, as_workers(None))
     if fault is None:
         return
-    kind, row = fault
+    (kind, row), flat = fault, points.shape[1] == 2
     turn = "is not counter-clockwise" if flat else "is not positively oriented"
     wrong = "has neighbors that are not mutual" if kind == "neighbors" else turn
     raise ContradictionError(f"{'triangle' if flat else 'tetrahedron'} {row} {wrong}")

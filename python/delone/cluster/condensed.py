@@ -73,10 +73,9 @@ def condensed_tree(
     """Return the condensed tree of points, by mutual reachability."""
     n = len(points)
     if n >= 2 and samples <= n:
-        core = _core.condensed2 if points.shape[1] == 2 else _core.condensed3
         scaled, exponent = rescaled(points, epsilon)
         reach = float(np.ldexp(epsilon, exponent))
-        found = core(scaled, samples, least, reach, workers)
+        found = _core.condensed(scaled, samples, least, reach, workers)
         made = CondensedTree(*found[:8], *found[8])
         return replace(made, heights=np.ldexp(made.heights, -exponent)) if exponent else made
     # Core distances do not exist, so all rows leave the root at the start.

@@ -122,11 +122,10 @@ class DBSCAN(Clusterer):
         samples = as_least(self.min_samples, 1, name="min_samples")
         workers = as_workers(self.workers)
         points = self._points(X)
-        core = _core.density2 if points.shape[1] == 2 else _core.density3
         # A count above that of all rows stands for every larger one.
         scaled, exponent = rescaled(points, eps)
         reach = float(np.ldexp(eps, exponent))
-        clusters, is_core = core(scaled, reach, min(samples, len(points) + 1), workers)
+        clusters, is_core = _core.density(scaled, reach, min(samples, len(points) + 1), workers)
         self.labels_ = numbered(clusters)
         self.core_sample_indices_ = np.flatnonzero(is_core).astype(np.int32)
         self.components_ = points[self.core_sample_indices_]

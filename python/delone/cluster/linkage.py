@@ -91,9 +91,8 @@ class SingleLinkage(Immutable):
         tree = self._tree
         if tree.npoints < 2:
             return sealed(np.empty((0, 4)))
-        core = _core.linkage2 if tree.ndim == 2 else _core.linkage3
         workers = as_workers(self._workers)
-        return sealed(core(tree.points, tree.edges, tree.duplicates, workers))
+        return sealed(_core.linkage(tree.points, tree.edges, tree.duplicates, workers))
 
     def labels(self, *, height: float | None = None, n_clusters: int | None = None) -> Indices:
         """Cut the hierarchy at a distance, or into a number of clusters.

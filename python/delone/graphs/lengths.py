@@ -98,7 +98,6 @@ def _exact_squares(points: Floats, edges: Indices) -> tuple[list[Fraction], NDAr
 
 def _not_longer(points: Floats, edges: Indices, ends: Floats, workers: int | None) -> Indices:
     """Return the edges that are not longer than the one between two points, (2, d)."""
-    core = _core.not_longer2 if points.shape[1] == 2 else _core.not_longer3
-    return core(
+    return _core.not_longer(
         points, np.ascontiguousarray(edges), np.ascontiguousarray(ends), as_workers(workers)
     )

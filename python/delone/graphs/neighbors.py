@@ -86,8 +86,7 @@ def nearest_neighbors(
     threads = as_workers(workers)
     if not 1 <= count < len(own):
         _require_k(count, len(own), len(repeated(own)))
-    core = _core.knn2 if own.shape[1] == 2 else _core.knn3
-    edges, duplicates = core(rescaled(own)[0], count, one_way, threads)
+    edges, duplicates = _core.knn(rescaled(own)[0], count, one_way, threads)
     _require_k(count, len(own), len(duplicates))
     kind = f"{count} nearest neighbors"
     made = Graph._made(own, edges, duplicates, directed=one_way, kind=kind, workers=workers)
@@ -149,8 +148,7 @@ def sphere_of_influence(
     """
     closed = as_choice(boundary, ("closed", "open"), name="boundary") == "closed"
     own = coordinates(points, ndim=None, planar=planar)
-    core = _core.influence2 if own.shape[1] == 2 else _core.influence3
-    edges, duplicates = core(rescaled(own)[0], closed, as_workers(workers))
+    edges, duplicates = _core.influence(rescaled(own)[0], closed, as_workers(workers))
     made = Graph._made(own, edges, duplicates, kind="sphere of influence", workers=workers)
     return made._refer(points)
 

@@ -306,18 +306,15 @@ def _balls(base: Skeleton, *, closed: bool) -> NDArray[np.int32]:
     edges = _filtered(base, "ball", 1.0, closed=closed)
     if closed or base.is_chain or not len(edges):
         return edges
-    core = _core.antipodes2 if base.points.shape[1] == 2 else _core.antipodes3
     _, simplices, beside = base.tiling or (None, None, None)
-    far = core(base.adjacency, simplices, beside, base.workers)
+    far = _core.antipodes(base.adjacency, simplices, beside, base.workers)
     return joined(edges, far) if len(far) else edges
 
 
 def _filtered(base: Skeleton, region: str, beta: float, *, closed: bool) -> NDArray[np.int32]:
     """Return the Delaunay edges whose region is empty."""
-    if base.points.shape[1] == 3:
-        return _core.proximity3(base.adjacency, region, beta, closed, base.workers)
-    if region == "lune" or base.tiling is None:
-        return _core.proximity2(base.adjacency, region, beta, closed, base.workers)
+    if base.points.shape[1] == 3 or region == "lune" or base.tiling is None:
+        return _core.proximity(base.adjacency, region, beta, closed, base.workers)
     return _core.of_triangles2(base.tiling, region, beta, closed, base.workers)
 
 

@@ -101,7 +101,7 @@ def skeleton(
             chain = np.column_stack((error.chain[:-1], error.chain[1:])).astype(np.int32)
             edges = joined(np.sort(chain, axis=1))
             return Skeleton(own, repeated(own), threads, flat_edges=edges, is_chain=True)
-        edges = _core.edges2(plane.simplices, plane.neighbors, len(own), threads)
+        edges = _core.edges(plane.simplices, plane.neighbors, len(own), threads)
         return Skeleton(own, plane.duplicates, threads, flat_edges=edges)
 
 

@@ -70,8 +70,7 @@ def minimum_spanning_tree(
     if ndim == 2 and tiling is not None:
         edges = _core.spanning_triangles2(tiling, base.workers)
     else:
-        core = _core.spanning2 if ndim == 2 else _core.spanning3
-        edges = core(base.adjacency, base.workers)
+        edges = _core.spanning(base.adjacency, base.workers)
     kind = "minimum spanning tree"
     made = Graph._made(base.points, edges, base.duplicates, kind=kind, workers=workers)
     return made._refer(points)

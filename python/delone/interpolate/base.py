@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from delone import location
+from delone import location, measures
 from delone._arrays import as_flag, as_number, as_vectors, as_workers
 from delone.counting import agreed
 from delone.delaunay import Delaunay
@@ -567,7 +567,7 @@ class Interpolator:
             return mesh.vertex_neighbor_vertices
         if "around" not in self._cache:
             edges = (
-                topology.edges(sheet.simplices, sheet.neighbors, mesh.npoints, self._workers)
+                measures.edges(sheet.simplices, sheet.neighbors, mesh.npoints, self._workers)
                 if sheet.source is None
                 else _sides(sheet.simplices)
             )

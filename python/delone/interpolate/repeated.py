@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from delone import measures
 from delone.errors import InputError, LimitError
-from delone.plane import geometry
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -127,7 +127,7 @@ def _widest(mesh: PeriodicDelaunay) -> float:
     corners = mesh.corners
     count = 3 * mesh.nsimplex
     numbers = np.arange(count, dtype=np.int32).reshape(-1, 3)
-    center = geometry.circumcenters(corners.reshape(-1, 2), numbers)
+    center = measures.circumcenters(corners.reshape(-1, 2), numbers)
     radius = np.hypot(*(center - corners[:, 0]).T)
     low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
     inside = np.ones(len(radius), dtype=bool)

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone import _core
+from delone import _core, measures
 from delone.errors import InputError
 from delone.interpolate.hull import Terms
-from delone.space import geometry
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -48,7 +47,7 @@ def face_terms(place: Location, step: Floats, *, base: bool = True) -> Terms:
 def slopes(points: Floats, corners: Indices, columns: Floats) -> Floats:
     """The gradients, (k, c, 3), of the linear functions on tetrahedra, (k, 4); none may be flat."""
     # The rows of these maps are the gradients of the barycentric coordinates.
-    maps = geometry.transform(points, corners)[:, :SPACE]
+    maps = measures.transform(points, corners)[:, :SPACE]
     rise = columns[corners[:, :SPACE]] - columns[corners[:, SPACE:]]
     found: Floats = np.einsum("kic,kij->kcj", rise, maps)
     return found

@@ -8,7 +8,7 @@ import numpy as np
 
 from delone import _core
 from delone.dimension import Dimension
-from delone.plane import geometry, location, quality, topology
+from delone.plane import location, quality, topology
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,11 +42,7 @@ PLANE = Dimension(
     simplex="triangle",
     boundary=topology.boundary_edges,
     hull=_hull,
-    edges=topology.edges,
     faces=_faces,
-    sizes=geometry.areas,
-    circumcenters=geometry.circumcenters,
-    transform=geometry.transform,
     quality=quality.measured,
     locator=_core.Locator2,
     located=location.located,

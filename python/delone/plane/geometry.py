@@ -1,8 +1,4 @@
-"""Measures of triangles: areas, circumcenters, barycentric transforms.
-
-The core computes them in stages: values that suffer cancellation in thin triangles are computed
-again with more digits. Points must be finite, and triangles exactly counter-clockwise.
-"""
+"""Normals of edges in the plane, and sums of many sizes."""
 
 from __future__ import annotations
 
@@ -11,8 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone import _core
-from delone._arrays import as_mesh, as_workers
 from delone.blocks import ROWS, blocks
 
 if TYPE_CHECKING:
@@ -26,26 +20,7 @@ _FEW = 1000
 # The exponent of the largest power of two that is a double.
 _LARGEST = 1023
 
-__all__ = ["areas", "circumcenters", "edge_normals", "total", "transform"]
-
-
-def areas(points: Floats, simplices: Indices, workers: int | None = None) -> Floats:
-    """Return areas of triangles; the relative error is below 1e-13 within the range of doubles."""
-    return _core.areas2(*as_mesh(points, simplices), as_workers(workers))
-
-
-def transform(points: Floats, simplices: Indices, workers: int | None = None) -> Floats:
-    """Return affine maps to barycentric coordinates, (m, 3, 2).
-
-    The inverse of the matrix whose columns are the vectors from the last corner to the first two,
-    and below it the last corner. Entries have a relative error below 1e-13, if within doubles.
-    """
-    return _core.transforms2(*as_mesh(points, simplices), as_workers(workers))
-
-
-def circumcenters(points: Floats, simplices: Indices, workers: int | None = None) -> Floats:
-    """Return circumcenters, within 4 units in the last place; infinite beyond doubles."""
-    return _core.circumcenters2(*as_mesh(points, simplices), as_workers(workers))
+__all__ = ["edge_normals", "total"]
 
 
 def edge_normals(points: Floats, edges: Indices) -> Floats:

@@ -139,7 +139,7 @@ class Quality(Measures):
 
 def measured(points: Floats, simplices: Indices, workers: int | None = None) -> Quality:
     """Measure triangles."""
-    found = _core.qualities2(*as_mesh(points, simplices), as_workers(workers))
+    found = _core.qualities(*as_mesh(points, simplices), as_workers(workers))
     return Quality(
         **{each.name: column for each, column in zip(fields(Quality), found, strict=True)}
     )

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from delone.plane import geometry
+from delone import measures
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -54,7 +54,7 @@ def shapes(points: Floats, simplices: Indices) -> Shapes:
     lengths = np.hypot(sides[..., 0], sides[..., 1])
     short, middle, most = np.sort(lengths, axis=1).T
     rows = np.arange(3 * len(simplices), dtype=np.int32).reshape(-1, 3)
-    twice = 2 * geometry.areas(corners.reshape(-1, 2), rows)
+    twice = 2 * measures.sizes(corners.reshape(-1, 2), rows)
     unit = np.spacing(np.abs(corners).max(axis=(1, 2), initial=0.0))
     thin = (twice <= _UNITS * unit * most) & (twice < _SHARE * most**2) & (twice > _LEAST)
     return Shapes(thin, thin & (twice < _BENT * short * middle), lengths.argmax(axis=1))

@@ -1,4 +1,4 @@
-"""Topology of triangles: edges, boundary, incidences.
+"""Topology of triangles: boundary, half-edges, incidences.
 
 Needs neither coordinates nor predicates. The input must be a triangulation as the core exports it:
 triangles are counter-clockwise, `neighbors[t, k]` is across the edge opposite vertex k, -1 outside,
@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers
 from delone.blocks import ROWS, blocks
 
 if TYPE_CHECKING:
@@ -26,7 +25,6 @@ __all__ = [
     "boundary_edges",
     "boundary_next",
     "edge_keys",
-    "edges",
     "half_edges",
     "neighbors",
     "rows_among",
@@ -39,13 +37,6 @@ __all__ = [
 # Tail and head of the half-edge opposite vertex k, counter-clockwise.
 _TAIL = np.array([1, 2, 0])
 _HEAD = np.array([2, 0, 1])
-
-
-def edges(
-    simplices: Indices, neighbors: Indices, npoints: int, workers: int | None = None
-) -> Indices:
-    """Return every edge once, (k, 2): the smaller vertex first, rows ascending. O(m)."""
-    return _core.edges2(simplices, neighbors, npoints, as_workers(workers))
 
 
 def boundary_edges(simplices: Indices, neighbors: Indices) -> Indices:
@@ -116,8 +107,8 @@ def triangles_among(
 def vertex_neighbor_vertices(edges: Indices, npoints: int) -> tuple[Indices, Indices]:
     """Return the neighbors of all vertices as compressed rows (indptr, indices), ascending. O(k).
 
-    The k edges must come as from `edges`; otherwise a ShapeError is raised. Those of vertex v are
-    ``indices[indptr[v]:indptr[v + 1]]``.
+    The k edges must come as from `delone.measures.edges`; otherwise a ShapeError is raised. Those
+    of vertex v are ``indices[indptr[v]:indptr[v + 1]]``.
     """
     return _core.around(np.ascontiguousarray(edges, dtype=np.int32), npoints)
 

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from delone import measures
 from delone._arrays import as_callback, as_limit, as_number
 from delone.errors import DtypeError, InputError, InternalError, ShapeError
-from delone.plane import geometry, topology
+from delone.plane import topology
 from delone.refine import domains
 from delone.refine.domains import Counts
 from delone.refine.rounds import MOST_ADDED, Limits, as_min_angle, rounds
@@ -90,7 +91,7 @@ def _size_function(
     """Return a size function that makes chosen triangles smaller."""
     sizes = np.full(mesh.nsimplex, math.inf)
     unit = domains.unit_of(mesh.points)
-    areas = geometry.areas(mesh.points / unit, mesh.simplices[chosen])
+    areas = measures.sizes(mesh.points / unit, mesh.simplices[chosen])
     sizes[chosen] = np.sqrt(ratio * areas / EQUILATERAL) * unit
 
     def size(positions: Floats) -> Floats:

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone import _core
+from delone import _core, measures
 from delone.counting import counted, listed
 from delone.immutable import ReadOnly
-from delone.plane import geometry, quality
+from delone.plane import quality
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -218,7 +218,7 @@ def _positions(points: Floats, simplices: Indices, needle: Indices) -> Floats:
     """Return the center of the largest triangle of each needle, sorted by coordinates."""
     rows = np.flatnonzero(needle >= 0)
     corners = points[simplices[rows]]
-    areas = geometry.areas(points, simplices[rows])
+    areas = measures.sizes(points, simplices[rows])
     centers = (corners / 3).sum(axis=1)
     rank = np.lexsort((centers[:, 1], centers[:, 0], areas, needle[rows]))
     last = np.flatnonzero(np.diff(needle[rows][rank], append=-1))

@@ -16,10 +16,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import _core
+from delone import _core, measures
 from delone._arrays import as_number, as_workers
 from delone.errors import BudgetExceededError, DtypeError, InputError, LimitError
-from delone.plane import geometry
 from delone.triangulation import Triangulation
 
 if TYPE_CHECKING:
@@ -122,7 +121,7 @@ class Sizing:
         if samples is None and not self.varies and np.isinf(self._by_region).all():
             return 0.0
         inside = np.flatnonzero(domain.labels >= 0)
-        areas = geometry.areas(domain.points, domain.simplices[inside])
+        areas = measures.sizes(domain.points, domain.simplices[inside])
         caps = self.at(_centers(domain, inside), domain.labels[inside])
         if not np.isfinite(areas[np.isfinite(caps)]).all():
             raise LimitError(_out_of_range("the area of the domain"))

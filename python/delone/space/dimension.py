@@ -8,7 +8,7 @@ import numpy as np
 
 from delone import _core
 from delone.dimension import Dimension
-from delone.space import geometry, location, quality, topology
+from delone.space import location, quality, topology
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,20 +24,12 @@ def _hull(_: Floats, boundary: Indices) -> NDArray[np.int64]:
     return np.unique(boundary).astype(np.int64)
 
 
-def _edges(simplices: Indices, _: Indices, npoints: int, workers: int | None) -> Indices:
-    return topology.edges(simplices, npoints, workers)
-
-
 SPACE = Dimension(
     ndim=3,
     simplex="tetrahedron",
     boundary=topology.boundary_faces,
     hull=_hull,
-    edges=_edges,
     faces=topology.faces,
-    sizes=geometry.volumes,
-    circumcenters=geometry.circumcenters,
-    transform=geometry.transform,
     quality=quality.measured,
     locator=_core.Locator3,
     located=location.located,

@@ -62,4 +62,4 @@ def is_odd(simplices: Indices) -> NDArray[np.bool_]:
 def cells(neighbors: Indices, locked: NDArray[np.bool_]) -> Indices:
     """Return the number of the cell of each tetrahedron: what is connected without locked faces."""
     open_ones = np.where(locked, np.int32(-1), neighbors)
-    return _core.alpha_labels3(np.ones(len(neighbors), dtype=bool), open_ones)
+    return _core.alpha_labels(np.ones(len(neighbors), dtype=bool), open_ones)

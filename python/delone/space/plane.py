@@ -121,7 +121,7 @@ def plane_of(
         # The weight of the apex has no effect; one like the others avoids a large range of
         # exponents.
         own = np.append(weights, weights[first[0]])
-        regular = _core.regular3(extended, own, workers)
+        regular = _core.regular(extended, own, workers)
         simplices, neighbors = regular.simplices, regular.neighbors
         duplicates = repeated_rows(regular.stands_for, own)
     # Keep three columns of each row: those of the base, opposite the apex.

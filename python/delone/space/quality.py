@@ -190,7 +190,7 @@ class TetQuality(Measures):
 
 def measured(points: Floats, simplices: Indices, workers: int | None = None) -> TetQuality:
     """Measure positively oriented tetrahedra."""
-    found = _core.qualities3(*as_mesh(points, simplices), as_workers(workers))
+    found = _core.qualities(*as_mesh(points, simplices), as_workers(workers))
     return TetQuality(
         **{each.name: column for each, column in zip(fields(TetQuality), found, strict=True)}
     )

@@ -1,4 +1,4 @@
-"""Topology of tetrahedra: edges, faces, boundary, neighbors.
+"""Topology of tetrahedra: faces, boundary, neighbors.
 
 Needs neither coordinates nor predicates. The input must be a triangulation as the core exports it:
 tetrahedra are positively oriented, `neighbors[t, k]` is across the face opposite vertex k, -1
@@ -19,15 +19,10 @@ if TYPE_CHECKING:
 
     Indices = NDArray[np.int32]
 
-__all__ = ["FACES", "boundary_faces", "edges", "faces", "neighbors"]
+__all__ = ["FACES", "boundary_faces", "faces", "neighbors"]
 
 # The face opposite vertex k, counter-clockwise as seen from outside.
 FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]
-
-
-def edges(simplices: Indices, npoints: int, workers: int | None = None) -> Indices:
-    """Return every edge once, (k, 2): the smaller vertex first, rows ascending. O(m)."""
-    return _core.edges3(simplices, npoints, as_workers(workers))
 
 
 def faces(

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone import _core
+from delone import _core, measures
 from delone._arrays import as_flag, as_workers
 from delone.complex import Stored
 from delone.counting import counted
@@ -289,7 +289,7 @@ class Delaunay(Stored):
     def edges(self) -> Indices:
         """Every edge once, (k, 2): the smaller vertex first, rows ascending."""
         workers = self._workers
-        return sealed(topology.edges(self._simplices, self._neighbors, self.npoints, workers))
+        return sealed(measures.edges(self._simplices, self._neighbors, self.npoints, workers))
 
     @property
     @kept

@@ -266,7 +266,7 @@ def _longer(mesh: ConstrainedDelaunay, limit: float) -> Bools:
     near = np.abs(length - limit) <= limit * 2.0**-48 + 2.0**-1070
     if near.any():
         unit = np.array([(0.0, 0.0), (limit, 0.0)])
-        short = _core.not_longer2(mesh.points, ends[near], unit, as_workers(mesh.workers))
+        short = _core.not_longer(mesh.points, ends[near], unit, as_workers(mesh.workers))
         keys = edge_keys(ends[near][:, 0], ends[near][:, 1], mesh.npoints)
         found[near] = ~among(keys, edge_keys(short[:, 0], short[:, 1], mesh.npoints))
     return found

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone import _core
+from delone import _core, measures
 from delone._arrays import as_number, as_points, require_finite
 from delone.errors import InputError, ShapeError
 from delone.extras import require
 from delone.immutable import ReadOnly
-from delone.plane.geometry import areas
 from delone.renames import renamed
 from delone.terrain.lines import line_of
 
@@ -286,7 +285,7 @@ def _crossings(tin: Surface, sides: Indices, a: Floats, b: Floats) -> _Part:
 def _areas(a: Floats, b: Floats, c: Floats) -> Floats:
     """The areas of triangles, without a sign."""
     rows = np.arange(3 * len(a), dtype=np.int32).reshape(3, -1).T
-    return np.abs(areas(np.concatenate((a, b, c)), np.ascontiguousarray(rows)))
+    return np.abs(measures.sizes(np.concatenate((a, b, c)), np.ascontiguousarray(rows)))
 
 
 def drape(tin: Surface, geometry: Any) -> Any:

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone import measures
 from delone._arrays import as_callback, as_choice, as_number, as_vectors
 from delone.errors import InputError
 from delone.interpolate.raster import Grid, raster_nodes, require_memory
 from delone.location import as_tolerance
-from delone.plane import geometry
 from delone.terrain.surface import on_surface
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def gradient(points: Floats, z: Floats, simplices: Indices) -> Floats:
     low, mid, high = (z[corner] for corner in simplices.T)
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
     du, dv = mid - low, high - low
-    twice = 2 * geometry.areas(points, simplices)
+    twice = 2 * measures.sizes(points, simplices)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         found: Floats = np.column_stack((du * vy - dv * uy, dv * ux - du * vx)) / twice[:, None]
         found = np.ldexp(found, -exponent)

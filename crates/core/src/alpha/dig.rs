@@ -12,8 +12,9 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use delone_predicates::proximity::shorter;
-use delone_predicates::{Point2, Point3, Sign};
+use delone_predicates::{Point2, Sign};
 
+use crate::arrays::Given;
 use crate::error::{Error, Result};
 use crate::memory::{filled, push, with_room};
 use crate::watch::{Pace, Watch};
@@ -154,14 +155,12 @@ struct Dig2<'a> {
 }
 
 /// Which triangles remain: one polygon, with holes if wanted.
-pub fn dig2(
-    points: &[Point2],
-    simplices: &[[i32; 3]],
-    neighbors: &[[i32; 3]],
-    limit: Limit,
-    holes: bool,
-    watch: &Watch,
-) -> Result<Vec<bool>> {
+pub fn dig2(given: Given<2, 3>, limit: Limit, holes: bool, watch: &Watch) -> Result<Vec<bool>> {
+    let Given {
+        points,
+        simplices,
+        neighbors,
+    } = given;
     let mut pace = Pace::new(watch, LOT);
     let mut dig = Dig2 {
         points,
@@ -266,13 +265,12 @@ impl Dig2<'_> {
 }
 
 /// Which tetrahedra remain; every point keeps one.
-pub fn dig3(
-    points: &[Point3],
-    simplices: &[[i32; 4]],
-    neighbors: &[[i32; 4]],
-    limit: Limit,
-    watch: &Watch,
-) -> Result<Vec<bool>> {
+pub fn dig3(given: Given<3, 4>, limit: Limit, watch: &Watch) -> Result<Vec<bool>> {
+    let Given {
+        points,
+        simplices,
+        neighbors,
+    } = given;
     let mut pace = Pace::new(watch, LOT);
     let limit = length(limit, points, simplices, &mut pace)?;
     let mut is_kept = filled(simplices.len(), true)?;
