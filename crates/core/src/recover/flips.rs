@@ -261,7 +261,7 @@ impl Work<'_> {
     }
 
     /// The triangulation of a ring with the fewest crossings, if these are fewer than `limit`.
-    fn cheapest(&self, ring: &Ring, goal: Goal, limit: usize) -> Option<Vec<Corners>> {
+    pub fn cheapest(&self, ring: &Ring, goal: Goal, limit: usize) -> Option<Vec<Corners>> {
         let [a, b] = ring.ends;
         let v = &ring.vertices;
         let n = v.len();

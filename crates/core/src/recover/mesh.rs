@@ -236,6 +236,12 @@ impl Mesh {
 
     /// The outer faces of tetrahedra, each seen from inside.
     pub fn outer_faces(&mut self, cells: &[u32]) -> Vec<[u32; 3]> {
+        let sides = self.outer_sides(cells);
+        sides.into_iter().map(|(t, k)| self.face(t, k)).collect()
+    }
+
+    /// The tetrahedra and corners from which the outer faces of tetrahedra are seen.
+    pub fn outer_sides(&mut self, cells: &[u32]) -> Vec<(u32, usize)> {
         self.new_search();
         for &t in cells {
             self.is_new(t);
@@ -245,7 +251,7 @@ impl Mesh {
             for k in 0..4 {
                 let u = self.across[t as usize][k];
                 if u == NONE || self.seen[u as usize] != self.search {
-                    found.push(self.face(t, k));
+                    found.push((t, k));
                 }
             }
         }

@@ -13,6 +13,9 @@
 //!    of a limited number.
 //! 2. Segments (`segments`): the open tetrahedra on the rest of one become fewer with each point.
 //! 3. Faces (`facets`): each point leaves one crossing edge less.
+//!    Where faces of one plane are missing, its Delaunay triangulation is recovered first (`planes`);
+//!    flips in the plane then bring those of the input back, with points on its sides where tetrahedra
+//!    do not allow them (`swap`): each leaves an edge of the input one crossing less.
 //! 4. Points on the boundary are suppressed (`suppress`): each is replaced by one point in each
 //!    sector between faces; then free points are taken away (`thin`) where a neighbor sees all, also
 //!    after flips that leave them fewer edges.
@@ -37,15 +40,17 @@ mod input;
 mod locks;
 mod mesh;
 mod place;
+mod planes;
 mod segments;
 mod suppress;
+mod swap;
 mod task;
 mod thin;
 mod work;
 
 pub use task::{Counts, Recovered, Task};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::memory::filled;
 use crate::watch::Watch;
 use export::Rows;
@@ -69,13 +74,24 @@ const DEPTH: usize = 1;
 /// Recovers faces. Returns the tetrahedra that cannot be reached from far outside without crossing
 /// a face: none, if the faces close nothing.
 pub fn recover(task: Task, watch: &Watch) -> Result<Recovered> {
+    let made = attempt(task, task.flips, watch);
+    match &made {
+        // Other points are needed where planes keep their triangles, and they may have places.
+        Ok(made) if !made.crowded.is_empty() && task.flips => attempt(task, false, watch),
+        Err(Error::Budget { .. }) if task.flips => attempt(task, false, watch),
+        _ => made,
+    }
+}
+
+/// Recovers faces; if `planes`, with other triangles first in planes where some are missing.
+fn attempt(task: Task, planes: bool, watch: &Watch) -> Result<Recovered> {
     let imported = input::import(task, watch)?;
     let mut work = Work::new(imported.mesh, imported.faces, task.max_points, watch)?;
     let rows = Rows {
         points: &imported.rows,
         faces: &imported.face_rows,
     };
-    match work.recovered(task.flips) {
+    match work.recovered(task.flips, planes) {
         Ok(()) => {}
         Err(_) if !work.stuck.is_empty() => {
             let stuck = std::mem::take(&mut work.stuck);
@@ -95,10 +111,22 @@ pub fn recover(task: Task, watch: &Watch) -> Result<Recovered> {
 
 impl Work<'_> {
     /// Recovers all segments and faces, and moves added points to doubles where these fit.
-    fn recovered(&mut self, flips: bool) -> Result<()> {
+    fn recovered(&mut self, flips: bool, planes: bool) -> Result<()> {
         let (mut segments, mut faces) = self.missing()?;
         self.counts.missing_edges = segments.len();
         self.counts.missing_faces = faces.len();
+        let mut parts = Vec::new();
+        let mut given = Vec::new();
+        if planes && !faces.is_empty() {
+            let (mut first, found) = self.planes(&segments, &faces)?;
+            parts = found;
+            if !parts.is_empty() {
+                given.clone_from(&self.faces);
+                first.sort_unstable();
+                self.restart(first)?;
+                (segments, faces) = self.missing()?;
+            }
+        }
         if flips {
             for depth in 0..=DEPTH {
                 segments = self.flip_segments(segments, depth)?;
@@ -111,6 +139,13 @@ impl Work<'_> {
             }
         }
         self.cut_faces(&faces)?;
+        if !parts.is_empty() {
+            self.swap_back(&parts)?;
+            self.restart(given)?;
+            if self.missing()? != (Vec::new(), Vec::new()) {
+                return Err(mesh::internal("a face of a plane is missing"));
+            }
+        }
         self.thin(self.given)?;
         self.finish(flips)
     }

@@ -33,6 +33,44 @@ pub struct Dyadic {
     pub bits: u64,
 }
 
+/// The edges of faces.
+struct Edges {
+    segments: Vec<[u32; 2]>,
+    open_faces: Vec<u32>,
+    sides: Vec<[u32; 3]>,
+}
+
+impl Edges {
+    /// The edges of ascending faces.
+    fn of(faces: &[[u32; 3]]) -> Result<Self> {
+        let mut edges: Vec<u128> = with_room(3 * faces.len())?;
+        for (f, &[a, b, c]) in (0..).zip(faces) {
+            // Opposite the corners; faces are ascending, so these are, too.
+            edges.extend([[b, c, f, 0], [a, c, f, 1], [a, b, f, 2]].map(rank));
+        }
+        edges.sort_unstable();
+        let mut segments: Vec<[u32; 2]> = with_room(edges.len() / 2)?;
+        let mut open_faces = with_room(edges.len() / 2)?;
+        let mut sides = filled(faces.len(), [0; 3])?;
+        for x in edges {
+            let [a, b, f, corner] = [x >> 96, x >> 64, x >> 32, x].map(|v| v as u32);
+            let edge = [a, b];
+            if segments.last() != Some(&edge) {
+                push(&mut segments, edge)?;
+                push(&mut open_faces, 0)?;
+            }
+            let s = segments.len() - 1;
+            open_faces[s] += 1;
+            sides[f as usize][corner as usize] = s as u32;
+        }
+        Ok(Self {
+            segments,
+            open_faces,
+            sides,
+        })
+    }
+}
+
 /// The state.
 pub struct Work<'a> {
     /// The mesh.
@@ -78,26 +116,11 @@ impl<'a> Work<'a> {
         watch: &'a Watch<'a>,
     ) -> Result<Self> {
         let given = mesh.points.len() as u32;
-        let mut edges: Vec<u128> = with_room(3 * faces.len())?;
-        for (f, &[a, b, c]) in (0..).zip(&faces) {
-            // Opposite the corners; faces are ascending, so these are, too.
-            edges.extend([[b, c, f, 0], [a, c, f, 1], [a, b, f, 2]].map(rank));
-        }
-        edges.sort_unstable();
-        let mut segments: Vec<[u32; 2]> = with_room(edges.len() / 2)?;
-        let mut open_faces = with_room(edges.len() / 2)?;
-        let mut sides = filled(faces.len(), [0; 3])?;
-        for x in edges {
-            let [a, b, f, corner] = [x >> 96, x >> 64, x >> 32, x].map(|v| v as u32);
-            let edge = [a, b];
-            if segments.last() != Some(&edge) {
-                push(&mut segments, edge)?;
-                push(&mut open_faces, 0)?;
-            }
-            let s = segments.len() - 1;
-            open_faces[s] += 1;
-            sides[f as usize][corner as usize] = s as u32;
-        }
+        let Edges {
+            segments,
+            open_faces,
+            sides,
+        } = Edges::of(&faces)?;
         let locked_edges = Locks::new(&segments, mesh.points.len())?;
         let locked_faces = Locks::new(&faces, mesh.points.len())?;
         Ok(Self {
@@ -118,6 +141,20 @@ impl<'a> Work<'a> {
             counts: Counts::default(),
             pace: Pace::new(watch, 1 << 8),
         })
+    }
+
+    /// Starts again with other faces, sorted, on the same mesh: nothing is locked.
+    pub fn restart(&mut self, faces: Vec<[u32; 3]>) -> Result<()> {
+        let edges = Edges::of(&faces)?;
+        let vertices = self.given as usize;
+        self.locked_edges = Locks::new(&edges.segments, vertices)?;
+        self.locked_faces = Locks::new(&faces, vertices)?;
+        self.faces = faces;
+        self.segments = edges.segments;
+        self.open_faces = edges.open_faces;
+        self.sides = edges.sides;
+        self.chains.clear();
+        Ok(())
     }
 
     /// Where an added point lies; `None` for a vertex of the input.
