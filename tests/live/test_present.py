@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import pickle
 import threading
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 
 import delone
 from delone import Dynamic
+from delone.dynamic import saving
 from delone.dynamic.saving import State, require_few_handles
 
 if TYPE_CHECKING:
@@ -460,6 +462,26 @@ def test_many_points_may_have_had_64_handles_each() -> None:
     # The limit is for handles of segments as well.
     with pytest.raises(delone.FileFormatError, match="max_handles=12800001 takes them"):
         require_few_handles("a.npz", saved._replace(segments_total=12_800_001), None)
+
+
+def test_pickles_cannot_claim_the_memory_of_many(monkeypatch: pytest.MonkeyPatch) -> None:
+    live = Dynamic([(0, 0), (4, 0), (4, 4)])
+    again, (saved, options) = live.__reduce__()
+    for name in ("total", "segments_total"):
+        bad = State(*saved)._replace(**{name: 2**31})
+        with pytest.raises(delone.InputError, match=r"takes at most 10,000,000.*max_handles=2147"):
+            again(tuple(bad), options)
+        with pytest.raises(delone.InputError, match="2,147,483,648 handles have been given, for 3"):
+            type(live.snapshot())._again(tuple(bad))
+    # One that could not be read is not written: the error comes where it can still be saved.
+    monkeypatch.setattr(saving, "_ALWAYS", 3)
+    assert pickle.loads(pickle.dumps(live)).handles.tolist() == [0, 1, 2]
+    for _ in range(200):
+        live.remove(live.insert([(1, 1)]))
+    for each in (live, live.snapshot()):
+        with pytest.raises(delone.InputError, match=r"203 handles .* max_handles=203"):
+            pickle.dumps(each)
+    assert copy.deepcopy(live).handles.tolist() == [0, 1, 2]
 
 
 # Values.

@@ -47,6 +47,23 @@ def test_a_profile_has_a_gap_at_a_hole_between_triangles_that_share_a_corner():
         tin.drape(shapely.LineString(line))
 
 
+@pytest.mark.parametrize("end", [3.0000000000000004, 3.000000000000001])
+@pytest.mark.parametrize("backward", [False, True])
+def test_a_gap_shorter_than_roundings_is_a_gap(end, backward):
+    # The line passes above the lower corner of the hole, by less than the distance of doubles.
+    points = [(-1, -1, 0), (4, -1, 1), (4, 4, 2), (-1, 4, 3), (1, 1, 1.5), (0.5, 3, 1), (1.5, 3, 2)]
+    tin = TIN.from_points(points, holes=[[(1, 1), (0.5, 3), (1.5, 3)]])
+    found = tin.profile([(0, 0), (3, end)][:: -1 if backward else 1])
+    (gap,) = np.flatnonzero(np.isnan(found.z))
+    assert 0 < gap < len(found) - 1
+    # Both ends of it are nearly the corner; without the rule they would be one row.
+    assert found.points[gap - 1 : gap + 2] == pytest.approx(np.ones((3, 2)), abs=1e-15)
+    assert found.z[[gap - 1, gap + 1]] == pytest.approx([1.5, 1.5])
+    shapely = pytest.importorskip("shapely")
+    with pytest.raises(InputError, match="is outside of the surface"):
+        tin.drape(shapely.LineString([(0, 0), (3, end)]))
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_profiles_across_buildings_have_gaps_where_there_is_no_surface(seed):
     random = np.random.default_rng(seed)

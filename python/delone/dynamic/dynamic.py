@@ -196,7 +196,7 @@ class Dynamic(Measured):
         return State.of(self._live.state().open())
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self)._again, (tuple(self._state()), (self._workers, self._planar))
+        return type(self)._again, (tuple(self._state().pickled()), (self._workers, self._planar))
 
     def __copy__(self) -> Self:
         return self._of(self._live.state().open(), self._workers, self._planar)

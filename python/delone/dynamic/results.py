@@ -108,7 +108,7 @@ class Snapshot:
         return cls(State.unpickled(saved).opened(as_workers(None)).state())
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self)._again, (tuple(State.of(self._state.open())),)
+        return type(self)._again, (tuple(State.of(self._state.open()).pickled()),)
 
     def __init__(self, state: _core.LiveState2 | _core.LiveState3) -> None:
         self._state = state

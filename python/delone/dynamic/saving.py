@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["State", "require_few_handles"]
 
-# Handles that a file may have whatever its size, and for each point in it. Each takes 12 bytes.
+# Handles that a file or a pickle may have whatever its size, and for each point in it. Each takes
+# 12 bytes.
 _ALWAYS, _PER_POINT = 10_000_000, 64
 
 
@@ -54,7 +55,26 @@ class State(NamedTuple):
             check_live(**state.arrays())
         except ContradictionError as error:
             raise InputError(f"the pickle is not one of a Dynamic, or damaged: {error}") from error
-        return state
+        return state.pickled()
+
+    def pickled(self) -> State:
+        """Return the state; refuse one that a pickle cannot hold."""
+        found, limit = self.total_of_handles(), self.most_handles()
+        if found > limit:
+            raise InputError(
+                f"{found:,} handles have been given, for {len(self.points):,} points, and a pickle "
+                f"takes at most {limit:,}, since each needs 12 bytes: use save(path), and "
+                f"load(path, max_handles={found})"
+            )
+        return self
+
+    def total_of_handles(self) -> int:
+        """Return how many handles of points or of segments have been given, the larger number."""
+        return max(self.total, self.segments_total)
+
+    def most_handles(self) -> int:
+        """Return how many handles are plausible beside the points and segments."""
+        return max(_ALWAYS, _PER_POINT * max(len(self.points), len(self.segments)))
 
     def opened(self, workers: int) -> _core.Live2 | _core.Live3:
         """Return a core in this state."""
@@ -130,9 +150,8 @@ def _of_kinds(saved: Any) -> State:
 
 def require_few_handles(path: Any, state: State, most: int | None) -> None:
     """Refuse a file whose handles would take much more memory than its points."""
-    items = max(len(state.points), len(state.segments))
-    limit = max(_ALWAYS, _PER_POINT * items) if most is None else most
-    found = max(state.total, state.segments_total)
+    limit = state.most_handles() if most is None else most
+    found = state.total_of_handles()
     if found > limit:
         raise FileFormatError(
             f"{path} says that {found:,} handles have been given, for {len(state.points):,} "
