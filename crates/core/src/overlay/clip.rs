@@ -1,11 +1,16 @@
 //! Convex polygons, cut by triangles: I. E. Sutherland and G. W. Hodgman, "Reentrant polygon
 //! clipping", Communications of the ACM 17 (1974).
 
+use crate::error::Result;
+use crate::memory::push;
 use crate::points::Extent;
+use crate::watch::Watch;
 use delone_predicates::Point2;
 
 /// A triangle cut by two others has nine corners at most.
 pub const MOST: usize = 10;
+/// Candidates between two checks for interruption.
+pub const WATCH_EVERY: usize = 1 << 12;
 
 /// A convex polygon, counterclockwise, relative to an origin.
 #[derive(Clone, Copy)]
@@ -15,7 +20,8 @@ pub struct Polygon {
 }
 
 impl Polygon {
-    const EMPTY: Self = Self {
+    /// Without corners.
+    pub const EMPTY: Self = Self {
         corners: [[0.0; 2]; MOST],
         len: 0,
     };
@@ -42,20 +48,37 @@ impl Polygon {
         Extent::of(self.corners().iter().copied())
     }
 
-    /// The part in a triangle; `None` if it has no area.
+    /// The part in a triangle; `None` if it has no area. Written into one of `space` if it is cut.
     #[inline]
-    pub fn clipped(&self, &[a, b, c]: &[Point2; 3]) -> Option<Self> {
-        let lines = [(a, b), (b, c), (c, a)].map(|(a, b)| Line::new(a, b));
-        // Most triangles whose boxes meet are on different sides of one of these lines.
-        let beyond = |line: &Line| self.corners().iter().all(|&p| line.side(p) <= 0.0);
-        if lines.iter().any(beyond) {
-            return None;
+    pub fn clipped<'a>(
+        &'a self,
+        &[a, b, c]: &[Point2; 3],
+        space: &'a mut [Self; 3],
+    ) -> Option<&'a Self> {
+        let lines = [Line::new(a, b), Line::new(b, c), Line::new(c, a)];
+        // Most triangles whose boxes meet are on different sides of one of these lines, and most of
+        // the others are cut by one or two of them.
+        let mut cuts = [false; 3];
+        for (line, cuts) in lines.iter().zip(&mut cuts) {
+            let (mut beyond, mut before) = (true, true);
+            for &p in self.corners() {
+                let side = line.side(p);
+                beyond &= side <= 0.0;
+                before &= side >= 0.0;
+            }
+            if beyond {
+                return None;
+            }
+            *cuts = !before;
         }
-        let (mut found, mut other) = (Self::EMPTY, Self::EMPTY);
-        self.cut(&lines[0], &mut found);
-        found.cut(&lines[1], &mut other);
-        other.cut(&lines[2], &mut found);
-        (found.len >= 3).then_some(found)
+        let mut part = self;
+        for ((line, cuts), to) in lines.iter().zip(cuts).zip(space) {
+            if cuts {
+                part.cut(line, to);
+                part = to;
+            }
+        }
+        (part.len >= 3).then_some(part)
     }
 
     /// Writes the part to the left of a line.
@@ -110,36 +133,82 @@ impl Line {
     }
 }
 
-/// A triangle that may overlap others, relative to an origin.
-pub struct Candidate {
-    /// Its corners, counterclockwise.
-    pub corners: [Point2; 3],
-    extent: Extent<2>,
+/// Triangles that may overlap others, relative to an origin, by their boxes.
+#[derive(Default)]
+pub struct Candidates {
+    boxes: Vec<Extent<2>>,
+    corners: Vec<[Point2; 3]>,
+    /// Room for the rows of those found.
+    found: Vec<u32>,
 }
 
-impl Candidate {
-    /// A triangle.
-    pub fn new(corners: [Point2; 3], origin: Point2) -> Self {
+impl Candidates {
+    /// Forgets all triangles.
+    pub fn clear(&mut self) {
+        self.boxes.clear();
+        self.corners.clear();
+    }
+
+    /// Adds a counterclockwise triangle if its box meets another one, and says whether it does.
+    pub fn add(
+        &mut self,
+        corners: [Point2; 3],
+        origin: Point2,
+        around: &Extent<2>,
+    ) -> Result<bool> {
         let corners = corners.map(|p| relative(p, origin));
-        Self {
-            corners,
-            extent: Extent::of(corners),
+        let extent = Extent::of(corners);
+        if !meet(&extent, around) {
+            return Ok(false);
         }
+        push(&mut self.boxes, extent)?;
+        push(&mut self.corners, corners)?;
+        if self.found.len() < self.boxes.len() {
+            push(&mut self.found, 0)?;
+        }
+        Ok(true)
     }
 
-    /// A box relative to the origin.
-    pub fn extent_of(extent: &Extent<2>, origin: Point2) -> Extent<2> {
-        Extent {
-            min: relative(extent.min, origin),
-            max: relative(extent.max, origin),
-        }
-    }
-
-    /// Whether its box has an area in common with another one.
+    /// The rows of those whose boxes have an area in common with another one, and the corners of
+    /// all.
     #[inline]
-    pub fn meets(&self, other: &Extent<2>) -> bool {
-        (0..2).all(|k| self.extent.min[k] < other.max[k] && other.min[k] < self.extent.max[k])
+    pub fn meeting(
+        &mut self,
+        extent: &Extent<2>,
+        watch: &Watch,
+    ) -> Result<(&[u32], &[[Point2; 3]])> {
+        let mut count = 0;
+        let mut row = 0;
+        for lot in self.boxes.chunks(WATCH_EVERY) {
+            if row > 0 {
+                watch.check()?;
+            }
+            // Without a branch: every fourth or so meets, in no order that could be predicted.
+            for other in lot {
+                self.found[count] = row;
+                count += usize::from(meet(other, extent));
+                row += 1;
+            }
+        }
+        Ok((&self.found[..count], &self.corners))
     }
+}
+
+/// A box relative to an origin.
+pub fn extent_from(extent: &Extent<2>, origin: Point2) -> Extent<2> {
+    Extent {
+        min: relative(extent.min, origin),
+        max: relative(extent.max, origin),
+    }
+}
+
+/// Whether two boxes have an area in common.
+#[inline]
+fn meet(one: &Extent<2>, other: &Extent<2>) -> bool {
+    (one.min[0] < other.max[0])
+        & (other.min[0] < one.max[0])
+        & (one.min[1] < other.max[1])
+        & (other.min[1] < one.max[1])
 }
 
 fn relative(p: Point2, origin: Point2) -> Point2 {

@@ -22,15 +22,13 @@ use crate::points::Extent;
 use crate::watch::Watch;
 use delone_predicates::Point2;
 
-use clip::{Candidate, Polygon};
+use clip::{Candidates, Polygon, WATCH_EVERY, extent_from};
 use prism::{Linear, Sums};
 
 /// Triangles that look for overlaps together.
 const GROUP: usize = 16;
 /// Groups per task.
 const SHARE: usize = 1 << 8;
-/// Candidates between two checks for interruption.
-const WATCH_EVERY: usize = 1 << 12;
 
 /// A triangulated surface.
 #[derive(Clone, Copy)]
@@ -112,28 +110,27 @@ struct Work<'a> {
 }
 
 /// What may overlap the triangles of a group, relative to an origin near them.
+#[derive(Default)]
 struct Near {
     origin: Point2,
     /// Triangles of the region.
-    within: Vec<Candidate>,
-    /// Triangles of the other surface, and its heights over them.
-    over: Vec<(Candidate, Linear)>,
+    within: Candidates,
+    /// Triangles of the other surface.
+    over: Candidates,
+    /// Its heights over them.
+    above: Vec<Linear>,
 }
 
 impl Work<'_> {
     /// The results of the triangles of a task.
     fn rows(&self, order: &[u32], watch: &Watch) -> Result<Vec<[f64; 5]>> {
         let mut rows = with_room(order.len())?;
-        let mut near = Near {
-            origin: [0.0; 2],
-            within: Vec::new(),
-            over: Vec::new(),
-        };
+        let mut near = Near::default();
         for group in order.chunks(GROUP) {
             watch.check()?;
             self.look_around(group, &mut near)?;
             for &t in group {
-                rows.push(self.row(t as usize, &near, watch)?);
+                rows.push(self.row(t as usize, &mut near, watch)?);
             }
         }
         Ok(rows)
@@ -145,14 +142,16 @@ impl Work<'_> {
         let extent = Extent::of(group.iter().flat_map(corners));
         near.origin = corners(&group[0])[0];
         let origin = near.origin;
-        let around = Candidate::extent_of(&extent, origin);
+        let around = extent_from(&extent, origin);
         near.within.clear();
         near.over.clear();
+        near.above.clear();
         let mut end = Ok(());
         if let (Some(region), Some(boxes)) = (self.region, &self.within) {
             boxes.meeting(&extent, |t| {
                 if end.is_ok() {
-                    end = push(&mut near.within, Candidate::new(region.corners(t), origin));
+                    let corners = region.corners(t);
+                    end = near.within.add(corners, origin, &around).map(|_| ());
                 }
             });
         }
@@ -160,11 +159,13 @@ impl Work<'_> {
             boxes.meeting(&extent, |t| {
                 if end.is_ok() {
                     let corners = other.given.corners(t);
-                    let candidate = Candidate::new(corners, origin);
-                    if candidate.meets(&around) {
+                    end = near.over.add(corners, origin, &around).and_then(|meets| {
+                        if !meets {
+                            return Ok(());
+                        }
                         let linear = Linear::over(corners, other.heights_of(t), origin);
-                        end = push(&mut near.over, (candidate, linear));
-                    }
+                        push(&mut near.above, linear)
+                    });
                 }
             });
         }
@@ -172,54 +173,47 @@ impl Work<'_> {
     }
 
     /// The results of a triangle.
-    fn row(&self, t: usize, near: &Near, watch: &Watch) -> Result<[f64; 5]> {
+    fn row(&self, t: usize, near: &mut Near, watch: &Watch) -> Result<[f64; 5]> {
         let corners = self.surface.given.corners(t);
         let whole = Polygon::triangle(corners, near.origin);
         let below = Linear::over(corners, self.surface.heights_of(t), near.origin);
         let mut sums = Sums::default();
+        let Near {
+            origin,
+            within,
+            over,
+            above,
+        } = near;
+        let mut add = |part: &Polygon| -> Result<()> {
+            if let Other::Plane(plane) = self.other {
+                sums.add(part, &below, &Linear::plane(plane, *origin));
+                return Ok(());
+            }
+            let mut space = [Polygon::EMPTY; 3];
+            let (rows, corners) = over.meeting(&part.extent(), watch)?;
+            for (i, &row) in rows.iter().enumerate() {
+                if i % WATCH_EVERY == WATCH_EVERY - 1 {
+                    watch.check()?;
+                }
+                let row = row as usize;
+                if let Some(common) = part.clipped(&corners[row], &mut space) {
+                    sums.add(common, &below, &above[row]);
+                }
+            }
+            Ok(())
+        };
         if self.region.is_none() {
-            self.add(&whole, &below, near, &mut sums, watch)?;
+            add(&whole)?;
             return Ok(sums.row());
         }
-        let extent = whole.extent();
-        for (i, candidate) in near.within.iter().enumerate() {
-            if i % WATCH_EVERY == WATCH_EVERY - 1 {
-                watch.check()?;
-            }
-            if candidate.meets(&extent)
-                && let Some(part) = whole.clipped(&candidate.corners)
-            {
-                self.add(&part, &below, near, &mut sums, watch)?;
+        let mut space = [Polygon::EMPTY; 3];
+        let (rows, corners) = within.meeting(&whole.extent(), watch)?;
+        for &row in rows {
+            if let Some(part) = whole.clipped(&corners[row as usize], &mut space) {
+                add(part)?;
             }
         }
         Ok(sums.row())
-    }
-
-    /// Adds what is between the surfaces over a polygon.
-    fn add(
-        &self,
-        part: &Polygon,
-        below: &Linear,
-        near: &Near,
-        sums: &mut Sums,
-        watch: &Watch,
-    ) -> Result<()> {
-        if let Other::Plane(plane) = self.other {
-            sums.add(part, below, &Linear::plane(plane, near.origin));
-            return Ok(());
-        }
-        let extent = part.extent();
-        for (i, (candidate, above)) in near.over.iter().enumerate() {
-            if i % WATCH_EVERY == WATCH_EVERY - 1 {
-                watch.check()?;
-            }
-            if candidate.meets(&extent)
-                && let Some(common) = part.clipped(&candidate.corners)
-            {
-                sums.add(&common, below, above);
-            }
-        }
-        Ok(())
     }
 }
 
