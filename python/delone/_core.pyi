@@ -86,10 +86,10 @@ __all__ = [
     "contour_lines2",
     "deepest2",
     "density",
-    "dig",
     "dihedral_angles3",
     "disks2",
     "edges",
+    "erode",
     "face_areas3",
     "face_normals3",
     "faces3",
@@ -1759,18 +1759,6 @@ def density(
 ) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
     """For each row, the first row of its cluster or -1, and whether it is a core point."""
 
-def dig(
-    points: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    name: str,
-    value: float,
-    holes: bool,
-) -> NDArray[np.bool_]:
-    """Which simplices of a concave hull remain; `holes` is whether triangles may leave
-    holes.
-    """
-
 def dihedral_angles3(
     points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
 ) -> NDArray[np.float64]:
@@ -1785,6 +1773,18 @@ def edges(
     simplices: NDArray[np.int32], neighbors: NDArray[np.int32], npoints: int, workers: int
 ) -> NDArray[np.int32]:
     """Every edge of triangles or tetrahedra once: the smaller vertex first, rows ascending."""
+
+def erode(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    name: str,
+    value: float,
+    holes: bool,
+) -> NDArray[np.bool_]:
+    """Which simplices of a concave hull remain; `holes` is whether triangles may leave
+    holes.
+    """
 
 def face_areas3(
     points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int

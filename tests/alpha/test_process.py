@@ -37,7 +37,7 @@ def finish(process: subprocess.Popen[str]) -> str:
     [
         (2, "alpha_flat", "delone.AlphaComplex(mesh, workers=1)"),
         (3, "alpha_solid3", "delone.AlphaComplex(mesh, workers=1)"),
-        (2, "dig", "delone.concave_hull(mesh, ratio=0, holes=True)"),
+        (2, "erode", "delone.concave_hull(mesh, ratio=0, holes=True)"),
     ],
 )
 def test_ctrl_c_ends_one_call(ndim: int, name: str, call: str) -> None:

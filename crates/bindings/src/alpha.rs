@@ -228,7 +228,7 @@ fn limit(name: &str, value: f64) -> Result<Limit> {
 
 /// Which simplices of a concave hull remain; `holes` is whether triangles may leave holes.
 #[pyfunction]
-pub fn dig(
+pub fn erode(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
@@ -240,10 +240,10 @@ pub fn dig(
     let limit = limit(name, value)?;
     let found = if columns(&points) == 2 {
         let given = checked::<2, 3>(&points, &simplices, &neighbors)?;
-        watched(py, |watch| alpha::dig2(given, limit, holes, watch))?
+        watched(py, |watch| alpha::erode2(given, limit, holes, watch))?
     } else {
         let given = checked::<3, 4>(&points, &simplices, &neighbors)?;
-        watched(py, |watch| alpha::dig3(given, limit, watch))?
+        watched(py, |watch| alpha::erode3(given, limit, watch))?
     };
     Ok(column(py, found))
 }

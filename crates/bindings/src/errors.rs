@@ -98,13 +98,13 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
         Error::Budget {
             limit,
             found,
-            crowd,
+            densest,
             ..
         } => {
             details.set_item("limit", limit)?;
             details.set_item("found", found)?;
-            details.set_item("segments", &crowd.segments)?;
-            details.set_item("place", crowd.place.map(|[x, y]| (x, y)))?;
+            details.set_item("segments", &densest.segments)?;
+            details.set_item("place", densest.place.map(|[x, y]| (x, y)))?;
         }
         _ => {}
     }

@@ -106,7 +106,7 @@ pub enum Error {
     },
     /// More vertices than the caller allows.
     #[error(
-        "found {found} {what}, more than the limit of {limit} vertices allows{crowd}: allow more, or \
+        "found {found} {what}, more than the limit of {limit} vertices allows{densest}: allow more, or \
              make the input simpler there"
     )]
     Budget {
@@ -117,7 +117,7 @@ pub enum Error {
         /// How many there were when the limit was exceeded.
         found: usize,
         /// The segments that need most of them.
-        crowd: Crowd,
+        densest: Densest,
     },
     /// An invalid argument; the message names the row.
     #[error("{0}")]
@@ -138,7 +138,7 @@ pub enum Error {
 
 /// The segments that need most of the added vertices when a limit is exceeded.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Crowd {
+pub struct Densest {
     /// Their rows, in descending order of the number of vertices.
     pub segments: Vec<u32>,
     /// The point where the first two of them meet, or where the last vertex would have been.
@@ -180,13 +180,13 @@ impl Error {
             | Self::Coplanar { chain }
             | Self::OneGreatCircle { chain } => chain,
             Self::Crossing { pairs, .. } | Self::CrossingArcs { pairs } => pairs.as_flattened(),
-            Self::Budget { crowd, .. } => &crowd.segments,
+            Self::Budget { densest, .. } => &densest.segments,
             _ => &[],
         }
     }
 }
 
-impl fmt::Display for Crowd {
+impl fmt::Display for Densest {
     /// Names the segments with most of the vertices that exceed the limit; nothing if there are none.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let names: Vec<String> = self.segments.iter().map(u32::to_string).collect();

@@ -118,7 +118,7 @@ def concave_hull(
     given = mesh.points, mesh.simplices, mesh.neighbors
     if wants_holes and mesh.ndim != 2:
         raise InputError("holes=True is only available in 2-D: points are 3-D")
-    flags = _core.dig(*given, name, limit, wants_holes)
+    flags = _core.erode(*given, name, limit, wants_holes)
     return ConcaveHull._made(*given, flags, workers)._refer(points)
 
 

@@ -11,7 +11,7 @@
 //! of the number of threads.
 
 mod ball;
-mod dig;
+mod erode;
 mod number;
 mod parts;
 mod rings;
@@ -20,7 +20,7 @@ mod tetrahedra;
 mod triangles;
 mod vertices;
 
-pub use dig::{Limit, dig2, dig3};
+pub use erode::{Limit, erode2, erode3};
 pub use parts::{counts, labels};
 pub use rings::{Rings, rings};
 pub use simplices::Sites;

@@ -8,7 +8,7 @@
 
 mod components;
 pub(crate) mod conforming;
-mod crowd;
+mod densest;
 mod edges;
 pub(crate) mod inserted;
 pub mod intersection;
@@ -39,7 +39,7 @@ use self::marked::Marked;
 use self::split::Splitter;
 use crate::arrays::Arrays;
 use crate::delaunay2::{Built, Clock, Method, Stage, mesh};
-use crate::error::{Crowd, Error, Result};
+use crate::error::{Densest, Error, Result};
 use crate::memory::{filled, push, with_room};
 use crate::mesh2::export;
 use crate::order;
@@ -205,16 +205,16 @@ impl<'a> Work<'a> {
                 what: "pairs of crossing segments",
                 limit,
                 found: pairs.len(),
-                crowd: self.crowd_of(&pairs, input),
+                densest: self.densest_of(&pairs, input),
             });
         }
         self.meetings(input, pairs, watch)
     }
 
     /// The segments that cross the most other segments.
-    fn crowd_of(&self, pairs: &[[u32; 2]], input: &[Point2]) -> Crowd {
+    fn densest_of(&self, pairs: &[[u32; 2]], input: &[Point2]) -> Densest {
         let rows = pairs.as_flattened().to_vec();
-        crowd::crowd(rows, self.segments, |row| input[row as usize], None)
+        densest::densest_segments(rows, self.segments, |row| input[row as usize], None)
     }
 
     /// The points where `pairs` cross, except points of the input.
@@ -289,7 +289,7 @@ impl<'a> Work<'a> {
                 what: "added vertices",
                 limit: self.options.max_vertices,
                 found: behind.len(),
-                crowd: self.crowd_of(&found.pairs, input),
+                densest: self.densest_of(&found.pairs, input),
             });
         }
         self.met = behind.iter().map(|&row| all[row as usize]).collect();

@@ -28,7 +28,7 @@ use std::collections::HashMap;
 
 use delone_predicates::{Point2, lexicographic, orient2d};
 
-use super::crowd::crowd;
+use super::densest::densest_segments;
 use super::inserted::Inserted;
 use super::intersection::intersection;
 use super::marked::Marked;
@@ -278,7 +278,7 @@ impl<'a> Splitter<'a> {
                 what: "added vertices",
                 limit: self.limit,
                 found,
-                crowd: crowd(rows, self.given, at, Some(x)),
+                densest: densest_segments(rows, self.given, at, Some(x)),
             });
         }
         if let Some([p, q]) = parted {

@@ -5,7 +5,7 @@
 //! returns the representative.
 
 use crate::arrays::Triangles;
-use crate::error::{Crowd, Error, Result};
+use crate::error::{Densest, Error, Result};
 use crate::memory::{filled, with_room};
 use crate::watch::Watch;
 use delone_predicates::Point2;
@@ -69,7 +69,7 @@ impl<'a> Nodes<'a> {
                 what: "points of contours",
                 limit,
                 found: count,
-                crowd: Crowd::default(),
+                densest: Densest::default(),
             });
         }
         nodes.place(heights, (levels, collapsed), count, watch)?;
@@ -101,7 +101,7 @@ impl<'a> Nodes<'a> {
                 what: "points of contours",
                 limit: i32::MAX as usize - vertices,
                 found: count,
-                crowd: Crowd::default(),
+                densest: Densest::default(),
             });
         }
         Ok(count)

@@ -102,6 +102,7 @@ pub fn join(
     Free { bottom, top, idle }: Free,
 ) -> Part {
     let inf = mesh.infinite();
+    // From the two vertices that face each other, down to the lower tangent.
     let (l, r) = (left.last(axis), right.first(axis));
     let (mut l_in, mut r_in) = (l.ghost(), r.ghost());
     if left.single || right.single {
@@ -131,6 +132,7 @@ pub fn join(
         r_in,
     };
     bridge.rise(mesh, points, bounds);
+    // The bridge is the upper tangent now: a ghost above it closes the hull.
     mesh.set(top, [inf, bridge.l, bridge.r]);
     mesh.link(8 * top, bridge.below);
     mesh.link(8 * top + 2, 8 * bridge.l_out + 1);
@@ -303,6 +305,7 @@ impl Bridge {
     fn step(&mut self, mesh: &mut Patch, points: &[Point2], square: f64) -> Option<bool> {
         let at = |v: u32| points[v as usize];
         let (turn, circle) = (TURN * square, CIRCLE * (square * square));
+        // The candidates: the next vertex of the hull on each side, as seen from the bridge.
         let (l, r) = (self.l, self.r);
         let frame = Frame::of(at(l), at(r));
         let mut left = mesh.record(self.l_out)[1];
@@ -320,6 +323,8 @@ impl Bridge {
             least(on.s - turn, held - circle) > 0.0
                 || most(turn - on.s, held.abs() - circle) <= 0.0 && holds(points, [l, r, v, x])
         };
+        // On each side, triangles go whose circles the candidate empties: terminates, since each removes
+        // one.
         while goes(left, on_left, behind_left) {
             self.l_out = mesh.peel(self.l_out);
             (left, on_left) = behind_left;
@@ -342,6 +347,7 @@ impl Bridge {
             t: if on.s > turn { on.t } else { FAR * square },
         };
         let (on_left, on_right) = (far(on_left), far(on_right));
+        // None above: this is the tangent. Else the one whose circle does not contain the other.
         if on_left.s + on_right.s == 0.0 {
             return Some(false);
         }

@@ -6,7 +6,7 @@ use delone_predicates::Point2;
 
 use super::blocks::{Cuts, split};
 use super::curve::{Scratch, along_curve};
-use super::deal::Blocks;
+use super::distribute::Blocks;
 use crate::error::Result;
 use crate::parallel;
 use crate::watch::Watch;

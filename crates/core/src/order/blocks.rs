@@ -5,7 +5,7 @@
 
 use delone_predicates::{Point2, lexicographic};
 
-use super::deal::{Blocks, deal};
+use super::distribute::{Blocks, distribute};
 use crate::error::Result;
 use crate::memory::with_room;
 use crate::points::Extent;
@@ -139,7 +139,7 @@ pub fn split(points: &[Point2], cuts: &Cuts, workers: usize, watch: &Watch) -> R
             starts: vec![0, points.len()],
         });
     }
-    deal(points, blocks, |p| cuts.block(p), workers, watch)
+    distribute(points, blocks, |p| cuts.block(p), workers, watch)
 }
 
 #[cfg(test)]

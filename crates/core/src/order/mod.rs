@@ -6,7 +6,7 @@ mod arrange;
 pub mod blocks;
 mod cells;
 pub mod curve;
-mod deal;
+mod distribute;
 mod hilbert;
 mod hilbert3;
 mod radix;

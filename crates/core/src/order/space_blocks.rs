@@ -5,7 +5,7 @@
 
 use delone_predicates::{Point3, lexicographic};
 
-use super::deal::{Blocks, deal};
+use super::distribute::{Blocks, distribute};
 use super::space::{Arranged3, Extent3, Room3, arrange, arrange_rows};
 use crate::error::Result;
 use crate::memory::with_room;
@@ -96,7 +96,7 @@ impl Cuts3 {
 
 /// Distributes `points` to the blocks of `cuts`.
 pub fn split(points: &[Point3], cuts: &Cuts3, workers: usize, watch: &Watch) -> Result<Blocks<3>> {
-    deal(points, cuts.blocks(), |p| cuts.block(p), workers, watch)
+    distribute(points, cuts.blocks(), |p| cuts.block(p), workers, watch)
 }
 
 /// Distinct points in blocks, each sorted along the curve; where each block begins, and the end.

@@ -9,7 +9,7 @@ use super::coordinates::Wide;
 use super::locks::Locks;
 use super::mesh::{Mesh, Ring, ascending, number as rank, pair};
 use super::task::Counts;
-use crate::error::{Crowd, Error, Result};
+use crate::error::{Densest, Error, Result};
 use crate::memory::{filled, push, with_room};
 use crate::watch::{Pace, Watch};
 
@@ -175,7 +175,7 @@ impl<'a> Work<'a> {
                 what: "added points inside a surface",
                 limit: self.limit,
                 found: self.alive + 1,
-                crowd: Crowd::default(),
+                densest: Densest::default(),
             });
         }
         let v = self.mesh.add(p)?;

@@ -12,9 +12,9 @@
 //! The order of work depends on the mesh only, so the result is the same every time.
 
 mod corners;
-mod fence;
 mod gap;
 mod insert;
+mod isolate;
 mod judge;
 mod needles;
 mod place;

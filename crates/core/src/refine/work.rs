@@ -1,6 +1,12 @@
 //! The refinement loop: splits encroached subsegments first, then improves the bad triangle with
 //! the shortest edge.
 //!
+//! Words: a triangle is *bad* if its smallest angle is below the bound (it is *skinny*, for the reason
+//! `Angle`) or its area above its *cap* (`Size`). A point *encroaches* upon a subsegment if it lies in
+//! its *lens*, where it sees both ends at more than a fixed angle, or with `circles` in its diametral
+//! circle. A vertex is *free* if it is on no line. The *apex* of a triangle is the corner opposite its
+//! shortest edge. A triangle is *final* in a needle that rests until all else is done.
+//!
 //! A vertex for a bad triangle is not inserted if it lies beyond a subsegment or in the lens of
 //! one; the subsegment is split instead.
 //!
@@ -168,7 +174,7 @@ impl Work {
     /// Refines until nothing is bad, first outside of needles, then in those that the budget
     /// allows; returns false if the limit on vertices was reached.
     pub fn run(&mut self, watch: &Watch, tell: Tell) -> Result<bool> {
-        self.fence()?;
+        self.isolate_needles()?;
         let mut done = self.refine(watch, tell)?;
         if done && self.open_allowed()? {
             done = self.refine(watch, tell)?;
@@ -179,8 +185,9 @@ impl Work {
 
     /// Refines until nothing is bad outside of needles.
     fn refine(&mut self, watch: &Watch, tell: Tell) -> Result<bool> {
+        // Everything is looked at once; afterwards only what a new vertex has changed.
         for t in 0..self.marked.triangles() {
-            self.judge(t)?;
+            self.enqueue_if_bad(t)?;
             for e in 8 * t..8 * t + 3 {
                 self.enqueue_if_encroached(e)?;
             }
@@ -197,8 +204,11 @@ impl Work {
             if self.marked.count - self.own >= self.rules.max_vertices {
                 return Ok(false);
             }
+            // Subsegments first: a vertex for a triangle may be inserted only if it encroaches on none.
+            // What was queued may be gone, or be right by now.
             if let Some(queued) = self.encroached.pop() {
                 if self.still_exists(&queued) && self.is_encroached(queued.edge) {
+                    // Work in a needle is counted, on both sides of the edge.
                     self.count(triangle(queued.edge));
                     let o = self.marked.patch().opposite(queued.edge);
                     self.count(triangle(o));
@@ -250,7 +260,7 @@ impl Work {
     }
 
     /// Queues a triangle if it is bad.
-    fn judge(&mut self, t: u32) -> Result<()> {
+    fn enqueue_if_bad(&mut self, t: u32) -> Result<()> {
         let mesh = self.marked.patch();
         let label = mesh.label(t);
         if label == 0 {
@@ -322,6 +332,8 @@ impl Work {
         if segment >= 0 && !fence && self.rules.frozen[segment as usize] {
             return Ok(false);
         }
+        // The rounded point may be off the line: it must leave the triangles beside it positive, or
+        // lie inside one of them; its neighboring doubles are tried, too.
         let x = self.split_point(u, v);
         let around = once(x).chain(neighbors(x));
         let Some((x, place)) = around
@@ -337,6 +349,7 @@ impl Work {
             Place::On => self.split_at(e, w),
             Place::Beside(e) => self.split_beside(e, w),
         }
+        // The vertex is on the line of the subsegment, and flips make its triangles Delaunay.
         self.marked.near[w as usize] = self.marked.stack[0];
         self.on.push(segment);
         self.legalize()?;
@@ -360,6 +373,7 @@ impl Work {
         if x == a || x == b {
             return None;
         }
+        // On the edge: the two parts of the triangle on each side stay positive.
         let left = |a, b, c| orient2d(a, b, c) == Sign::Positive;
         let holds = |apex: u32, [a, b]: [Point2; 2]| {
             let at = self.at(apex);
@@ -368,6 +382,7 @@ impl Work {
         if holds(p, [a, b]) && holds(q, [b, a]) {
             return Some(Place::On);
         }
+        // Otherwise inside of one of the two triangles, if there is one on the other side, too.
         let inside = |apex: u32, [a, b]: [Point2; 2]| {
             let at = self.at(apex);
             apex != inf && left(a, b, x) && left(b, at, x) && left(at, a, x)
@@ -387,6 +402,7 @@ impl Work {
         let star = mesh.split_marked_edge(e, w);
         self.marked.count += 1;
         self.marked.near.push(0);
+        // The new triangles inherit the caps of those that they are cut from.
         let spokes = star.map(next);
         let [_, r, _, s] = star.map(triangle);
         self.caps.resize(self.marked.triangles() as usize, 0.0);
@@ -403,6 +419,7 @@ impl Work {
         let mut mesh = self.marked.patch();
         let beyond = triangle(mesh.opposite(e));
         let label = mesh.label(beyond);
+        // The two new edges at `w` take the place of `e`, and the triangle between goes beyond them.
         mesh.mark(e, false);
         let star = mesh.split_marked_triangle(triangle(e), w);
         let thin = star[(e & 3) as usize];
@@ -438,7 +455,7 @@ impl Work {
         let start = self.marked.near[w as usize];
         let mut corner = start;
         loop {
-            self.judge(triangle(corner))?;
+            self.enqueue_if_bad(triangle(corner))?;
             for e in [corner, next(corner)] {
                 self.enqueue_if_encroached(e)?;
                 let o = self.marked.patch().opposite(e);
@@ -459,6 +476,8 @@ impl Work {
         let Some(reason) = self.shape.fault(&seen, cap) else {
             return Ok(());
         };
+        // Where to put a vertex: by the size alone, at the center if the angle must stay, above two
+        // triangles at once if that does not shorten edges, else where it improves this one most.
         let p = if reason == Reason::Size {
             self.places.improve(points, &seen, cap)
         } else if self.is_final(t) || self.is_forced(t, &seen) {
@@ -478,6 +497,7 @@ impl Work {
             }
             self.places.improve(points, &seen, cap)
         };
+        // What is in the way is split instead; the triangle is queued again if it is still there.
         match self.find_cavity(t, p) {
             Site::Free => self.insert(p, reason),
             Site::Blocked(blockers) => {
@@ -509,6 +529,7 @@ impl Work {
         let apex = seen.apex;
         let mut best: Option<(Point2, f64)> = None;
         for (ahead, e) in [(true, (apex + 1) % 3), (false, (apex + 2) % 3)] {
+            // The neighbor across one of the two long edges, unless that is a subsegment or the hull.
             let (end, middle) = (points[e], points[3 - apex - e]);
             let mesh = self.marked.patch();
             let e = 8 * t + e as u32;
@@ -524,6 +545,7 @@ impl Work {
             if !other.skinny || corners[other.apex] != common {
                 continue;
             }
+            // Its shortest edge follows ours at `middle`: one vertex may serve both.
             let far = points[(o & 3) as usize];
             let [first, last] = if ahead { [far, end] } else { [end, far] };
             let bend = Bend {
@@ -556,6 +578,7 @@ impl Work {
         if !(p[0].is_finite() && p[1].is_finite()) {
             return Site::Lost;
         }
+        // The triangle that contains p, if no subsegment hides it; then all whose circles contain it.
         let home = match walk(&mut self.marked, t, p) {
             Walk::Home(home) => home,
             Walk::Blocked(e) => return Site::Blocked(vec![e]),
@@ -572,6 +595,7 @@ impl Work {
                 self.shape.in_lens(u, v, p)
             }
         };
+        // Only subsegments on the rim can be encroached: all others are hidden by these.
         let rim = self.cavity.rim.iter().copied();
         let blockers: Vec<Code> = rim.filter(encroached).collect();
         if blockers.is_empty() {
@@ -592,12 +616,12 @@ impl Work {
             Reason::Size => self.counts.size += 1,
         }
         for i in 0..self.cavity.triangles.len() {
-            self.judge(self.cavity.triangles[i])?;
+            self.enqueue_if_bad(self.cavity.triangles[i])?;
         }
         Ok(())
     }
 
-    /// Splits subsegments that block a vertex for triangle `t`, which is then judged again; false
+    /// Splits subsegments that block a vertex for triangle `t`, which is then queued again if it is bad; false
     /// if none of them can be split.
     fn split_blockers(&mut self, t: u32, blockers: &[Code]) -> Result<bool> {
         let corners = self.marked.patch().corners(t);
@@ -619,7 +643,7 @@ impl Work {
             }
         }
         if any_split && self.marked.patch().corners(t) == corners {
-            self.judge(t)?;
+            self.enqueue_if_bad(t)?;
         }
         Ok(any_split)
     }
@@ -638,6 +662,7 @@ impl Work {
         if mesh.is_marked(next(apex)) && mesh.is_marked(prev(apex)) {
             return true;
         }
+        // The shortest edge joins two lines that meet in a corner.
         let [u, v] = [next(apex), prev(apex)].map(|c| mesh.vertex(c));
         let [s, r] = [u, v].map(|v| self.on[v as usize]);
         if s < 0 || r < 0 || s == r {

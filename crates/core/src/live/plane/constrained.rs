@@ -16,13 +16,13 @@
 //! # Crossings
 //!
 //! A crossing is rounded, segments bend there, and by their rounding they may meet others. Such
-//! segments are *tangled*. What touches none of them is edited as above. An edit of one, or one that
+//! segments are *crossed*. What touches none of them is edited as above. An edit of one, or one that
 //! makes a new crossing, takes out all that cross it, directly or not, with their crossings (see
-//! `loose`), and puts them back where they cross now (see `weave`). A crossing vertex so goes with the
+//! `detach`), and puts them back where they cross now (see `reinsert`). A crossing vertex so goes with the
 //! segments that cross there.
 //!
 //! Where rounding makes more than the segments themselves meet, all points and segments are
-//! triangulated again by `constrained`: a point in the range of rounding of a tangled segment, or a
+//! triangulated again by `constrained`: a point in the range of rounding of a crossed segment, or a
 //! crossing in that of a segment that is not its own.
 //!
 //! # All or nothing
@@ -35,9 +35,9 @@ use std::ops::Range;
 use delone_predicates::{Point2, lexicographic, orient2d};
 
 use super::Plane;
-use super::marks::{Reach, STRAIGHT, TANGLED};
+use super::marks::{CROSSED, Reach, STRAIGHT};
 use super::remove::Removed;
-use super::segments::Loose;
+use super::segments::Detached;
 use super::walk::Place;
 use crate::constrained::passes;
 use crate::error::{Error, Result};
@@ -105,16 +105,16 @@ impl Plane {
         let first = self.segments.total();
         self.atomically(|plane| {
             let mut pace = Pace::new(watch, LOT);
-            let mut loose = Loose::default();
+            let mut detached = Detached::default();
             for pair in ends {
                 pace.spend(1)?;
                 let segment = plane.segments.insert(pair.map(|row| row as u32))?;
                 plane.mesh.has_segments = true;
                 if !plane.link_segment(segment)? {
-                    loose.segments.insert(segment);
+                    detached.segments.insert(segment);
                 }
             }
-            plane.finish(Outcome::Done, loose, None, workers, watch)
+            plane.finish(Outcome::Done, detached, None, workers, watch)
         })?;
         Ok(first..first + ends.len())
     }
@@ -129,16 +129,16 @@ impl Plane {
         self.atomically(|plane| {
             let mut pace = Pace::new(watch, LOT);
             let mut outcome = Outcome::Done;
-            let mut loose = Loose::default();
+            let mut detached = Detached::default();
             for &number in numbers {
                 pace.spend(1)?;
                 if plane.segments.ends(number).is_none() {
                     let message = format!("segment {number} is not there");
                     return Err(Error::Shape(message));
                 }
-                outcome = plane.take_segment(number as u32, outcome, &mut loose)?;
+                outcome = plane.take_segment(number as u32, outcome, &mut detached)?;
             }
-            plane.finish(outcome, loose, None, workers, watch)
+            plane.finish(outcome, detached, None, workers, watch)
         })
     }
 
@@ -202,7 +202,7 @@ impl Plane {
                 push(&mut after.points, *p)?;
             }
             after.total += input.len();
-            plane.finish(outcome, Loose::default(), Some(after), workers, watch)
+            plane.finish(outcome, Detached::default(), Some(after), workers, watch)
         })?;
         Ok(first..first + input.len())
     }
@@ -237,12 +237,13 @@ impl Plane {
             } else {
                 Outcome::Done
             };
-            let mut loose = Loose::default();
+            let mut detached = Detached::default();
             // The segments first: a vertex goes only if no segment ends there.
             for &number in &numbers {
                 pace.spend(1)?;
-                outcome = plane.take_segment(number as u32, outcome, &mut loose)?;
+                outcome = plane.take_segment(number as u32, outcome, &mut detached)?;
             }
+            // Then the points: a vertex leaves the mesh with its last row.
             for &(v, row) in pairs {
                 if outcome == Outcome::Rebuild {
                     break;
@@ -261,14 +262,15 @@ impl Plane {
             }
             // Segments that crossed these go back last, when all that goes is out of the way.
             if outcome == Outcome::Done {
-                return plane.finish(outcome, loose, None, workers, watch);
+                return plane.finish(outcome, detached, None, workers, watch);
             }
+            // Otherwise what remains is triangulated again.
             let mut gone = with_room(pairs.len())?;
             gone.extend(pairs.iter().map(|pair| pair.1));
             sort(&mut gone, watch)?;
             let kept = |row: u32, p| gone.binary_search(&row).is_err().then_some(p);
             let after = plane.present(kept)?;
-            plane.finish(outcome, loose, Some(after), workers, watch)
+            plane.finish(outcome, detached, Some(after), workers, watch)
         })?;
         Ok(numbers)
     }
@@ -278,14 +280,14 @@ impl Plane {
         &mut self,
         segment: u32,
         so_far: Outcome,
-        loose: &mut Loose,
+        detached: &mut Detached,
     ) -> Result<Outcome> {
         self.room()?;
         let outcome = match so_far {
-            Outcome::Done => self.unlink_segment(segment, loose)?,
+            Outcome::Done => self.unlink_segment(segment, detached)?,
             Outcome::Rebuild => Outcome::Rebuild,
         };
-        loose.segments.remove(&segment);
+        detached.segments.remove(&segment);
         self.segments.remove(segment);
         Ok(outcome)
     }
@@ -320,15 +322,16 @@ impl Plane {
             } else {
                 Outcome::Done
             };
-            let mut loose = Loose::default();
+            let mut detached = Detached::default();
             for &segment in &moved {
                 pace.spend(1)?;
                 plane.room()?;
                 if outcome == Outcome::Done {
-                    outcome = plane.unlink_segment(segment, &mut loose)?;
+                    outcome = plane.unlink_segment(segment, &mut detached)?;
                 }
                 plane.segments.unlist(segment);
             }
+            // Then the points move, one after the other.
             for &(_, row, p) in moves {
                 pace.spend(1)?;
                 plane.room()?;
@@ -336,28 +339,30 @@ impl Plane {
                     outcome = plane.relocate_vertex(row, p, watch)?;
                 }
             }
+            // Segments go back at their new ends; those that something blocks wait for the others.
             for &segment in &moved {
                 pace.spend(1)?;
                 plane.room()?;
                 plane.segments.list(segment);
                 if outcome == Outcome::Done
-                    && (loose.segments.contains(&segment) || !plane.link_segment(segment)?)
+                    && (detached.segments.contains(&segment) || !plane.link_segment(segment)?)
                 {
-                    loose.segments.insert(segment);
+                    detached.segments.insert(segment);
                 }
             }
-            if outcome == Outcome::Done && !loose.segments.is_empty() {
-                outcome = plane.weave(&mut loose, watch)?;
+            if outcome == Outcome::Done && !detached.segments.is_empty() {
+                outcome = plane.reinsert_segments(&mut detached, watch)?;
             }
             if outcome == Outcome::Done {
                 return Ok(());
             }
+            // Otherwise all is triangulated again, with the rows at their new places.
             let place = |row: u32, p| match places.binary_search_by_key(&row, |at| at.0) {
                 Ok(i) => Some(places[i].1),
                 Err(_) => Some(p),
             };
             let after = plane.present(place)?;
-            plane.finish(outcome, loose, Some(after), workers, watch)
+            plane.finish(outcome, detached, Some(after), workers, watch)
         })
     }
 
@@ -385,7 +390,7 @@ impl Plane {
     /// Two segments and the row of the vertex where they cross, for each crossing, ascending. Of several
     /// rows there it is the smallest, which another one is as soon as it is gone.
     pub fn crossings(&self) -> Result<Vec<[u32; 3]>> {
-        let known = &self.segments.tangle.crossings;
+        let known = &self.segments.crossed.crossings;
         let mut crossings = with_room(known.len())?;
         crossings.extend(
             known
@@ -398,7 +403,7 @@ impl Plane {
 
     /// The rows of vertices that only crossings need, ascending.
     pub fn crossing_rows(&self) -> &[u32] {
-        &self.segments.tangle.rows
+        &self.segments.crossed.rows
     }
 
     /// The segments that end at a row.
@@ -413,7 +418,7 @@ impl Plane {
 
     /// Whether a row is a vertex that only crossings need.
     pub fn is_crossing(&self, row: u32) -> bool {
-        self.segments.tangle.rows.binary_search(&row).is_ok()
+        self.segments.crossed.rows.binary_search(&row).is_ok()
     }
 
     /// The vertex of a row that is there.
@@ -423,7 +428,7 @@ impl Plane {
 
     /// Inserts a vertex at `p`, or finds it; `None` if all must be triangulated again.
     fn add_vertex(&mut self, p: Point2, watch: &Watch) -> Result<Option<u32>> {
-        if self.mesh.is_flat() || self.is_near_tangle(p) {
+        if self.mesh.is_flat() || self.is_near_crossing(p) {
             return Ok(None);
         }
         let t = match self.mesh.place(p, watch)? {
@@ -437,7 +442,7 @@ impl Plane {
         let Some(e) = on else {
             return self.create(p, t).map(Some);
         };
-        if self.mesh.mark(e) == TANGLED {
+        if self.mesh.mark(e) == CROSSED {
             return Ok(None);
         }
         let [u, w] = self.mesh.ends(e);
@@ -448,11 +453,11 @@ impl Plane {
         Ok(Some(v))
     }
 
-    /// Whether the rounding of a tangled segment reaches `p`.
-    pub fn is_near_tangle(&self, p: Point2) -> bool {
+    /// Whether the rounding of a crossed segment reaches `p`.
+    pub fn is_near_crossing(&self, p: Point2) -> bool {
         let at = |row: u32| self.mesh.at(self.vertex(row));
-        let tangled = self.segments.tangle.segments.iter();
-        let ends = tangled.filter_map(|&s| self.segments.ends(i64::from(s)));
+        let crossed = self.segments.crossed.segments.iter();
+        let ends = crossed.filter_map(|&s| self.segments.ends(i64::from(s)));
         ends.map(|ends| ends.map(at))
             .any(|[r, s]| passes(r, s, p) || p == r || p == s)
     }
@@ -484,7 +489,7 @@ impl Plane {
     /// Moves a row whose segments are unlinked.
     fn relocate_vertex(&mut self, row: u32, p: Point2, watch: &Watch) -> Result<Outcome> {
         let v = self.vertex(row);
-        if self.mesh.is_flat() || self.is_near_tangle(p) {
+        if self.mesh.is_flat() || self.is_near_crossing(p) {
             return Ok(Outcome::Rebuild);
         }
         if self.mesh.at(v) == p {

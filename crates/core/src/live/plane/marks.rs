@@ -1,7 +1,7 @@
 //! Marks on edges: parts of segments, which stay edges.
 //!
 //! The last word of a record has two bits for each edge, the same on both of its sides: whether a
-//! segment runs along it, and whether one does that is not straight (see `segments::Tangle`).
+//! segment runs along it, and whether one does that is not straight (see `segments::Crossed`).
 
 use delone_predicates::{Sign, lexicographic, orient2d};
 
@@ -14,7 +14,7 @@ use crate::mesh2::{Code, next, prev, triangle};
 /// The bits of an edge that is part of a segment.
 pub const STRAIGHT: u32 = 1;
 /// The bits of an edge that is part of a segment that is not straight.
-pub const TANGLED: u32 = 1 | 1 << 3;
+pub const CROSSED: u32 = 1 | 1 << 3;
 
 /// Flips for each edge that a segment crosses, squared, before its insertion is given up.
 const PATIENCE: usize = 64;
@@ -37,10 +37,10 @@ enum Way {
 }
 
 impl Mesh {
-    /// The mark of an edge: 0, [`STRAIGHT`] or [`TANGLED`].
+    /// The mark of an edge: 0, [`STRAIGHT`] or [`CROSSED`].
     #[inline]
     pub fn mark(&self, e: Code) -> u32 {
-        self.records[triangle(e) as usize][7] >> (e & 3) & TANGLED
+        self.records[triangle(e) as usize][7] >> (e & 3) & CROSSED
     }
 
     /// Sets the mark on one side of an edge.
@@ -48,7 +48,7 @@ impl Mesh {
     pub fn set_side(&mut self, e: Code, mark: u32) {
         let k = e & 3;
         let old = self.records[triangle(e) as usize][7];
-        let new = old & !(TANGLED << k) | mark << k;
+        let new = old & !(CROSSED << k) | mark << k;
         if new != old {
             self.records.get_mut(triangle(e) as usize)[7] = new;
         }

@@ -3,22 +3,22 @@
 mod atomic;
 mod build;
 mod constrained;
+mod detach;
 mod ears;
 mod edit;
 mod export;
 mod insert;
-mod loose;
 mod marks;
 mod mesh;
 mod near;
 mod query;
+mod reinsert;
 mod remove;
+mod retriangulate;
 mod segments;
 mod shift;
 mod state;
-mod tangle;
 mod walk;
-mod weave;
 
 use delone_predicates::Point2;
 

@@ -27,7 +27,7 @@ struct Segment {
 
 /// Segments that do not run straight along edges: they cross others, or pass through rounded points.
 #[derive(Debug, Default)]
-pub struct Tangle {
+pub struct Crossed {
     /// The numbers of these segments, ascending.
     pub segments: Vec<u32>,
     /// The rows of vertices that only crossings need, ascending.
@@ -40,7 +40,7 @@ pub struct Tangle {
 
 /// What an edit has taken out of the mesh.
 #[derive(Debug, Default)]
-pub struct Loose {
+pub struct Detached {
     /// Segments that are there, but have no edges.
     pub segments: BTreeSet<u32>,
     /// Crossings that are gone, and their rows.
@@ -57,9 +57,9 @@ pub struct Segments {
     /// Whether crossings are split; otherwise they are an error.
     pub split: bool,
     /// What is not straight.
-    pub tangle: Arc<Tangle>,
+    pub crossed: Arc<Crossed>,
     /// How many there were at the start of an edit, and what was not straight.
-    before: (usize, Arc<Tangle>),
+    before: (usize, Arc<Crossed>),
 }
 
 /// A snapshot of segments.
@@ -69,7 +69,7 @@ pub struct SegmentsImage {
     first: Image<u32>,
     live: usize,
     split: bool,
-    tangle: Arc<Tangle>,
+    crossed: Arc<Crossed>,
 }
 
 impl Segments {
@@ -80,7 +80,7 @@ impl Segments {
             first: Chunks::of(Vec::new())?,
             live: 0,
             split,
-            tangle: Arc::default(),
+            crossed: Arc::default(),
             before: (0, Arc::default()),
         })
     }
@@ -213,7 +213,7 @@ impl Segments {
 
     /// Starts an edit that [`Self::take_back`] may end.
     pub fn begin(&mut self) -> Result<()> {
-        self.before = (self.live, Arc::clone(&self.tangle));
+        self.before = (self.live, Arc::clone(&self.crossed));
         self.items.begin()?;
         self.first.begin()
     }
@@ -233,7 +233,7 @@ impl Segments {
 
     /// Ends an edit, all changes of which are taken back. Returns whether none was missed.
     pub fn take_back(&mut self) -> bool {
-        (self.live, self.tangle) = std::mem::take(&mut self.before);
+        (self.live, self.crossed) = std::mem::take(&mut self.before);
         self.items.take_back() & self.first.take_back()
     }
 
@@ -244,7 +244,7 @@ impl Segments {
             first: self.first.image(watch)?,
             live: self.live,
             split: self.split,
-            tangle: Arc::clone(&self.tangle),
+            crossed: Arc::clone(&self.crossed),
         })
     }
 
@@ -261,7 +261,7 @@ impl Segments {
         self.first.restore(&image.first)?;
         self.live = image.live;
         self.split = image.split;
-        self.tangle = Arc::clone(&image.tangle);
+        self.crossed = Arc::clone(&image.crossed);
         while self.items.len() < total {
             self.push()?;
         }

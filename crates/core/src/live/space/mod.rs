@@ -4,18 +4,18 @@
 //! the head of `live`, and of `delaunay3::cavity` for ghosts over coplanar hull facets): so any order of
 //! edits ends in the tetrahedra of a fresh build. `insert` empties the cavity of a point and fills it
 //! with a star; `remove` empties the star of a vertex and fills the hole, and its head says why that is
-//! the lower hull; `sew` puts both into the mesh. Points in one plane have no tetrahedron; they are kept in
+//! the lower hull; `link` puts both into the mesh. Points in one plane have no tetrahedron; they are kept in
 //! lexicographic order until a point beside their plane comes.
 
 mod build;
 mod edit;
 mod export;
 mod insert;
+mod link;
 mod mesh;
 mod patch;
 mod query;
 mod remove;
-mod sew;
 mod state;
 mod walk;
 

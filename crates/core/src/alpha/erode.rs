@@ -143,7 +143,7 @@ fn length<const D: usize, const N: usize>(
 }
 
 /// Triangles from which a concave hull is dug.
-struct Dig2<'a> {
+struct Erosion<'a> {
     points: &'a [Point2],
     simplices: &'a [[i32; 3]],
     neighbors: &'a [[i32; 3]],
@@ -155,14 +155,14 @@ struct Dig2<'a> {
 }
 
 /// Which triangles remain: one polygon, with holes if wanted.
-pub fn dig2(given: Given<2, 3>, limit: Limit, holes: bool, watch: &Watch) -> Result<Vec<bool>> {
+pub fn erode2(given: Given<2, 3>, limit: Limit, holes: bool, watch: &Watch) -> Result<Vec<bool>> {
     let Given {
         points,
         simplices,
         neighbors,
     } = given;
     let mut pace = Pace::new(watch, LOT);
-    let mut dig = Dig2 {
+    let mut erosion = Erosion {
         points,
         simplices,
         neighbors,
@@ -174,23 +174,23 @@ pub fn dig2(given: Given<2, 3>, limit: Limit, holes: bool, watch: &Watch) -> Res
     for (t, beyond) in neighbors.iter().enumerate() {
         pace.spend(1)?;
         for k in (0..3).filter(|&k| beyond[k] < 0) {
-            dig.bare(t, k)?;
+            erosion.bare(t, k)?;
         }
     }
-    dig.run(&mut pace)?;
+    erosion.run(&mut pace)?;
     if holes {
-        for t in dig.seeds(&mut pace)? {
+        for t in erosion.seeds(&mut pace)? {
             pace.spend(1)?;
-            if dig.is_kept[t] && !simplices[t].iter().any(|&v| dig.is_bare[v as usize]) {
-                dig.remove(t)?;
-                dig.run(&mut pace)?;
+            if erosion.is_kept[t] && !simplices[t].iter().any(|&v| erosion.is_bare[v as usize]) {
+                erosion.remove(t)?;
+                erosion.run(&mut pace)?;
             }
         }
     }
-    Ok(dig.is_kept)
+    Ok(erosion.is_kept)
 }
 
-impl Dig2<'_> {
+impl Erosion<'_> {
     fn edge(&self, t: usize, k: usize) -> Edge<2> {
         let [a, b] = [1, 2].map(|i| self.points[self.simplices[t][(k + i) % 3] as usize]);
         Edge::new(a, b)
@@ -265,7 +265,7 @@ impl Dig2<'_> {
 }
 
 /// Which tetrahedra remain; every point keeps one.
-pub fn dig3(given: Given<3, 4>, limit: Limit, watch: &Watch) -> Result<Vec<bool>> {
+pub fn erode3(given: Given<3, 4>, limit: Limit, watch: &Watch) -> Result<Vec<bool>> {
     let Given {
         points,
         simplices,

@@ -1,4 +1,4 @@
-//! Sews the edit at hand into the mesh.
+//! Links the new tetrahedra of an edit into the mesh.
 //!
 //! An edit is complete before anything in the mesh changes: each facet of a new tetrahedron has met
 //! either another one or a facet around the hole. Then memory is reserved, and the rest cannot fail.

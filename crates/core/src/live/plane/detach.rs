@@ -3,7 +3,7 @@
 //! Segments that cross are taken out together, with all that cross those, and their crossings go as well:
 //! a *component*. A crossing may be a point of the input, and then a segment that bends there does so
 //! because of another one at the same point: these are of one component as well. What remains is
-//! triangulated as if they had never been there (see `constrained`), and `weave` puts back those that stay.
+//! triangulated as if they had never been there (see `constrained`), and `reinsert` puts back those that stay.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -12,28 +12,28 @@ use delone_predicates::{lexicographic, orient2d};
 
 use super::Plane;
 use super::constrained::Outcome;
-use super::marks::TANGLED;
+use super::marks::CROSSED;
 use super::remove::Removed;
-use super::segments::{Loose, Tangle};
+use super::segments::{Crossed, Detached};
 use crate::error::{Error, Result};
 use crate::memory::{filled, push, with_room};
 
 impl Plane {
     /// Takes a segment out of the mesh: marks of edges go that no other segment needs.
-    pub fn unlink_segment(&mut self, segment: u32, loose: &mut Loose) -> Result<Outcome> {
+    pub fn unlink_segment(&mut self, segment: u32, detached: &mut Detached) -> Result<Outcome> {
         let ends = self.segments.ends(i64::from(segment)).unwrap_or_default();
         let [a, b] = ends.map(|row| self.vertex(row));
-        if a == b || self.mesh.is_flat() || loose.segments.contains(&segment) {
+        if a == b || self.mesh.is_flat() || detached.segments.contains(&segment) {
             return Ok(Outcome::Done);
         }
-        let tangled = &self.segments.tangle.segments;
-        if tangled.binary_search(&segment).is_ok() {
-            return self.loosen(&[segment], loose);
+        let crossed = &self.segments.crossed.segments;
+        if crossed.binary_search(&segment).is_ok() {
+            return self.detach_crossing(&[segment], detached);
         }
-        let Some(along) = self.straight_line(a, b, loose)? else {
+        let Some(along) = self.straight_line(a, b, detached)? else {
             return Ok(Outcome::Rebuild);
         };
-        let mut covers = self.covers(&along, loose)?;
+        let mut covers = self.covers(&along, detached)?;
         let own = covers.iter().position(|cover| cover.0 == segment);
         let [first, last] = match own {
             Some(i) => covers.swap_remove(i).1,
@@ -48,8 +48,8 @@ impl Plane {
 
     /// The segments that run along the marked edge from `u` to `v`, which are straight then; `None` if all
     /// must be triangulated again.
-    pub fn owners(&mut self, u: u32, v: u32, loose: &mut Loose) -> Result<Option<Vec<u32>>> {
-        let Some(along) = self.straight_line(u, v, loose)? else {
+    pub fn owners(&mut self, u: u32, v: u32, detached: &mut Detached) -> Result<Option<Vec<u32>>> {
+        let Some(along) = self.straight_line(u, v, detached)? else {
             return Ok(None);
         };
         let (Some(i), Some(j)) = (
@@ -58,7 +58,7 @@ impl Plane {
         ) else {
             return Ok(None);
         };
-        let covers = self.covers(&along, loose)?;
+        let covers = self.covers(&along, detached)?;
         let runs =
             |&&(_, [first, last]): &&(u32, [usize; 2])| first <= i.min(j) && i.max(j) <= last;
         Ok(Some(covers.iter().filter(runs).map(|c| c.0).collect()))
@@ -67,19 +67,24 @@ impl Plane {
     /// The vertices of the marked edges along the line of two, in order: those between them, and beyond
     /// as far as marked edges go. Tangled segments with an edge at one of them are taken out before.
     /// `None` if all must be triangulated again.
-    fn straight_line(&mut self, a: u32, b: u32, loose: &mut Loose) -> Result<Option<Vec<u32>>> {
+    fn straight_line(
+        &mut self,
+        a: u32,
+        b: u32,
+        detached: &mut Detached,
+    ) -> Result<Option<Vec<u32>>> {
         let mut along = self.line_of(a, b)?;
         let mut touched = BTreeSet::new();
         for &v in &along {
             for (w, mark) in self.mesh.marked_at(v)? {
-                if mark == TANGLED {
-                    touched.extend(self.tangled_along(v, w));
+                if mark == CROSSED {
+                    touched.extend(self.crossed_along(v, w));
                 }
             }
         }
         if !touched.is_empty() {
             let touched: Vec<u32> = touched.into_iter().collect();
-            if self.loosen(&touched, loose)? == Outcome::Rebuild {
+            if self.detach_crossing(&touched, detached)? == Outcome::Rebuild {
                 return Ok(None);
             }
             along = self.line_of(a, b)?;
@@ -87,9 +92,9 @@ impl Plane {
         Ok(Some(along))
     }
 
-    /// The tangled segments with this edge.
-    pub fn tangled_along(&self, u: u32, v: u32) -> Vec<u32> {
-        let edges = self.segments.tangle.edges.iter();
+    /// The crossed segments with this edge.
+    pub fn crossed_along(&self, u: u32, v: u32) -> Vec<u32> {
+        let edges = self.segments.crossed.edges.iter();
         let here = edges.filter(|(_, ends)| *ends == [u, v] || *ends == [v, u]);
         here.map(|edge| edge.0).collect()
     }
@@ -130,7 +135,7 @@ impl Plane {
     }
 
     /// The segments in the mesh between vertices of a line, and the places of their ends in it.
-    fn covers(&self, along: &[u32], loose: &Loose) -> Result<Vec<(u32, [usize; 2])>> {
+    fn covers(&self, along: &[u32], detached: &Detached) -> Result<Vec<(u32, [usize; 2])>> {
         let mut places: Vec<(u32, usize)> = with_room(along.len())?;
         places.extend(along.iter().copied().zip(0..));
         places.sort_unstable();
@@ -144,7 +149,7 @@ impl Plane {
             for row in self.rows.at(head) {
                 for (segment, other) in self.segments.at(row) {
                     let j = place(self.vertex(other)).filter(|&j| i < j);
-                    if let Some(j) = j.filter(|_| !loose.segments.contains(&segment)) {
+                    if let Some(j) = j.filter(|_| !detached.segments.contains(&segment)) {
                         push(&mut covers, (segment, [i, j]))?;
                     }
                 }
@@ -153,17 +158,17 @@ impl Plane {
         Ok(covers)
     }
 
-    /// Takes out tangled segments and all that cross them, with the crossings.
-    pub fn loosen(&mut self, seeds: &[u32], loose: &mut Loose) -> Result<Outcome> {
-        let tangle = Arc::clone(&self.segments.tangle);
-        let mut met = with_room(tangle.rows.len())?;
-        met.extend(tangle.rows.iter().map(|&row| self.vertex(row)));
+    /// Takes out crossed segments and all that cross them, with the crossings.
+    pub fn detach_crossing(&mut self, seeds: &[u32], detached: &mut Detached) -> Result<Outcome> {
+        let crossed = Arc::clone(&self.segments.crossed);
+        let mut met = with_room(crossed.rows.len())?;
+        met.extend(crossed.rows.iter().map(|&row| self.vertex(row)));
         met.sort_unstable();
         let is_met = |v: &u32| met.binary_search(v).is_ok();
-        let part = component(&tangle, seeds, |segment, v| {
+        let part = component(&crossed, seeds, |segment, v| {
             is_met(&v) || self.bends(segment, v)
         })?;
-        let own = tangle.edges.iter().filter(|e| part.contains(&e.0));
+        let own = crossed.edges.iter().filter(|e| part.contains(&e.0));
         let edges: BTreeSet<[u32; 2]> = own.map(|&(_, [u, v])| [u.min(v), u.max(v)]).collect();
         // Another segment may run along an edge between two points.
         if !edges.iter().all(|ends| ends.iter().any(is_met)) {
@@ -177,7 +182,7 @@ impl Plane {
         let mut outcome = Outcome::Done;
         for v in vertices {
             let row = self.mesh.sites[v as usize].head;
-            push(&mut loose.places, (self.mesh.at(v), row))?;
+            push(&mut detached.places, (self.mesh.at(v), row))?;
             if self.mesh.unlink(v, false)? != Removed::Done {
                 outcome = Outcome::Rebuild;
                 break;
@@ -187,8 +192,8 @@ impl Plane {
             self.mesh.free_site(v);
             gone.insert(row);
         }
-        self.segments.tangle = Arc::new(remaining(&tangle, &part, &gone)?);
-        loose.segments.extend(part);
+        self.segments.crossed = Arc::new(remaining(&crossed, &part, &gone)?);
+        detached.segments.extend(part);
         Ok(outcome)
     }
 
@@ -203,13 +208,13 @@ impl Plane {
 /// Tangled segments, and all that depend on them, directly or not: `binds` tells whether a vertex makes
 /// all segments at it depend on each other, because the given one would not be there without them.
 fn component(
-    tangle: &Tangle,
+    crossed: &Crossed,
     seeds: &[u32],
     binds: impl Fn(u32, u32) -> bool,
 ) -> Result<BTreeSet<u32>> {
     let mut at: Vec<(u32, u32)> = Vec::new();
     let mut bound = BTreeSet::new();
-    for &(segment, ends) in &tangle.edges {
+    for &(segment, ends) in &crossed.edges {
         for v in ends {
             push(&mut at, (v, segment))?;
             if binds(segment, v) {
@@ -223,8 +228,8 @@ fn component(
     let mut part: BTreeSet<u32> = seeds.iter().copied().collect();
     let mut waiting: Vec<u32> = part.iter().copied().collect();
     while let Some(segment) = waiting.pop() {
-        let first = tangle.edges.partition_point(|e| e.0 < segment);
-        let own = tangle.edges[first..].iter().take_while(|e| e.0 == segment);
+        let first = crossed.edges.partition_point(|e| e.0 < segment);
+        let own = crossed.edges[first..].iter().take_while(|e| e.0 == segment);
         for v in own.flat_map(|e| e.1) {
             let first = at.partition_point(|other| other.0 < v);
             for &(_, other) in at[first..].iter().take_while(|other| other.0 == v) {
@@ -237,23 +242,23 @@ fn component(
     Ok(part)
 }
 
-/// A tangle without some segments and rows.
-fn remaining(tangle: &Tangle, part: &BTreeSet<u32>, gone: &BTreeSet<u32>) -> Result<Tangle> {
-    let mut left = Tangle {
-        segments: with_room(tangle.segments.len())?,
-        rows: with_room(tangle.rows.len())?,
-        crossings: with_room(tangle.crossings.len())?,
-        edges: with_room(tangle.edges.len())?,
+/// A crossed without some segments and rows.
+fn remaining(crossed: &Crossed, part: &BTreeSet<u32>, gone: &BTreeSet<u32>) -> Result<Crossed> {
+    let mut left = Crossed {
+        segments: with_room(crossed.segments.len())?,
+        rows: with_room(crossed.rows.len())?,
+        crossings: with_room(crossed.crossings.len())?,
+        edges: with_room(crossed.edges.len())?,
     };
     let stays = |segment: &u32| !part.contains(segment);
     left.segments
-        .extend(tangle.segments.iter().copied().filter(stays));
+        .extend(crossed.segments.iter().copied().filter(stays));
     left.rows
-        .extend(tangle.rows.iter().filter(|row| !gone.contains(row)));
+        .extend(crossed.rows.iter().filter(|row| !gone.contains(row)));
     left.crossings
-        .extend(tangle.crossings.iter().filter(|c| stays(&c[0])));
+        .extend(crossed.crossings.iter().filter(|c| stays(&c[0])));
     left.edges
-        .extend(tangle.edges.iter().filter(|e| stays(&e.0)));
+        .extend(crossed.edges.iter().filter(|e| stays(&e.0)));
     Ok(left)
 }
 

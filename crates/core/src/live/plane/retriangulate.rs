@@ -9,8 +9,8 @@ use std::sync::Arc;
 use delone_predicates::{Point2, lexicographic, orient2d};
 
 use super::constrained::{Input, Outcome};
-use super::marks::{Reach, TANGLED};
-use super::segments::{Loose, Tangle};
+use super::marks::{CROSSED, Reach};
+use super::segments::{Crossed, Detached};
 use super::{Plane, build};
 use crate::constrained::{Constrained, Options, constrain};
 use crate::delaunay2::Method;
@@ -30,20 +30,20 @@ impl Plane {
     pub fn finish(
         &mut self,
         mut outcome: Outcome,
-        mut loose: Loose,
+        mut detached: Detached,
         after: Option<Input>,
         workers: usize,
         watch: &Watch,
     ) -> Result<()> {
-        if outcome == Outcome::Done && !loose.segments.is_empty() {
-            outcome = self.weave(&mut loose, watch)?;
+        if outcome == Outcome::Done && !detached.segments.is_empty() {
+            outcome = self.reinsert_segments(&mut detached, watch)?;
         }
         if outcome == Outcome::Rebuild {
             let input = match after {
                 Some(input) => input,
                 None => self.present(|_, p| Some(p))?,
             };
-            let old = self.crossings_by_place(loose.places, watch)?;
+            let old = self.crossings_by_place(detached.places, watch)?;
             self.rebuild_all(input, &old, workers, watch)?;
         }
         self.mesh.has_segments = self.has_segments();
@@ -59,7 +59,7 @@ impl Plane {
         watch: &Watch,
     ) -> Result<()> {
         self.replace(&input, workers, watch)?;
-        self.segments.tangle = Arc::default();
+        self.segments.crossed = Arc::default();
         let mut pace = Pace::new(watch, LOT);
         let mut all = with_room(self.segments.live())?;
         all.extend(self.segments.iter());
@@ -86,7 +86,7 @@ impl Plane {
         mut places: Vec<(Point2, u32)>,
         watch: &Watch,
     ) -> Result<Vec<(Point2, u32)>> {
-        let rows = &self.segments.tangle.rows;
+        let rows = &self.segments.crossed.rows;
         make_room(&mut places, rows.len())?;
         places.extend(
             rows.iter()
@@ -143,10 +143,10 @@ impl Plane {
             };
             rows.push(row);
         }
-        let mut tangle = tangled(&made, &input, &ends)?;
-        tangle.segments.iter_mut().for_each(|i| *i = number(*i));
-        tangle.rows.extend_from_slice(&rows[input.rows.len()..]);
-        sort(&mut tangle.rows, watch)?;
+        let mut crossed = crossed(&made, &input, &ends)?;
+        crossed.segments.iter_mut().for_each(|i| *i = number(*i));
+        crossed.rows.extend_from_slice(&rows[input.rows.len()..]);
+        sort(&mut crossed.rows, watch)?;
         let mut sorted: Vec<(u32, usize)> = with_room(rows.len())?;
         sorted.extend(rows.iter().copied().zip(0..));
         sort(&mut sorted, watch)?;
@@ -163,11 +163,11 @@ impl Plane {
         self.replace(&with_crossings, workers, watch)?;
         for &[s, t, v] in &made.crossings {
             let v = self.vertex(rows[v as usize]);
-            push(&mut tangle.crossings, [number(s), number(t), v])?;
+            push(&mut crossed.crossings, [number(s), number(t), v])?;
         }
-        tangle.crossings.sort_unstable();
-        self.link_pieces(&made, &rows, &mut tangle, number, watch)?;
-        self.segments.tangle = Arc::new(tangle);
+        crossed.crossings.sort_unstable();
+        self.link_pieces(&made, &rows, &mut crossed, number, watch)?;
+        self.segments.crossed = Arc::new(crossed);
         Ok(())
     }
 
@@ -176,7 +176,7 @@ impl Plane {
         &mut self,
         made: &Constrained,
         rows: &[u32],
-        tangle: &mut Tangle,
+        crossed: &mut Crossed,
         number: impl Fn(u32) -> u32,
         watch: &Watch,
     ) -> Result<()> {
@@ -189,27 +189,27 @@ impl Plane {
                 return Err(Error::Internal("a piece of a segment is no edge".into()));
             }
             let sources = pieces.start[i] as usize..pieces.start[i + 1] as usize;
-            let before = tangle.edges.len();
+            let before = crossed.edges.len();
             for &s in &pieces.source[sources] {
                 let segment = number(s as u32);
-                if tangle.segments.binary_search(&segment).is_ok() {
-                    push(&mut tangle.edges, (segment, [a, b]))?;
+                if crossed.segments.binary_search(&segment).is_ok() {
+                    push(&mut crossed.edges, (segment, [a, b]))?;
                 }
             }
-            if tangle.edges.len() > before {
-                self.mesh.add_mark(a, b, TANGLED)?;
+            if crossed.edges.len() > before {
+                self.mesh.add_mark(a, b, CROSSED)?;
             }
         }
-        sort(&mut tangle.edges, watch)
+        sort(&mut crossed.edges, watch)
     }
 }
 
 /// The segments that cross others, or whose pieces do not run straight through points of the input.
-fn tangled(made: &Constrained, input: &Input, ends: &[[u32; 2]]) -> Result<Tangle> {
-    let mut is_tangled = filled(ends.len(), false)?;
+fn crossed(made: &Constrained, input: &Input, ends: &[[u32; 2]]) -> Result<Crossed> {
+    let mut is_crossed = filled(ends.len(), false)?;
     for &[s, t, _] in &made.crossings {
-        is_tangled[s as usize] = true;
-        is_tangled[t as usize] = true;
+        is_crossed[s as usize] = true;
+        is_crossed[t as usize] = true;
     }
     let pieces = &made.subsegments;
     for (i, piece) in pieces.ends.iter().enumerate() {
@@ -219,12 +219,12 @@ fn tangled(made: &Constrained, input: &Input, ends: &[[u32; 2]]) -> Result<Tangl
                 let p = input.points.get(v as usize);
                 p.is_some_and(|&p| orient2d(a, b, p).is_zero())
             });
-            is_tangled[s as usize] |= !is_straight;
+            is_crossed[s as usize] |= !is_straight;
         }
     }
-    let mut tangle = Tangle::default();
-    for (i, _) in (0u32..).zip(is_tangled).filter(|(_, tangled)| *tangled) {
-        push(&mut tangle.segments, i)?;
+    let mut crossed = Crossed::default();
+    for (i, _) in (0u32..).zip(is_crossed).filter(|(_, crossed)| *crossed) {
+        push(&mut crossed.segments, i)?;
     }
-    Ok(tangle)
+    Ok(crossed)
 }

@@ -1,7 +1,7 @@
 //! Segments are put back into the mesh, and split where they cross.
 //!
-//! First, all segments that the loose ones cross are taken out as well, and those that these cross (see
-//! `loose`), so that nothing in the mesh crosses one of them. Then their crossings become vertices, and
+//! First, all segments that the detached ones cross are taken out as well, and those that these cross (see
+//! `detach`), so that nothing in the mesh crosses one of them. Then their crossings become vertices, and
 //! each runs through its own, as `constrained::reroute` does it. Where rounding makes a segment pass
 //! through the pixel of any other vertex, or pieces cross, `constrained` triangulates everything again.
 
@@ -12,8 +12,8 @@ use delone_predicates::{Point2, orient2d};
 
 use super::Plane;
 use super::constrained::{Outcome, are_apart};
-use super::marks::{Reach, TANGLED};
-use super::segments::{Loose, Tangle};
+use super::marks::{CROSSED, Reach};
+use super::segments::{Crossed, Detached};
 use super::walk::Place;
 use crate::constrained::intersection::intersection;
 use crate::constrained::pairs::crossing_pairs_above;
@@ -29,69 +29,73 @@ const ONE_IN: usize = 8;
 const PAIRS: usize = 16;
 
 /// A segment to be put back: its number and its two vertices.
-type Thread = (u32, [u32; 2]);
+type Reinserted = (u32, [u32; 2]);
 
 /// Edges, each with the place of its segment in a list.
 type Edges = Vec<(u32, [u32; 2])>;
 
 /// A crossing: two places in a list of segments, and the vertex.
-type Knot = ([u32; 2], u32);
+type Crossing = ([u32; 2], u32);
 
 impl Plane {
-    /// Puts the loose segments back.
-    pub fn weave(&mut self, loose: &mut Loose, watch: &Watch) -> Result<Outcome> {
-        if self.mesh.is_flat() || !self.clear_ways(loose, watch)? {
+    /// Puts the detached segments back.
+    pub fn reinsert_segments(&mut self, detached: &mut Detached, watch: &Watch) -> Result<Outcome> {
+        if self.mesh.is_flat() || !self.clear_ways(detached, watch)? {
             return Ok(Outcome::Rebuild);
         }
-        let threads = self.threads(loose)?;
+        // The pairs that cross, from the ends alone: two rows of `points` for each segment.
+        let inserted = self.inserted(detached)?;
         let (mut points, mut ends) = (Vec::new(), Vec::new());
-        for (i, (_, pair)) in (0u32..).zip(&threads) {
+        for (i, (_, pair)) in (0u32..).zip(&inserted) {
             push(&mut ends, [2 * i, 2 * i + 1])?;
             push(&mut points, self.mesh.at(pair[0]))?;
             push(&mut points, self.mesh.at(pair[1]))?;
         }
-        let most = PAIRS * (threads.len() + FEW);
+        let most = PAIRS * (inserted.len() + FEW);
         let pairs = crossing_pairs_above(&points, &ends, most, watch)?;
         if pairs.len() > most {
             return Ok(Outcome::Rebuild);
         }
+        // Where they cross at a vertex of the mesh, both bend there anyway: the others need a vertex.
         let crossings = self.meetings(&points, pairs, watch)?;
         if !crossings.is_empty() && !self.splits_crossings() {
             return Err(Error::Crossing {
                 pairs: crossings
                     .iter()
-                    .map(|c| c.0.map(|i| threads[i as usize].0))
+                    .map(|c| c.0.map(|i| inserted[i as usize].0))
                     .collect(),
                 points: crossings.iter().map(|c| c.1).collect(),
             });
         }
+        // Each crossing becomes a vertex, and each segment a chain of edges through its own.
         let mut fresh = BTreeSet::new();
-        let knots = self.tie(&crossings, loose, &mut fresh, watch)?;
-        let edges = match &knots {
-            Some(knots) => self.put_back(&threads, knots, &fresh)?,
+        let met = self.tie(&crossings, detached, &mut fresh, watch)?;
+        let edges = match &met {
+            Some(met) => self.put_back(&inserted, met, &fresh)?,
             None => None,
         };
-        let mut tangle = copy(&self.segments.tangle)?;
+        // The list is replaced as a whole, so that a state that shares the old one is not changed.
+        let mut crossed = copy(&self.segments.crossed)?;
         // Also if all are triangulated again: the new rows are no points.
         let rows = fresh.iter().map(|&v| self.mesh.sites[v as usize].head);
-        tangle.rows.extend(rows);
-        tangle.rows.sort_unstable();
-        let outcome = match (knots, edges) {
-            (Some(knots), Some(edges)) => {
-                self.enlist(&mut tangle, &threads, &knots, &edges)?;
+        crossed.rows.extend(rows);
+        crossed.rows.sort_unstable();
+        let outcome = match (met, edges) {
+            (Some(met), Some(edges)) => {
+                self.enlist(&mut crossed, &inserted, &met, &edges)?;
                 Outcome::Done
             }
             _ => Outcome::Rebuild,
         };
-        self.segments.tangle = Arc::new(tangle);
-        loose.segments.clear();
+        self.segments.crossed = Arc::new(crossed);
+        detached.segments.clear();
         Ok(outcome)
     }
 
-    /// Takes out all segments that the loose ones cross; whether they are few.
-    fn clear_ways(&mut self, loose: &mut Loose, watch: &Watch) -> Result<bool> {
+    /// Takes out all segments that the detached ones cross; whether they are few.
+    fn clear_ways(&mut self, detached: &mut Detached, watch: &Watch) -> Result<bool> {
         let mut done = BTreeSet::new();
-        while let Some(&segment) = loose.segments.iter().find(|s| !done.contains(*s)) {
+        while let Some(&segment) = detached.segments.iter().find(|s| !done.contains(*s)) {
             watch.check()?;
             done.insert(segment);
             let ends = self.segments.ends(i64::from(segment)).unwrap_or_default();
@@ -99,51 +103,59 @@ impl Plane {
             if a == b {
                 continue;
             }
+            // Crossed segments that this one crosses leave with all that cross them.
             let touched = self.touched(a, b);
-            if !touched.is_empty() && self.loosen(&touched, loose)? == Outcome::Rebuild {
+            if !touched.is_empty() && self.detach_crossing(&touched, detached)? == Outcome::Rebuild
+            {
                 return Ok(false);
             }
+            // Then edges of segments that still block the way: terminates, since each has fewer marks
+            // after its owners are taken out.
             while let Some(e) = self.mesh.blocker(a, b)? {
                 let [u, v] = self.mesh.ends(e);
-                if self.mesh.mark(e) == TANGLED {
-                    let tangled = self.tangled_along(u, v);
-                    if tangled.is_empty() || self.loosen(&tangled, loose)? == Outcome::Rebuild {
+                if self.mesh.mark(e) == CROSSED {
+                    let crossed = self.crossed_along(u, v);
+                    if crossed.is_empty()
+                        || self.detach_crossing(&crossed, detached)? == Outcome::Rebuild
+                    {
                         return Ok(false);
                     }
                     continue;
                 }
-                let Some(owners) = self.owners(u, v, loose)?.filter(|all| !all.is_empty()) else {
+                let Some(owners) = self.owners(u, v, detached)?.filter(|all| !all.is_empty())
+                else {
                     return Ok(false);
                 };
                 for owner in owners {
-                    if self.unlink_segment(owner, loose)? == Outcome::Rebuild {
+                    if self.unlink_segment(owner, detached)? == Outcome::Rebuild {
                         return Ok(false);
                     }
-                    loose.segments.insert(owner);
+                    detached.segments.insert(owner);
                 }
             }
-            if loose.segments.len() > FEW + self.segments.live() / ONE_IN {
+            // So many would not be faster than a triangulation of all.
+            if detached.segments.len() > FEW + self.segments.live() / ONE_IN {
                 return Ok(false);
             }
         }
         Ok(true)
     }
 
-    /// The tangled segments that cross the one from `a` to `b`, or have a crossing in its range of
+    /// The crossed segments that cross the one from `a` to `b`, or have a crossing in its range of
     /// rounding.
     pub fn touched(&self, a: u32, b: u32) -> Vec<u32> {
         let [r, s] = [a, b].map(|v| self.mesh.at(v));
-        let tangle = &self.segments.tangle;
+        let crossed = &self.segments.crossed;
         let crosses = |&other: &u32| {
             let ends = self.segments.ends(i64::from(other)).unwrap_or_default();
             let [p, q] = ends.map(|row| self.mesh.at(self.vertex(row)));
             are_apart(r, s, p, q) && are_apart(p, q, r, s)
         };
-        let mut touched: Vec<u32> = tangle.segments.iter().copied().filter(crosses).collect();
-        let near = tangle.rows.iter().map(|&row| self.vertex(row));
+        let mut touched: Vec<u32> = crossed.segments.iter().copied().filter(crosses).collect();
+        let near = crossed.rows.iter().map(|&row| self.vertex(row));
         let near: Vec<u32> = near.filter(|&v| passes(r, s, self.mesh.at(v))).collect();
         if !near.is_empty() {
-            let at = tangle
+            let at = crossed
                 .edges
                 .iter()
                 .filter(|e| e.1.iter().any(|v| near.contains(v)));
@@ -152,17 +164,17 @@ impl Plane {
         touched
     }
 
-    /// The loose segments of positive length.
-    fn threads(&self, loose: &Loose) -> Result<Vec<Thread>> {
-        let mut threads = with_room(loose.segments.len())?;
-        for &segment in &loose.segments {
+    /// The detached segments of positive length.
+    fn inserted(&self, detached: &Detached) -> Result<Vec<Reinserted>> {
+        let mut inserted = with_room(detached.segments.len())?;
+        for &segment in &detached.segments {
             let ends = self.segments.ends(i64::from(segment)).unwrap_or_default();
             let [a, b] = ends.map(|row| self.vertex(row));
             if a != b {
-                threads.push((segment, [a, b]));
+                inserted.push((segment, [a, b]));
             }
         }
-        Ok(threads)
+        Ok(inserted)
     }
 
     /// The places where pairs cross, but not those that cross exactly at a vertex.
@@ -190,26 +202,28 @@ impl Plane {
     fn tie(
         &mut self,
         crossings: &[([u32; 2], Point2)],
-        loose: &Loose,
+        detached: &Detached,
         fresh: &mut BTreeSet<u32>,
         watch: &Watch,
-    ) -> Result<Option<Vec<Knot>>> {
-        let mut knots = with_room(crossings.len())?;
+    ) -> Result<Option<Vec<Crossing>>> {
+        let mut met = with_room(crossings.len())?;
         for &(pair, x) in crossings {
             let v = match self.mesh.place(x, watch)? {
                 Place::At(v) if fresh.contains(&v) => v,
                 Place::At(_) => return Ok(None),
+                // A new vertex must be in the open triangle, away from every segment.
                 Place::In(t) => {
                     let is_on = (8 * t..8 * t + 3).any(|e| {
                         let [u, v] = self.mesh.ends(e);
                         self.mesh.mark(e) != 0
                             && orient2d(self.mesh.at(u), self.mesh.at(v), x).is_zero()
                     });
-                    if is_on || self.is_near_tangle(x) {
+                    if is_on || self.is_near_crossing(x) {
                         return Ok(None);
                     }
+                    // A crossing that stood at this place before keeps its row.
                     let v = self.create(x, t)?;
-                    let known = loose.places.iter().find(|place| place.0 == x);
+                    let known = detached.places.iter().find(|place| place.0 == x);
                     let row = match known {
                         Some(place) => place.1,
                         None => self.rows.push()?,
@@ -220,14 +234,15 @@ impl Plane {
                     v
                 }
             };
-            knots.push((pair, v));
+            met.push((pair, v));
         }
+        // No segment of the mesh may pass through the pixel of a new vertex.
         for &v in fresh.iter() {
             if self.mesh.is_passed(v)? {
                 return Ok(None);
             }
         }
-        Ok(Some(knots))
+        Ok(Some(met))
     }
 
     /// Marks the edges of segments, through their crossings. Returns the edges of those that cross, each
@@ -235,16 +250,19 @@ impl Plane {
     /// the pixel of another vertex.
     fn put_back(
         &mut self,
-        threads: &[Thread],
-        knots: &[Knot],
+        inserted: &[Reinserted],
+        met: &[Crossing],
         fresh: &BTreeSet<u32>,
     ) -> Result<Option<Edges>> {
-        let mut own: Vec<(u32, u32)> = with_room(2 * knots.len())?;
-        own.extend(knots.iter().flat_map(|&([i, j], v)| [(i, v), (j, v)]));
+        // The crossings of each segment, as ranges of one sorted list.
+        let mut own: Vec<(u32, u32)> = with_room(2 * met.len())?;
+        own.extend(met.iter().flat_map(|&([i, j], v)| [(i, v), (j, v)]));
         own.sort_unstable();
         own.dedup();
-        let mut routes = with_room(threads.len())?;
-        for (i, &(_, [a, b])) in (0u32..).zip(threads) {
+        // All routes are known before the first mark is set: straight, or through the crossings in their
+        // order along the segment.
+        let mut routes = with_room(inserted.len())?;
+        for (i, &(_, [a, b])) in (0u32..).zip(inserted) {
             let first = own.partition_point(|o| o.0 < i);
             let meets = own[first..].iter().take_while(|o| o.0 == i).map(|o| o.1);
             let meets: Vec<u32> = meets.collect();
@@ -261,8 +279,9 @@ impl Plane {
                 },
             }
         }
+        // Straight segments are linked as any other; pieces of the others must be edges.
         let mut edges = Vec::new();
-        for ((i, &(_, [a, b])), stops) in (0u32..).zip(threads).zip(routes) {
+        for ((i, &(_, [a, b])), stops) in (0u32..).zip(inserted).zip(routes) {
             if stops.is_empty() && self.link_vertices(a, b)? == Outcome::Rebuild {
                 return Ok(None);
             }
@@ -270,7 +289,7 @@ impl Plane {
                 if self.mesh.reach(pair[0], pair[1])? != Reach::Vertex(pair[1]) {
                     return Ok(None);
                 }
-                self.mesh.add_mark(pair[0], pair[1], TANGLED)?;
+                self.mesh.add_mark(pair[0], pair[1], CROSSED)?;
                 push(&mut edges, (i, [pair[0], pair[1]]))?;
             }
         }
@@ -280,33 +299,33 @@ impl Plane {
     /// Lists segments that cross, with their crossings and edges.
     fn enlist(
         &self,
-        tangle: &mut Tangle,
-        threads: &[Thread],
-        knots: &[Knot],
+        crossed: &mut Crossed,
+        inserted: &[Reinserted],
+        met: &[Crossing],
         edges: &[(u32, [u32; 2])],
     ) -> Result<()> {
-        let number = |i: u32| threads[i as usize].0;
-        for &([i, j], v) in knots {
-            push(&mut tangle.crossings, [number(i), number(j), v])?;
+        let number = |i: u32| inserted[i as usize].0;
+        for &([i, j], v) in met {
+            push(&mut crossed.crossings, [number(i), number(j), v])?;
         }
         for &(i, ends) in edges {
-            push(&mut tangle.segments, number(i))?;
-            push(&mut tangle.edges, (number(i), ends))?;
+            push(&mut crossed.segments, number(i))?;
+            push(&mut crossed.edges, (number(i), ends))?;
         }
-        tangle.crossings.sort_unstable();
-        tangle.segments.sort_unstable();
-        tangle.segments.dedup();
-        tangle.edges.sort_unstable();
+        crossed.crossings.sort_unstable();
+        crossed.segments.sort_unstable();
+        crossed.segments.dedup();
+        crossed.edges.sort_unstable();
         Ok(())
     }
 }
 
-/// A copy of a tangle.
-fn copy(tangle: &Tangle) -> Result<Tangle> {
-    Ok(Tangle {
-        segments: copied(&tangle.segments)?,
-        rows: copied(&tangle.rows)?,
-        crossings: copied(&tangle.crossings)?,
-        edges: copied(&tangle.edges)?,
+/// A copy of the list of crossed segments.
+fn copy(crossed: &Crossed) -> Result<Crossed> {
+    Ok(Crossed {
+        segments: copied(&crossed.segments)?,
+        rows: copied(&crossed.rows)?,
+        crossings: copied(&crossed.crossings)?,
+        edges: copied(&crossed.edges)?,
     })
 }

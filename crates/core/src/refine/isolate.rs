@@ -1,4 +1,4 @@
-//! Finds needles, fences them off, and opens them again; see the head of `needles`.
+//! Finds needles, isolates them by edges that act as lines (fences), and opens them again; see the head of `needles`.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -46,7 +46,7 @@ struct Found {
 
 impl Work {
     /// Finds the needles and fences them off.
-    pub fn fence(&mut self) -> Result<()> {
+    pub fn isolate_needles(&mut self) -> Result<()> {
         let kept: BTreeSet<u32> = self.needles.kept.iter().copied().collect();
         let found = self.find()?;
         if found.triangles.is_empty() {

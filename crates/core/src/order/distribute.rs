@@ -37,7 +37,7 @@ impl<const D: usize> Blocks<D> {
 
 /// Distributes `points` to `blocks` blocks, where `block` returns the block of a point; leaves
 /// capacity for one more.
-pub fn deal<const D: usize>(
+pub fn distribute<const D: usize>(
     points: &[[f64; D]],
     blocks: usize,
     block: impl Fn([f64; D]) -> usize + Sync,
