@@ -26,6 +26,8 @@ pub enum Goal {
     Face([u32; 3]),
     /// Fewer edges at a vertex.
     Vertex(u32),
+    /// Fewer faces at an edge.
+    Ring([u32; 2]),
 }
 
 /// The best triangulation of a part of a ring.
@@ -142,6 +144,20 @@ impl Work<'_> {
         Ok(changed)
     }
 
+    /// Removes an edge from an end of another one to its ring, so that this has one face less, if that is
+    /// possible.
+    pub fn loosen(&mut self, edge: [u32; 2], tries: &mut usize) -> Result<bool> {
+        let ring = self.ring_of(edge[0], edge[1])?;
+        for v in ring.vertices {
+            for end in edge {
+                if self.force([end, v], Goal::Ring(edge), (1, 0), tries)? {
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
     /// Removes an edge, if that leaves fewer crossings than there are and `slack` more. Where its ring does
     /// not allow that, edges from its ends to the ring are removed first, `depth` times in turn.
     fn force(
@@ -193,6 +209,7 @@ impl Work<'_> {
             Goal::Segment(s) => usize::from(self.cuts(s, [p, q])),
             Goal::Face(f) => usize::from(self.pierces(p, q, f).unwrap_or(true)),
             Goal::Vertex(v) => usize::from(p == v || q == v),
+            Goal::Ring(_) => 0,
         }
     }
 
@@ -200,6 +217,7 @@ impl Work<'_> {
     fn face_cost(&self, goal: Goal, face: [u32; 3]) -> usize {
         match goal {
             Goal::Segment(s) => usize::from(self.stabs(s, face)),
+            Goal::Ring([a, b]) => usize::from(face.contains(&a) && face.contains(&b)),
             Goal::Face(_) | Goal::Vertex(_) => 0,
         }
     }

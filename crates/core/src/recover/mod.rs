@@ -284,7 +284,8 @@ impl Work<'_> {
             }
             self.thin(self.given)?;
             let after = self.free_points().len();
-            if after == before && sweep > DEEPEST {
+            // A twentieth less is worth another sweep.
+            if before.saturating_sub(after) * 20 <= before && sweep >= DEEPEST {
                 break;
             }
         }

@@ -2,7 +2,8 @@
 //!
 //! A flip in a plane replaces an edge between two faces by the other diagonal of both. In the mesh,
 //! the tetrahedra around that edge are replaced on each side of the plane: by those on a triangulation
-//! of the half of its ring where there is one, otherwise by the fan of a new point. That always exists: the inside
+//! of the half of its ring, or by the fan of a vertex nearby, with what hides faces from that vertex;
+//! if there is neither, by the fan of a new point. That always exists: the inside
 //! of the edge sees all other faces of its ring, so points next to it do, on each side of the plane.
 //!
 //! # Why it ends
@@ -29,6 +30,12 @@ const LONGEST: usize = 40;
 
 /// The most tetrahedra that are replaced on one side of a plane.
 const LARGEST: usize = 200;
+
+/// How far vertices are from a ring that are joined to its faces.
+const ROUNDS: usize = 2;
+
+/// The most edges tried to shorten rings, for one edge of the input.
+const TRIES: usize = 200;
 
 /// The triangles of a part of a plane.
 struct Sheet {
@@ -136,18 +143,23 @@ impl Work<'_> {
 
     /// Brings an edge back. If not `points`, that may not be possible.
     fn swap_one(&mut self, sheet: &mut Sheet, edge: [u32; 2], points: bool) -> Result<bool> {
+        let mut tries = TRIES;
         while !sheet.apexes.contains_key(&edge) {
             self.pace.spend(8)?;
             let crossings = self.crossings(sheet, edge)?;
             let [fewer, others] = self.flippable(sheet, edge, &crossings)?;
             let candidates = if fewer.is_empty() { &others } else { &fewer };
             let mut changed = false;
-            for with_points in [false, true] {
-                for &e in candidates {
-                    if !changed && (points || !with_points) {
-                        changed = self.swap_edge(sheet, e, with_points)?;
-                    }
+            for &e in candidates {
+                changed = changed || self.swap_edge(sheet, e, false)?;
+            }
+            for &e in candidates {
+                while !changed && self.loosen(e, &mut tries)? {
+                    changed = self.swap_edge(sheet, e, false)?;
                 }
+            }
+            if let (false, true, Some(&e)) = (changed, points, candidates.first()) {
+                changed = self.swap_edge(sheet, e, true)?;
             }
             if !changed {
                 return Ok(false);
@@ -330,21 +342,56 @@ impl Work<'_> {
         taken: &[u32],
     ) -> Option<(Vec<u32>, Vec<Corners>)> {
         let (c, d) = (half[0], half[half.len() - 1]);
-        let mut best: Option<(Vec<u32>, Vec<Corners>)> = None;
-        for &w in &half[1..half.len() - 1] {
-            let most = best.as_ref().map_or(LARGEST, |(old, _)| old.len() - 1);
-            let Some((old, mut faces)) = self.seen_from(w, [a, b, c, d], cells, most) else {
-                continue;
-            };
-            faces.extend([[c, d, b], [d, c, a]]);
-            let apart = old.iter().all(|t| !taken.contains(t));
-            if apart && self.is_closed(&old, &faces, w) {
-                let kept = faces.iter().filter(|f| !f.contains(&w));
-                let new = kept.map(|&[x, y, z]| [x, y, z, w]).collect();
-                best = Some((old, new));
+        let inner = &half[1..half.len() - 1];
+        for rounds in 1..=ROUNDS {
+            let mut best: Option<(Vec<u32>, Vec<Corners>)> = None;
+            for w in self.apexes([a, b, c, d], inner, cells, rounds) {
+                let most = best.as_ref().map_or(LARGEST, |(old, _)| old.len() - 1);
+                let Some((old, mut faces)) = self.seen_from(w, [a, b, c, d], cells, most) else {
+                    continue;
+                };
+                faces.extend([[c, d, b], [d, c, a]]);
+                let apart = old.iter().all(|t| !taken.contains(t));
+                if apart && self.is_closed(&old, &faces, w) {
+                    let kept = faces.iter().filter(|f| !f.contains(&w));
+                    let new = kept.map(|&[x, y, z]| [x, y, z, w]).collect();
+                    best = Some((old, new));
+                }
+            }
+            if best.is_some() {
+                return best;
             }
         }
-        best
+        None
+    }
+
+    /// Vertices that see both new faces at the edge between c and d: those of the half of a ring, and
+    /// those behind its cells, after so many rounds.
+    fn apexes(
+        &mut self,
+        [a, b, c, d]: [u32; 4],
+        inner: &[u32],
+        cells: &[u32],
+        rounds: usize,
+    ) -> Vec<u32> {
+        let mut found = inner.to_vec();
+        let mut cells = cells.to_vec();
+        for _ in 0..rounds {
+            let mut next = Vec::new();
+            for (t, k) in self.mesh.outer_sides(&cells) {
+                let locked = self.locked_faces.has(ascending(self.mesh.face(t, k)));
+                if let Some((u, v)) = self.mesh.apex(t, k).filter(|_| !locked) {
+                    if !next.contains(&u) {
+                        next.push(u);
+                    }
+                    if !found.contains(&v) && self.sees(&[[c, d, b], [d, c, a]], v) {
+                        found.push(v);
+                    }
+                }
+            }
+            cells.extend(next);
+        }
+        found
     }
 
     /// Cells and what else hides the faces around them from a vertex, and these faces, but not those of a
