@@ -54,6 +54,13 @@ MAKE: dict[str, Callable[[], Any]] = {
     "sphere.Voronoi, clipped": lambda: sphere.Voronoi(
         lonlat=SQUARE, clip=shapely.Polygon(SQUARE[:4], [SQUARE[4:]])
     ),
+    "sphere.Grid": lambda: sphere.Grid.from_polygons(
+        [shapely.Polygon(SQUARE[:4], [SQUARE[4:]]), shapely.box(5, 5, 6, 6)]
+    ),
+    "sphere.Grid of parallels": lambda: sphere.Grid.from_lonlat(
+        [0, 90, 180, 270, 360], [-90, 0, 9]
+    ),
+    "sphere.Grid, reduced": lambda: sphere.Grid.from_gaussian(2, [3, 4, 4, 3]),
     "sphere.Voronoi, a circle": lambda: sphere.Voronoi(lonlat=[(x, 0) for x in range(5)]),
 }
 EDITS: dict[str, Callable[[np.ndarray], np.ndarray]] = {

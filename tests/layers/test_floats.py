@@ -91,7 +91,7 @@ ALLOWED: dict[str, dict[str, str]] = {
     # products with one sign.
     "sphere/flat.py": {"np.dot(tail[:2], head[:2]) > 0": EXACT, "each.area > 0": EMPTY},
     # Documented: the report of cells that overlap, of which none is changed.
-    "sphere/grid.py": {"found.areas > _SHARED * small": WANTED},
+    "sphere/grid_cells.py": {"found.areas > _SHARED * small": WANTED},
     "sphere/interpolation.py": {"owner._distance(xi) <= limit": WANTED},
     # Documented: the caller asks for the smaller side, and sides of rings decide within _HALF of
     # half the sphere; else the result is a warning.

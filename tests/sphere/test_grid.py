@@ -16,6 +16,7 @@ from overlaps import polygon_area
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
 LON, LAT = np.arange(0, 361, 30.0), np.arange(-90, 91, 30.0)
 SPHERE = 4 * np.pi
@@ -212,3 +213,85 @@ def test_tables_of_cells() -> None:
     assert table.area.sum() == pytest.approx(360 * 180, rel=1e-6)
     with pytest.raises(delone.InputError, match="step"):
         Grid.from_healpix(1).to_geopandas(step=0)
+
+
+@pytest.mark.parametrize("name", of_the_sphere())
+def test_files_of_grids(name: str, tmp_path: Path) -> None:
+    grid = of_the_sphere()[name]()
+    grid.save(tmp_path / "grid.npz")
+    again = Grid.load(tmp_path / "grid.npz")
+    assert np.array_equal(again.areas, grid.areas)
+    assert np.array_equal(again.centers_lonlat, grid.centers_lonlat)
+    assert (again.grid_shape, again.edges, repr(again)) == (grid.grid_shape, grid.edges, repr(grid))
+    assert (again.bounds is None) == (grid.bounds is None)
+    assert repr(again.report) == repr(grid.report)
+
+
+def test_files_keep_masks_and_counts_and_refuse_others(tmp_path: Path) -> None:
+    path = tmp_path / "grid.npz"
+    near = np.array([[(0, 0), (10, 0), (10, 10)], [(0, 0), (10, 10), (0, 10.0)]])
+    near[1] += 1e-13
+    grid = Grid.from_mesh(lonlat=near)
+    grid.save(path)
+    assert Grid.load(path).report.merged == 2
+    with np.load(path) as file:
+        arrays = dict(file)
+    for edits, message in (
+        ({"rings": arrays["rings"][::-1]}, "rings is no partition"),
+        ({"cells": arrays["cells"] + 1}, "cells is no partition"),
+        ({"shape": np.array([3])}, "shape and cells do not match"),
+        ({"mask": np.ones(3, bool)}, "mask and shape do not match"),
+        ({"merged": np.array([-1])}, "merged"),
+        ({"rows": np.array([0.0, 1, 2])}, "rows and columns do not fit"),
+        ({"places": arrays["places"] * 0}, "zero"),
+        # What a constructor refuses.
+        ({"places": np.array([(1.0, 0, 0), (-1, 0, 0), (0, 1, 1)] * 2)}, "opposite directions"),
+    ):
+        np.savez(path, **arrays | edits)
+        with pytest.raises(delone.FileFormatError, match=message):
+            Grid.load(path)
+    with pytest.raises(delone.FileFormatError):
+        sphere.Overlaps.load(path)
+
+
+def test_plots() -> None:
+    pytest.importorskip("matplotlib")
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    grid = Grid.from_healpix(4, "nested")
+    values = np.arange(192.0)
+    ax = grid.plot(values=values, resolution=1, title="pixels")
+    image = ax.images[0].get_array()
+    assert image.shape == (180, 360)
+    # Each pixel has the mean over its area: sums are those of the cells.
+    weight = np.diff(np.sin(np.radians(np.arange(-90, 91))))[:, None] * np.radians(1)
+    assert (image * weight).sum() == pytest.approx((values * grid.areas).sum(), rel=1e-13)
+    assert ax.get_title() == "pixels"
+    assert len(ax.collections) > 0
+    assert not grid.plot(values=values, sides=False).collections
+    # Sides across the date line are seen on both ends of the map.
+    box = Grid.from_lonlat([170, 190], [0, 10])
+    ax = box.plot(bounds=(-180, -20, 180, 20))
+    ends = [line.vertices[:, 0] for part in ax.collections for line in part.get_paths()]
+    assert min(x.min() for x in ends) == pytest.approx(-190)
+    assert max(x.max() for x in ends) == pytest.approx(190)
+    ax = box.plot(bounds=(160, -20, -160, 20), values=[3])
+    assert ax.get_xlim() == (160, 200)
+    assert np.nanmax(ax.images[0].get_array()) == pytest.approx(3)
+    assert Grid.from_lonlat([0, 10], [40, 50]).plot().get_xlim() == pytest.approx((-0.3, 10.3))
+    ring = Grid.from_lonlat([0, 360], [0, 10]).plot()
+    widths = [np.ptp(path.vertices[:, 0]) for path in ring.collections[0].get_paths()]
+    assert widths == pytest.approx([360])
+    pole = Grid.from_lonlat([0, 120, 240, 360], [60, 90]).plot()
+    assert sum(len(part.get_paths()) for part in pole.collections) >= 3
+    for options, error, message in (
+        ({"values": [1, 2]}, delone.ShapeError, r"shape \(192,\)"),
+        ({"values": ["a"] * 192}, delone.DtypeError, "real numbers"),
+        ({"values": values, "resolution": 0}, delone.InputError, "resolution"),
+        ({"bounds": (0, 1)}, delone.ShapeError, "left, bottom"),
+        ({"bounds": (0, 9, 5, 3)}, delone.InputError, "left, bottom"),
+    ):
+        with pytest.raises(error, match=message):
+            grid.plot(**options)
+    mpl.pyplot.close("all")

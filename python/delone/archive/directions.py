@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +14,13 @@ from delone.plane.topology import boundary_edges, boundary_next, neighbors
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["check_constrained", "check_delaunay", "check_overlaps", "check_sites"]
+__all__ = [
+    "check_constrained",
+    "check_delaunay",
+    "check_grid",
+    "check_overlaps",
+    "check_sites",
+]
 
 
 def check_sites(**arrays: NDArray[Any]) -> None:
@@ -50,6 +57,49 @@ def check_overlaps(**arrays: NDArray[Any]) -> None:
         for values in (cells, sums):
             require(bool((np.isfinite(values) & (values >= 0)).all()), f"{name}: a wrong area")
     require(bool((np.isfinite(areas) & (areas > 0)).all()), "an area is not positive")
+
+
+def check_grid(**arrays: NDArray[Any]) -> None:
+    """Check that starts partition corners or meridians, and that shape, mask and edges fit."""
+    shape, mask = arrays["shape"], arrays["mask"]
+    require(0 < len(shape) < 4 and bool((shape >= 0).all()), "shape is not one of cells")
+    count = math.prod(shape.tolist())
+    if "meridians" in arrays:
+        tangents, starts, numbers = (arrays[name] for name in ("places", "starts", "numbers"))
+        require(len(starts) == len(tangents) + 1, "starts and tangents do not match")
+        _check_starts("starts", starts, len(arrays["meridians"]), least=2)
+        require(len(numbers) == len(arrays["meridians"]), "numbers and meridians do not match")
+        require(len(tangents) > 0, "it has no rows")
+        require(bool((tangents[:, 0] < tangents[:, 1]).all()), "a row has no height")
+        require(bool(np.isfinite(arrays["meridians"]).all()), "a coordinate is not finite")
+        check_range("numbers", numbers, -1, count)
+        # Each cell is one run of columns of its row; the last meridian of a row has none.
+        used = numbers >= 0
+        used[starts[1:] - 1] = False
+        used[1:] &= (numbers[1:] != numbers[:-1]) | ~used[:-1]
+        cells = np.sort(numbers[used])
+        require(np.array_equal(cells, np.arange(count)), "numbers has cells of no or several runs")
+    else:
+        _check_starts("rings", arrays["rings"], len(arrays["places"]))
+        _check_starts("cells", arrays["cells"], len(arrays["rings"]) - 1)
+        require(len(arrays["holes"]) == len(arrays["rings"]) - 1, "holes and rings do not match")
+        require(len(arrays["cells"]) == count + 1, "shape and cells do not match")
+        _check_vectors(arrays["places"])
+    require(len(mask) in {0, count}, "mask and shape do not match")
+    edges = [len(arrays[name]) for name in ("rows", "columns")]
+    fits = edges == [0, 0] or [size - 1 for size in edges] == shape.tolist()
+    require(fits, "rows and columns do not fit the shape")
+    for name in ("rows", "columns"):
+        steps = np.diff(arrays[name])
+        require(bool((steps > 0).all() or (steps < 0).all()), f"{name} do not ascend or descend")
+    merged = arrays["merged"]
+    require(len(merged) == 1 and merged[0] >= 0, "merged is not one count")
+
+
+def _check_starts(name: str, starts: NDArray[Any], count: int, *, least: int = 0) -> None:
+    """Check that numbers partition so many entries, into parts of a least size."""
+    whole = len(starts) > 0 and starts[0] == 0 and starts[-1] == count
+    require(bool(whole and (np.diff(starts) >= least).all()), f"{name} is no partition")
 
 
 def check_delaunay(**arrays: NDArray[Any]) -> None:

@@ -167,6 +167,14 @@ def _graph(ndim: int) -> Kind:
     return Kind(f"delone.graphs.Graph {ndim}-D", layout, checks.check_graph, ("kind", "crs"))
 
 
+# Edges of columns and rows and the mask of a grid, which may be empty; its shape, and a count.
+_CELLS = {
+    "columns": ("<f8", 0),
+    "rows": ("<f8", 0),
+    "mask": ("|b1", 0),
+    "shape": ("<i8", 0),
+    "merged": ("<i8", 0),
+}
 _WEIGHTS, _PERIODS = ("<f8", 0), ("<f8", 0)
 KINDS: Mapping[str, tuple[Kind, ...]] = {
     "Delaunay": (
@@ -275,5 +283,29 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
             },
             directions.check_overlaps,
         ),
+    ),
+    # Cells between meridians and parallels, and polygons.
+    "sphere.Grid": tuple(
+        Kind(f"delone.sphere.Grid{sides}", layout | _CELLS, directions.check_grid)
+        for sides, layout in (
+            (
+                "",
+                {
+                    "places": ("<f8", 3),
+                    "rings": ("<i8", 0),
+                    "cells": ("<i8", 0),
+                    "holes": ("|b1", 0),
+                },
+            ),
+            (
+                " of parallels",
+                {
+                    "places": ("<f8", 2),
+                    "starts": ("<i8", 0),
+                    "meridians": ("<f8", 2),
+                    "numbers": ("<i4", 0),
+                },
+            ),
+        )
     ),
 }

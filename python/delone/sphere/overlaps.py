@@ -11,10 +11,10 @@ from delone._arrays import as_choice, as_workers
 from delone.complex import Stored
 from delone.counting import counted
 from delone.errors import DtypeError
-from delone.extras import require
 from delone.immutable import ReadOnly, kept, sealed
 from delone.sphere.grid import Grid
-from delone.sphere.weights import METHODS, Weights, as_mask, row_sums
+from delone.sphere.paired import Paired, row_sums
+from delone.sphere.weights import METHODS, Weights, as_mask
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -78,7 +78,7 @@ class OverlapReport(ReadOnly):
         return f"<OverlapReport: {', '.join(parts)}>"
 
 
-class Overlaps(Stored):
+class Overlaps(Paired, Stored):
     """The areas that cells of two grids share: the basis of conservative regridding.
 
     Parameters
@@ -142,13 +142,11 @@ class Overlaps(Stored):
     True
     """
 
-    __slots__ = ("_grids", "_rows", "_shapes", "_sums")
+    __slots__ = ("_areas", "_grids", "_rows", "_shapes", "_sums")
 
     _grids: tuple[Grid, Grid] | None
-    _rows: tuple[Indices, NDArray[np.int32], Floats]
-    _shapes: tuple[tuple[int, ...], tuple[int, ...]]
-    # Areas of source and target cells, and the sums of their parts.
-    _sums: tuple[Floats, Floats, Floats, Floats]
+    # The sums of the parts of source and target cells.
+    _sums: tuple[Floats, Floats]
 
     def __init__(self, source: Grid, target: Grid, *, workers: int | None = None) -> None:
         for name, grid in (("source", source), ("target", target)):
@@ -173,10 +171,13 @@ class Overlaps(Stored):
     ) -> None:
         a, b, c = (sealed(x) for x in rows)
         s, t, u, v = (sealed(x) for x in sums)
-        self._hold(rows=(a, b, c), sums=(s, t, u, v), shapes=shapes, grids=grids, workers=workers)
+        self._hold(
+            rows=(a, b, c), areas=(s, t), sums=(u, v), shapes=shapes, grids=grids, workers=workers
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return self._again, (self._rows, self._sums, self._shapes, self._grids, self._workers)
+        sums = self._areas + self._sums
+        return self._again, (self._rows, sums, self._shapes, self._grids, self._workers)
 
     @classmethod
     def _again(cls, *parts: Any) -> Self:
@@ -190,7 +191,7 @@ class Overlaps(Stored):
 
     def _saved(self) -> dict[str, NDArray[Any]]:
         found: dict[str, NDArray[Any]] = dict(zip(_ROWS, self._rows, strict=True))
-        found |= zip(_SUMS, self._sums, strict=True)
+        found |= zip(_SUMS, self._areas + self._sums, strict=True)
         for name, shape in zip(_SHAPES, self._shapes, strict=True):
             found[name] = np.array(shape, dtype=np.int64)
         return found
@@ -207,39 +208,9 @@ class Overlaps(Stored):
         return f"{cells}: {counted(len(self.areas), 'pair')}"
 
     @property
-    def indptr(self) -> Indices:
-        """Where the entries of each target cell start, and their number, (ntarget + 1,)."""
-        return self._rows[0]
-
-    @property
-    def indices(self) -> NDArray[np.int32]:
-        """Source cells, ascending in each row, (k,)."""
-        return self._rows[1]
-
-    @property
     def areas(self) -> Floats:
         """Areas of the shared parts in steradians, (k,)."""
         return self._rows[2]
-
-    @property
-    def source_areas(self) -> Floats:
-        """Areas of the source cells in steradians."""
-        return self._sums[0]
-
-    @property
-    def target_areas(self) -> Floats:
-        """Areas of the target cells in steradians."""
-        return self._sums[1]
-
-    @property
-    def source_shape(self) -> tuple[int, ...]:
-        """The shape of fields on the source."""
-        return self._shapes[0]
-
-    @property
-    def target_shape(self) -> tuple[int, ...]:
-        """The shape of fields on the target."""
-        return self._shapes[1]
 
     @property
     def source(self) -> Grid | None:
@@ -255,21 +226,13 @@ class Overlaps(Stored):
     @kept
     def covered_source(self) -> Floats:
         """The fraction of each source cell that target cells cover; NaN for empty cells."""
-        return sealed(_shares(self._sums[2], self._sums[0]))
+        return sealed(_shares(self._sums[0], self._areas[0]))
 
     @property
     @kept
     def covered_target(self) -> Floats:
         """The fraction of each target cell that source cells cover; NaN for empty cells."""
-        return sealed(_shares(self._sums[3], self._sums[1]))
-
-    @property
-    @kept
-    def matrix(self) -> Any:
-        """The areas as a sparse matrix of SciPy, (ntarget, nsource) (extra ``graph``)."""
-        sparse = require("scipy.sparse", extra="graph", what="a sparse matrix")
-        shape = len(self.target_areas), len(self.source_areas)
-        return sparse.csr_matrix((self.areas, self.indices, self.indptr), shape=shape)
+        return sealed(_shares(self._sums[1], self._areas[1]))
 
     @property
     @kept
@@ -344,7 +307,7 @@ class Overlaps(Stored):
         sources = as_mask(source_mask, self.source_shape, "source_mask")
         targets = as_mask(target_mask, self.target_shape, "target_mask")
         indptr, indices, areas = self._rows
-        of_source, of_target = self._sums[2], self._sums[3]
+        of_source, of_target = self._sums
         if sources is not None or targets is not None:
             row = np.repeat(np.arange(len(self.target_areas)), np.diff(indptr))
             kept = np.ones(len(areas), dtype=bool)

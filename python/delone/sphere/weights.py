@@ -10,8 +10,8 @@ from delone import _core
 from delone._arrays import as_choice, as_number, as_plain_array, as_workers
 from delone.counting import agreed, counted
 from delone.errors import DtypeError, InputError, ShapeError
-from delone.extras import require
-from delone.immutable import Immutable, sealed
+from delone.immutable import sealed
+from delone.sphere.paired import Paired, row_sums
 
 if TYPE_CHECKING:
     import os
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int64]
     Flags = NDArray[np.bool_]
 
-__all__ = ["METHODS", "Weights", "as_mask", "row_sums"]
+__all__ = ["METHODS", "Weights", "as_mask"]
 
 METHODS = ("conservative", "normalized", "sum", "majority")
 # Of files that do not say how their weights are normalized.
@@ -35,7 +35,7 @@ _ROUNDING = 1e-12
 _LOT = 1 << 22
 
 
-class Weights(Immutable):
+class Weights(Paired):
     """What each source cell contributes to each target cell.
 
     Made by `Overlaps.to_weights`, or by `from_netcdf` from a map file of another program.
@@ -87,11 +87,8 @@ class Weights(Immutable):
 
     __slots__ = ("_areas", "_fractions", "_method", "_rows", "_shapes")
 
-    _areas: tuple[Floats, Floats]
     _fractions: tuple[Floats, Floats]
     _method: str
-    _rows: tuple[Indices, NDArray[np.int32], Floats]
-    _shapes: tuple[tuple[int, ...], tuple[int, ...]]
 
     def __init__(self) -> None:
         raise InputError("make Weights by Overlaps.to_weights or Weights.from_netcdf")
@@ -127,16 +124,6 @@ class Weights(Immutable):
         return self._method
 
     @property
-    def indptr(self) -> Indices:
-        """Where the entries of each target cell start, and their number, (ntarget + 1,)."""
-        return self._rows[0]
-
-    @property
-    def indices(self) -> NDArray[np.int32]:
-        """Source cells, (k,)."""
-        return self._rows[1]
-
-    @property
     def values(self) -> Floats:
         """The weights, (k,)."""
         return self._rows[2]
@@ -150,33 +137,6 @@ class Weights(Immutable):
     def source_fractions(self) -> Floats:
         """The fraction of each source cell that is covered, (nsource,)."""
         return self._fractions[0]
-
-    @property
-    def source_areas(self) -> Floats:
-        """Areas of the source cells in steradians."""
-        return self._areas[0]
-
-    @property
-    def target_areas(self) -> Floats:
-        """Areas of the target cells in steradians."""
-        return self._areas[1]
-
-    @property
-    def source_shape(self) -> tuple[int, ...]:
-        """The shape of fields on the source."""
-        return self._shapes[0]
-
-    @property
-    def target_shape(self) -> tuple[int, ...]:
-        """The shape of fields on the target."""
-        return self._shapes[1]
-
-    @property
-    def matrix(self) -> Any:
-        """The weights as a sparse matrix of SciPy, (ntarget, nsource) (extra ``graph``)."""
-        sparse = require("scipy.sparse", extra="graph", what="a sparse matrix")
-        shape = len(self.fractions), len(self.source_fractions)
-        return sparse.csr_matrix((self.values, self.indices, self.indptr), shape=shape)
 
     def apply(
         self,
@@ -469,12 +429,3 @@ def as_mask(mask: ArrayLike | None, shape: tuple[int, ...], name: str) -> Flags 
     if array.dtype.kind != "b" and not np.isin(array, (0, 1)).all():
         raise InputError(f"{name} must be boolean or 0 and 1")
     return array.ravel().astype(bool)
-
-
-def row_sums(indptr: Indices, values: Floats) -> Floats:
-    """Return the sums of rows."""
-    found = np.zeros(len(indptr) - 1)
-    used = np.flatnonzero(np.diff(indptr))
-    if len(used):
-        found[used] = np.add.reduceat(values, indptr[used])
-    return found

@@ -1,0 +1,367 @@
+"""The base of grids of cells on the sphere: what is known of the cells, files and pictures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_number, as_workers
+from delone.complex import Stored
+from delone.counting import agreed, counted
+from delone.errors import DirectionError, InputError, ShapeError
+from delone.immutable import kept, sealed
+from delone.sphere import rings as rings_of
+from delone.sphere.coordinates import lonlat_of, units_of
+from delone.sphere.grid_report import GridFaults, GridReport
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int64]
+    Flags = NDArray[np.bool_]
+
+__all__ = ["GridCells"]
+
+# What is wrong with a cell, in the order of the core's numbers, and the cure.
+_FAULTS = {
+    2: ("a side that joins opposite directions", "add a corner between them"),
+    3: ("corners that no hemisphere contains", "split such cells"),
+    4: ("sides that cross", "repair them, for example with shapely.make_valid"),
+}
+# Cells of one grid that share more of the smaller one than this overlap; less is a rounding.
+_SHARED = 1e-12
+_NONE = np.zeros(0, dtype=np.int64)
+# Names of arrays in files: of rows of cells, and of polygons.
+_ROWS = "places", "starts", "meridians", "numbers"
+_RINGS = "places", "rings", "cells", "holes"
+
+
+class GridCells(Stored):
+    """Cells on the sphere, however they were made; see `Grid`."""
+
+    __slots__ = ("_arrays", "_bounds", "_edges", "_made", "_mask", "_merged", "_shape")
+
+    _arrays: tuple[Any, ...]
+    _bounds: tuple[Floats, Floats] | None
+    _edges: str
+    _made: _core.CellGrid
+    _mask: Flags | None
+    _merged: int
+    _shape: tuple[int, ...]
+
+    @classmethod
+    def _of(
+        cls,
+        edges: str,
+        arrays: tuple[Any, ...],
+        shape: tuple[int, ...],
+        merged: int,
+        workers: int | None,
+        *,
+        bounds: tuple[Floats, Floats] | None = None,
+        mask: Flags | None = None,
+    ) -> Self:
+        """Return a grid of arrays for the core."""
+        as_workers(workers)
+        made = cls.__new__(cls)
+        arrays = tuple(sealed(a) if isinstance(a, np.ndarray) else a for a in arrays)
+        build = _core.CellGrid.rows if edges == "parallel" else _core.CellGrid.polygons
+        made._hold(
+            arrays=arrays,
+            bounds=None if bounds is None else (sealed(bounds[0]), sealed(bounds[1])),
+            edges=edges,
+            made=build(*arrays),
+            mask=None if mask is None else sealed(mask),
+            merged=merged,
+            shape=shape,
+            workers=workers,
+        )
+        made._refuse_faults()
+        return made
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        parts = self._edges, self._arrays, self._shape, self._merged, self._workers
+        return self._again, (parts, self._bounds, self._mask)
+
+    @classmethod
+    def _again(
+        cls, parts: tuple[Any, ...], bounds: tuple[Floats, Floats] | None, mask: Flags | None
+    ) -> Self:
+        """Return a pickled grid."""
+        edges, arrays, *rest = parts
+        if len(arrays) != 4 + (edges == "parallel"):
+            raise ShapeError("a pickled Grid is incomplete")
+        return cls._of(edges, arrays, *rest, bounds=bounds, mask=mask)
+
+    @classmethod
+    def _stored_as(cls) -> str:
+        return "sphere.Grid"
+
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        names = _ROWS if self._edges == "parallel" else _RINGS
+        found: dict[str, NDArray[Any]] = dict(zip(names, self._arrays[:4], strict=True))
+        columns, rows = self._bounds or (np.zeros(0), np.zeros(0))
+        mask = np.zeros(0, dtype=np.bool_) if self._mask is None else self._mask
+        found |= {"columns": columns, "rows": rows, "mask": mask}
+        found["shape"] = np.array(self._shape, dtype=np.int64)
+        found["merged"] = np.array([self._merged], dtype=np.int64)
+        return found
+
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        parallel = "meridians" in arrays
+        given: tuple[Any, ...] = tuple(arrays[name] for name in (_ROWS if parallel else _RINGS))
+        shape = tuple(arrays["shape"].tolist())
+        if parallel:
+            given = (*given, int(np.prod(shape)))
+        bounds = (arrays["columns"], arrays["rows"]) if len(arrays["rows"]) else None
+        mask = arrays["mask"] if len(arrays["mask"]) else None
+        return cls._of(
+            "parallel" if parallel else "arc",
+            given,
+            shape,
+            int(arrays["merged"][0]),
+            None,
+            bounds=bounds,
+            mask=mask,
+        )
+
+    def __repr__(self) -> str:
+        size = f" ({' x '.join(map(str, self._shape))})" if len(self._shape) > 1 else ""
+        sides = "parallels" if self._edges == "parallel" else "arcs of great circles"
+        return f"<Grid of {counted(self.ncells, 'cell')}{size}, {sides}>"
+
+    def __len__(self) -> int:
+        return self.ncells
+
+    def _refuse_faults(self) -> None:
+        """Raise an error for cells that cannot be used."""
+        faults = self._checked.faults
+        for fault, (what, cure) in _FAULTS.items():
+            rows = np.flatnonzero(faults == fault)
+            if len(rows):
+                count = len(rows)
+                cells = f"{counted(count, 'cell')} {agreed(count, 'has', 'have')} {what}"
+                message = f"{cells}, first cell {rows[0]}: {cure}"
+                raise DirectionError(message, rows=rows[:10].tolist(), count=count)
+
+    @property
+    @kept
+    def _checked(self) -> _core.CheckedCells:
+        return self._made.check(True, as_workers(self._workers))
+
+    @property
+    def ncells(self) -> int:
+        """Number of cells."""
+        return int(np.prod(self._shape))
+
+    @property
+    def grid_shape(self) -> tuple[int, ...]:
+        """The shape of fields on the grid."""
+        return self._shape
+
+    @property
+    def edges(self) -> str:
+        """What sides are: "parallel" for meridians and parallels, "arc" for great circles."""
+        return self._edges
+
+    @property
+    def mask(self) -> Flags | None:
+        """Which cells take part, (ncells,), as a dataset says; None if it does not."""
+        return self._mask
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats] | None:
+        """Edges between columns and between rows, in degrees; None of other cells."""
+        return self._bounds
+
+    @property
+    @kept
+    def areas(self) -> Floats:
+        """Areas in steradians, (ncells,); 0 of empty cells."""
+        return sealed(self._checked.areas)
+
+    @property
+    @kept
+    def report(self) -> GridReport:
+        """What was done to corners, and which cells are special."""
+        known = self._checked
+        return GridReport(
+            merged=self._merged,
+            repeated=known.repeated,
+            turned=np.flatnonzero(known.turned),
+            empty=np.flatnonzero(known.faults == 1),
+            concave=np.flatnonzero(known.concave),
+            masked=np.flatnonzero(~self._mask) if self._mask is not None else _NONE,
+        )
+
+    @property
+    @kept
+    def rings(self) -> tuple[Floats, Indices, Indices]:
+        """The rings of all cells: unit vectors of corners, starts of rings, starts of cells.
+
+        Those of cells between meridians and parallels are their four corners.
+        """
+        if self._edges == "arc":
+            vectors, starts, cells, _ = self._arrays
+        else:
+            vectors, starts, cells = rings_of.corners(self._arrays)
+        return sealed(units_of(vectors, self._workers)), sealed(starts), sealed(cells)
+
+    @property
+    @kept
+    def centers_lonlat(self) -> Floats:
+        """Longitudes and latitudes of a place in the middle of each cell, (ncells, 2), in degrees.
+
+        Halfway between bounds in rows and columns, else the mean direction of the corners; NaN for
+        cells without corners.
+        """
+        if self._bounds is not None:
+            lon, lat = (edges[:-1] + np.diff(edges) / 2 for edges in self._bounds)
+            x, y = np.meshgrid(np.where(lon > 180, lon - 360, lon), lat)
+            return sealed(np.column_stack((x.ravel(), y.ravel())))
+        vectors, starts, cells = self.rings
+        total = np.concatenate((np.zeros((1, 3)), np.cumsum(vectors, axis=0)))
+        sums = np.diff(total[starts[cells]], axis=0)
+        none = ~sums.any(axis=1)
+        sums[none] = 1.0
+        found = lonlat_of(sums)
+        found[none] = np.nan
+        return sealed(found)
+
+    def validate(self) -> GridFaults:
+        """Find cells that overlap.
+
+        Returns
+        -------
+        GridFaults
+            Truthy if no two cells share more than 1e-12 of the smaller one.
+
+        Notes
+        -----
+        Computes the overlaps of the grid with itself. Gaps are not faults: `covered` is the
+        fraction of the sphere that the cells cover.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> square = [(0, 0), (10, 0), (10, 10), (0, 10)]
+        >>> moved = [(5, 0), (15, 0), (15, 10), (5, 10)]
+        >>> sphere.Grid.from_mesh(lonlat=[square, moved]).validate()
+        <GridFaults: 1 pair of cells overlap, 0.483547 % of the sphere>
+        """
+        found = self._made.overlaps(self._made, as_workers(self._workers))
+        first = np.repeat(np.arange(self.ncells), np.diff(found.indptr))
+        pairs = np.column_stack((first, found.indices.astype(np.int64)))
+        small = self.areas[pairs].min(axis=1)
+        wrong = (pairs[:, 0] < pairs[:, 1]) & (found.areas > _SHARED * small)
+        return GridFaults(overlapping=pairs[wrong], covered=float(self.areas.sum() / (4 * np.pi)))
+
+    def to_geopandas(self, data: Any = None, *, crs: Any = None, step: float = 1.0) -> Any:
+        """Convert the cells to a table of geopandas (extra ``geo``).
+
+        Parameters
+        ----------
+        data : DataFrame or mapping, optional
+            Columns to include, with one row for each cell.
+        crs : any, optional
+            Coordinate reference system of longitudes and latitudes, by default EPSG:4326.
+        step : float, optional
+            Degrees between the corners that show arcs of great circles, at most.
+
+        Returns
+        -------
+        GeoDataFrame
+            Polygons and multipolygons in degrees, cut at 180 degrees and completed along the edge
+            of the map if they contain a pole. Empty cells are empty polygons.
+
+        Raises
+        ------
+        MissingExtraError
+            geopandas is not installed.
+        InputError
+            `data` does not have one row for each cell, or `step` is not positive.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> table = sphere.Grid.from_lonlat([170, 190], [0, 10, 20]).to_geopandas()
+        >>> table.geom_type.tolist(), table.total_bounds.tolist()
+        (['MultiPolygon', 'MultiPolygon'], [-180.0, 0.0, 180.0, 20.0])
+        """
+        from delone.exchange.geopandas import beside
+
+        width = as_number(step, name="step")
+        if not 0 < width < np.inf:
+            raise InputError(f"step must be positive and finite, got {step!r:.60}")
+        if self._edges == "parallel":
+            shapes = rings_of.boxes(self._arrays)
+        else:
+            shapes = rings_of.shapes(self._arrays, self.areas, width)
+        return beside(shapes, data, "EPSG:4326" if crs is None else crs, of="cells")
+
+    def plot(
+        self,
+        ax: Any = None,
+        *,
+        values: ArrayLike | None = None,
+        bounds: Sequence[float] | None = None,
+        resolution: float | None = None,
+        sides: bool | None = None,
+        coast: Any = None,
+        cmap: Any = "viridis",
+        colorbar: bool = True,
+        title: str | None = None,
+    ) -> Any:
+        """Draw the cells on a map of longitudes and latitudes with matplotlib (extra ``plot``).
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; by default on a new one.
+        values : array_like, optional
+            A value for each cell, in the shape of the grid or (ncells,), shown as colors. Each
+            pixel has the mean over its area, by the areas that it shares with cells.
+        bounds : sequence of float, optional
+            Left, bottom, right and top of the map in degrees; by default those of the cells. The
+            left one may exceed the right one, across the date line.
+        resolution : float, optional
+            Degrees of a pixel; by default 600 pixels fit across.
+        sides : bool, optional
+            Whether to draw the sides of cells. By default if there are no values, or 5,000 cells
+            at most.
+        coast : dict, optional
+            A MultiPolygon of GeoJSON, drawn as lines, such as `delone.datasets.land()`.
+        cmap, colorbar, title
+            As usual in matplotlib.
+
+        Returns
+        -------
+        matplotlib Axes
+            Where it is drawn.
+
+        Raises
+        ------
+        MissingExtraError
+            matplotlib is not installed.
+        InputError, ShapeError, DtypeError
+            `values` are not numbers in the shape of the grid, or an option is invalid.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> ax = sphere.Grid.from_healpix(2).plot()
+        >>> ax.get_xlabel(), ax.get_aspect()
+        ('longitude', 1.0)
+        """
+        from delone.sphere.chart import plot_grid
+
+        return plot_grid(
+            self, ax, values, bounds=bounds, resolution=resolution, sides=sides, coast=coast,
+            cmap=cmap, colorbar=colorbar, title=title,
+        )  # fmt: skip

@@ -1,0 +1,75 @@
+"""The base of what cells of two grids have in common: areas, or weights, as compressed rows."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.extras import require
+from delone.immutable import Immutable
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int64]
+
+__all__ = ["Paired", "row_sums"]
+
+
+class Paired(Immutable):
+    """Entries of target cells for source cells, and the areas and shapes of both grids."""
+
+    __slots__ = ()
+
+    # Starts, source cells and values of the entries; of source and target, areas and shapes.
+    _rows: tuple[Indices, NDArray[np.int32], Floats]
+    _areas: tuple[Floats, Floats]
+    _shapes: tuple[tuple[int, ...], tuple[int, ...]]
+
+    @property
+    def indptr(self) -> Indices:
+        """Where the entries of each target cell start, and their number, (ntarget + 1,)."""
+        return self._rows[0]
+
+    @property
+    def indices(self) -> NDArray[np.int32]:
+        """Source cells, ascending in each row, (k,)."""
+        return self._rows[1]
+
+    @property
+    def source_areas(self) -> Floats:
+        """Areas of the source cells in steradians."""
+        return self._areas[0]
+
+    @property
+    def target_areas(self) -> Floats:
+        """Areas of the target cells in steradians."""
+        return self._areas[1]
+
+    @property
+    def source_shape(self) -> tuple[int, ...]:
+        """The shape of fields on the source."""
+        return self._shapes[0]
+
+    @property
+    def target_shape(self) -> tuple[int, ...]:
+        """The shape of fields on the target."""
+        return self._shapes[1]
+
+    @property
+    def matrix(self) -> Any:
+        """The entries as a sparse matrix of SciPy, (ntarget, nsource) (extra ``graph``)."""
+        sparse = require("scipy.sparse", extra="graph", what="a sparse matrix")
+        shape = len(self._areas[1]), len(self._areas[0])
+        return sparse.csr_matrix((self._rows[2], self._rows[1], self._rows[0]), shape=shape)
+
+
+def row_sums(indptr: Indices, values: Floats) -> Floats:
+    """Return the sums of rows."""
+    found = np.zeros(len(indptr) - 1)
+    used = np.flatnonzero(np.diff(indptr))
+    if len(used):
+        found[used] = np.add.reduceat(values, indptr[used])
+    return found
