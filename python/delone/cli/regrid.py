@@ -56,7 +56,8 @@ def regrid(
         str,
         typer.Option(
             help="How values are combined: conservative (integrals remain), normalized (means "
-            "over what is covered), sum (amounts) or majority (categories)."
+            "over what is covered), sum (amounts), majority (categories); or between centers: "
+            "linear, bilinear, sibson, laplace, nearest, binned, inverse_distance."
         ),
     ] = "conservative",
     grid: Annotated[

@@ -10,6 +10,7 @@ from delone.atomic import replacing
 from delone.errors import FileFormatError, InputError
 from delone.extras import require
 from delone.sphere.coordinates import lonlat_of
+from delone.sphere.paired import added
 
 if TYPE_CHECKING:
     import os
@@ -25,6 +26,17 @@ __all__ = ["read_map", "write_map"]
 
 # How files name methods.
 _NORMALIZATION = {"conservative": "destarea", "normalized": "fracarea", "sum": "none"}
+_MAP = {
+    "nearest": "Nearest neighbor remapping",
+    "linear": "Bilinear remapping",
+    "bilinear": "Bilinear remapping",
+} | dict.fromkeys(("binned", "sibson", "laplace", "inverse_distance"), "Interpolation")
+_ESMF = {
+    "nearest": "Nearest source to destination",
+    "binned": "Nearest destination to source",
+    "linear": "Bilinear",
+    "bilinear": "Bilinear",
+} | dict.fromkeys(("sibson", "laplace", "inverse_distance"), "Interpolation")
 _ROW = {"esmf": "row", "scrip": "dst_address"}
 _COLUMN = {"esmf": "col", "scrip": "src_address"}
 
@@ -98,9 +110,9 @@ def _write_heads(file: Any, weights: Any, layout: str) -> None:
     )
     file.conventions = "NCAR-CSM" if esmf else "SCRIP"
     file.normalization = _NORMALIZATION.get(weights.method, "none")
-    file.map_method = "Conservative remapping"
+    file.map_method = _MAP.get(weights.method, "Conservative remapping")
     if esmf:
-        file.ESMF_regrid_method = "First-order Conservative"
+        file.ESMF_regrid_method = _ESMF.get(weights.method, "First-order Conservative")
         file.domain_a = file.domain_b = file.grid_file_src = file.grid_file_dst = "not given"
     else:
         file.source_grid = file.dest_grid = "not given"
@@ -195,16 +207,9 @@ def _parts(file: Any, path: str) -> tuple[Any, ...]:
         method = "conservative"
         with np.errstate(divide="ignore", invalid="ignore"):
             values = np.where(areas[1][rows] > 0, values / areas[1][rows], 0.0)
-    order = np.lexsort((columns, rows))
-    rows, columns, values = rows[order], columns[order], values[order]
     # Entries of one pair are added.
-    first = np.ones(len(rows), dtype=bool)
-    first[1:] = (rows[1:] != rows[:-1]) | (columns[1:] != columns[:-1])
-    starts = np.flatnonzero(first)
-    sums = np.add.reduceat(values, starts) if len(starts) else values
-    counts = np.bincount(rows[starts], minlength=len(areas[1]))
-    indptr = np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
-    entries = indptr, columns[starts].astype(np.int32), sums
+    entries = added(rows, columns, values, len(areas[1]))
+    counts = np.diff(entries[0])
     covered = fractions[1]
     if covered is None:
         # A file without fractions: any cell with an entry has values.
@@ -216,7 +221,7 @@ def _parts(file: Any, path: str) -> tuple[Any, ...]:
 def _method(file: Any) -> str:
     """Return the method of a file, "areas" if its weights are areas."""
     own = getattr(file, "delone_method", None)
-    if own in _NORMALIZATION:
+    if own in _NORMALIZATION or own in _MAP:
         return str(own)
     said = str(getattr(file, "normalization", "")).strip().lower()
     if said == "none" and "row" not in file.variables:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int64]
 
-__all__ = ["Paired", "row_sums"]
+__all__ = ["Paired", "added", "row_sums"]
 
 
 class Paired(Immutable):
@@ -73,3 +73,18 @@ def row_sums(indptr: Indices, values: Floats) -> Floats:
     if len(used):
         found[used] = np.add.reduceat(values, indptr[used])
     return found
+
+
+def added(
+    rows: Indices, columns: Indices, values: Floats, count: int
+) -> tuple[Indices, NDArray[np.int32], Floats]:
+    """Return entries as compressed rows, where those of one pair are added."""
+    order = np.lexsort((columns, rows))
+    rows, columns, values = rows[order], columns[order], values[order]
+    first = np.ones(len(rows), dtype=bool)
+    first[1:] = (rows[1:] != rows[:-1]) | (columns[1:] != columns[:-1])
+    starts = np.flatnonzero(first)
+    sums = np.add.reduceat(values, starts) if len(starts) else values
+    counts = np.bincount(rows[starts], minlength=count)
+    indptr = np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
+    return indptr, columns[starts].astype(np.int32), sums

@@ -15,6 +15,7 @@ from delone.georeference import caller_level
 from delone.immutable import Immutable
 from delone.sphere.formats import Choices
 from delone.sphere.overlaps import Overlaps
+from delone.sphere.pointwise import POINTWISE
 from delone.sphere.targets import side_of
 from delone.sphere.weights import METHODS, Weights
 
@@ -43,13 +44,16 @@ class Regridder(Immutable):
         grids, full and octahedral.
     target : xarray.Dataset, xarray.DataArray, uxarray.Grid, Grid or str
         Where they are wanted; as `source`.
-    method : {"conservative", "normalized", "sum", "majority"}, optional
-        As for `Overlaps.to_weights`.
+    method : {"conservative", "normalized", "sum", "majority"} or str, optional
+        As for `Overlaps.to_weights`; or for `Weights.between`: "linear", "bilinear", "sibson",
+        "laplace", "nearest", "binned", "inverse_distance".
     source_mask, target_mask : array_like of bool, optional
         True for cells that take part. By default the masks of the datasets, if they have some.
     dims : sequence of str, optional
         Dimensions of fields on the source, in the order of its shape. By default those of the
         dataset; of a `Grid`, the last dimensions of each field that have its shape.
+    extrapolate : {"nan", "nearest"}, optional
+        As for `Weights.between`, for its methods.
     weights : Weights, optional
         Use these, such as those of a map file, instead of computing some. `method` and masks
         are theirs.
@@ -114,6 +118,7 @@ class Regridder(Immutable):
         method: str = "conservative",
         source_mask: ArrayLike | None = None,
         target_mask: ArrayLike | None = None,
+        extrapolate: str = "nan",
         dims: Sequence[Any] | None = None,
         weights: Weights | None = None,
         coords: tuple[str, str] | None = None,
@@ -123,7 +128,7 @@ class Regridder(Immutable):
         workers: int | None = None,
     ) -> None:
         require("xarray", extra="xarray", what="regridding datasets")
-        as_choice(method, METHODS, name="method")
+        as_choice(method, METHODS + POINTWISE, name="method")
         unit = None if degrees is None else as_flag(degrees, name="degrees")
         infer = as_flag(infer_bounds, name="infer_bounds")
         choices = Choices(None, coords, None, unit, infer, as_number(merge, name="merge"), workers)
@@ -137,9 +142,13 @@ class Regridder(Immutable):
                 grid.mask if mask is None else mask
                 for grid, mask in zip(grids, (source_mask, target_mask), strict=True)
             ]
-            weights = Overlaps(*grids, workers=workers).to_weights(
-                method, source_mask=masks[0], target_mask=masks[1]
-            )
+            given: dict[str, Any] = {"source_mask": masks[0], "target_mask": masks[1]}
+            if method in POINTWISE:
+                weights = Weights.between(
+                    *grids, method, extrapolate=extrapolate, workers=workers, **given
+                )
+            else:
+                weights = Overlaps(*grids, workers=workers).to_weights(method, **given)
         else:
             _require_fit(weights, grids)
         own = sides[0].dims if dims is None else tuple(dims)

@@ -11,7 +11,8 @@ from delone._arrays import as_choice, as_number, as_plain_array, as_workers
 from delone.counting import agreed, counted
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.immutable import sealed
-from delone.sphere.paired import Paired, row_sums
+from delone.sphere.paired import Paired, added, row_sums
+from delone.sphere.pointwise import POINTWISE, pointwise
 
 if TYPE_CHECKING:
     import os
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 __all__ = ["METHODS", "Weights", "as_mask"]
 
 METHODS = ("conservative", "normalized", "sum", "majority")
+# Those whose weights sum to one.
+_MEANS = {"normalized", *POINTWISE}
 # Of files that do not say how their weights are normalized.
 OTHER = "other"
 # Fractions that differ by less are equal.
@@ -38,13 +41,14 @@ _LOT = 1 << 22
 class Weights(Paired):
     """What each source cell contributes to each target cell.
 
-    Made by `Overlaps.to_weights`, or by `from_netcdf` from a map file of another program.
+    Made by `Overlaps.to_weights`, by `between` for interpolation between centers, or by
+    `from_netcdf` from a map file of another program.
 
     Attributes
     ----------
     method : str
-        "conservative", "normalized", "sum" or "majority", as for `Overlaps.to_weights`; "other" if
-        a file does not say.
+        "conservative", "normalized", "sum" or "majority", as for `Overlaps.to_weights`; a method of
+        `between`; "other" if a file does not say.
     indptr : ndarray of int64, shape (ntarget + 1,)
         Where the entries of each target cell start, and their number: compressed rows (CSR).
     indices : ndarray of int32, shape (k,)
@@ -91,7 +95,7 @@ class Weights(Paired):
     _method: str
 
     def __init__(self) -> None:
-        raise InputError("make Weights by Overlaps.to_weights or Weights.from_netcdf")
+        raise InputError("make Weights by Overlaps.to_weights, Weights.between or .from_netcdf")
 
     @classmethod
     def _of(
@@ -117,6 +121,100 @@ class Weights(Paired):
         source, target = (" x ".join(map(str, shape)) for shape in self._shapes)
         entries = len(self.values)
         return f"<Weights, {self._method}, {source} to {target}: {entries} entries>"
+
+    @classmethod
+    def between(
+        cls,
+        source: Grid,
+        target: Grid,
+        method: str = "linear",
+        *,
+        source_mask: ArrayLike | None = None,
+        target_mask: ArrayLike | None = None,
+        extrapolate: str = "nan",
+        power: float = 2.0,
+        workers: int | None = None,
+    ) -> Self:
+        """Return weights of an interpolation between the centers of cells.
+
+        Parameters
+        ----------
+        source, target : Grid
+            Where fields are, and where they are wanted.
+        method : {"linear", "bilinear", "sibson", "laplace", "nearest", "binned", \
+"inverse_distance"}, optional
+            How values at centers are combined:
+
+            - "linear": in the triangles between centers
+            - "bilinear": between centers in rows and columns; towards a pole, to the mean of the
+              last row
+            - "sibson", "laplace": natural neighbors
+            - "nearest": the value of the nearest center
+            - "binned": the mean over the source cells whose centers are nearest to that of the
+              target cell; none for others
+            - "inverse_distance": the nearest center and its neighbors in the Delaunay
+              triangulation, weighted by distances to the power of minus `power`
+        source_mask, target_mask : array_like of bool, optional
+            True, or 1, for cells that take part.
+        extrapolate : {"nan", "nearest"}, optional
+            What target cells get that are outside of the centers.
+        power : float, optional
+            Of "inverse_distance".
+        workers : int, optional
+            Maximum number of threads; by default one per core.
+
+        Returns
+        -------
+        Weights
+            They sum to 1 for each target cell with a value. Integrals are not preserved: for those
+            use `Overlaps.to_weights`.
+
+        Raises
+        ------
+        InputError
+            An option is unknown, `power` is not positive, or "bilinear" has another source.
+        ShapeError, DtypeError
+            A mask has another shape, or is not boolean.
+
+        See Also
+        --------
+        Overlaps.to_weights : Weights by the areas that cells share.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> source = sphere.Grid.from_lonlat([0, 2, 4, 6], [0, 2, 4])
+        >>> target = sphere.Grid.from_lonlat([1, 3], [1, 3])
+        >>> field = [[0.0, 4.0, 8.0], [2.0, 6.0, 10.0]]
+        >>> for method in ("bilinear", "nearest", "binned"):
+        ...     weights = sphere.Weights.between(source, target, method)
+        ...     print(method, weights.apply(field).round(9).tolist())
+        bilinear [[3.0]]
+        nearest [[2.0]]
+        binned [[5.0]]
+        """
+        kind = as_choice(method, POINTWISE, name="method")
+        beyond = as_choice(extrapolate, ("nan", "nearest"), name="extrapolate")
+        exponent = as_number(power, name="power")
+        if not 0 < exponent < np.inf:
+            raise InputError(f"power must be positive and finite, got {power!r:.60}")
+        used = (
+            as_mask(source_mask, source.grid_shape, "source_mask"),
+            as_mask(target_mask, target.grid_shape, "target_mask"),
+        )
+        found = pointwise(
+            source, target, kind, used, extrapolate=beyond, power=exponent, workers=workers
+        )
+        indptr, indices, values = added(found.rows, found.columns, found.values, target.ncells)
+        counts = np.diff(indptr)
+        there = np.bincount(indices, minlength=source.ncells) > 0
+        return cls._of(
+            kind,
+            (indptr, indices, values),
+            (there.astype(np.float64), (counts > 0).astype(np.float64)),
+            (source.areas, target.areas),
+            (source.grid_shape, target.grid_shape),
+        )
 
     @property
     def method(self) -> str:
@@ -264,7 +362,7 @@ class Weights(Paired):
             rest[none] = 0.0
         sums = self._combined(self.values, rest)
         missing = (share <= 0) | (share < least - _ROUNDING)
-        if skipna and self._method in {"normalized", OTHER}:
+        if skipna and self._method in {*_MEANS, OTHER}:
             with np.errstate(invalid="ignore", divide="ignore"):
                 return low + sums / totals, missing
         return low * totals + sums, missing
@@ -277,7 +375,7 @@ class Weights(Paired):
 
     def _totals(self) -> Floats:
         """Return the sum of the weights of each target cell."""
-        if self._method == "normalized":
+        if self._method in _MEANS:
             return np.ones(len(self.fractions))
         if self._method == "conservative":
             return self.fractions

@@ -1,0 +1,223 @@
+"""Weights between the centers of cells: interpolation, where values are those of places."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone.errors import InputError
+from delone.plane.topology import vertex_neighbor_vertices
+from delone.sphere.coordinates import directions_of, units_of
+from delone.sphere.delaunay import Delaunay
+from delone.sphere.interpolation import Linear, NaturalNeighbor
+from delone.sphere.voronoi import Voronoi
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.sphere.grid import Grid
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int64]
+    Flags = NDArray[np.bool_]
+
+__all__ = ["POINTWISE", "Entries", "pointwise"]
+
+POINTWISE = (
+    "nearest", "binned", "linear", "bilinear", "sibson", "laplace", "inverse_distance",
+)  # fmt: skip
+
+
+class Entries(NamedTuple):
+    """Weights, one by one: target cells, source cells, and values."""
+
+    rows: Indices
+    columns: Indices
+    values: Floats
+
+
+class _Pair(NamedTuple):
+    """Both grids, and which cells are used."""
+
+    source: Grid
+    target: Grid
+    sources: Indices
+    targets: Indices
+    workers: int | None
+
+
+def pointwise(
+    source: Grid,
+    target: Grid,
+    method: str,
+    used: tuple[Flags | None, Flags | None],
+    *,
+    extrapolate: str,
+    power: float,
+    workers: int | None,
+) -> Entries:
+    """Return the weights of a method of `POINTWISE` between the cells that are used."""
+    pair = _Pair(source, target, _places(source, used[0]), _places(target, used[1]), workers)
+    if not len(pair.sources) or not len(pair.targets):
+        return Entries(*(np.zeros(0, dtype=np.int64),) * 2, np.zeros(0))
+    if method == "binned":
+        return _binned(pair)
+    if method == "bilinear":
+        found = _bilinear(pair, used[0])
+    elif method in {"nearest", "inverse_distance"}:
+        # They have values everywhere.
+        return _nearest(pair, None if method == "nearest" else power)
+    else:
+        found = _triangles(pair, method)
+    if extrapolate == "nearest":
+        rest = np.setdiff1d(pair.targets, found.rows)
+        if len(rest):
+            near = _nearest(pair._replace(targets=rest), None)
+            found = Entries(*(np.concatenate(both) for both in zip(found, near, strict=True)))
+    return found
+
+
+def _places(grid: Grid, used: Flags | None) -> Indices:
+    """Return the cells that are used and have a center."""
+    there = np.isfinite(grid.centers_lonlat).all(axis=1)
+    return np.flatnonzero(there if used is None else there & used)
+
+
+def _triangles(pair: _Pair, method: str) -> Entries:
+    """Return the weights of an interpolator of the centers."""
+    sites = pair.source.centers_lonlat[pair.sources]
+    options: dict[str, Any] = {"duplicates": "first", "workers": pair.workers}
+    made: Linear | NaturalNeighbor
+    if method == "linear":
+        made = Linear(sites, **options)
+    else:
+        made = NaturalNeighbor(sites, kind=method, **options)
+    table = made.weights_at(pair.target.centers_lonlat[pair.targets])
+    rows = np.repeat(pair.targets, np.diff(table.indptr))
+    return Entries(rows, pair.sources[table.indices], table.weights)
+
+
+def _binned(pair: _Pair) -> Entries:
+    """Return the weights of means: each source cell belongs to the nearest center of a target."""
+    cells = Voronoi(lonlat=pair.target.centers_lonlat[pair.targets], workers=pair.workers)
+    rows = pair.targets[cells.nearest(pair.source.centers_lonlat[pair.sources])]
+    number = np.bincount(rows, minlength=pair.target.ncells)
+    return Entries(rows, pair.sources, 1.0 / number[rows])
+
+
+def _nearest(pair: _Pair, power: float | None) -> Entries:
+    """Return the nearest centers; with a power, also their neighbors, weighted by distance.
+
+    The neighbors are those in the Delaunay triangulation, so that no number of them cuts through
+    equal distances. A target at a center has its value.
+    """
+    sites = pair.source.centers_lonlat[pair.sources]
+    queries = pair.target.centers_lonlat[pair.targets]
+    if power is None:
+        near = Voronoi(lonlat=sites, workers=pair.workers).nearest(queries)
+        return Entries(pair.targets, pair.sources[near], np.ones(len(near)))
+    mesh = Delaunay(lonlat=sites, workers=pair.workers)
+    near = mesh.nearest(queries).astype(np.int64)
+    starts, neighbors = vertex_neighbor_vertices(mesh.edges, mesh.npoints)
+    counts = np.diff(starts)[near].astype(np.int64)
+    row = np.repeat(np.arange(len(near)), counts + 1)
+    first = np.cumsum(counts + 1) - (counts + 1)
+    # The nearest one, then its neighbors.
+    every = np.empty(len(row), dtype=np.int64)
+    every[first] = near
+    others = np.ones(len(row), dtype=bool)
+    others[first] = False
+    within = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+    every[others] = neighbors[np.repeat(starts[near].astype(np.int64), counts) + within]
+    chords = np.linalg.norm(mesh.points[every] - units_of(_vectors(queries), None)[row], axis=1)
+    angles = 2 * np.arcsin(np.minimum(chords / 2, 1.0))
+    # Relative to the nearest one, so that no power overflows.
+    least = angles[first][row]
+    same = (least == 0) & ~others
+    with np.errstate(divide="ignore", invalid="ignore"):
+        weights = np.where(least == 0, same, (least / angles) ** power)
+    used = weights > 0
+    sums = np.bincount(row, weights, len(near))
+    return Entries(pair.targets[row[used]], pair.sources[every[used]], (weights / sums[row])[used])
+
+
+def _vectors(lonlat: Floats) -> Floats:
+    return directions_of(lonlat, None, degrees=True, workers=None, any_turns=True)
+
+
+def _bilinear(pair: _Pair, used: Flags | None) -> Entries:
+    """Return weights between centers in rows and columns; all four must be used.
+
+    Between the outermost row and a pole that its cells reach, the pole has the mean of the row.
+    """
+    source = pair.source
+    if source.bounds is None:
+        raise InputError(
+            "bilinear needs a source in rows and columns, between meridians and parallels: linear "
+            "is for all grids"
+        )
+    shape = source.grid_shape
+    at = np.arange(source.ncells).reshape(shape)
+    lon, lat = (edges[:-1] + np.diff(edges) / 2 for edges in source.bounds)
+    whole = abs(source.bounds[0][-1] - source.bounds[0][0]) == 360
+    if len(lon) > 1 and lon[0] > lon[-1]:
+        lon, at = lon[::-1], at[:, ::-1]
+    if len(lat) > 1 and lat[0] > lat[-1]:
+        lat, at = lat[::-1], at[::-1]
+    if whole:
+        # The first column again, a turn further.
+        lon, at = np.append(lon, lon[0] + 360), np.column_stack((at, at[:, 0]))
+    x, y = pair.target.centers_lonlat[pair.targets].T
+    x = lon[0] + (x - lon[0]) % 360
+    column = np.clip(np.searchsorted(lon, x, side="right") - 1, 0, max(len(lon) - 2, 0))
+    row = np.searchsorted(lat, y, side="right") - 1
+    inside = (x >= lon[0]) & (x <= lon[-1])
+    found = []
+    middle = inside & (row >= 0) & (y <= lat[-1])
+    if len(lat) > 1 and len(lon) > 1:
+        low = np.clip(row, 0, len(lat) - 2)
+        s = (x - lon[column]) / (lon[column + 1] - lon[column])
+        t = (y - lat[low]) / (lat[low + 1] - lat[low])
+        for i, v in ((0, 1 - t), (1, t)):
+            for j, u in ((0, 1 - s), (1, s)):
+                found.append((middle, at[low + i, np.minimum(column + j, len(lon) - 1)], u * v))
+    parts = [
+        Entries(pair.targets[rows], cells[rows], weights[rows]) for rows, cells, weights in found
+    ]
+    if whole:
+        for beyond, k, pole in ((row < 0, 0, -90.0), (y > lat[-1], len(lat) - 1, 90.0)):
+            if abs(source.bounds[1][[0, -1]] - pole).min() == 0:
+                parts += _to_pole(pair, beyond, (x, y, column), (lon, lat, at), k, pole)
+    entries = Entries(*(np.concatenate(each) for each in zip(*parts, strict=True)))
+    if used is not None:
+        # A target with a cell that is not used has no value.
+        lost = np.unique(entries.rows[~used[entries.columns] & (entries.values > 0)])
+        kept = ~np.isin(entries.rows, lost)
+        entries = _kept(entries, kept)
+    return _kept(entries, entries.values > 0)
+
+
+def _kept(entries: Entries, kept: Flags) -> Entries:
+    return Entries(entries.rows[kept], entries.columns[kept], entries.values[kept])
+
+
+def _to_pole(  # noqa: PLR0917
+    pair: _Pair,
+    beyond: Flags,
+    places: tuple[Floats, Floats, Indices],
+    nodes: tuple[Floats, Floats, Indices],
+    k: int,
+    pole: float,
+) -> list[Entries]:
+    """Return the weights of targets between a row and its pole."""
+    x, y, column = (each[beyond] for each in places)
+    lon, lat, at = nodes
+    targets = pair.targets[beyond]
+    t = (y - lat[k]) / (pole - lat[k])
+    s = (x - lon[column]) / (lon[column + 1] - lon[column])
+    parts = [Entries(targets, at[k, column + j], u * (1 - t)) for j, u in ((0, 1 - s), (1, s))]
+    cells = at[k, :-1]
+    share = np.repeat(t / len(cells), len(cells))
+    parts.append(Entries(np.repeat(targets, len(cells)), np.tile(cells, len(targets)), share))
+    return parts
