@@ -33,6 +33,7 @@ extensions = [
     "sphinx_copybutton",
     "sphinxcontrib.bibtex",
     "sphinxext.opengraph",
+    "exercise",
     "live",
     "member_tables",
     "picture_texts",

@@ -6,6 +6,7 @@ import shutil
 import sys
 import threading
 from functools import partial
+from html import escape
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from browser import Browser, chromium
+from chapters import EXERCISES, Written
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,10 +26,20 @@ DOCS = ROOT / "docs"
 WEB = ROOT / "target" / "web"
 sys.path.insert(0, str(DOCS / "extensions"))
 
+import exercise_parts  # noqa: E402
 import live_files  # noqa: E402
 import live_steps  # noqa: E402
 
 FIGURES = sorted(live_steps.FIGURES)
+
+
+def exercise_html(written: Written) -> str:
+    """The element of an exercise, as the extension writes it."""
+    return (
+        exercise_parts.opening(written.exercise)
+        + f'<p class="exercise-task">{escape(written.task)}</p>'
+        + f"{exercise_parts.SOLUTION}<p>{escape(written.answer)}</p>{exercise_parts.CLOSING}"
+    )
 
 
 class Quiet(SimpleHTTPRequestHandler):
@@ -60,10 +72,14 @@ def site(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
         live_files.figure_html(name, name, folder=live_files.FOLDER, live=with_core)
         for name in FIGURES
     ]
+    exercises = map(exercise_html, EXERCISES)
+    styles = ("learn.css", "exercises/exercises.css")
+    links = "".join(f"<link rel=stylesheet href={live_files.FOLDER}/{name}>" for name in styles)
     page = (
         "<!doctype html><meta charset=utf-8><title>figures</title><link rel=icon href=data:,>"
-        f"<link rel=stylesheet href={live_files.FOLDER}/learn.css>{''.join(figures)}"
+        f"{links}{''.join(figures)}{''.join(exercises)}"
         f"<script type=module src={live_files.FOLDER}/main.js></script>"
+        f"<script type=module src={live_files.FOLDER}/exercises/main.js></script>"
     )
     (folder / "index.html").write_text(page, encoding="utf-8")
     server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=folder))

@@ -15,7 +15,7 @@ export function addControls(figure) {
   if (figure.kind.step) parts.push(stepper(figure, bar));
   for (const control of figure.kind.controls ?? []) parts.push(MAKERS[control.kind](figure, bar, control));
   if (!figure.kind.still) {
-    button(bar, "Reset", () => figure.reset()).classList.add("live-reset");
+    button(bar, figure.kind.reset ?? "Reset", () => figure.reset()).classList.add("live-reset");
   }
   return {
     defaults: { ...figure.options },

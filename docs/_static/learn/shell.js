@@ -3,6 +3,7 @@
 // A figure kind is an object:
 //   panels    list of {view: [x0, y0, x1, y1], title}: what is drawn side by side
 //   controls  list of controls besides the step, see controls.js
+//   reset     text of the button that brings back the points of the page
 //   ratio     height of the canvas divided by its width
 //   fixed     true if points cannot be dragged; `handles`: at most so many points have a Tab stop
 //   free      true if points can be moved without the core, too

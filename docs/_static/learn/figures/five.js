@@ -9,6 +9,7 @@ export default {
   panels: [{ view: [-2.4, -4.3, 6.4, 5.3] }],
   ratio: 0.72,
   grid: 0.25,
+  reset: "Back to the five points",
   step: "Triangle",
   names: NAMES,
   controls: [{ kind: "toggle", name: "four", label: "Delete p4", value: false }],

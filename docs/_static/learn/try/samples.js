@@ -6,6 +6,7 @@ export const SAMPLES = [
   ["most", "100,000 random points"],
   ["grid", "Grid: each square is a tie"],
   ["spiral", "Sunflower"],
+  ["five", "Five points by hand"],
 ];
 
 /** The points of a sample, flat. */
@@ -17,6 +18,9 @@ const MAKERS = {
   random: () => random(500),
   many: () => random(10_000),
   most: () => random(100_000),
+
+  // Those of the chapter with this title.
+  five: () => Float64Array.of(0, 0, 4, 0, 4, 3, 0, 3, 2, 1),
 
   grid() {
     const points = new Float64Array(2 * 21 * 14);
