@@ -28,7 +28,7 @@ CRATES = ROOT / "crates"
 # import those of the layers below its own. Files must not import each other in a circle, wherever
 # the import is and whatever it is for.
 PYTHON: tuple[set[str], ...] = (
-    {"_core", "errors", "blocks", "counting", "decimals", "duplicates", "renames"},
+    {"_core", "_types", "errors", "blocks", "counting", "decimals", "duplicates", "renames"},
     {"_masks", "atomic", "bounded", "extras"},
     {"georeference"},
     {"_arrays", "units"},
