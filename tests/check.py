@@ -35,6 +35,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "_arrays": ("arrays",),
     "_core": ("predicates", "platforms"),
     "_masks": ("arrays",),
+    "_types": ("arrays",),
     "_values": ("arrays", "interpolate"),
     "archive": ("delaunay", "classes", "constrained"),
     "atomic": ("io",),

@@ -21,10 +21,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from delone._types import Floats, Indices
     from delone.exchange.parts import Parts
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
     Arrays = Mapping[str, NDArray[Any]]
     # Names and seconds; a dictionary is made when it is asked for.
     Stages = dict[str, float] | tuple[tuple[str, float], ...]

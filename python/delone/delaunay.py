@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
-    Indices = NDArray[np.int32]
+    from delone._types import Indices
 
 __all__ = ["Delaunay"]
 

@@ -22,10 +22,9 @@ from delone.errors import LimitError
 from delone.immutable import ReadOnly
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
     IntegerPoint: TypeAlias = tuple[int, int]
 

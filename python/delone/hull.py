@@ -27,10 +27,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Floats, Indices
     from delone.exchange.parts import Parts
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["ConvexHull"]
 

@@ -19,8 +19,7 @@ from delone.immutable import ReadOnly
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["Measures", "circumcenters", "edges", "sizes", "transform"]
 

@@ -24,10 +24,8 @@ from delone.space.dimension import SPACE
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Floats, Indices
     from delone.dimension import Dimension
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["HullTiling", "PointTriangulation", "Triangulation"]
 

@@ -11,7 +11,7 @@ import pytest
 
 import delone
 
-ARRAYS = ("NDArray", "Floats", "Indices", "Rows", "Handles", "Masks")
+ARRAYS = ("NDArray", "Floats", "Indices", "Rows", "Bools", "Handles", "Masks")
 
 
 def results() -> Iterator[type]:

@@ -21,12 +21,9 @@ from delone.space.topology import FACES
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Bools, Floats, Indices
     from delone.alpha.values import Valued
     from delone.exchange.parts import Parts
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Flags = NDArray[np.bool_]
 
 __all__ = ["AlphaShape", "ConcaveHull", "Kept"]
 
@@ -36,7 +33,7 @@ class Kept(Exchanged):
 
     __slots__ = ("_flags", "_neighbors", "_points", "_tops", "_workers")
 
-    _flags: Flags
+    _flags: Bools
     _neighbors: Indices
     _points: Floats
     _tops: Indices
@@ -58,7 +55,7 @@ class Kept(Exchanged):
         return int(self._points.shape[1])
 
     @property
-    def is_kept(self) -> Flags:
+    def is_kept(self) -> Bools:
         """Whether each triangle (in 3-D tetrahedron) of the triangulation is kept, (m,)."""
         return self._flags
 
@@ -454,7 +451,7 @@ class ConcaveHull(Kept):
         points: Floats,
         tops: Indices,
         neighbors: Indices,
-        flags: Flags,
+        flags: Bools,
         workers: int | None,
     ) -> Self:
         found = cls.__new__(cls)

@@ -20,8 +20,7 @@ from delone.regular import RegularTriangulation, triangulated
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["Valued", "edge_slots", "known_mesh", "of_periodic", "of_points", "simplices_of"]
 

@@ -14,8 +14,7 @@ from delone.immutable import sealed
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["CondensedTree", "binary", "condensed_tree"]
 

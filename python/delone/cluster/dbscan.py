@@ -14,7 +14,7 @@ from delone.graphs.scale import rescaled
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["DBSCAN"]
 

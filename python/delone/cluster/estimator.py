@@ -19,8 +19,7 @@ from delone.immutable import own_copy
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["Clusterer", "as_reach", "numbered"]
 

@@ -14,12 +14,8 @@ from delone.graphs import Graph, minimum_spanning_tree
 from delone.immutable import Immutable, kept, sealed
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Floats, Indices
     from delone.graphs.skeleton import Points
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["SingleLinkage", "single_linkage"]
 

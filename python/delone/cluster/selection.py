@@ -12,8 +12,6 @@ if TYPE_CHECKING:
 
     from delone.cluster.condensed import CondensedTree
 
-    Indices = NDArray[np.int32]
-
 __all__ = ["labeled", "memberships", "selected"]
 
 

@@ -21,10 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
-    Bools = NDArray[np.bool_]
+    from delone._types import Bools, Floats, Indices, Rows
 
 __all__ = ["Dual", "Facets", "first_of_equal", "rounded"]
 

@@ -18,8 +18,7 @@ from delone.predicates import incircle, orient2d
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Rows = NDArray[np.int64]
+    from delone._types import Floats, Rows
 
 __all__ = ["furthest_site"]
 

@@ -32,7 +32,7 @@ from delone.interpolate.values import as_field
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = [
     "CloughTocher2DInterpolator",

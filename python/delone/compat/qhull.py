@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
     class QhullError(RuntimeError):
         """Degenerate input or an unknown option: ``scipy.spatial.QhullError``."""

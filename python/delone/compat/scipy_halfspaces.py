@@ -40,7 +40,7 @@ from delone.errors import DtypeError, NonFiniteError, ShapeError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["HalfspaceIntersection"]
 

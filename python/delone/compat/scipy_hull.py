@@ -32,8 +32,7 @@ from delone.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["ConvexHull"]
 

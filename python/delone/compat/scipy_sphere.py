@@ -29,7 +29,7 @@ from delone.voronoi.rows import as_lists
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["SphericalVoronoi"]
 

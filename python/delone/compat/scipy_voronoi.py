@@ -29,8 +29,7 @@ from delone.voronoi.rows import as_lists, from_the_gap, one_gap
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["Voronoi", "voronoi_plot_2d"]
 

@@ -22,10 +22,9 @@ from delone.tetrahedra.filling import tetrahedralize
 from delone.tetrahedra.sources import given
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["TetGen"]
 

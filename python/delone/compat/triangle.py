@@ -36,10 +36,9 @@ from delone.refine.rounds import MOST_ADDED, Limits, as_min_angle
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["convex_hull", "delaunay", "triangulate", "voronoi"]
 

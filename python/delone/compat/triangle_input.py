@@ -24,10 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
+    from delone._types import Bools, Floats, Indices, Rows
 
 __all__ = ["Given", "Switches", "again", "interpolated", "keys_of", "not_reached", "rows_of"]
 

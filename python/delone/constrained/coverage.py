@@ -13,13 +13,8 @@ import numpy as np
 from delone import _core
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from delone._core import ConstrainedTriangulation
-
-    Bools = NDArray[np.bool_]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
+    from delone._types import Bools, Indices, Rows
 
 __all__ = ["beside", "closed_rings", "containing", "first_polygon", "odd_pairs"]
 

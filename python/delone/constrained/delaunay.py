@@ -35,11 +35,8 @@ from delone.plane import topology
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Floats, Indices
     from delone.exchange.parts import Parts
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["ConstrainedDelaunay"]
 

@@ -9,13 +9,8 @@ import numpy as np
 from delone.constrained import coverage
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Bools, Indices, Rows
     from delone.constrained.segmented import Segmented
-
-    Bools = NDArray[np.bool_]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
 
 __all__ = ["containing", "inside"]
 

@@ -23,11 +23,9 @@ from delone.exchange.parts import Parts
 from delone.georeference import as_known_crs, common_crs, is_geographic, warn_of_degrees
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
+    from delone._types import Floats, Indices
 
 __all__ = ["PolygonTriangles", "from_geometry", "triangulate_polygon"]
 

@@ -16,9 +16,7 @@ from delone import _core
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Bools, Floats, Indices
 
 __all__ = [
     "Tiling",

@@ -22,11 +22,8 @@ from delone.triangulation import PointTriangulation
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Bools, Floats, Indices
     from delone.constrained.segments import SegmentReport
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["Given", "Options", "Origin", "Segmented"]
 

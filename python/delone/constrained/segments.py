@@ -18,7 +18,7 @@ from delone.plane.topology import among
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Indices = NDArray[np.int32]
+    from delone._types import Indices
 
 __all__ = ["SegmentReport"]
 

@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
     from delone.validation import ValidationReport
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
     Handles = NDArray[np.int64]
 
 __all__ = ["Dynamic"]

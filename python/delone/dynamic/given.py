@@ -18,7 +18,7 @@ from delone.immutable import own_copy
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["as_any_values", "as_ndim", "as_values", "given_points", "own_points"]
 

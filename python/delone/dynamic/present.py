@@ -21,11 +21,10 @@ from delone.space.dimension import SPACE
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Floats, Indices
     from delone.dimension import Dimension, Locator
     from delone.location import Location
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
     Handles = NDArray[np.int64]
 
 __all__ = ["Present"]

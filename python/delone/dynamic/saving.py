@@ -12,7 +12,8 @@ from delone.errors import FileFormatError, InputError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
+
     Handles = NDArray[np.int64]
 
 __all__ = ["State", "require_few_handles"]

@@ -18,10 +18,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Indices
     from delone.dynamic.validation import DynamicReport
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
     Handles = NDArray[np.int64]
 
 T = TypeVar("T")

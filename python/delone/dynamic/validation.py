@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
+    from delone._types import Bools, Floats
+
     Handles = NDArray[np.int64]
 
 __all__ = ["DynamicReport", "validate"]

@@ -11,8 +11,7 @@ from delone.extras import require
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["Links", "to_csr", "to_libpysal", "to_networkx"]
 

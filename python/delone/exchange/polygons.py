@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
+
     Indices = NDArray[np.integer[Any]]
 
 __all__ = ["polygons_to_meshio", "polygons_to_pyvista"]

@@ -24,10 +24,9 @@ from delone.regular import RegularTriangulation
 from delone.voronoi.diagram import Voronoi
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
     Explorable: TypeAlias = (
         Delaunay | ConstrainedDelaunay | Mesh | RegularTriangulation | PeriodicDelaunay | Voronoi

@@ -21,11 +21,10 @@ from delone.regular import RegularTriangulation
 from delone.voronoi.diagram import Voronoi
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from delone._types import Floats
     from delone.explorer.scene import Explorable, Scene
-
-    Floats = NDArray[np.float64]
 
 __all__ = ["Exploration"]
 

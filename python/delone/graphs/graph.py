@@ -25,11 +25,9 @@ from delone.immutable import kept, own_copy, sealed
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Floats, Indices
     from delone.exchange.graphs import Links
     from delone.exchange.parts import Parts
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["Graph"]
 

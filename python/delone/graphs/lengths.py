@@ -15,8 +15,8 @@ from delone._arrays import as_workers
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
+
 
 # More than the relative error of a rounded length, and than the absolute one of the smallest.
 _ROUNDED, _SMALLEST = 2.0**-48, 2.0**-1070

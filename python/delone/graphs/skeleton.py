@@ -18,10 +18,10 @@ from delone.graphs.scale import rescaled
 from delone.immutable import own_copy
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
+
     Points = ArrayLike | Stored
 
 __all__ = ["Skeleton", "coordinates", "joined", "skeleton"]

@@ -43,15 +43,12 @@ from delone.triangulation import Triangulation
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Bools, Floats, Indices, Rows
     from delone.interpolate.hull import Terms
     from delone.interpolate.repeated import Repeated
     from delone.interpolate.weights import Table, Weights
     from delone.location import Location
 
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
     # A field, and interpolators of parts of its values.
     Parts = tuple[Field, list[tuple[Rows, Any]]]
 

@@ -33,8 +33,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    Floats = NDArray[np.float64]
-    Rows = NDArray[np.int64]
+    from delone._types import Floats, Rows
 
 __all__ = ["CrossValidation", "cross_validate"]
 

@@ -14,12 +14,8 @@ import numpy as np
 from delone import _core
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Floats, Indices
     from delone.location import Location
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["Terms", "edge_terms", "plane_gradients", "summed"]
 

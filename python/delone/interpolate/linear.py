@@ -13,9 +13,7 @@ from delone.interpolate.space import SPACE, face_terms, hull_gradients, slopes
 from delone.interpolate.weights import Weights, rectangular
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["Linear"]
 

@@ -24,12 +24,11 @@ from delone.interpolate.values import chosen
 from delone.interpolate.weights import Weights
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from delone._types import Floats
     from delone.periodic import PeriodicDelaunay
     from delone.triangulation import Triangulation
-
-    Floats = NDArray[np.float64]
 
 __all__ = ["KINDS", "NaturalNeighbor"]
 

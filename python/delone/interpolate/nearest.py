@@ -12,14 +12,11 @@ from delone.interpolate.base import Interpolator
 from delone.interpolate.weights import Weights, rectangular
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from delone._types import Bools, Floats, Indices
     from delone.periodic import PeriodicDelaunay
     from delone.triangulation import Triangulation
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["Nearest"]
 

@@ -22,10 +22,7 @@ from delone.units import METERS, as_units
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
-    Rows = NDArray[np.int64]
+    from delone._types import Floats, Rows
 
 __all__ = ["MISSING", "Places", "places_of", "source_rows", "target_points"]
 

@@ -16,11 +16,8 @@ from delone.interpolate.values import require_finite_values
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Floats, Indices, Rows
     from delone.interpolate.values import Field
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
 
 __all__ = ["Policies"]
 

@@ -32,10 +32,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Floats
     from delone.periodic import PeriodicDelaunay
     from delone.triangulation import Triangulation
-
-    Floats = NDArray[np.float64]
 
 __all__ = ["Grid", "grid", "raster_nodes", "require_memory"]
 

@@ -21,10 +21,8 @@ from delone.errors import InputError, LimitError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Floats, Rows
     from delone.periodic import PeriodicDelaunay
-
-    Floats = NDArray[np.float64]
-    Rows = NDArray[np.int64]
 
 __all__ = ["Repeated", "repeated"]
 

@@ -23,12 +23,9 @@ from delone.interpolate.values import chosen
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Bools, Floats, Indices
     from delone.periodic import PeriodicDelaunay
     from delone.triangulation import Triangulation
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Bools = NDArray[np.bool_]
 
 __all__ = ["GRADIENTS", "GradientWarning", "Smooth", "cut"]
 

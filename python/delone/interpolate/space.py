@@ -16,13 +16,9 @@ from delone.errors import InputError
 from delone.interpolate.hull import Terms
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Floats, Indices
     from delone.location import Location
     from delone.triangulation import Triangulation
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["SPACE", "face_terms", "hull_gradients", "refuse", "slopes"]
 

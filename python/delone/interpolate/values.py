@@ -20,7 +20,7 @@ from delone.errors import ConflictingValuesError, DtypeError, InputError, NonFin
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["DUPLICATES", "NAN", "Field", "as_field", "chosen", "require_finite_values"]
 

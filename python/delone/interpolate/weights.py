@@ -22,11 +22,10 @@ from delone.renames import renamed
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Floats, Indices
     from delone.interpolate.hull import Terms
     from delone.interpolate.policies import Policies
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
     Table: TypeAlias = tuple[NDArray[np.int64], Indices, Floats, Floats | None]
 
 _PLANE = 2

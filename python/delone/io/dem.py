@@ -27,9 +27,7 @@ from delone.io.systems import check_system
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["is_raster", "read_points", "read_raster"]
 

@@ -22,10 +22,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from delone._types import Floats
     from delone.io.geometryset import GeometrySet
     from delone.io.pointset import PointSet
-
-    Floats = NDArray[np.float64]
 
 __all__ = ["read_geometries", "read_points", "read_surface"]
 

@@ -17,9 +17,7 @@ from delone.io.facets import facet_triangles
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["KINDS", "Drawn"]
 

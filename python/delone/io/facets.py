@@ -16,9 +16,7 @@ from delone.errors import DeloneError, FileFormatError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["facet_triangles", "normal_axis"]
 

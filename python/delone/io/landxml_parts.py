@@ -17,7 +17,7 @@ from delone.units import as_units
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["ORDERS", "Draft", "Head"]
 

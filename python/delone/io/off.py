@@ -21,11 +21,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from delone._types import Floats
     from delone.exchange.parts import HasParts
-
-    Floats = NDArray[np.float64]
 
 __all__ = ["read_mesh", "read_points", "require_libraries", "write_mesh"]
 

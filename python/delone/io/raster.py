@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["raster_suffixes", "raster_writer", "write_raster"]
 

@@ -24,12 +24,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from delone._types import Floats, Indices
     from delone.exchange.parts import HasParts
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["is_solid", "read_mesh", "read_nodes", "require_libraries", "write_mesh"]
 

@@ -29,10 +29,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Floats
     from delone.exchange.parts import HasParts, Parts
     from delone.io.content import Content
-
-    Floats = NDArray[np.float64]
 
 __all__ = ["read_mesh", "read_points", "read_triangle", "require_libraries", "write_mesh"]
 

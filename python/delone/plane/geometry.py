@@ -10,10 +10,8 @@ import numpy as np
 from delone.blocks import ROWS, blocks
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from delone._types import Floats, Indices
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 # So few sizes that taking them apart would cost more.
 _FEW = 1000

@@ -9,10 +9,7 @@ import numpy as np
 from delone import _core
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["Stretch", "across_line", "along", "located", "on_edges", "stretches"]
 

@@ -19,8 +19,7 @@ from delone.measures import Measures
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["Quality", "below", "measured", "smallest_corners", "squared_cosine"]
 

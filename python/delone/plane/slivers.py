@@ -16,9 +16,8 @@ from delone import measures
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Bools, Floats, Indices
+
     Rows = NDArray[np.intp]
 
 __all__ = ["at_outline", "shapes", "without"]

@@ -10,9 +10,7 @@ from delone.errors import DtypeError, InputError
 from delone.extras import require
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = [
     "axis_names",

@@ -15,9 +15,7 @@ from delone.plot.style import require_style, restyle
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["plot_bands"]
 

@@ -21,10 +21,8 @@ from delone.plot.style import EDGES
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Floats, Indices
     from delone.plot.protocols import Segmented
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["color_of_regions", "draw_boundary", "draw_regions", "draw_segments"]
 

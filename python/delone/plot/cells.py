@@ -17,11 +17,10 @@ from delone.plot.plotter import add_points, as_pyvista_cmap, new_plotter
 from delone.plot.style import EDGES
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from delone._types import Floats
     from delone.plot.protocols import Cells2, Cells3
-
-    Floats = NDArray[np.float64]
 
 __all__ = ["plot_cells2", "plot_cells3"]
 

@@ -10,11 +10,8 @@ from delone.errors import InputError
 from delone.extras import require
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Floats
     from delone.plot.protocols import Triangles
-
-    Floats = NDArray[np.float64]
 
 __all__ = ["bounds_with_circles", "draw_circles", "require_few"]
 

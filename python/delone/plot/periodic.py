@@ -12,11 +12,8 @@ from delone.plot.axes import draw_dots, frame, new_axes, require_bounds, thin
 from delone.plot.style import EDGES
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Floats
     from delone.plot.protocols import Periodic
-
-    Floats = NDArray[np.float64]
 
 __all__ = ["plot_periodic"]
 

@@ -9,9 +9,7 @@ import numpy as np
 from delone.plot.axes import new_axes
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["draw_predictions"]
 

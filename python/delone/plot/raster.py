@@ -16,9 +16,7 @@ from delone.plot.shading import Raster, relief
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["draw_raster", "plot_raster"]
 

@@ -17,9 +17,8 @@ from delone.plot.protocols import segmented
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Floats
     from delone.plot.protocols import Triangles
-
-    Floats = NDArray[np.float64]
 
 __all__ = ["Raster", "facet_light", "facet_values", "point_density", "rasterize", "relief"]
 

@@ -20,9 +20,8 @@ from delone.plot.protocols import has, hint, kind_of
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Floats
     from delone.plot.protocols import Simplices
-
-    Floats = NDArray[np.float64]
 
 __all__ = ["plot"]
 

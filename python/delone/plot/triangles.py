@@ -19,11 +19,10 @@ from delone.plot.shading import facet_light, point_density, rasterize, relief
 from delone.plot.style import EDGES
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from delone._types import Floats
     from delone.plot.protocols import Hulled, Triangles
-
-    Floats = NDArray[np.float64]
 
 __all__ = ["plot", "require_drawable", "require_flat"]
 

@@ -22,11 +22,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from delone._types import Bools, Floats, Indices
     from delone.constrained.segmented import Segmented
 
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
     # Called with the number of added points and the smallest angle.
     Progress = Callable[[int, float], object]
 

@@ -27,11 +27,9 @@ from delone.refine.rounds import MOST_ADDED, Limits, as_min_angle, rounds
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Bools, Indices
 
 __all__ = ["as_rows", "filled", "mesh"]
 

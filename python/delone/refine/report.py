@@ -27,10 +27,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from delone._types import Floats, Indices
     from delone.refine.domains import Lines
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["CAUSES", "MeshReport", "judged", "reported"]
 

@@ -24,11 +24,8 @@ from delone.triangulation import Triangulation
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Floats, Indices
     from delone.refine.domains import Domain
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["EQUILATERAL", "Sizing"]
 

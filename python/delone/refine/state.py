@@ -21,12 +21,9 @@ from delone.triangulation import HullTiling
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Bools, Floats, Indices
     from delone.exchange.parts import Parts
     from delone.refine.report import MeshReport
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["MeshState"]
 

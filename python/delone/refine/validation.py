@@ -14,11 +14,7 @@ from delone.validation import SENTENCES, ValidationReport, not_across
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Bools, Floats, Indices
 
 __all__ = ["MeshValidation", "validate"]
 

@@ -13,8 +13,7 @@ from delone.space import location, quality, topology
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["SPACE"]
 

@@ -12,11 +12,7 @@ from delone import _core
 from delone._arrays import as_mesh, as_workers
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["face_areas", "face_normals"]
 

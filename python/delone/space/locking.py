@@ -12,7 +12,7 @@ from delone.space.topology import FACES
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Indices = NDArray[np.int32]
+    from delone._types import Indices
 
 __all__ = ["Sides", "cells", "directions", "is_odd", "sides"]
 

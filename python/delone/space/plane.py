@@ -21,10 +21,7 @@ from delone.plane import topology
 from delone.space.topology import FACES
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["PlaneTriangulation", "plane_of"]
 

@@ -15,9 +15,7 @@ from delone import _core
 from delone._arrays import as_workers
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Indices = NDArray[np.int32]
+    from delone._types import Indices
 
 __all__ = ["FACES", "boundary_faces", "faces", "neighbors"]
 

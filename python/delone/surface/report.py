@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    Rows = NDArray[np.int64]
+    from delone._types import Rows
 
 __all__ = ["KINDS", "SurfaceCheck", "crossing_error"]
 

@@ -47,11 +47,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from delone._types import Bools, Floats, Indices
     from delone.terrain.surface import Surface
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = [
     "Built",

@@ -24,12 +24,9 @@ from delone.terrain.surface import on_surface
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Bools, Floats, Rows
     from delone.exchange.parts import Parts
     from delone.terrain.surface import Surface
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Rows = NDArray[np.int64]
 
 __all__ = ["MOST", "Bands", "Contours", "bands", "levels_of", "lines"]
 

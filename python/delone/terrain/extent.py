@@ -19,13 +19,9 @@ from delone.plane.topology import triangles_among
 from delone.terrain.gathering import BOUNDARY, HOLE, HULL, ISLAND, off_ground
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Bools, Floats
     from delone.terrain.gathering import Lines
     from delone.terrain.lines import Ring
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
 
 __all__ = ["Part", "inside_of_rings", "refuse_crossing_rings", "within", "without_outer"]
 

@@ -27,12 +27,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from delone._types import Floats, Rows
     from delone.io import SurfaceFile
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
 
 __all__ = ["build_faces", "with_lines"]
 

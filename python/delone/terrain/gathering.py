@@ -15,12 +15,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from delone._types import Bools, Floats, Indices
     from delone.terrain.lines import Ring
     from delone.terrain.surface import Surface
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = [
     "BOUNDARY",

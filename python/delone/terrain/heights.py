@@ -21,11 +21,8 @@ from delone.errors import ConflictingValuesError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Bools, Floats, Rows
     from delone.constrained.delaunay import ConstrainedDelaunay
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Rows = NDArray[np.int64]
 
 __all__ = ["POLICIES", "Claims", "claims_of_lines", "claims_of_points", "on_ground", "resolved"]
 

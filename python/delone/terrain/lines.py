@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["Ring", "line_of", "lines_of", "rings_of"]
 

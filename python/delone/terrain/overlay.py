@@ -23,15 +23,9 @@ from delone.terrain.pads import inside, plane_at
 from delone.terrain.snapping import closeness, threaded
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Bools, Floats, Indices, Rows
     from delone.terrain.pads import Facets, Pad
     from delone.terrain.surface import Surface
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
 
 __all__ = ["GROUND", "PAD", "Overlay", "overlaid"]
 

@@ -20,13 +20,8 @@ from delone.terrain.extent import inside_of_rings, refuse_crossing_rings
 from delone.terrain.lines import rings_of
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Bools, Floats, Indices
     from delone.constrained.delaunay import ConstrainedDelaunay
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["CORNERS", "Facets", "Pad", "facets_of", "inside", "pad_of", "plane_at"]
 

@@ -18,10 +18,8 @@ from delone.terrain.lines import line_of
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Floats, Indices
     from delone.terrain.surface import Surface
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["Profile", "Sight", "drape", "parts_of", "profile", "sight"]
 

@@ -26,13 +26,9 @@ from delone.terrain.snapping import closeness, settled
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Bools, Floats, Indices, Rows
     from delone.terrain.pads import Pad
     from delone.terrain.surface import Surface
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
 
 __all__ = ["embanked", "flattened"]
 

@@ -18,13 +18,8 @@ from delone.plane import slivers
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from delone._types import Bools, Floats, Indices
     from delone.terrain.surface import Sheet
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["drawn"]
 

@@ -14,12 +14,10 @@ from delone.location import as_tolerance
 from delone.terrain.surface import on_surface
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from delone._types import Floats, Indices
     from delone.terrain.surface import Surface
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = [
     "aspect",

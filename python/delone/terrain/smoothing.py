@@ -17,13 +17,8 @@ from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import CrossingSegmentsError, InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Bools, Floats, Rows
     from delone.terrain.surface import Surface
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Rows = NDArray[np.int64]
 
 __all__ = ["smoothed"]
 

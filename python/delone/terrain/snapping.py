@@ -12,13 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Floats, Rows
     from delone.terrain.pads import Pad
     from delone.terrain.surface import Surface
-
-    Floats = NDArray[np.float64]
-    Rows = NDArray[np.int64]
 
 __all__ = ["closeness", "settled", "threaded"]
 

@@ -9,11 +9,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Bools, Floats, Indices
     from delone.plane.location import Stretch
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["Located", "Sheet", "Surface", "on_surface"]
 

@@ -13,12 +13,9 @@ from delone.triangulation import HullTiling
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Bools, Floats, Indices
     from delone.exchange.parts import Parts
     from delone.plane.location import Stretch
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["Surveyed"]
 

@@ -19,12 +19,8 @@ from delone.terrain.lines import rings_of
 from delone.units import require_same_units
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Floats, Indices
     from delone.terrain.surface import Surface
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["Volume", "volume"]
 

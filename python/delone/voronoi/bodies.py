@@ -9,13 +9,9 @@ import numpy as np
 from delone import _core
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from delone._core import ClippedCells3, Diagram3
+    from delone._types import Floats, Indices
     from delone.voronoi.polyhedra import Polyhedron
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["Bodies", "Body"]
 

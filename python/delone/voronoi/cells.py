@@ -16,11 +16,11 @@ from delone.immutable import sealed
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Floats
     from delone.delaunay import Delaunay
     from delone.periodic import PeriodicDelaunay
     from delone.regular import RegularTriangulation
 
-    Floats = NDArray[np.float64]
     Periods = tuple[float | None, float | None]
 
 __all__ = ["Cells"]

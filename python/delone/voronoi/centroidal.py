@@ -31,7 +31,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
+
     Density = Callable[[Floats], ArrayLike]
 
 __all__ = ["LloydResult", "lloyd"]

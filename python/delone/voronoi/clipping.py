@@ -23,11 +23,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone._core import Diagram2
+    from delone._types import Floats, Indices
     from delone.voronoi.outline import Clip
     from delone.voronoi.torus import PeriodicDual
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["Clipped", "cells"]
 

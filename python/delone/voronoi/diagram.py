@@ -28,12 +28,10 @@ from delone.voronoi.space import SpaceCells
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Floats, Indices
     from delone.delaunay import Delaunay
     from delone.periodic import PeriodicDelaunay
     from delone.regular import RegularTriangulation
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["Voronoi"]
 

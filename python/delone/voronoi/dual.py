@@ -22,10 +22,7 @@ import numpy as np
 from delone._core import Diagram2
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["foot", "of_chain"]
 

@@ -29,9 +29,8 @@ from delone.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from numpy.typing import NDArray
+    from delone._types import Floats
 
-    Floats = NDArray[np.float64]
     Row = tuple[int, ...]
 
 __all__ = ["common_part"]

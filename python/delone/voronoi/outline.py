@@ -20,7 +20,7 @@ from delone.exchange.geopandas import shapely_or_say
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = [
     "Clip",

@@ -14,10 +14,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone._core import CellPieces2
+    from delone._types import Floats, Indices
     from delone.voronoi.outline import Clip
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["Pieces", "cut"]
 

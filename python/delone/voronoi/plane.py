@@ -22,11 +22,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone._core import Diagram2
+    from delone._types import Floats, Indices
     from delone.voronoi.clipping import Clipped
     from delone.voronoi.torus import PeriodicDual
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
     Arrays = dict[str, NDArray[Any]]
 
 __all__ = ["PlaneCells"]

@@ -22,8 +22,7 @@ from delone.voronoi.halfspaces import common_part
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["Polyhedron", "as_polyhedron", "loaded", "saved"]
 

@@ -9,11 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from delone.errors import DtypeError
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["Cell", "Neighbors", "PolyhedralCell", "Rays", "as_site"]
 

@@ -16,11 +16,8 @@ from delone.regular import RegularTriangulation, triangulated
 from delone.voronoi import dual, torus
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from delone._core import Diagram2, Diagram3
-
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["in_plane", "in_space", "repeated"]
 

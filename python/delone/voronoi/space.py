@@ -28,9 +28,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone._core import Diagram3
+    from delone._types import Floats, Indices
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
     Arrays = dict[str, NDArray[Any]]
 
 __all__ = ["SpaceCells"]

@@ -17,7 +17,7 @@ from delone.georeference import caller_level
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["ThinCellWarning", "among", "warn"]
 

@@ -25,11 +25,8 @@ from delone.immutable import sealed
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Floats, Indices, Rows
     from delone.periodic import PeriodicDelaunay
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Longs = NDArray[np.int64]
 
 __all__ = ["PeriodicDual", "of_line", "of_periodic", "require_room", "unrolled"]
 
@@ -269,8 +266,8 @@ def unrolled(
 
 
 def _shared_centers(
-    neighbor: Longs, tau: NDArray[Any], shared: NDArray[np.bool_]
-) -> tuple[Longs, Longs]:
+    neighbor: Rows, tau: NDArray[Any], shared: NDArray[np.bool_]
+) -> tuple[Rows, Rows]:
     """Return the first triangle with the same circumcenter, and the shift from there."""
     first = np.arange(len(neighbor))
     shift = np.zeros((len(neighbor), 2), dtype=np.int64)
@@ -310,7 +307,7 @@ def _ridges(
 
 def _cells(
     simplices: Indices, partners: NDArray[Any], shared: NDArray[np.bool_]
-) -> tuple[Indices, Indices, Longs, NDArray[np.bool_]]:
+) -> tuple[Indices, Indices, Rows, NDArray[np.bool_]]:
     """Return sites, where the entries of each begin, and the corner (3 t + k) of each entry.
 
     All sites are circled at once, one triangle per step, so that there are as many steps as the

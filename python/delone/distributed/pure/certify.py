@@ -19,14 +19,8 @@ from delone import _core
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from delone._types import Bools, Floats, Indices, Rows
     from delone.distributed.pure.tiles import Tiles
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Numbers = NDArray[np.int64]
 
 __all__ = ["Known", "corners_of"]
 
@@ -51,8 +45,8 @@ class Known:
         return _core.within2(points, simplices, own, (left, bottom, right, top), threads)
 
     def questions(
-        self, points: Floats, simplices: Indices, rows: Numbers, among: Sequence[int] | None = None
-    ) -> tuple[Numbers, Numbers]:
+        self, points: Floats, simplices: Indices, rows: Rows, among: Sequence[int] | None = None
+    ) -> tuple[Rows, Rows]:
         """Return pairs of a row of `simplices` and a tile to query: its disk may meet points of it.
 
         `among` restricts the tiles. The part in the box is ignored: there all points are known.

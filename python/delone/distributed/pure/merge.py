@@ -25,12 +25,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from delone._types import Bools, Floats, Indices
     from delone.distributed.pure.certify import Known
     from delone.distributed.pure.rows import Rows
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["Border", "advance", "belongs", "cut_out"]
 

@@ -11,11 +11,9 @@ from delone.distributed.pure.rows import coordinates, widen
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Bools, Floats
     from delone.distributed.pure.layout import Layout
     from delone.distributed.pure.rows import Rows
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
 
 __all__ = ["scatter"]
 

@@ -17,8 +17,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Numbers = NDArray[np.int64]
+    from delone._types import Floats, Rows
 
 __all__ = ["HALO", "Tiles", "plant", "strips"]
 
@@ -38,7 +37,7 @@ class Tiles:
 
     axis: NDArray[np.int8]
     cut: Floats
-    children: Numbers
+    children: Rows
     cells: Floats
 
     def __len__(self) -> int:
@@ -51,7 +50,7 @@ class Tiles:
         tile = np.empty(len(points), dtype=np.int32)
         columns = points[:, 0].copy(), points[:, 1].copy()
         # A list of rows for each node, so that the points of a cell are processed together.
-        open_nodes: list[tuple[int, Numbers | None]] = [(0, None)]
+        open_nodes: list[tuple[int, Rows | None]] = [(0, None)]
         while open_nodes:
             node, rows = open_nodes.pop()
             column = columns[self.axis[node]]
@@ -64,7 +63,7 @@ class Tiles:
                     open_nodes.append((int(child), some))
         return tile
 
-    def overlaps(self, low: Floats, high: Floats) -> tuple[Numbers, Numbers]:
+    def overlaps(self, low: Floats, high: Floats) -> tuple[Rows, Rows]:
         """Return all pairs of a closed box, (n, 2) and (n, 2), and a cell that it meets."""
         if not len(self.cut):
             return np.arange(len(low)), np.zeros(len(low), dtype=np.int64)
@@ -169,7 +168,7 @@ def strips(tiles: Tiles, sample: Floats, count: int) -> Floats:
 
 
 def _beyond(  # noqa: PLR0917
-    tiles: Tiles, by_tile: Floats, starts: Numbers, cell: Floats, side: int, width: float
+    tiles: Tiles, by_tile: Floats, starts: Rows, cell: Floats, side: int, width: float
 ) -> Floats:
     """Distances of sampled points beyond a side of a cell, within a strip of this width."""
     axis, high = side % 2, side >= 2

@@ -29,10 +29,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone import _core
+    from delone._types import Floats
     from delone.distributed.read.folder import TileFolder
     from delone.distributed.read.tile import Tile
-
-    Floats = NDArray[np.float64]
 
 __all__ = ["write_dem"]
 

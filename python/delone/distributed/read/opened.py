@@ -23,10 +23,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone import _core
+    from delone._types import Floats, Rows
     from delone.distributed.read.proof import TiledReport
-
-    Floats = NDArray[np.float64]
-    Numbers = NDArray[np.int64]
 
 __all__ = ["TiledDelaunay", "open"]
 
@@ -101,7 +99,7 @@ class TiledDelaunay(TileFolder):
             f"{self.ntiles} tiles>"
         )
 
-    def read_simplices(self) -> Numbers:
+    def read_simplices(self) -> Rows:
         """Return all triangles, (m, 3), as rows of the source; they must fit into memory.
 
         Returns
@@ -128,7 +126,7 @@ class TiledDelaunay(TileFolder):
             found[start:stop] = tile.ids[tile.simplices]
         return found
 
-    def _near(self, queries: Floats) -> Iterator[tuple[int, Numbers]]:
+    def _near(self, queries: Floats) -> Iterator[tuple[int, Rows]]:
         """The tiles whose triangles may contain queries, by number, with those queries."""
         for number, tile in enumerate(self.manifest["tiles"]):
             if tile["extent"] is not None:
@@ -139,7 +137,7 @@ class TiledDelaunay(TileFolder):
                 if len(rows):
                     yield number, rows
 
-    def find_simplex(self, xi: ArrayLike) -> Numbers:
+    def find_simplex(self, xi: ArrayLike) -> Rows:
         """Find the triangles that contain points, reading only the tiles that may.
 
         Parameters

@@ -26,11 +26,9 @@ from delone.errors import FileFormatError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Floats, Rows
     from delone.distributed.read.folder import TileFolder
     from delone.distributed.read.tile import Tile
-
-    Floats = NDArray[np.float64]
-    Numbers = NDArray[np.int64]
 
 __all__ = ["TiledReport", "prove"]
 
@@ -72,9 +70,9 @@ class _Edges(NamedTuple):
     """Edges of tiles that have no other side in them."""
 
     # (k, 2): the rows of the source at both ends.
-    ends: Numbers
+    ends: Rows
     # (k,): the tile.
-    tile: Numbers
+    tile: Rows
     # (k, 3, 2): where the ends and the apex of the triangle are.
     points: Floats
 
@@ -87,13 +85,13 @@ class _Vertices(NamedTuple):
     """Vertices of tiles that other tiles own."""
 
     # (k,): the row of the source.
-    id: Numbers
+    id: Rows
     # (k, 2): where it is.
     point: Floats
     # (k,): the tile that has it.
-    tile: Numbers
+    tile: Rows
     # (k,): the tile that owns it.
-    owner: Numbers
+    owner: Rows
 
     def at(self, rows: NDArray[Any]) -> _Vertices:
         """Return some of them."""
@@ -217,7 +215,7 @@ def _owned_twice(tin: TileFolder, spans: dict[int, tuple[int, int]]) -> list[str
     return faults
 
 
-def _inner(tile: Tile, owner: Numbers) -> list[str]:
+def _inner(tile: Tile, owner: Rows) -> list[str]:
     """Check a single tile: orientation, owners, inner edges."""
     found = []
     points, simplices = tile.points, tile.simplices
@@ -319,7 +317,7 @@ def _around(boundary: _Edges, faults: list[str]) -> tuple[int, int]:
     return len(points), int((turns > 0).sum())
 
 
-def _foreign(tile: Tile, owner: Numbers) -> _Vertices:
+def _foreign(tile: Tile, owner: Rows) -> _Vertices:
     beside = np.flatnonzero(~tile.owned)
     ids, here = tile.ids[beside].astype(np.int64), np.full(len(beside), tile.number)
     return _Vertices(ids, tile.points[beside], here, owner[beside])

@@ -22,10 +22,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from delone._types import Floats, Rows
     from delone.distributed.store.files import Store
-
-    Floats = NDArray[np.float64]
-    Numbers = NDArray[np.int64]
 
 __all__ = ["Tile", "read_columns", "read_tile"]
 
@@ -67,7 +65,7 @@ class Tile:
 
     number: int
     points: Floats
-    ids: Numbers
+    ids: Rows
     owned: NDArray[np.bool_]
     simplices: NDArray[np.int32]
     attributes: dict[str, NDArray[Any]]

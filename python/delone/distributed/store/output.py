@@ -15,10 +15,9 @@ from delone.extras import require
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Indices
     from delone.distributed.pure.rows import Rows
     from delone.distributed.store.files import Store
-
-    Indices = NDArray[np.int32]
 
 __all__ = ["box_of", "tile_names", "write_tile"]
 
