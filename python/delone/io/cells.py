@@ -24,11 +24,12 @@ class Cells(NamedTuple):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ReadMesh:
-    """Points, cells in the order of the file, and values of points by name."""
+    """Points, cells in the order of the file, values of points, and markers of triangles."""
 
     points: NDArray[np.float64]
     cells: list[Cells]
     point_data: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    markers: NDArray[np.int32] | None = None
 
 
 def grouped(polygons: Sequence[Sequence[int]]) -> list[Cells]:

@@ -1,5 +1,7 @@
 """Meshes: VTU, PLY, OBJ, STL and MSH, written and in part read by meshio (extra ``mesh``).
 
+Legacy VTK and Medit files are read here as well, and written by `fem`.
+
 What meshio would set memory aside for is compared with the size of the file first. Doubles stay
 doubles: a binary STL file has single precision only, so it is written where that is exact, and as
 text with all digits where it is not.
@@ -20,11 +22,12 @@ from delone._values import as_values
 from delone.errors import DeloneError, FileFormatError, InputError
 from delone.exchange.meshio import TAGS, to_meshio
 from delone.extras import require
-from delone.io import obj, ply, vtu
+from delone.io import medit, obj, ply, vtk, vtu
 from delone.io.cells import Cells, ReadMesh
 from delone.io.content import content
 from delone.io.facets import facet_triangles
 from delone.io.gmsh import needed_sections
+from delone.io.numbered import as_markers
 from delone.io.pointset import PointSet
 from delone.io.registry import MeshFile
 
@@ -46,7 +49,9 @@ _POLYGONS = ("triangle", "quad", "polygon")
 _PLAIN = (".ply", ".obj", ".stl")
 _HEAD, _TAIL = 1 << 16, 1 << 12
 # Those that are read without meshio, which fails on properties and counts that are usual.
-_OWN = {".ply": ply.read, ".obj": obj.read, ".vtu": vtu.read}
+_OWN = {
+    **{".ply": ply.read, ".obj": obj.read, ".vtu": vtu.read, ".vtk": vtk.read, ".mesh": medit.read}
+}
 
 
 def read_points(
@@ -88,7 +93,7 @@ def read_mesh(path: Path, *, split: bool = False) -> MeshFile:
     if not any(block.type == "triangle" for block in mesh.cells):
         raise FileFormatError(f"{path} contains no triangles")
     simplices = _simplices(mesh, "triangle", len(points), path)
-    return MeshFile(points=points, simplices=simplices, z=z, source=str(path))
+    return MeshFile(points=points, simplices=simplices, z=z, source=str(path), markers=mesh.markers)
 
 
 def _polygons(mesh: ReadMesh, path: Path) -> MeshFile:
@@ -181,7 +186,20 @@ def _read(path: Path, attributes: Sequence[str] | None = ()) -> ReadMesh:
             f"{path} is truncated or not a {suffix} file: {reason!s:.100}"
         ) from error
     cells = [Cells(block.type, block.data) for block in mesh.cells]
-    return ReadMesh(points=mesh.points, cells=cells, point_data=mesh.point_data)
+    markers = _physical(mesh, path) if suffix == ".msh" else None
+    return ReadMesh(points=mesh.points, cells=cells, point_data=mesh.point_data, markers=markers)
+
+
+def _physical(mesh: Any, path: Path) -> NDArray[np.int32] | None:
+    """The numbers of the physical groups of triangles, 0 where they are in none."""
+    tags = mesh.cell_data.get(TAGS[0])
+    if tags is None:
+        return None
+    rows = [np.empty((0, 1))]
+    for block, own in zip(mesh.cells, tags, strict=True):
+        if block.type == "triangle":
+            rows.append(np.asarray(own, dtype=np.float64).reshape(-1, 1))
+    return as_markers(np.concatenate(rows), path).ravel()
 
 
 @contextlib.contextmanager

@@ -49,6 +49,8 @@ __all__ = [
 
 _JSON = (".geojson", ".json")
 _MESHES = (".vtu", ".ply", ".obj", ".stl", ".msh")
+# Those that are read, and written with what solvers need.
+_READ_MESHES = (*_MESHES, ".vtk", ".mesh")
 # Those of surfaces, where polygons are facets.
 _FACETS = (".ply", ".obj")
 _TRIANGLE = (".node", ".ele", ".poly")
@@ -60,7 +62,7 @@ _READERS = {
     **dict.fromkeys((".las", ".laz"), "las"),
     **dict.fromkeys((*_JSON, ".gpkg", ".shp", ".fgb"), "vector"),
     **dict.fromkeys((".parquet", ".arrow", ".feather"), "parquet"),
-    **dict.fromkeys(_MESHES, "mesh"),
+    **dict.fromkeys(_READ_MESHES, "mesh"),
     **dict.fromkeys(_TRIANGLE, "triangle"),
     **dict.fromkeys(_LANDXML, "landxml"),
     ".dxf": "dxf",
@@ -114,7 +116,7 @@ _LABELS = (".png", ".svg")
 WITH_CRS = (".gpkg", ".geojson", ".npz", *_LANDXML, *_LABELS)
 _MESH_READERS = {
     ".npz": "arrays",
-    **dict.fromkeys(_MESHES, "mesh"),
+    **dict.fromkeys(_READ_MESHES, "mesh"),
     ".ele": "triangle",
     **dict.fromkeys((".poly", *_TETGEN), "tetgen"),
     ".off": "off",
@@ -138,7 +140,8 @@ class MeshFile:
     source : str, optional
         The file.
     markers : ndarray of int32, shape (m,), optional
-        A number for each triangle, in TetGen's formats.
+        A number for each triangle: in TetGen's formats, the references of MESH, the physical
+        groups of MSH 2, and values of cells of VTK that are called marker.
     holes : ndarray of float64, shape (k, 3), optional
         Points in holes, in .poly and .smesh.
     regions : ndarray of float64, shape (k, 4), optional
@@ -530,13 +533,13 @@ def read_mesh(path: str | os.PathLike[str], *, polygons: str | None = None) -> M
     ----------
     path : str or path-like
         An npz file of a `Delaunay`, `ConstrainedDelaunay`, `RegularTriangulation`, `Mesh` or
-        `TetMesh`, or VTU, PLY, OBJ, STL, OFF, MSH, or Triangle's ELE with its NODE next to it.
-        Tetrahedra are read from npz, VTU, MSH and TetGen's ELE; its FACE, SMESH and POLY have
-        triangles in 3-D.
+        `TetMesh`, or VTU, VTK (legacy), PLY, OBJ, STL, OFF, MSH, MESH (Medit), or Triangle's ELE
+        with its NODE next to it. Tetrahedra are read from npz, VTU, VTK, MSH, MESH and TetGen's
+        ELE; its FACE, SMESH and POLY have triangles in 3-D.
     polygons : {"raise", "split"}, optional
         Whether faces with more than three corners are an error or become triangles. By default an
-        error in VTU and MSH, whose polygons may be the cells of a mesh, and triangles in PLY and
-        OBJ. In OFF, SMESH and POLY they always become triangles.
+        error in VTU, VTK, MSH and MESH, whose polygons may be the cells of a mesh, and triangles
+        in PLY and OBJ. In OFF, SMESH and POLY they always become triangles.
 
     Returns
     -------
@@ -571,7 +574,7 @@ def read_mesh(path: str | os.PathLike[str], *, polygons: str | None = None) -> M
         polygons = "split" if suffix in _FACETS else "raise"
     split = as_choice(polygons, ("raise", "split"), name="polygons") == "split"
     read: Callable[..., MeshFile] = module.read_mesh
-    return read(file, **({"split": True} if split and suffix in _MESHES else {}))
+    return read(file, **({"split": True} if split and suffix in _READ_MESHES else {}))
 
 
 def write_mesh(

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["read"]
+__all__ = ["POLYGON", "cells_of", "read"]
 
 _TYPES = {
     **{"Float32": "f4", "Float64": "f8", "Int8": "i1", "Int16": "i2", "Int32": "i4"},
@@ -42,7 +42,7 @@ _NAMES = {
     **{9: "quad", 10: "tetra", 11: "voxel", 12: "hexahedron", 13: "wedge", 14: "pyramid"},
     **{21: "line3", 22: "triangle6", 23: "quad8", 24: "tetra10", 42: "polyhedron"},
 }
-_POLYGON = 7
+POLYGON = 7
 _APPENDED = re.compile(rb"<AppendedData[^>]*\sencoding\s*=\s*[\"']raw[\"'][^>]*>\s*_")
 _END = b"</AppendedData>"
 # A dictionary of LZMA of the highest preset takes 65 MiB.
@@ -112,7 +112,7 @@ def _piece(piece: Any, arrays: _Arrays, path: Path) -> ReadMesh:
             f"{path} announces {counts[0]:.20} points and {counts[1]:.20} cells and has "
             f"{len(points)} and {len(types)}: it is cut short"
         )
-    cells = _cells(corners, ends, types, path)
+    cells = cells_of(corners, ends, types, path)
     values = {
         each.get("Name", ""): arrays.table(each) for each in piece.findall("PointData/DataArray")
     }
@@ -122,7 +122,7 @@ def _piece(piece: Any, arrays: _Arrays, path: Path) -> ReadMesh:
     return ReadMesh(points=points.astype(np.float64), cells=cells, point_data=values)
 
 
-def _cells(
+def cells_of(
     corners: NDArray[np.int64], ends: NDArray[np.int64], types: NDArray[np.int64], path: Path
 ) -> list[Cells]:
     """Return blocks of cells of one type and number of corners, in the order of the file."""
@@ -137,7 +137,7 @@ def _cells(
     for start, stop in itertools.pairwise(bounds):
         kind, size = int(types[start]), int(sizes[start])
         block = corners[ends[stop - 1] - size * (stop - start) : ends[stop - 1]]
-        name = name_of_polygon(size) if kind == _POLYGON else _NAMES.get(kind, f"VTK type {kind}")
+        name = name_of_polygon(size) if kind == POLYGON else _NAMES.get(kind, f"VTK type {kind}")
         found.append(Cells(name, block.reshape(stop - start, size)))
     return found
 
