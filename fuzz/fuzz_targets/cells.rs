@@ -83,7 +83,7 @@ fn compare(p: &[Point3], q: &[Point3]) {
     let (Some(a), Some(b)) = (first.checked(), second.checked()) else {
         return;
     };
-    // A ring that touches itself with both orientations is no cell; those that cross are found.
+    // A ring that touches itself with both orientations is not a cell; those that cross are found.
     if a.faults[0] != 0 || b.faults[0] != 0 || a.concave[0] || b.concave[0] {
         return;
     }

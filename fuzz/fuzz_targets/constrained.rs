@@ -132,7 +132,7 @@ fn assert_segments(all: &[Point2], segments: &[[u32; 2]], made: &Constrained, sp
         assert_eq!(
             flag,
             Some(true),
-            "{u} {v} is no flagged edge, or comes twice"
+            "{u} {v} is not a flagged edge, or comes twice"
         );
         let rows = sub.start[i] as usize..sub.start[i + 1] as usize;
         assert!(sub.source[rows.clone()].is_sorted_by(|a, b| a < b) && !rows.is_empty());

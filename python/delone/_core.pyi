@@ -735,7 +735,7 @@ class Hull3:
         """The facet of each triangle, (m,)."""
     @property
     def polygons(self) -> NDArray[np.int32]:
-        """Vertices of all facets, one facet after the other, (k,)."""
+        """Vertices of all facets, one facet after another, (k,)."""
     @property
     def starts(self) -> NDArray[np.int32]:
         """Start of the vertices of each facet, and the end, (f + 1,)."""
@@ -1634,7 +1634,7 @@ def antipodes(
     neighbors: NDArray[np.int32] | None,
     workers: int,
 ) -> NDArray[np.int32]:
-    """The pairs with an empty open diametral ball that are no Delaunay edges."""
+    """The pairs with an empty open diametral ball that are not Delaunay edges."""
 
 def around(edges: NDArray[np.int32], npoints: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """The neighbors of each vertex along `edges`: `(indptr, indices)`."""

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["hides", "is_masked", "refuse_masks"]
 
 
-# Items that are no arrays.
+# Items that are not arrays.
 _PLAIN = frozenset((int, float, list, tuple, np.float64, np.int64))
 
 

@@ -51,7 +51,7 @@ def points_alone(
 
 
 class Referenced(Immutable):
-    """An immutable object that knows the reference system of its points."""
+    """An immutable object with the reference system of its points."""
 
     __slots__ = ("_system",)
 

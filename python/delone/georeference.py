@@ -110,7 +110,7 @@ def as_known_crs(crs: Any, *, name: str = "crs") -> str | None:
     if found is None or is_known(found):
         return found
     raise InputError(
-        f"{name} must be a reference system such as 'EPSG:28992', and pyproj knows no {crs!r:.60}"
+        f"{name} must be a reference system such as 'EPSG:28992'; pyproj does not know {crs!r:.60}"
     )
 
 

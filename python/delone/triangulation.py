@@ -224,7 +224,7 @@ class Triangulation(Complex):
             Points to locate. NaN and infinity are outside.
         tolerance : float, optional
             Points outside at most this far away, in the unit of the points, are in the simplex at
-            the nearest point of the boundary, such as points that lie on a side but for rounding.
+            the nearest point of the boundary, such as points that lie on a side up to rounding.
             By default 0. The distance is compared exactly, which takes some 20 microseconds for
             each point about this far away.
 
@@ -315,7 +315,7 @@ class Triangulation(Complex):
             Points to locate.
         tolerance : float, optional
             Points outside at most this far away, in the unit of the points, are inside, at the
-            nearest point of the boundary, such as points that lie on a side but for rounding. By
+            nearest point of the boundary, such as points that lie on a side up to rounding. By
             default 0. The distance is compared exactly.
 
         Returns

@@ -211,8 +211,8 @@ def validate(
     -------
     ValidationReport
         Truthy if everything is correct. If only `ties` is filled, the triangulation is Delaunay but
-        has other diagonals; if only `repeats` is, a duplicate other than the first is a vertex. In
-        3-D it is a `SpaceReport`.
+        has different diagonals; if only `repeats` is, a duplicate other than the first is a
+        vertex. In 3-D it is a `SpaceReport`.
 
     Raises
     ------

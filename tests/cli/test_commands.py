@@ -9,7 +9,7 @@ from importlib import import_module
 
 import pytest
 
-from delone.cli.commands import COMMANDS
+from delone.cli.commands import COMMANDS, TASKS
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -27,6 +27,19 @@ def test_every_module_with_a_command_is_listed(command):
     assert all(f"\n  {name} " in out for name in COMMANDS)
     assert command("unknown")[0] == 2
     assert command("contour")[2] == "delone: No such command 'contour'. Did you mean 'contours'?\n"
+
+
+@pytest.mark.parametrize("columns", ["60", "80", "200"])
+def test_help_shows_whole_summaries_by_task(command, monkeypatch, columns):
+    monkeypatch.setenv("COLUMNS", columns)
+    assert sorted(name for names in TASKS.values() for name in names) == sorted(COMMANDS)
+    _, out, _ = command("--help")
+    text, at = " ".join(out.partition("Exit codes:")[0].split("--help")[1].split()), 0
+    assert "..." not in text
+    for task, names in TASKS.items():
+        for wanted in (f"{task}:", *(f"{name} {COMMANDS[name].summary}" for name in names)):
+            assert wanted in text[at:]
+            at = text.index(wanted, at)
 
 
 def test_help_loads_no_command():

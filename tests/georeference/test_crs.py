@@ -198,7 +198,7 @@ def test_netcdf_is_read_by_gdal(tmp_path: Path) -> None:
 @pytest.mark.parametrize("crs", ["nope", "EPSG:1", 1])
 def test_systems_that_do_not_exist_are_refused(crs: Any) -> None:
     ring = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (1, 1), (0, 0)]]}
-    with pytest.raises(InputError, match=r"crs must be a reference system .* pyproj knows no"):
+    with pytest.raises(InputError, match=r"crs must be a reference system .* pyproj does not know"):
         delone.from_geometry(ring, crs=crs)
     assert delone.from_geometry(ring, crs=28992).crs == DUTCH
 

@@ -82,7 +82,7 @@ pub fn proximity(
     })
 }
 
-/// The pairs with an empty open diametral ball that are no Delaunay edges.
+/// The pairs with an empty open diametral ball that are not Delaunay edges.
 #[pyfunction]
 #[pyo3(signature = (graph, simplices, neighbors, workers))]
 pub fn antipodes(

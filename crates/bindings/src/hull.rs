@@ -28,7 +28,7 @@ pub struct Hull3 {
     pub neighbors: Table<i32>,
     /// The facet of each triangle, (m,).
     pub facet_of: Column<i32>,
-    /// Vertices of all facets, one facet after the other, (k,).
+    /// Vertices of all facets, one facet after another, (k,).
     pub polygons: Column<i32>,
     /// Start of the vertices of each facet, and the end, (f + 1,).
     pub starts: Column<i32>,

@@ -19,7 +19,7 @@
 //!
 //! If four distinct points tie and are not all on one line, no three of them are: three distinct
 //! points of a line have lifts that span the vertical plane above it, and a fourth point off that
-//! line is off that plane, which is no tie. So k = 0 decides, and the sign is
+//! line is off that plane, which is not a tie. So k = 0 decides, and the sign is
 //! -orient2d(p1, p2, p3).
 //!
 //! In space, likewise, the cofactor of h(e) is -orient3d(a, b, c, d), and with p0 < ... < p4 the term

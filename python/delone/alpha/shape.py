@@ -156,7 +156,7 @@ class Kept(Exchanged):
 
     @kept
     def polygons(self) -> NDArray[Any]:
-        """Return the triangles' union as polygons of shapely (extra ``geo``); 2-D only.
+        """Return the triangles' union as shapely polygons (extra ``geo``); 2-D only.
 
         Returns
         -------

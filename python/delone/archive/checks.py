@@ -197,7 +197,7 @@ def check_diagram(**arrays: NDArray[Any]) -> None:
     check_input(**arrays)
     ndim = arrays["points"].shape[1]
     require(len(arrays["weights"]) in (0, len(arrays["points"])), "weights and points do not match")
-    require(len(arrays["periods"]) in (0, 2), "it has other than two periods")
+    require(len(arrays["periods"]) in (0, 2), "it does not have two periods")
     require(len(arrays["box"]) in (0, 2 * ndim), "the box is incomplete")
     shape = "outline" if ndim == 2 else "corners"
     require(not (len(arrays["box"]) and len(arrays[shape])), "it has two clips")

@@ -134,7 +134,7 @@ def _lines(report: ValidationReport, mesh: MeshFile, delaunay: bool) -> list[str
         if ties := len(report.ties):
             solid = mesh.points.shape[1] == 3
             what = "tetrahedra share a sphere" if solid else "triangles share a circle"
-            lines.append(f"  {ties:,} pairs of {what} and have other diagonals")
+            lines.append(f"  {ties:,} pairs of {what} and have different diagonals")
         if repeats := len(report.repeats):
             lines.append(f"  {repeats:,} vertices are not the first row with their coordinates")
         return lines

@@ -111,7 +111,8 @@ def cluster_points(
         float | None, typer.Option(help="hdbscan: do not split clusters at smaller distances.")
     ] = None,
     single_cluster: Annotated[
-        bool | None, typer.Option("--single-cluster", help="hdbscan: all points may be a cluster.")
+        bool | None,
+        typer.Option("--single-cluster", help="hdbscan: all points may form one cluster."),
     ] = None,
     eps: Annotated[float | None, typer.Option(help="dbscan: the distance of neighbors.")] = None,
     height: Annotated[

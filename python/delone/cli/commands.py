@@ -10,12 +10,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import typer
-from typer.core import TyperCommand, TyperGroup
+from typer.core import TyperGroup
 
 if TYPE_CHECKING:
     from click import Context, HelpFormatter
 
-__all__ = ["COMMANDS", "Commands"]
+__all__ = ["COMMANDS", "TASKS", "Commands"]
 
 _EPILOG = "The table of exit codes is in: delone --help"
 
@@ -124,6 +124,17 @@ COMMANDS = {
 }
 
 
+# The commands in the order in which users look for them.
+TASKS = {
+    "Look at a file": ("info", "explore"),
+    "Triangulate": ("triangulate", "sphere", "tile", "check"),
+    "Outlines, cells, neighbors": ("hull", "voronoi", "graph", "cluster"),
+    "Interpolate": ("interpolate", "crossval"),
+    "Terrain": ("dem", "contours", "profile", "volume"),
+    "Mesh": ("mesh", "tetrahedralize"),
+}
+
+
 class _Loading(dict[str, Any]):
     """The commands by name, each loaded when it is asked for."""
 
@@ -144,11 +155,13 @@ class Commands(TyperGroup):  # type: ignore[misc]
         self.commands = _Loading.fromkeys(COMMANDS)
 
     def format_commands(self, ctx: Context, formatter: HelpFormatter) -> None:
-        """Write the list of commands, for which none of them is loaded."""
-        named: dict[str, Any] = {
-            name: TyperCommand(name, help=listed.summary) for name, listed in COMMANDS.items()
-        }
-        TyperGroup(name=self.name, commands=named).format_commands(ctx, formatter)
+        """Write the commands by task, with whole summaries, for which none of them is loaded."""
+        del ctx
+        width = max(map(len, COMMANDS))
+        for task, names in TASKS.items():
+            with formatter.section(task):
+                # One width for all lists, so that the summaries begin in one column.
+                formatter.write_dl([(f"{name:{width}}", COMMANDS[name].summary) for name in names])
 
 
 def _loaded(name: str) -> Any:

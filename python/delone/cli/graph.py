@@ -115,8 +115,8 @@ def graph(
         list[Path] | None,
         typer.Option(
             metavar="FILE",
-            help="File of the points with all their columns, and the row of each, which v0 and v1 "
-            "of edges name, once or more: " + " ".join(ROW_SUFFIXES),
+            help="File of the points with all their columns, and of their rows, to which v0 and v1 "
+            "of edges refer, once or more: " + " ".join(ROW_SUFFIXES),
         ),
     ] = None,
     boundary: Annotated[

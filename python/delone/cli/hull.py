@@ -43,7 +43,7 @@ def hull(
         ),
     ] = None,
     concave: Annotated[
-        bool, typer.Option("--concave", help="One polygon, dug along long edges.")
+        bool, typer.Option("--concave", help="One polygon, with long edges carved away.")
     ] = False,
     max_edge: Annotated[
         float | None, typer.Option(help="concave: remove edges longer than this.")
@@ -52,7 +52,7 @@ def hull(
         float | None,
         typer.Option(help="concave: from 0, remove all, to 1, keep the convex hull."),
     ] = None,
-    holes: Annotated[bool, typer.Option("--holes", help="concave: dig holes, too.")] = False,
+    holes: Annotated[bool, typer.Option("--holes", help="concave: carve holes, too.")] = False,
     alpha: Annotated[
         str | None,
         typer.Option(

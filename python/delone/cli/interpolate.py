@@ -83,7 +83,7 @@ def interpolate(
     ] = "nan",
     tolerance: Annotated[
         float,
-        typer.Option(help="Nodes at most this far outside the hull are inside."),
+        typer.Option(help="Nodes at most this far outside the hull count as inside."),
     ] = 0.0,
     max_distance: Annotated[
         float | None,

@@ -36,7 +36,7 @@ Input = Annotated[
 ]
 Chord = Annotated[
     float | None,
-    typer.Option(help="Of DXF files: how far chords may be from arcs and other curves."),
+    typer.Option(help="DXF files: how far chords may be from arcs and other curves."),
 ]
 Columns = Annotated[
     str | None,
@@ -69,7 +69,7 @@ Flat = Annotated[
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print only errors.")]
 
 
 def split(text: str | None) -> list[str] | None:

@@ -37,7 +37,7 @@ Crs = Annotated[
 ]
 Planar = Annotated[
     bool,
-    typer.Option("--planar", help="Treat longitudes and latitudes as planar coordinates: no note."),
+    typer.Option("--planar", help="Treat longitudes and latitudes as planar, without a note."),
 ]
 
 Survey = TypeVar("Survey", bound=PointSet | GeometrySet | SurfaceFile)

@@ -75,7 +75,7 @@ MaxEdge = Annotated[
 ]
 Voids = Annotated[
     bool,
-    typer.Option("--voids", help="Remove triangles with an edge above --max-edge inside as well."),
+    typer.Option("--voids", help="Remove inner triangles with an edge above --max-edge, too."),
 ]
 Duplicates = Annotated[
     str,
@@ -87,7 +87,7 @@ Crossing = Annotated[
 ]
 Tolerance = Annotated[
     float,
-    typer.Option(help="Largest difference of heights at one place that are equal."),
+    typer.Option(help="Heights at one place that differ by at most this are equal."),
 ]
 Retriangulate = Annotated[
     bool,
@@ -96,7 +96,7 @@ Retriangulate = Annotated[
     ),
 ]
 Step = Annotated[
-    int, typer.Option(help="Of a raster (.tif, .asc), read only every N-th row and column.")
+    int, typer.Option(help="Rasters (.tif, .asc): read only every N-th row and column.")
 ]
 EastingFirst = Annotated[
     bool, typer.Option("--easting-first", help="Take the first number of LandXML as the easting.")

@@ -76,9 +76,7 @@ def fill(
     ] = None,
     boundary: Annotated[
         str,
-        typer.Option(
-            help="What is kept: faces, or surface (triangles in one plane are cut again)."
-        ),
+        typer.Option(help="What is kept: faces, or surface (triangles in one plane are replaced)."),
     ] = "faces",
     hole: Annotated[
         list[str] | None,
@@ -109,7 +107,7 @@ def fill(
 
     Holes, regions and markers of faces in .smesh and .poly are used.
 
-    With ``--boundary surface``, triangles in one plane are cut again, which adds fewer points.
+    With ``--boundary surface``, triangles in one plane are replaced, which adds fewer points.
 
     A PNG file shows the tetrahedra behind a cut.
     """

@@ -192,8 +192,8 @@ class HDBSCAN(Clusterer):
 
         Notes
         -----
-        Clusters have other numbers than in `condensed_tree_` if there are such splits. Which of the
-        clusters is split off first has no meaning. O(m log m) time.
+        Clusters are numbered differently from `condensed_tree_` if there are such splits. Which of
+        the clusters is split off first has no meaning. O(m log m) time.
 
         Examples
         --------

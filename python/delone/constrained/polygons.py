@@ -185,7 +185,7 @@ class PolygonTriangles(NamedTuple):
     Parameters
     ----------
     points : ndarray of float64, shape (n, 2)
-        The points of all rings, one ring after the other, then the points where sides cross.
+        The points of all rings, one ring after another, then the points where sides cross.
     simplices : ndarray of int32, shape (m, 3)
         The triangles as rows of `points`, counter-clockwise.
 

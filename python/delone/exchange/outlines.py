@@ -1,4 +1,4 @@
-"""Outlines with holes as polygons of shapely."""
+"""Outlines with holes as shapely polygons."""
 
 from __future__ import annotations
 

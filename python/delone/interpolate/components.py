@@ -3,7 +3,7 @@
 The standard names of the CF conventions say it: ``eastward_wind`` and ``northward_wind``,
 ``surface_downward_eastward_stress`` and so on. Names of components along the axes of a grid
 (``x_wind``, ``grid_eastward_wind``) are other directions, and standard errors, variances and
-products of components are no components.
+products of components are not components.
 """
 
 from __future__ import annotations

@@ -118,7 +118,7 @@ def _piece(piece: Any, arrays: _Arrays, path: Path) -> ReadMesh:
     }
     values = {name: found[:, 0] if found.shape[1] == 1 else found for name, found in values.items()}
     if any(len(found) != len(points) for found in values.values()):
-        raise FileFormatError(f"{path} is corrupt: it has other numbers of points and of values")
+        raise FileFormatError(f"{path} is corrupt: the numbers of points and of values differ")
     return ReadMesh(points=points.astype(np.float64), cells=cells, point_data=values)
 
 
@@ -128,7 +128,9 @@ def cells_of(
     """Return blocks of cells of one type and number of corners, in the order of the file."""
     sizes = np.diff(ends, prepend=0)
     if len(ends) != len(types) or (sizes < 0).any() or (len(ends) and ends[-1] != len(corners)):
-        raise FileFormatError(f"{path} is corrupt: its cells have other offsets than corners")
+        raise FileFormatError(
+            f"{path} is corrupt: the offsets of its cells do not match their corners"
+        )
     if not len(types):
         return []
     changes = 1 + np.flatnonzero((np.diff(types) != 0) | (np.diff(sizes) != 0))

@@ -29,7 +29,7 @@ _CENTER = (0.0, 0.0)
 
 
 def flat_polygon(rings: Sequence[Floats], step: float) -> Any:
-    """Return what is to the left of all rings of unit vectors, in degrees, as polygons of shapely.
+    """Return what is to the left of all rings of unit vectors, in degrees, as shapely polygons.
 
     Pieces of arcs are at most `step` degrees long.
     """

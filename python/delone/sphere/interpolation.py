@@ -705,7 +705,7 @@ class Nearest(_Interpolator):
 def _triangulated(
     points: Any, degrees: bool, workers: int | None
 ) -> tuple[Delaunay, ArrayLike | None]:
-    """The triangulation of sites, and their longitudes and latitudes if they are no vectors."""
+    """The triangulation of sites, and their longitudes and latitudes if they are not vectors."""
     if hasattr(points, "points"):
         raise DtypeError(f"{type(points).__name__} is not a sphere.Delaunay; pass its points")
     points = numbers_of(points, "points")

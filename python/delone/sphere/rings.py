@@ -228,7 +228,7 @@ def merged_corners(vectors: Floats, merge: float) -> tuple[Floats, int]:
 
 
 def geometries(given: Any, *, degrees: bool, workers: int | None) -> Rings:
-    """Return the rings of polygons of shapely, one cell for each geometry."""
+    """Return the rings of shapely polygons, one cell for each geometry."""
     shapely = require("shapely", extra="geo", what="a grid of polygons")
     crs = crs_of(given)
     if crs is not None and not is_geographic(crs):
@@ -310,7 +310,7 @@ def corners(arrays: tuple[Any, ...]) -> tuple[Floats, Indices, Indices]:
 
 
 def boxes(arrays: tuple[Any, ...]) -> NDArray[np.object_]:
-    """Return cells between meridians and parallels as polygons of shapely in degrees."""
+    """Return cells between meridians and parallels as shapely polygons in degrees."""
     shapely = require("shapely", extra="geo", what="polygons of cells")
     tangents, _, meridians, _, count = arrays
     row, west, east, number = _runs(arrays)
@@ -332,7 +332,7 @@ def boxes(arrays: tuple[Any, ...]) -> NDArray[np.object_]:
 
 
 def shapes(arrays: tuple[Any, ...], areas: Floats, step: float) -> NDArray[np.object_]:
-    """Return cells with arcs of great circles as polygons of shapely in degrees."""
+    """Return cells with arcs of great circles as shapely polygons in degrees."""
     shapely = require("shapely", extra="geo", what="polygons of cells")
     vectors, starts, cells, holes = arrays
     count = len(starts) - 1

@@ -39,8 +39,8 @@ _SENTENCES = SENTENCES | {
     ),
     "hull": ("boundary edge is not on the hull", "boundary edges are not on the hull"),
     "repeats": (
-        "duplicate has another direction than its vertex",
-        "duplicates have other directions than their vertices",
+        "duplicate has a different direction from its vertex",
+        "duplicates have different directions from their vertices",
     ),
     "overlaps": ("triangle overlaps the first one", "triangles overlap the first one"),
 }

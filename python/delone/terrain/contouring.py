@@ -45,7 +45,7 @@ class Contours(ReadOnly):
     Parameters
     ----------
     points : ndarray of float64, shape (p, 2)
-        The points of all lines, one line after the other. A closed line ends with its first point.
+        The points of all lines, one line after another. A closed line ends with its first point.
     starts : ndarray of int64, shape (k + 1,)
         The start of each line in `points`, and the end of the last.
     level : ndarray of float64, shape (k,)
@@ -281,7 +281,7 @@ class Bands(ReadOnly):
     Parameters
     ----------
     points : ndarray of float64, shape (p, 2)
-        The points of all rings, one ring after the other. Each ring ends with its first point.
+        The points of all rings, one ring after another. Each ring ends with its first point.
     ring_starts : ndarray of int64, shape (r + 1,)
         The start of each ring in `points`, and the end of the last.
     polygon_starts : ndarray of int64, shape (k + 1,)

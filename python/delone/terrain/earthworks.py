@@ -29,7 +29,7 @@ class Earthworks(HullTiling):
 
         Parameters
         ----------
-        polygon : array_like, shape (k, 2), list of rings, or polygons of shapely
+        polygon : array_like, shape (k, 2), list of rings, or shapely polygons
             Where the plane is. Each polygon has its own holes, and several are a union; of arrays,
             inside is what an odd number of rings contain. Heights of it are not used.
         z : float or triple of float
@@ -90,7 +90,7 @@ class Earthworks(HullTiling):
 
         Parameters
         ----------
-        polygon : array_like, shape (k, 2), list of rings, or polygons of shapely
+        polygon : array_like, shape (k, 2), list of rings, or shapely polygons
             The pad, as for `flatten`. Heights of it are not used.
         z : float or triple of float
             The height of the pad, or its plane (a, b, c) of the heights c + a x + b y.

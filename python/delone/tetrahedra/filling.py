@@ -77,7 +77,7 @@ def tetrahedralize(
     Parameters
     ----------
     points : array_like of float, shape (n, 3), or path or mesh
-        Coordinates. Rows with equal coordinates are one vertex; rows that no face uses are no
+        Coordinates. Rows with equal coordinates are one vertex; rows that no face uses are not
         vertices. Without `faces`: a file that `delone.io.read_mesh` reads, such as STL, OBJ, PLY,
         OFF or TetGen's .smesh and .poly; or a surface as an object of trimesh, PyVista or meshio,
         or of delone, such as a 3-D `ConvexHull`.

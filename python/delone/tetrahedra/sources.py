@@ -95,7 +95,7 @@ def _of_grid(grid: Any) -> Given:
     kinds = set(np.unique(np.asarray(grid.celltypes)).tolist())
     if kinds != {_VTK_TRIANGLE}:
         raise InputError(
-            "the UnstructuredGrid has other cells than triangles: pass "
+            "the UnstructuredGrid contains cells that are not triangles: pass "
             "grid.extract_surface().triangulate(), its boundary"
         )
     return Given(np.asarray(grid.points), np.asarray(grid.cells_dict[_VTK_TRIANGLE]))
@@ -112,6 +112,6 @@ def _of_pyvista(surface: Any) -> Given:
     flat: NDArray[Any] = np.asarray(surface.faces).reshape(-1)
     if len(flat) % 4 or (flat[::4] != 3).any():
         raise InputError(
-            "the surface has other cells than triangles: call its method triangulate() first"
+            "the surface contains cells that are not triangles: call its method triangulate() first"
         )
     return Given(np.asarray(surface.points), flat.reshape(-1, 4)[:, 1:])

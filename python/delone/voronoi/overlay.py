@@ -33,7 +33,7 @@ _SAME, _PLACES = 2.0**-46, 4
 
 
 def as_polygons(starts: Indices, corners: Floats) -> NDArray[Any]:
-    """Return polygons of shapely, empty ones for cells without corners."""
+    """Return shapely polygons, empty ones for cells without corners."""
     shapely = shapely_or_say()
     sizes = np.diff(starts)
     filled = sizes > 0

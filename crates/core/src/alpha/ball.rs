@@ -430,7 +430,7 @@ mod tests {
     }
 
     #[test]
-    fn ties_on_a_grid_are_no_conflicts() {
+    fn ties_on_a_grid_are_not_conflicts() {
         let at = [[0.0; 3], [1.0, 1.0, 0.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]].map(site);
         let far = site([1.0, 1.0, 1.0]);
         assert!(!meets_edge(PLAIN, [at[0], far], at[1]));

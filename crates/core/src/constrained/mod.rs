@@ -349,7 +349,7 @@ impl<'a> Work<'a> {
         let (arrays, constrained) =
             export::marked_arrays(self.marked.mesh, ghost, &rows, workers, watch)?;
         let mut through = inserted.through;
-        // Vertices that the caller knows are rows of the input; crossings are listed apart.
+        // Vertices that the caller has are rows of the input; crossings are listed apart.
         through.iter_mut().for_each(|t| t[1] = row_of(t[1]));
         through.retain(|t| (t[1] as usize) < n);
         order::sort(&mut through, watch)?;

@@ -1,7 +1,7 @@
 //! What comes as near to a segment as its rounding: the vertices whose pixel it meets (see `split`).
 //!
 //! Which vertices these are must not depend on the mesh, or points far away would change the result.
-//! So the search is no walk along the segment: between it and such a vertex there may be others, and a
+//! So the search is not a walk along the segment: between it and such a vertex there may be others, and a
 //! vertex beside a triangle that the segment crosses may hide one behind it. It is a flood: from one
 //! end of the segment, through triangles that overlap its box, across each edge that comes as near to
 //! its line as a pixel.

@@ -53,7 +53,7 @@ impl Parts<'_> {
             for k in (0..3).filter(|&k| self.walls[t][k]) {
                 let [tail, head] = [1, 2].map(|i| corners[(k + i) % 3]);
                 let row = known.row(ascending([tail, head])).ok_or_else(|| {
-                    Error::Shape(format!("the edge {tail} {head} is no subsegment"))
+                    Error::Shape(format!("the edge {tail} {head} is not a subsegment"))
                 })?;
                 let side = usize::from(segments[row as usize][0] != tail);
                 found[row as usize][side] = self.component[t];

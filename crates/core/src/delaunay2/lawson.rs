@@ -116,7 +116,7 @@ fn fault(found: &Findings) -> Option<String> {
     }
     if let Some(&[u, v]) = found.hull.first() {
         return Some(format!(
-            "the simplices do not tile the convex hull: their boundary is no convex cycle at the \
+            "the simplices do not tile the convex hull: their boundary is not a convex cycle at the \
              edge {u} -> {v}"
         ));
     }

@@ -2,7 +2,7 @@
 //! more points on their surface, such as the second diagonal of a square.
 //!
 //! b is such a neighbor of a if it lies in the Voronoi cell of a, enlarged to twice its size (see
-//! `regions`), and is no Delaunay neighbor. A tree of boxes is searched; a box beyond one side of
+//! `regions`), and is not a Delaunay neighbor. A tree of boxes is searched; a box beyond one side of
 //! the enlarged cell is skipped.
 
 use delone_predicates::proximity::angle;

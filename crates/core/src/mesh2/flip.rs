@@ -1,6 +1,6 @@
 //! The three edits of flip algorithms: edge flip, triangle split, edge split.
 //!
-//! Each keeps all half-edges mutual; the caller, which knows coordinates, must ensure that the new
+//! Each keeps all half-edges mutual; the caller, which has the coordinates, must ensure that the new
 //! triangles are counterclockwise.
 //!
 //! Ghosts are ordinary triangles here. No two triangles may share two edges, which holds in every

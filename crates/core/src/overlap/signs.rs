@@ -24,7 +24,7 @@
 //! | n q, side of a source's circle | q | n_i q_j | never |
 //! | n q, side of a target's circle | n | -n_i q_j | never |
 //! | c y - s x, meridian (c, s) | v | (-s, c, 0)_i v_j | never |
-//! | z - t r, parallel of tangent t | v | (-t x, -t y, r)_i v_j / r | never: r = 0 is no tie |
+//! | z - t r, parallel of tangent t | v | (-t x, -t y, r)_i v_j / r | never: r = 0 is not a tie |
 //! | n k, corner k = (c, s, t rho) | n | -n_i k_j | never |
 //! | n_z | n | -n_i for j = 3 | never: then n is not zero |
 //! | b_z a^2 - a_z (a b), rise at a | a, b | see [`rise`] | see there |

@@ -31,7 +31,7 @@ const STEPS: usize = 1 << 14;
 pub struct Checked<F> {
     /// Faults as without weights; those in `missing` lie outside all simplices.
     pub faults: F,
-    /// Rows that are no vertices though their lifts lie below the simplices that hold them. They, and
+    /// Rows that are not vertices though their lifts lie below the simplices that hold them. They, and
     /// those that are missing, are looked for only where there is no other fault.
     pub hidden: Vec<u32>,
     /// For each row the row that stands for it: the heaviest with its coordinates, the first of these.

@@ -57,11 +57,11 @@ pub struct PeriodicFindings {
     pub neighbors: Vec<u32>,
     /// Edges without a partner that are not on the boundary of the strip.
     pub hull: Vec<[u32; 2]>,
-    /// Distinct points that are no vertex; with weights, those outside all triangles.
+    /// Distinct points that are not vertices; with weights, those outside all triangles.
     pub missing: Vec<u32>,
     /// Vertices for which another row stands.
     pub repeats: Vec<u32>,
-    /// Rows that are no vertices though their lifts lie below the triangles that hold them; looked for
+    /// Rows that are not vertices though their lifts lie below the triangles that hold them; looked for
     /// only where there is no other fault.
     pub hidden: Vec<u32>,
     /// Adjacent triangles that are not locally Delaunay (regular).
@@ -173,7 +173,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// The rows that are no vertices, along a curve, and the number of vertices.
+    /// The rows that are not vertices, along a curve, and the number of vertices.
     fn vertices(&mut self, watch: &Watch) -> Result<(Vec<u32>, usize)> {
         let arranged = arrange(self.given.points, 1, watch)?;
         let none;
@@ -301,7 +301,7 @@ impl Check<'_> {
         length
     }
 
-    /// Judges the rows that are no vertices.
+    /// Judges the rows that are not vertices.
     fn unused(&mut self, rows: Vec<u32>, pace: &mut Pace) -> Result<()> {
         if self.given.weights.is_empty() {
             self.found.missing = rows;

@@ -1,6 +1,6 @@
 //! The insertion that covers the rest of the sphere: a direction beyond all edges of the hull.
 //!
-//! The cavity then holds all ghosts, with their infinite vertex inside, and is no tree: it is found by
+//! The cavity then holds all ghosts, with their infinite vertex inside, and is not a tree: it is found by
 //! marks, and its k boundary edges take the records of its k triangles. This happens once.
 
 use super::kernel::Kernel;

@@ -275,7 +275,7 @@ fn places(
     })
 }
 
-/// Where a point that is no corner is on a triangle of the orientation `turn`.
+/// Where a point that is not a corner is on a triangle of the orientation `turn`.
 fn place(p: Point2, t: [Point2; 3], turn: Sign) -> Place {
     let mut found = Place::Inside;
     for (k, (i, j)) in EDGES.into_iter().enumerate() {
@@ -450,7 +450,7 @@ mod tests {
     }
 
     #[test]
-    fn shared_vertices_and_edges_are_no_contacts() {
+    fn shared_vertices_and_edges_are_not_contacts() {
         let [o, x, _] = BASE;
         assert_eq!(found([0, 1, 3], [o, x, [1.0, -1.0, 0.0]]), None);
         assert_eq!(found([0, 1, 3], [o, x, [1.0, 1.0, 1.0]]), None);

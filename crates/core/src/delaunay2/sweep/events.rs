@@ -1,6 +1,6 @@
 //! The circle events in a binary heap, ordered by the right ends of the circles.
 //!
-//! Each arc knows the slot of its circle, so obsolete circles are removed at once and the heap is
+//! Each arc has the slot of its circle, so obsolete circles are removed at once and the heap is
 //! no longer than the front.
 
 use delone_predicates::sweep::{CircleEnd, circle_end_abscissa, circle_ends};

@@ -366,7 +366,7 @@ impl Plane {
         })
     }
 
-    /// Checks that a row is there, and is no crossing.
+    /// Checks that a row is there, and is not a crossing.
     fn require_point(&self, row: i64) -> Result<()> {
         if self.rows.vertex(row).is_none() {
             return Err(Error::Shape(format!("row {row} is not there")));

@@ -45,7 +45,7 @@ impl Mesh {
         let mut made = 0;
         let mut i = usize::from(is_open);
         let mut idle = 0;
-        // Where the hole is open, the last corner of the chain is no ear, and its edge leads outward.
+        // Where the hole is open, the last corner of the chain is not an ear, and its edge leads outward.
         while ring.len() > if is_open { 2 } else { 3 } {
             let n = ring.len();
             if is_open && i + 1 >= n {

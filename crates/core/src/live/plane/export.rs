@@ -23,7 +23,7 @@ pub struct Exported {
     /// Triangles, as positions in `rows`, and their neighbors.
     pub arrays: Arrays<3>,
     /// For each triangle and corner, whether the edge opposite is part of a segment; nothing if there
-    /// are no segments.
+    /// are not segments.
     pub constrained: Vec<[bool; 3]>,
     /// `[position, first position of the same point]`, ascending.
     pub duplicates: Vec<[u32; 2]>,

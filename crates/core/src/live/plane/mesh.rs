@@ -17,7 +17,7 @@ pub const INFINITE: u32 = 0;
 /// Three vertices counter-clockwise, [`FREE`] or 0, three opposite codes, marks of the edges.
 pub type Record = [u32; 8];
 
-/// Marks a record that is no triangle; its first word is the next one.
+/// Marks a record that is not a triangle; its first word is the next one.
 pub const FREE: u32 = u32::MAX;
 
 /// A vertex.
@@ -257,7 +257,7 @@ impl Mesh {
         next(self.opposite(next(corner)))
     }
 
-    /// Whether triangle or ghost `t` has `p`, which is no vertex, in its perturbed circumcircle.
+    /// Whether triangle or ghost `t` has `p`, which is not a vertex, in its perturbed circumcircle.
     #[inline]
     pub fn conflicts(&self, t: u32, p: Point2) -> bool {
         let [u, v, w] = self.corners(t);

@@ -76,7 +76,7 @@ impl Plane {
         };
         // The list is replaced as a whole, so that a state that shares the old one is not changed.
         let mut crossed = copy(&self.segments.crossed)?;
-        // Also if all are triangulated again: the new rows are no points.
+        // Also if all are triangulated again: the new rows are not points.
         let rows = fresh.iter().map(|&v| self.mesh.sites[v as usize].head);
         crossed.rows.extend(rows);
         crossed.rows.sort_unstable();

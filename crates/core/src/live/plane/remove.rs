@@ -40,7 +40,7 @@ struct Part {
 impl Mesh {
     /// Removes vertex `v`, where no segment is, from the mesh; its site stays. If memory is refused,
     /// nothing has changed unless there are segments.
-    /// With `always`, high degrees are no reason to refuse.
+    /// With `always`, high degrees are not a reason to refuse.
     pub fn unlink(&mut self, v: u32, always: bool) -> Result<Removed> {
         self.gather(v)?;
         let k = self.rim.len();

@@ -186,7 +186,9 @@ impl Plane {
             pace.spend(1)?;
             let [a, b] = ends.map(|v| self.vertex(rows[v as usize]));
             if self.mesh.reach(a, b)? != Reach::Vertex(b) {
-                return Err(Error::Internal("a piece of a segment is no edge".into()));
+                return Err(Error::Internal(
+                    "a piece of a segment is not an edge".into(),
+                ));
             }
             let sources = pieces.start[i] as usize..pieces.start[i + 1] as usize;
             let before = crossed.edges.len();

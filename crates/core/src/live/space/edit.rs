@@ -413,7 +413,7 @@ impl Space {
     }
 
     /// Moves one row to `p`. If a rebuild is needed, or on an error, nothing has changed. With `always`,
-    /// high degrees are no reason to rebuild.
+    /// high degrees are not a reason to rebuild.
     fn relocate_one(
         &mut self,
         row: u32,

@@ -18,7 +18,7 @@ use crate::mesh3::{Code, FACETS, corner, tetrahedron};
 /// Four vertices, positively oriented, then the codes of the facets as seen from the other sides.
 pub type Record = [u32; 8];
 
-/// The fourth word of a record that is no tetrahedron; its first word is the next one.
+/// The fourth word of a record that is not a tetrahedron; its first word is the next one.
 pub const FREE: u32 = u32::MAX;
 
 /// A vertex.
@@ -149,7 +149,7 @@ impl Mesh {
         self.corners(t).iter().position(|&v| v == INFINITE)
     }
 
-    /// Whether `t` has `p`, which is no vertex, below the plane of its lifted corners.
+    /// Whether `t` has `p`, which is not a vertex, below the plane of its lifted corners.
     pub fn conflicts(&self, t: u32, p: Point3) -> bool {
         let corners = self.corners(t);
         let Some(k) = corners.iter().position(|&v| v == INFINITE) else {

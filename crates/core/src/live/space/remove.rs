@@ -49,7 +49,7 @@ pub enum Removed {
 
 impl Mesh {
     /// Removes vertex `v` from the mesh; its site stays. On an error nothing has changed. With
-    /// `always`, high degrees are no reason to refuse.
+    /// `always`, high degrees are not a reason to refuse.
     pub fn unlink(&mut self, v: u32, always: bool, pace: &mut Pace) -> Result<Removed> {
         self.gather(v)?;
         let around = self.neighbors()?;
