@@ -163,7 +163,7 @@ PLOTTED = [
 @pytest.mark.parametrize("mesh", PLOTTED, ids=lambda mesh: type(mesh).__name__)
 @pytest.mark.parametrize("ax", [3, "ax", Figure(), object()], ids=lambda ax: type(ax).__name__)
 def test_anything_but_axes_is_refused(mesh: Any, ax: Any) -> None:
-    wanted = f"ax must be axes of matplotlib.* got {type(ax).__name__}"
+    wanted = f"ax must be matplotlib axes.* got {type(ax).__name__}"
     with pytest.raises(InputError, match=wanted):
         mesh.plot(ax)
 
@@ -172,7 +172,7 @@ def test_histograms_and_rasters_refuse_other_axes() -> None:
     found = delone.interpolate.grid(POINTS, POINTS[:, 0], shape=(9, 9))
     mesh = delone.mesh(SQUARE)
     for draw in (mesh.plot_quality, mesh.quality().plot, found.plot):
-        with pytest.raises(InputError, match="ax must be axes of matplotlib"):
+        with pytest.raises(InputError, match="ax must be matplotlib axes"):
             draw(3)
 
 

@@ -114,7 +114,7 @@ def test_unknown_options_are_refused(shape: Any, name: str) -> None:
         mesh.plot(off_screen=True, **{name: 1})
     with pytest.raises(InputError, match="cmap must be"):
         mesh.plot(off_screen=True, cmap="nope")
-    with pytest.raises(InputError, match=r"ax must be a plotter of PyVista.* got int"):
+    with pytest.raises(InputError, match=r"ax must be a PyVista plotter.* got int"):
         mesh.plot(5)
 
 
@@ -125,9 +125,9 @@ def test_values_are_no_option_of_cells() -> None:
 
 def test_plotters_and_axes_are_told_apart() -> None:
     figure = pytest.importorskip("matplotlib.figure").Figure()
-    with pytest.raises(InputError, match=r"ax must be a plotter of PyVista.* got Axes"):
+    with pytest.raises(InputError, match=r"ax must be a PyVista plotter.* got Axes"):
         plot(solid(), figure.add_subplot())
-    with pytest.raises(InputError, match=r"ax must be axes of matplotlib.* got Plotter"):
+    with pytest.raises(InputError, match=r"ax must be matplotlib axes.* got Plotter"):
         plot(Delaunay(datasets.uniform(9)), pyvista.Plotter(off_screen=True))
 
 

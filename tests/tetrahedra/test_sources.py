@@ -139,7 +139,7 @@ def test_extra_points_in_a_void() -> None:
     mesh = delone.tetrahedralize(*both, extra_points=[(0.25, 1, 1)])
     assert 16 in mesh.simplices and solids.filled(mesh.points, mesh.simplices) == 7
     with pytest.raises(
-        delone.InputError, match="extra_points: 1 point in what is left empty, row 1:"
+        delone.InputError, match="extra_points: 1 point in a region that is left empty, row 1:"
     ):
         delone.tetrahedralize(*both, extra_points=[(0.25, 1, 1), (1, 1, 1)])
     with pytest.raises(delone.InputError, match="row 0:"):

@@ -161,7 +161,7 @@ def _require_k(k: int, rows: int, duplicates: int) -> None:
     if most < 1:
         there = counted(rows - duplicates, "distinct point")
         raise InputError(
-            f"k = {k!s:.60}: {there}, so there are no neighbors; two are needed at least"
+            f"k = {k!s:.60}: {there}, so there are no neighbors; at least two are needed"
         )
     raise InputError(
         f"k must be from 1 to {most}, one less than the distinct points, got {k!s:.60}"

@@ -98,7 +98,7 @@ def _end(content: mmap.mmap, name: str, at: int, path: Path) -> tuple[int, int]:
         at = end or len(content)
         if content[start:at].decode("utf-8", errors="replace").strip() == word:
             return start, at
-    raise FileFormatError(f"{path} has no {word:.60} at its end: it is cut short")
+    raise FileFormatError(f"{path} has no {word:.60} at its end: it is truncated")
 
 
 class _Checked:

@@ -204,7 +204,7 @@ def _physical(mesh: Any, path: Path) -> NDArray[np.int32] | None:
 
 @contextlib.contextmanager
 def _whole_stl(path: Path) -> Iterator[Path]:
-    """Yield an STL file, unless it is cut short.
+    """Yield an STL file, unless it is truncated.
 
     It is binary if it has the size that the number after its 80 bytes of header says, whatever
     word that begins with; many programs write "solid" there.
@@ -218,11 +218,11 @@ def _whole_stl(path: Path) -> Iterator[Path]:
     binary = len(head) >= 84 and 84 + 50 * count == size
     if not binary and not head.lstrip().startswith(b"solid"):
         raise FileFormatError(
-            f"{path} announces {count} triangles, {84 + 50 * count} bytes, and has {size}: "
-            "it is cut short or not a .stl file"
+            f"{path} declares {count} triangles, {84 + 50 * count} bytes, and has {size}: "
+            "it is truncated or not a .stl file"
         )
     if not binary and not tail.rstrip().rpartition(b"\n")[2].lstrip().startswith(b"endsolid"):
-        raise FileFormatError(f"{path} has no endsolid at its end: it is cut short")
+        raise FileFormatError(f"{path} has no endsolid at its end: it is truncated")
     yield path
 
 

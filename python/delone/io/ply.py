@@ -129,8 +129,8 @@ class _Rows:
     def short(self, element: _Element) -> FileFormatError:
         """Return the error of a file that ends before its items do."""
         return FileFormatError(
-            f"{self.path} announces {element.count} items of type {element.name!r:.40} and holds "
-            "fewer: it is cut short"
+            f"{self.path} declares {element.count} items of type {element.name!r:.40} and holds "
+            "fewer: it is truncated"
         )
 
     def take(self, element: _Element) -> dict[str, Any]:

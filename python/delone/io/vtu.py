@@ -101,7 +101,7 @@ def _piece(piece: Any, arrays: _Arrays, path: Path) -> ReadMesh:
     own = {each.get("Name", ""): each for each in piece.findall("Cells/DataArray")}
     if place is None or not {"connectivity", "offsets", "types"} <= own.keys():
         raise FileFormatError(
-            f"{path} is truncated: a Piece announces {counts[0]:.20} points and {counts[1]:.20} "
+            f"{path} is truncated: a Piece declares {counts[0]:.20} points and {counts[1]:.20} "
             "cells and has no Points or no Cells"
         )
     corners, ends, types = (
@@ -109,8 +109,8 @@ def _piece(piece: Any, arrays: _Arrays, path: Path) -> ReadMesh:
     )
     if [each.strip().lstrip("0") or "0" for each in counts] != [str(len(points)), str(len(types))]:
         raise FileFormatError(
-            f"{path} announces {counts[0]:.20} points and {counts[1]:.20} cells and has "
-            f"{len(points)} and {len(types)}: it is cut short"
+            f"{path} declares {counts[0]:.20} points and {counts[1]:.20} cells and has "
+            f"{len(points)} and {len(types)}: it is truncated"
         )
     cells = cells_of(corners, ends, types, path)
     values = {

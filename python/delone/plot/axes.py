@@ -34,7 +34,7 @@ def new_axes(ax: Any) -> Any:
         _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
     elif not isinstance(ax, require("matplotlib.axes", extra="plot", what="drawing").Axes):
         raise DtypeError(
-            "ax must be axes of matplotlib, such as plt.gca() or figure.add_subplot(), or None; "
+            "ax must be matplotlib axes, such as plt.gca() or figure.add_subplot(), or None; "
             f"got {type(ax).__name__}"
         )
     return ax

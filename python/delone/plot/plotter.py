@@ -28,7 +28,7 @@ def new_plotter(ax: Any, *, off_screen: bool | None) -> Any:
             raise InputError("off_screen is for a new plotter: give it to that of ax")
         if not isinstance(ax, pyvista.BasePlotter):
             raise DtypeError(
-                f"ax must be a plotter of PyVista for a 3-D plot, or None; got {type(ax).__name__}"
+                f"ax must be a PyVista plotter for a 3-D plot, or None; got {type(ax).__name__}"
             )
         return ax
     plotter = pyvista.Plotter(off_screen=hidden, window_size=list(_SIZE))

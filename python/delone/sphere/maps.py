@@ -67,7 +67,9 @@ def write_map(
 ) -> None:
     """Write a `Weights`; see its `to_netcdf`."""
     if weights.method == "majority":
-        raise InputError("a map file cannot have weights of method majority, which are not sums")
+        raise InputError(
+            "a map file cannot hold weights of the method majority, which are not sums"
+        )
     netcdf = require("netCDF4", extra="xarray", what="writing NetCDF files")
     for name, grid, areas in zip(
         ("source", "target"), grids, (weights.source_areas, weights.target_areas), strict=True

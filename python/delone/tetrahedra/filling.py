@@ -335,7 +335,7 @@ class _Stages(NamedTuple):
         lost = self._unused(tiling.simplices[kept])
         if len(lost):
             raise InputError(
-                f"extra_points: {counted(len(lost), 'point')} in what is left empty, "
+                f"extra_points: {counted(len(lost), 'point')} in a region that is left empty, "
                 f"row {listed(lost, 10)}: leave them out, or fill that region"
             )
 
@@ -374,7 +374,8 @@ class _Stages(NamedTuple):
         lost = np.flatnonzero(~kept[found])
         if len(lost):
             raise InputError(
-                f"regions: {counted(len(lost), 'seed')} in what is left empty: {listed(lost, 10)}"
+                f"regions: {counted(len(lost), 'seed')} in a region that is left empty: "
+                f"{listed(lost, 10)}"
             )
         label = np.full(int(solid.cell.max()) + 1, -1, dtype=np.int32)
         for row, (cell, own) in enumerate(
