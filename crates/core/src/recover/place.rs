@@ -13,7 +13,7 @@ use crate::error::Result;
 /// The most halvings of a step.
 const HALVINGS: i32 = 1100;
 
-/// After a wide point was found, so many halvings more look for a double.
+/// After a wide point was found, so many halvings more look for a double, in each direction.
 const FURTHER: i32 = 12;
 
 /// How many doubles are tried for a point on the way to the center of its kernel.
@@ -75,14 +75,15 @@ impl Work<'_> {
         let [inward, along] = directions;
         let back = along.map(|x| -x);
         let mut wide = None;
+        let mut most = HALVINGS;
         for direction in [inward, along, back].map(unit) {
             if direction == [0.0; 3] {
                 continue;
             }
-            let mut left = HALVINGS;
+            let mut tried = 0;
             let (mut length, mut lift) = (size, lift);
-            while left > 0 {
-                left -= 1;
+            while tried < most {
+                tried += 1;
                 length /= 2.0;
                 if length < SHORT {
                     (length, lift) = (length * POWER, lift + LIFT);
@@ -94,7 +95,7 @@ impl Work<'_> {
                 }
                 if wide.is_none() && self.try_wide(v, &start, faces, step) {
                     wide = Some(step);
-                    left = left.min(FURTHER);
+                    most = most.min(tried + FURTHER);
                 }
             }
         }
