@@ -99,7 +99,7 @@ def check_grid(**arrays: NDArray[Any]) -> None:
 def _check_starts(name: str, starts: NDArray[Any], count: int, *, least: int = 0) -> None:
     """Check that numbers partition so many entries, into parts of a least size."""
     whole = len(starts) > 0 and starts[0] == 0 and starts[-1] == count
-    require(bool(whole and (np.diff(starts) >= least).all()), f"{name} is no partition")
+    require(bool(whole and (np.diff(starts) >= least).all()), f"{name} is not a partition")
 
 
 def check_delaunay(**arrays: NDArray[Any]) -> None:

@@ -139,7 +139,7 @@ class _Reader:
             raise self._corrupt("its cells have offsets and no corners")
         corners = self._integers(size, self._type())
         if count == 0 or offsets[0] != 0:
-            raise self._corrupt("its cells have other offsets than corners")
+            raise self._corrupt("its offsets do not match its corners")
         return _List(corners, offsets[1:])
 
     def _counted(self, flat: Integers, count: int) -> _List:
@@ -152,11 +152,11 @@ class _Reader:
         starts, at, values = [], 0, flat.tolist()
         for _ in range(min(count, len(values))):
             if at >= len(values) or values[at] < 0:
-                raise self._corrupt("its cells have other counts than corners")
+                raise self._corrupt("its counts do not match its corners")
             starts.append(at)
             at += 1 + values[at]
         if at != len(values) or len(starts) != count:
-            raise self._corrupt("its cells have other counts than corners")
+            raise self._corrupt("its counts do not match its corners")
         heads = np.array(starts, dtype=np.int64)
         ends = np.cumsum(flat[heads]) if count else np.empty(0, dtype=np.int64)
         return _List(np.delete(flat, heads), ends)

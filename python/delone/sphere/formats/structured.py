@@ -44,7 +44,7 @@ def centers(variables: Variables, choices: Choices) -> Pair | None:
         return a, b
     usable = dict(variables)
     for name, part in variables.items():
-        # Bounds are no centers.
+        # Bounds are not centers.
         usable.pop(str(attribute(part, "bounds")), None)
         for ending in _ENDINGS:
             usable.pop(f"{name}{ending}", None)
