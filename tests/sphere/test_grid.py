@@ -140,6 +140,29 @@ def test_merging_follows_chains() -> None:
     assert len(np.unique(grid.rings[0], axis=0)) == 3
 
 
+def test_merging_many_copies_and_their_neighbors() -> None:
+    # Copies of a corner beside each other on the line, and others that are near one of them.
+    corners = np.zeros((3, 4, 3))
+    corners[:, 1], corners[:, 2] = (0, 1, 0), (0, 0, 1)
+    corners[:, 0], corners[:, 3] = (1, 0, 0), (1, 0, 0)
+    for at, shift in (((0, 3), 6e-13), ((1, 0), 0.0), ((2, 0), -6e-13), ((2, 3), 1.2e-12)):
+        corners[at] = (1, shift, 0)
+    rng = np.random.default_rng(0)
+    for _ in range(6):
+        grid = Grid.from_mesh(corners[rng.permutation(3)])
+        assert len(np.unique(grid.rings[0], axis=0)) == 3
+    # A is near B and C, which are not near each other; along the line B is between them.
+    u, v = np.array([[0.612, 0.707], [-0.707, 0.612]]) / np.hypot(0.612, 0.707)
+    for k, (along, aside) in enumerate([(0, 0), (0.1, 0.95), (0.9, -0.3)]):
+        corners[k] = [(1, *(1e-12 * (along * u + aside * v))), (0, 1, 0), (0, 0, 1), (0, 0, 1)]
+    assert len(np.unique(Grid.from_mesh(corners).rings[0], axis=0)) == 3
+    # All corners of a row at a pole are one.
+    lon, lat = np.meshgrid(np.linspace(0, 360, 1441), [80, 85, 90.0])
+    grid = Grid.from_curvilinear(lon, lat)
+    assert len(np.unique(grid.rings[0], axis=0)) == 2 * 1440 + 1
+    assert np.isclose(grid.areas.sum(), 2 * np.pi * (1 - np.sin(np.radians(80))), rtol=1e-5)
+
+
 @pytest.mark.parametrize(
     ("call", "error", "message"),
     [
@@ -295,3 +318,22 @@ def test_plots() -> None:
         with pytest.raises(error, match=message):
             grid.plot(**options)
     mpl.pyplot.close("all")
+
+
+def test_the_number_of_workers_changes_nothing() -> None:
+    x, y = np.meshgrid(np.linspace(0, 360, 181), np.linspace(-90, 90, 91))
+    sites = np.random.default_rng(8).normal(size=(3000, 3))
+    made = [
+        [
+            Grid.from_curvilinear(x, y, workers=workers),
+            Grid.from_lonlat(x[0], y[:, 0], workers=workers),
+            Grid.from_healpix(32, workers=workers),
+            Grid.from_voronoi(sphere.Voronoi(xyz=sites), workers=workers),
+        ]
+        for workers in (1, 3)
+    ]
+    for one, three in zip(*made, strict=True):
+        assert np.array_equal(one.areas, three.areas)
+        assert np.array_equal(one.rings[0], three.rings[0])
+        assert repr(one.report) == repr(three.report)
+        assert (one.workers, three.workers) == (1, 3)

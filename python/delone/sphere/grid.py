@@ -338,9 +338,10 @@ class Grid(GridCells):
         >>> sphere.Grid.from_curvilinear(lon + lat, lat)
         <Grid of 6 cells (3 x 2), arcs of great circles>
         """
-        vectors, shape = as_corners(lon, lat, degrees=degrees, workers=workers)
-        starts = np.arange(len(vectors) + 1, dtype=np.int64) * vectors.shape[1]
-        return cls._polygons(vectors.reshape(-1, 3), starts, shape, merge, workers)
+        places, corners, shape = as_corners(lon, lat, degrees=degrees, workers=workers)
+        places, merged = merged_corners(places, _as_merge(merge))
+        starts = np.arange(len(corners) + 1, dtype=np.int64) * corners.shape[1]
+        return cls._of("arc", _alone(places[corners.ravel()], starts), shape, merged, workers)
 
     @classmethod
     def from_mesh(

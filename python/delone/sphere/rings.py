@@ -141,8 +141,8 @@ def _meridians(edges: Floats) -> tuple[Floats, NDArray[np.int32]]:
 
 def as_corners(
     lon: ArrayLike, lat: ArrayLike, *, degrees: bool, workers: int | None
-) -> tuple[Floats, tuple[int, ...]]:
-    """Return the corners of quadrilaterals by two-dimensional arrays, (n, k, 3), and the shape."""
+) -> tuple[Floats, Indices, tuple[int, ...]]:
+    """Return places of two-dimensional arrays, (m, 3), those of cells, (n, k), and the shape."""
     x, y = np.asarray(lon), np.asarray(lat)
     if x.shape != y.shape or x.ndim not in {2, 3} or 0 in x.shape:
         raise ShapeError(
@@ -151,14 +151,14 @@ def as_corners(
         )
     flat = np.column_stack((x.ravel(), y.ravel()))
     vectors = directions_of(flat, None, degrees=degrees, workers=workers)
-    vectors = vectors.reshape(*x.shape, 3)
+    at = np.arange(len(vectors), dtype=np.int64).reshape(x.shape)
     if x.ndim == 3:
-        return vectors.reshape(-1, x.shape[2], 3), x.shape[:2]
+        return vectors, at.reshape(-1, x.shape[2]), x.shape[:2]
     if min(x.shape) < 2:
         raise ShapeError(f"lon and lat must have two rows and columns at least, got {x.shape}")
-    around = vectors[:-1, :-1], vectors[:-1, 1:], vectors[1:, 1:], vectors[1:, :-1]
+    around = at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]
     shape = x.shape[0] - 1, x.shape[1] - 1
-    return np.stack(around, axis=2).reshape(-1, 4, 3), shape
+    return vectors, np.stack(around, axis=2).reshape(-1, 4), shape
 
 
 def as_starts(
@@ -196,35 +196,53 @@ def merged_corners(vectors: Floats, merge: float) -> tuple[Floats, int]:
     """Return vectors in which those nearer than `merge` are one, and how many that changes.
 
     Corners are compared along a line on which few of them coincide by chance; each takes the place
-    of the first one near it.
+    of the first one of those that chains of near corners lead to.
     """
     if not merge or len(vectors) < 2:
         return vectors, 0
     units = units_of(vectors, None)
     at = units @ np.array([0.35355339, 0.61237244, 0.70710678])
     order = np.argsort(at, kind="stable")
-    first = np.arange(len(vectors))
     sorted_at, places = at[order], units[order]
     width = merge + 1e-15
-    step = 1
-    while step < len(order):
-        close = np.flatnonzero(sorted_at[step:] - sorted_at[:-step] <= width)
+    step, close = 1, np.arange(len(order) - 1)
+    pairs = []
+    while True:
+        # Corners that are far from one further along the line are far from all beyond it.
+        close = close[close + step < len(order)]
+        close = close[sorted_at[close + step] - sorted_at[close] <= width]
         if not len(close):
             break
         apart = ((places[close + step] - places[close]) ** 2).sum(axis=1)
         near = close[apart <= merge**2]
-        a, b = order[near], order[near + step]
-        np.minimum.at(first, np.maximum(a, b), np.minimum(a, b))
+        pairs.append((order[near], order[near + step]))
+        if step == 1:
+            # What is near a corner is near its copy beside it, which looks for the rest.
+            close = close[apart > 0]
         step += 1
-    # Chains of near corners lead to their first one.
-    while True:
-        again = first[first]
-        if np.array_equal(again, first):
-            break
-        first = again
-    found = vectors[first]
+    if not pairs:
+        return vectors, 0
+    found = vectors[
+        _first(len(vectors), *(np.concatenate(ends) for ends in zip(*pairs, strict=True)))
+    ]
     changed = int((found != vectors).any(axis=1).sum())
     return (found, changed) if changed else (vectors, 0)
+
+
+def _first(count: int, one: Indices, other: Indices) -> Indices:
+    """Return the least number of those that pairs lead to from each, in steps that double."""
+    first = np.arange(count)
+    while len(one):
+        least = np.minimum(first[one], first[other])
+        np.minimum.at(first, first[one], least)
+        np.minimum.at(first, first[other], least)
+        first = first[first]
+        apart = first[one] != first[other]
+        one, other = one[apart], other[apart]
+    # Those that were reached early follow the others.
+    while not np.array_equal(again := first[first], first):
+        first = again
+    return first
 
 
 def geometries(given: Any, *, degrees: bool, workers: int | None) -> Rings:
