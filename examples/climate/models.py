@@ -1,0 +1,86 @@
+"""
+Regrid a model on an unstructured mesh with xarray
+==================================================
+
+A dataset with a UGRID mesh and sea ice that comes and goes becomes one on cells of 3 degrees, in one call. Missing values
+change from month to month, and need no new weights.
+
+Install: ``pip install "delone[plot,xarray]"``.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray
+
+import delone.xarray
+from delone import datasets, sphere
+
+# %%
+# The mesh has the cells of a Voronoi diagram of 2,500 places, as those of MPAS are. This is how a UGRID file describes it:
+# longitudes and latitudes of nodes, and the nodes of each face, padded with -1.
+
+k = np.arange(2500)
+z = 1 - (2 * k + 1) / 2500
+turn = np.pi * (1 + 5**0.5) * k
+sites = np.column_stack((np.sqrt(1 - z * z) * np.cos(turn), np.sqrt(1 - z * z) * np.sin(turn), z))
+diagram = sphere.Voronoi(xyz=sites)
+starts, nodes = diagram.region_rows
+faces = np.full((2500, int(np.diff(starts).max())), -1)
+for row, cell in enumerate(diagram.point_region):
+    own = nodes[starts[cell] : starts[cell + 1]]
+    faces[row, : len(own)] = own
+x, y, up = diagram.vertices.T
+ocean = xarray.Dataset(
+    {
+        "mesh": ((), 0, {"cf_role": "mesh_topology", "topology_dimension": 2, "node_coordinates": "nx ny",
+                         "face_node_connectivity": "faces"}),
+        "nx": ("node", np.degrees(np.arctan2(y, x)), {"units": "degrees_east"}),
+        "ny": ("node", np.degrees(np.arctan2(up, np.hypot(x, y))), {"units": "degrees_north"}),
+        "faces": (("face", "most"), faces, {"start_index": 0}),
+    }
+)  # fmt: skip
+
+# %%
+# The thickness of sea ice in twelve months, missing on land and where there is no ice, as float32.
+
+lat = np.degrees(np.arcsin(sites[:, 2]))
+coast = sphere.from_geometry(datasets.land())
+on_land = coast.polygon_of_simplex[coast.find_simplex(sites)] >= 0
+month = np.arange(12)[:, None]
+edge = 66 - 8 * np.cos(2 * np.pi * (month - 2) / 12) * np.sign(lat)
+thick = np.where((np.abs(lat) > edge) & ~on_land, (np.abs(lat) - edge) / 8, np.nan)
+ocean["ice"] = (
+    ("month", "face"),
+    thick.astype(np.float32),
+    {"units": "m", "mesh": "mesh", "location": "face"},
+)
+
+# %%
+# "normalized" is the mean over the part of a cell that has ice; cells of which less than half has ice are missing.
+
+found = ocean.delone.regrid("3x3", method="normalized", skipna=True, min_fraction=0.5)
+print(found.ice.dims, found.ice.dtype, found.ice.attrs)
+assert found.ice.shape == (12, 60, 120)
+
+# %%
+# "conservative" keeps the volume of ice in each month.
+
+regridder = delone.xarray.Regridder(ocean, "3x3", method="conservative")
+kept = regridder(ocean, skipna=True).ice
+before = np.nansum(thick.astype(np.float32) * regridder.source.areas, axis=1, dtype=float)
+after = np.nansum(kept.values.reshape(12, -1) * regridder.target.areas, axis=1, dtype=float)
+print("largest change of a volume:", f"{abs(after / before - 1).max():.0e}")
+assert np.allclose(before, after, rtol=1e-6)
+
+# %%
+# The map of the mesh and that of the result, in March.
+
+figure, axes = plt.subplots(2, 1, figsize=(7.5, 8), layout="constrained")
+land = datasets.land()
+regridder.source.plot(
+    axes[0], values=thick[2], coast=land, title="Thickness of ice in March on the mesh, m"
+)
+regridder.target.plot(
+    axes[1], values=found.ice.values[2], sides=False, coast=land, title="On cells of 3 degrees"
+)
+plt.show()
