@@ -91,6 +91,16 @@ def site(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 
 @pytest.fixture
 def page(site: str, browser: Browser) -> Page:
+    return opened(site, browser)
+
+
+@pytest.fixture(scope="module")
+def shared(site: str, browser: Browser) -> Page:
+    """One page for tests that leave all but their own exercise as it is."""
+    return opened(site, browser)
+
+
+def opened(site: str, browser: Browser) -> Page:
     found = browser.page(site)
     found.wait("window.deloneFigures && window.deloneReady")
     found.wait(f"Object.keys(window.deloneFigures).length === {len(FIGURES)}")

@@ -122,18 +122,18 @@ def answer(page: Page, number: int, value: str | int | None = None) -> tuple[str
 
 
 @pytest.mark.parametrize("number", NUMBERS)
-def test_numbers_are_judged(page: Page, number: int) -> None:
+def test_numbers_are_judged(shared: Page, number: int) -> None:
     exercise = EXERCISES[number].exercise
     for text in ("", "many", "1,2,3", "--4", "1e999"):
-        assert answer(page, number, text) == ("Write a number.", False)
+        assert answer(shared, number, text) == ("Write a number.", False)
     hints = dict(exercise.hints)
     for hint, said in exercise.hints:
-        assert answer(page, number, hint or "-77") == (f"Wrong. {said}", False)
+        assert answer(shared, number, hint or "-77") == (f"Wrong. {said}", False)
     beyond = exercise.answer + exercise.tolerance * 1.01 + (exercise.tolerance == 0)
     want = next((said for hint, said in hints.items() if hint and float(hint) == beyond), hints[""])
-    assert answer(page, number, beyond) == (f"Wrong. {want}", False)
-    assert answer(page, number, exercise.answer) == ("Right.", True)
-    assert page.complaints() == []
+    assert answer(shared, number, beyond) == (f"Wrong. {want}", False)
+    assert answer(shared, number, exercise.answer) == ("Right.", True)
+    assert shared.complaints() == []
 
 
 def test_numbers_may_be_written_in_several_ways(page: Page) -> None:
@@ -156,16 +156,16 @@ def test_enter_checks_a_number(page: Page) -> None:
 
 
 @pytest.mark.parametrize("number", CHOICES)
-def test_choices_are_judged(page: Page, number: int) -> None:
+def test_choices_are_judged(shared: Page, number: int) -> None:
     choices = EXERCISES[number].exercise.choices
     assert [reason for _, reason in choices].count("") == 1
-    assert answer(page, number) == ("Choose an answer.", False)
+    assert answer(shared, number) == ("Choose an answer.", False)
     wrong = [k for k, (_, reason) in enumerate(choices) if reason]
     for k in wrong:
-        assert answer(page, number, k) == (f"Wrong. {choices[k][1]}", False)
+        assert answer(shared, number, k) == (f"Wrong. {choices[k][1]}", False)
     (right,) = set(range(len(choices))) - set(wrong)
-    assert answer(page, number, right) == ("Right.", True)
-    assert page.complaints() == []
+    assert answer(shared, number, right) == ("Right.", True)
+    assert shared.complaints() == []
 
 
 # The last point in the middle, the others around it.
@@ -202,35 +202,35 @@ SOLVED = {
 
 
 @pytest.mark.parametrize("number", ASKED)
-def test_figures_are_judged(page: Page, number: int) -> None:
+def test_figures_are_judged(shared: Page, number: int) -> None:
     exercise = EXERCISES[number].exercise
     figure = f"window.deloneFigures.{exercise.figure}"
-    if not page.run(f"{figure}.core.live || Boolean({figure}.kind.free)"):
-        said, is_open = answer(page, number)
+    if not shared.run(f"{figure}.core.live || Boolean({figure}.kind.free)"):
+        said, is_open = answer(shared, number)
         assert said.startswith("This copy of the site comes without the compiled core")
         assert not is_open
         return
-    page.run(f"{figure}.reset()")
-    said, is_open = answer(page, number)
+    shared.run(f"{figure}.reset()")
+    said, is_open = answer(shared, number)
     assert said.startswith("Not yet. ") and not is_open
     before, missing, after = SOLVED[exercise.check]
-    page.run(f"(() => {{ const f = {figure}; {before}; }})()")
-    said, is_open = answer(page, number)
+    shared.run(f"(() => {{ const f = {figure}; {before}; }})()")
+    said, is_open = answer(shared, number)
     assert said.startswith(f"Not yet. {missing}") and not is_open
     if after is None:
         # A segment between any two points: some remove four edges, some do not.
         verdicts = set()
         for u in range(4):
-            for v in range(u + 1, page.run(f"{figure}.points.length / 2")):
-                page.run(f"(() => {{ const f = {figure}; {with_segments([u, v])}; }})()")
-                verdicts.add(answer(page, number)[0].partition(" removes")[0])
+            for v in range(u + 1, shared.run(f"{figure}.points.length / 2")):
+                shared.run(f"(() => {{ const f = {figure}; {with_segments([u, v])}; }})()")
+                verdicts.add(answer(shared, number)[0].partition(" removes")[0])
         assert verdicts == {"Right.", "Not yet. The segment"}
     else:
-        page.run(f"(() => {{ const f = {figure}; {after}; }})()")
-        assert answer(page, number) == ("Right.", True)
-    page.run(f"{figure}.reset()")
-    assert answer(page, number)[0].startswith("Not yet. ")
-    assert page.complaints() == []
+        shared.run(f"(() => {{ const f = {figure}; {after}; }})()")
+        assert answer(shared, number) == ("Right.", True)
+    shared.run(f"{figure}.reset()")
+    assert answer(shared, number)[0].startswith("Not yet. ")
+    assert shared.complaints() == []
 
 
 def test_moved_corners_do_not_count(page: Page) -> None:
