@@ -260,8 +260,8 @@ def test_files_keep_masks_and_counts_and_refuse_others(tmp_path: Path) -> None:
     with np.load(path) as file:
         arrays = dict(file)
     for edits, message in (
-        ({"rings": arrays["rings"][::-1]}, "rings is no partition"),
-        ({"cells": arrays["cells"] + 1}, "cells is no partition"),
+        ({"rings": arrays["rings"][::-1]}, "rings is not a partition"),
+        ({"cells": arrays["cells"] + 1}, "cells is not a partition"),
         ({"shape": np.array([3])}, "shape and cells do not match"),
         ({"mask": np.ones(3, bool)}, "mask and shape do not match"),
         ({"merged": np.array([-1])}, "merged"),
