@@ -8,7 +8,6 @@ import numpy as np
 
 from delone import _core, measures
 from delone._arrays import as_flag, as_workers
-from delone.complex import Stored
 from delone.counting import counted
 from delone.errors import InternalError
 from delone.exchange.parts import Parts
@@ -16,6 +15,7 @@ from delone.immutable import kept, sealed
 from delone.location import as_tolerance
 from delone.plane import topology
 from delone.sphere.coordinates import directions_of, lonlat_of, queries_of, units_of
+from delone.sphere.globe import OnGlobe
 from delone.sphere.nearby import nearby
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ _ARRAYS = ("vectors", "simplices", "neighbors", "duplicates")
 _STORED = ("Delaunay", "ConstrainedDelaunay")
 
 
-class Delaunay(Stored):
+class Delaunay(OnGlobe):
     """The Delaunay triangulation of directions: of geographic points, or vectors.
 
     Parameters
@@ -489,76 +489,9 @@ class Delaunay(Stored):
 
         return to_pyvista(self._parts())
 
-    def plot(
-        self,
-        ax: Any = None,
-        *,
-        values: ArrayLike | None = None,
-        view: tuple[float, float] | None = None,
-        cmap: Any = "viridis",
-        colorbar: bool = True,
-        coast: Any = None,
-        points: bool | None = None,
-        linewidth: float | None = None,
-        title: str | None = None,
-    ) -> Any:
-        """Draw the front half of the globe with matplotlib (extra ``plot``), orthographically.
-
-        Parameters
-        ----------
-        ax : matplotlib Axes, optional
-            Where to draw; by default on new ones.
-        values : array_like, shape (m,), optional
-            A number for each triangle, which colors it.
-        view : tuple of two floats, optional
-            Longitude and latitude in degrees of the place in the center; by default the mean
-            direction.
-        cmap : str or matplotlib Colormap, optional
-            The colors of values.
-        colorbar : bool, optional
-            Whether to add the color bar of values.
-        coast : mapping, optional
-            Land whose coasts are drawn: a multipolygon in the form of GeoJSON, such as that of
-            `delone.datasets.land`.
-        points : bool, optional
-            Whether to draw the points; by default up to 2000.
-        linewidth : float, optional
-            Width of the arcs.
-        title : str, optional
-            Title of the axes.
-
-        Returns
-        -------
-        matplotlib Axes
-            Where it is drawn. The globe is the unit circle.
-
-        Raises
-        ------
-        MissingExtraError
-            matplotlib is not installed.
-        InputError
-            `view` is not a longitude and a latitude, or `values` has the wrong shape.
-
-        Examples
-        --------
-        >>> import matplotlib
-        >>> matplotlib.use("Agg")
-        >>> from delone import sphere
-        >>> ax = sphere.Delaunay(lonlat=[(0, 0), (90, 0), (0, 90), (45, 45)]).plot(view=(30, 30))
-        >>> ax.get_aspect()
-        1.0
-        """
+    def _draw(self, ax: Any, points: bool | None, options: dict[str, Any]) -> Any:
         from delone.sphere.picture import plot_mesh
 
-        options = {
-            "values": values,
-            "view": view,
-            "cmap": cmap,
-            "colorbar": colorbar,
-            "coast": coast,
-            "linewidth": linewidth,
-            "title": title,
-        }
         return plot_mesh(self, ax, points, options)
 
     def _ask(self, xi: ArrayLike, answer: Any) -> Indices:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone._arrays import as_number, as_workers
-from delone.complex import Stored
 from delone.counting import counted
 from delone.errors import DegenerateInputError, DtypeError, InputError
 from delone.extras import require
@@ -25,6 +24,7 @@ from delone.sphere.clipping import (
 )
 from delone.sphere.coordinates import directions_of, lonlat_of, queries_of, units_of
 from delone.sphere.delaunay import Delaunay
+from delone.sphere.globe import OnGlobe
 from delone.voronoi.results import Neighbors
 from delone.voronoi.rows import as_lists, of_pairs
 
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 __all__ = ["Voronoi"]
 
 
-class Voronoi(Stored):
+class Voronoi(OnGlobe):
     """The Voronoi diagram of directions: which site is nearest on a sphere.
 
     Parameters
@@ -654,76 +654,9 @@ class Voronoi(Stored):
 
         return SphereReport() if self._mesh is None else self._mesh.validate()
 
-    def plot(
-        self,
-        ax: Any = None,
-        *,
-        values: ArrayLike | None = None,
-        view: tuple[float, float] | None = None,
-        cmap: Any = "viridis",
-        colorbar: bool = True,
-        coast: Any = None,
-        points: bool | None = None,
-        linewidth: float | None = None,
-        title: str | None = None,
-    ) -> Any:
-        """Draw the front half of the globe with matplotlib (extra ``plot``), orthographically.
-
-        Parameters
-        ----------
-        ax : matplotlib Axes, optional
-            Where to draw; by default on new ones.
-        values : array_like, shape (n,), optional
-            A number for each cell, which colors it.
-        view : tuple of two floats, optional
-            Longitude and latitude in degrees of the place in the center; by default the mean
-            direction.
-        cmap : str or matplotlib Colormap, optional
-            The colors of values.
-        colorbar : bool, optional
-            Whether to add the color bar of values.
-        coast : mapping, optional
-            Land whose coasts are drawn: a multipolygon in the form of GeoJSON, such as that of
-            `delone.datasets.land`.
-        points : bool, optional
-            Whether to draw the sites; by default up to 2000.
-        linewidth : float, optional
-            Width of the arcs.
-        title : str, optional
-            Title of the axes.
-
-        Returns
-        -------
-        matplotlib Axes
-            Where it is drawn. The globe is the unit circle.
-
-        Raises
-        ------
-        MissingExtraError
-            matplotlib is not installed.
-        InputError
-            `view` is not a longitude and a latitude, or `values` has the wrong shape.
-
-        Examples
-        --------
-        >>> import matplotlib
-        >>> matplotlib.use("Agg")
-        >>> from delone import sphere
-        >>> ax = sphere.Voronoi(lonlat=[(0, 0), (90, 0), (0, 90), (45, 45)]).plot(view=(30, 30))
-        >>> ax.get_aspect()
-        1.0
-        """
+    def _draw(self, ax: Any, points: bool | None, options: dict[str, Any]) -> Any:
         from delone.sphere.picture import plot_diagram
 
-        options = {
-            "values": values,
-            "view": view,
-            "cmap": cmap,
-            "colorbar": colorbar,
-            "coast": coast,
-            "linewidth": linewidth,
-            "title": title,
-        }
         return plot_diagram(self, ax, points, options)
 
 

@@ -1,0 +1,92 @@
+"""What triangulations and diagrams on the sphere have in common: their pictures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from delone.complex import Stored
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+__all__ = ["OnGlobe"]
+
+
+class OnGlobe(Stored):
+    """Arrays on the sphere that are drawn on a globe."""
+
+    __slots__ = ()
+
+    def _draw(self, ax: Any, points: bool | None, options: dict[str, Any]) -> Any:
+        """Draw with the options of `plot`."""
+        raise NotImplementedError
+
+    def plot(
+        self,
+        ax: Any = None,
+        *,
+        values: ArrayLike | None = None,
+        view: tuple[float, float] | None = None,
+        cmap: Any = "viridis",
+        colorbar: bool = True,
+        coast: Any = None,
+        points: bool | None = None,
+        linewidth: float | None = None,
+        title: str | None = None,
+    ) -> Any:
+        """Draw the front half of the globe with matplotlib (extra ``plot``), orthographically.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; by default on new ones.
+        values : array_like, shape (k,), optional
+            A number for each triangle or each cell, which colors it.
+        view : tuple of two floats, optional
+            Longitude and latitude in degrees of the place in the center; by default the mean
+            direction.
+        cmap : str or matplotlib Colormap, optional
+            The colors of values.
+        colorbar : bool, optional
+            Whether to add the color bar of values.
+        coast : mapping, optional
+            Land whose coasts are drawn: a multipolygon in the form of GeoJSON, such as that of
+            `delone.datasets.land`.
+        points : bool, optional
+            Whether to draw the points or sites; by default up to 2000.
+        linewidth : float, optional
+            Width of the arcs.
+        title : str, optional
+            Title of the axes.
+
+        Returns
+        -------
+        matplotlib Axes
+            Where it is drawn. The globe is the unit circle.
+
+        Raises
+        ------
+        MissingExtraError
+            matplotlib is not installed.
+        InputError
+            `view` is not a longitude and a latitude, or `values` has the wrong shape.
+
+        Examples
+        --------
+        >>> import matplotlib
+        >>> matplotlib.use("Agg")
+        >>> from delone import sphere
+        >>> ax = sphere.Delaunay(lonlat=[(0, 0), (90, 0), (0, 90), (45, 45)]).plot(view=(30, 30))
+        >>> ax.get_aspect()
+        1.0
+        """
+        options = {
+            "values": values,
+            "view": view,
+            "cmap": cmap,
+            "colorbar": colorbar,
+            "coast": coast,
+            "linewidth": linewidth,
+            "title": title,
+        }
+        return self._draw(ax, points, options)
