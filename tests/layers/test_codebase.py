@@ -89,6 +89,27 @@ def test_each_file_says_what_lives_in_it(path: Path) -> None:
         assert ast.get_docstring(ast.parse(text))
 
 
+ALIAS = re.compile(
+    r"^\s+\w+(?:: TypeAlias)? = NDArray\[np\.(?:float64|int32|int64|bool_)\]$", re.MULTILINE
+)
+# Names that say what 64-bit numbers are, and oracles that import nothing of the package.
+OWN_ALIASES = {"dynamic", "reference", "testing", "datasets"}
+
+
+def test_types_of_arrays_have_one_module() -> None:
+    """`delone._types` has them: one name, one type, in all modules."""
+    own = [
+        name_of(path)
+        for path in SOURCES
+        if PACKAGE in path.parents
+        and path.name != "_types.py"
+        and path.relative_to(PACKAGE).parts[0] not in OWN_ALIASES
+        and ALIAS.search(path.read_text(encoding="utf-8"))
+    ]
+    assert own == []
+    assert ALIAS.search("    Floats = NDArray[np.float64]")
+
+
 def holds_unsafe(text: str) -> bool:
     code = re.sub(r"//[^\n]*", "", text)
     return bool(re.search(r"\bunsafe\b", code))

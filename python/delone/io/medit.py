@@ -18,9 +18,7 @@ from delone.io.numbered import as_markers, as_rows, parsed, read_text
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["read"]
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Integers = NDArray[np.int64]
+    from delone._types import Rows
 
 __all__ = ["read"]
 
@@ -50,8 +50,8 @@ _VECTORS = {"VECTORS": 3, "NORMALS": 3, "TENSORS": 9}
 class _List(NamedTuple):
     """Cells as a list of corners, and where each ends."""
 
-    corners: Integers
-    ends: Integers
+    corners: Rows
+    ends: Rows
 
 
 def read(path: Path) -> ReadMesh:
@@ -142,7 +142,7 @@ class _Reader:
             raise self._corrupt("its offsets do not match its corners")
         return _List(corners, offsets[1:])
 
-    def _counted(self, flat: Integers, count: int) -> _List:
+    def _counted(self, flat: Rows, count: int) -> _List:
         """Separate corners from the counts before them."""
         width = len(flat) // count - 1 if count else 0
         if len(flat) == count * (width + 1) and (flat[:: width + 1] == width).all():
@@ -240,14 +240,14 @@ class _Reader:
             raise FileFormatError(f"{self._path} has numbers of the type {word!r:.40}")
         return _TYPES[word.lower()]
 
-    def _integers(self, count: int, kind: str) -> Integers:
+    def _integers(self, count: int, kind: str) -> Rows:
         found = self._array(count, kind)
-        made: Integers = found.astype(np.int64)
+        made: Rows = found.astype(np.int64)
         if found.dtype.kind == "f" and (made != found).any():
             raise self._corrupt("its cells have corners that are not integers")
         return made
 
-    def _array(self, count: int, kind: str) -> NDArray[np.float64] | Integers:
+    def _array(self, count: int, kind: str) -> NDArray[np.float64] | Rows:
         """Read numbers: bytes after the end of the line, or words."""
         if not self._binary:
             found = _LETTERS.search(self._content, self._at)
@@ -262,7 +262,7 @@ class _Reader:
         if (start == 0 and count) or end > len(self._content):
             raise self._corrupt(f"it declares {count} numbers and ends before these")
         self._at = end if start else self._at
-        read: Integers = np.frombuffer(self._content[start:end], kind)
+        read: Rows = np.frombuffer(self._content[start:end], kind)
         return read
 
     def _corrupt(self, what: str) -> FileFormatError:

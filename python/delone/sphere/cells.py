@@ -11,12 +11,8 @@ from delone import _core
 from delone._arrays import as_workers
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Floats, Indices
     from delone.sphere.delaunay import Delaunay
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["Cells", "cells_of", "lunes"]
 

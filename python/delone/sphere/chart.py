@@ -20,9 +20,9 @@ from delone.sphere.paired import row_sums
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["plot_grid"]
 

@@ -10,12 +10,8 @@ from delone.sphere.cells import Cells, lunes
 from delone.sphere.exact import cross, dot, whole
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Floats, Indices
     from delone.sphere.exact import Vector
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["cells_of_few", "first_rows", "nearest_of_few"]
 

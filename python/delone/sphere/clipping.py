@@ -26,12 +26,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from delone._types import Bools, Floats, Indices, Rows
     from delone.sphere.cells import Cells
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
 
 __all__ = [
     "Clipped",

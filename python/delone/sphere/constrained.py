@@ -22,12 +22,9 @@ from delone.sphere.sides import Origin
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Bools, Floats, Indices
     from delone.constrained.segments import SegmentReport
     from delone.sphere.validation import ConstrainedSphereReport
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["WINDINGS", "ConstrainedDelaunay", "Given", "most_added"]
 

@@ -20,10 +20,9 @@ from delone.georeference import caller_level, crs_of, parsed
 from delone.immutable import own_copy
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Floats = NDArray[np.float64]
-    Rows = NDArray[np.bool_]
+    from delone._types import Bools, Floats
 
 __all__ = ["LongitudeWarning", "directions_of", "lonlat_of", "numbers_of", "queries_of", "units_of"]
 
@@ -156,7 +155,7 @@ def _refuse_angles(angles: Floats, *, degrees: bool, name: str) -> None:
         raise _refusal(wide, f"{name}: {{}} a longitude of many turns, {{}}: {hint}")
 
 
-def _refusal(rows: Rows, message: str) -> DirectionError:
+def _refusal(rows: Bools, message: str) -> DirectionError:
     """Return the error of rows, whose count and first number complete the message."""
     found = np.flatnonzero(rows)
     count = len(found)

@@ -20,9 +20,7 @@ from delone.sphere.exact import cross, dot, whole
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-
+    from delone._types import Floats, Indices
 
 __all__ = ["Split", "split"]
 

@@ -21,11 +21,8 @@ from delone.sphere.nearby import nearby
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Floats, Indices, Rows
     from delone.sphere.validation import SphereReport
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
 
 __all__ = ["Delaunay"]
 

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
+
     Signs = NDArray[np.int8]
     Vector = tuple[int, int, int]
 

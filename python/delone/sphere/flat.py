@@ -19,9 +19,7 @@ from delone.sphere.coordinates import lonlat_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["flat_polygon"]
 

@@ -12,9 +12,7 @@ from delone.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["gaussian_bounds"]
 

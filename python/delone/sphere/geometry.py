@@ -19,7 +19,7 @@ from delone.sphere.sides import SIDES, Origin, divided, whole_sphere
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from delone._types import Floats
 
 __all__ = ["from_geometry", "read"]
 

@@ -18,14 +18,11 @@ from delone.sphere.rings import as_bounds, as_corners, as_starts, merged_corners
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from delone._types import Bools, Floats, Rows
     from delone.sphere.formats import Cells
     from delone.sphere.voronoi import Voronoi
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int64]
-    Flags = NDArray[np.bool_]
 
 __all__ = ["Grid"]
 
@@ -238,7 +235,7 @@ class Grid(GridCells):
         rows: Floats,
         merged: int,
         workers: int | None,
-        mask: Flags | None = None,
+        mask: Bools | None = None,
     ) -> Self:
         """Return the cells between edges of columns and of rows."""
         arrays = rings_of.rows(rows, [columns] * (len(rows) - 1))
@@ -526,7 +523,7 @@ class Grid(GridCells):
     def _polygons(
         cls,
         vectors: Floats,
-        starts: Indices,
+        starts: Rows,
         shape: tuple[int, ...],
         merge: float,
         workers: int | None,
@@ -536,7 +533,7 @@ class Grid(GridCells):
         return cls._of("arc", _alone(vectors, starts), shape, merged, workers)
 
 
-def _alone(vectors: Floats, starts: Indices) -> tuple[Any, ...]:
+def _alone(vectors: Floats, starts: Rows) -> tuple[Any, ...]:
     """Return the arrays of the core for cells of one ring each."""
     count = len(starts) - 1
     cells = np.arange(count + 1, dtype=np.int64)

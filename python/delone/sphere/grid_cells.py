@@ -21,9 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int64]
-    Flags = NDArray[np.bool_]
+    from delone._types import Bools, Floats, Rows
 
 __all__ = ["GridCells"]
 
@@ -50,7 +48,7 @@ class GridCells(Stored):
     _bounds: tuple[Floats, Floats] | None
     _edges: str
     _made: _core.CellGrid
-    _mask: Flags | None
+    _mask: Bools | None
     _merged: int
     _shape: tuple[int, ...]
 
@@ -64,7 +62,7 @@ class GridCells(Stored):
         workers: int | None,
         *,
         bounds: tuple[Floats, Floats] | None = None,
-        mask: Flags | None = None,
+        mask: Bools | None = None,
     ) -> Self:
         """Return a grid of arrays for the core."""
         as_workers(workers)
@@ -90,7 +88,7 @@ class GridCells(Stored):
 
     @classmethod
     def _again(
-        cls, parts: tuple[Any, ...], bounds: tuple[Floats, Floats] | None, mask: Flags | None
+        cls, parts: tuple[Any, ...], bounds: tuple[Floats, Floats] | None, mask: Bools | None
     ) -> Self:
         """Return a pickled grid."""
         edges, arrays, *rest = parts
@@ -171,7 +169,7 @@ class GridCells(Stored):
         return self._edges
 
     @property
-    def mask(self) -> Flags | None:
+    def mask(self) -> Bools | None:
         """Which cells take part, (ncells,), as a dataset says; None if it does not."""
         return self._mask
 
@@ -202,7 +200,7 @@ class GridCells(Stored):
 
     @property
     @kept
-    def rings(self) -> tuple[Floats, Indices, Indices]:
+    def rings(self) -> tuple[Floats, Rows, Rows]:
         """The rings of all cells: unit vectors of corners, starts of rings, starts of cells.
 
         Those of cells between meridians and parallels are their four corners.

@@ -9,10 +9,7 @@ from delone.counting import counted
 from delone.immutable import ReadOnly
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Indices = NDArray[np.int64]
+    from delone._types import Rows
 
 __all__ = ["GridFaults", "GridReport"]
 
@@ -47,10 +44,10 @@ class GridReport(ReadOnly):
 
     merged: int
     repeated: int
-    turned: Indices
-    empty: Indices
-    concave: Indices
-    masked: Indices
+    turned: Rows
+    empty: Rows
+    concave: Rows
+    masked: Rows
 
     def __repr__(self) -> str:
         parts = [f"{counted(self.merged, 'corner')} merged"] if self.merged else []
@@ -83,7 +80,7 @@ class GridFaults(ReadOnly):
     (True, 0.5)
     """
 
-    overlapping: Indices
+    overlapping: Rows
     covered: float
 
     def __bool__(self) -> bool:

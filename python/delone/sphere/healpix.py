@@ -15,10 +15,7 @@ from delone._arrays import as_least
 from delone.errors import InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
-    Integers = NDArray[np.int64]
+    from delone._types import Floats, Rows
 
 __all__ = ["healpix_corners"]
 
@@ -41,7 +38,7 @@ def healpix_corners(nside: int, *, nested: bool, workers: int) -> Floats:
     return np.stack([_place(n, face, x + i, y + j, workers) for i, j in steps], axis=1)
 
 
-def _place(n: int, face: Integers, x: Integers, y: Integers, workers: int) -> Floats:
+def _place(n: int, face: Rows, x: Rows, y: Rows, workers: int) -> Floats:
     """Return vectors of corners: their ring from the north pole, and their place in it."""
     ring = _RING[face] * n - x - y
     # Places in a quarter of the ring: as many as the ring is from its pole, at most nside.
@@ -57,14 +54,14 @@ def _place(n: int, face: Integers, x: Integers, y: Integers, workers: int) -> Fl
     return np.column_stack((flat * circle[:, 0], flat * circle[:, 1], z))
 
 
-def _nested(n: int) -> tuple[Integers, Integers, Integers]:
+def _nested(n: int) -> tuple[Rows, Rows, Rows]:
     """Return the base pixel and the place in it of nested pixels: bits of x and y alternate."""
     pixel = np.arange(12 * n * n, dtype=np.int64)
     face, within = pixel // (n * n), pixel % (n * n)
     return face, _even_bits(within), _even_bits(within >> 1)
 
 
-def _even_bits(value: Integers) -> Integers:
+def _even_bits(value: Rows) -> Rows:
     """Return the numbers of every other bit."""
     found = np.zeros_like(value)
     for bit in range(14):
@@ -72,7 +69,7 @@ def _even_bits(value: Integers) -> Integers:
     return found
 
 
-def _ringed(n: int) -> tuple[Integers, Integers, Integers]:
+def _ringed(n: int) -> tuple[Rows, Rows, Rows]:
     """Return the base pixel and the place in it of pixels along rings from north to south."""
     face = np.repeat(np.arange(12, dtype=np.int64), n * n)
     x = np.tile(np.repeat(np.arange(n, dtype=np.int64), n), 12)

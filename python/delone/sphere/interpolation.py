@@ -32,13 +32,10 @@ from delone.sphere.vectors import VectorInterpolation, polar_rows
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Bools, Floats, Indices, Rows
     from delone.interpolate.values import Field
     from delone.interpolate.weights import Table
 
-    Floats = NDArray[np.float64]
-    Bools = NDArray[np.bool_]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
     # A field, and interpolators of parts of its values.
     Parts = tuple[Field, list[tuple[Rows, Any]]]
 

@@ -21,14 +21,8 @@ from delone.plane import topology
 from delone.sphere.sides import Origin, PolygonWarning
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from delone._core import ConstrainedTriangulation
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
+    from delone._types import Bools, Floats, Indices, Rows
 
 __all__ = ["Origin", "Rings", "first_polygon"]
 

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from delone._types import Floats
     from delone.sphere.grid import Grid
 
-    Floats = NDArray[np.float64]
     Grids = tuple[Grid | None, Grid | None]
 
 __all__ = ["read_map", "write_map"]

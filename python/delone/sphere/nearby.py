@@ -15,14 +15,8 @@ from delone.sphere.exact import cross, dot, whole
 from delone.sphere.outside import chords
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Floats, Indices, Rows
     from delone.sphere.exact import Vector
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
 
 __all__ = ["nearby"]
 

@@ -9,10 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["arc_weights", "chords"]
 

@@ -19,8 +19,7 @@ from delone.sphere.weights import METHODS, Weights, as_mask
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int64]
+    from delone._types import Floats, Rows
 
 __all__ = ["OverlapReport", "Overlaps"]
 
@@ -57,12 +56,12 @@ class OverlapReport(ReadOnly):
     """
 
     npairs: int
-    source_outside: Indices
-    source_partly: Indices
-    source_repeatedly: Indices
-    target_outside: Indices
-    target_partly: Indices
-    target_repeatedly: Indices
+    source_outside: Rows
+    source_partly: Rows
+    source_repeatedly: Rows
+    target_outside: Rows
+    target_partly: Rows
+    target_repeatedly: Rows
 
     def __repr__(self) -> str:
         parts = [counted(self.npairs, "pair")]
@@ -163,7 +162,7 @@ class Overlaps(Paired, Stored):
 
     def _fill(
         self,
-        rows: tuple[Indices, NDArray[np.int32], Floats],
+        rows: tuple[Rows, NDArray[np.int32], Floats],
         sums: tuple[Floats, Floats, Floats, Floats],
         shapes: tuple[tuple[int, ...], tuple[int, ...]],
         grids: tuple[Grid, Grid] | None,

@@ -12,8 +12,7 @@ from delone.immutable import Immutable
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int64]
+    from delone._types import Floats, Rows
 
 __all__ = ["Paired", "added", "row_sums"]
 
@@ -24,12 +23,12 @@ class Paired(Immutable):
     __slots__ = ()
 
     # Starts, source cells and values of the entries; of source and target, areas and shapes.
-    _rows: tuple[Indices, NDArray[np.int32], Floats]
+    _rows: tuple[Rows, NDArray[np.int32], Floats]
     _areas: tuple[Floats, Floats]
     _shapes: tuple[tuple[int, ...], tuple[int, ...]]
 
     @property
-    def indptr(self) -> Indices:
+    def indptr(self) -> Rows:
         """Where the entries of each target cell start, and their number, (ntarget + 1,)."""
         return self._rows[0]
 
@@ -66,7 +65,7 @@ class Paired(Immutable):
         return sparse.csr_matrix((self._rows[2], self._rows[1], self._rows[0]), shape=shape)
 
 
-def row_sums(indptr: Indices, values: Floats) -> Floats:
+def row_sums(indptr: Rows, values: Floats) -> Floats:
     """Return the sums of rows."""
     found = np.zeros(len(indptr) - 1)
     used = np.flatnonzero(np.diff(indptr))
@@ -76,8 +75,8 @@ def row_sums(indptr: Indices, values: Floats) -> Floats:
 
 
 def added(
-    rows: Indices, columns: Indices, values: Floats, count: int
-) -> tuple[Indices, NDArray[np.int32], Floats]:
+    rows: Rows, columns: Rows, values: Floats, count: int
+) -> tuple[Rows, NDArray[np.int32], Floats]:
     """Return entries as compressed rows, where those of one pair are added."""
     order = np.lexsort((columns, rows))
     rows, columns, values = rows[order], columns[order], values[order]

@@ -7,10 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["plot_diagram", "plot_mesh"]
 

@@ -14,13 +14,8 @@ from delone.sphere.interpolation import Linear, NaturalNeighbor
 from delone.sphere.voronoi import Voronoi
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Bools, Floats, Rows
     from delone.sphere.grid import Grid
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int64]
-    Flags = NDArray[np.bool_]
 
 __all__ = ["POINTWISE", "Entries", "pointwise"]
 
@@ -32,8 +27,8 @@ POINTWISE = (
 class Entries(NamedTuple):
     """Weights, one by one: target cells, source cells, and values."""
 
-    rows: Indices
-    columns: Indices
+    rows: Rows
+    columns: Rows
     values: Floats
 
 
@@ -42,8 +37,8 @@ class _Pair(NamedTuple):
 
     source: Grid
     target: Grid
-    sources: Indices
-    targets: Indices
+    sources: Rows
+    targets: Rows
     workers: int | None
 
 
@@ -51,7 +46,7 @@ def pointwise(
     source: Grid,
     target: Grid,
     method: str,
-    used: tuple[Flags | None, Flags | None],
+    used: tuple[Bools | None, Bools | None],
     *,
     extrapolate: str,
     power: float,
@@ -78,7 +73,7 @@ def pointwise(
     return found
 
 
-def _places(grid: Grid, used: Flags | None) -> Indices:
+def _places(grid: Grid, used: Bools | None) -> Rows:
     """Return the cells that are used and have a center."""
     there = np.isfinite(grid.centers_lonlat).all(axis=1)
     return np.flatnonzero(there if used is None else there & used)
@@ -146,7 +141,7 @@ def _vectors(lonlat: Floats) -> Floats:
     return directions_of(lonlat, None, degrees=True, workers=None, any_turns=True)
 
 
-def _bilinear(pair: _Pair, used: Flags | None) -> Entries:
+def _bilinear(pair: _Pair, used: Bools | None) -> Entries:
     """Return weights between centers in rows and columns; all four must be used.
 
     Between the outermost row and a pole that its cells reach, the pole has the mean of the row.
@@ -198,15 +193,15 @@ def _bilinear(pair: _Pair, used: Flags | None) -> Entries:
     return _kept(entries, entries.values > 0)
 
 
-def _kept(entries: Entries, kept: Flags) -> Entries:
+def _kept(entries: Entries, kept: Bools) -> Entries:
     return Entries(entries.rows[kept], entries.columns[kept], entries.values[kept])
 
 
 def _to_pole(  # noqa: PLR0917
     pair: _Pair,
-    beyond: Flags,
-    places: tuple[Floats, Floats, Indices],
-    nodes: tuple[Floats, Floats, Indices],
+    beyond: Bools,
+    places: tuple[Floats, Floats, Rows],
+    nodes: tuple[Floats, Floats, Rows],
     k: int,
     pole: float,
 ) -> list[Entries]:

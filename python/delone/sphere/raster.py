@@ -14,11 +14,8 @@ from delone.interpolate.raster import raster_nodes
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from delone._types import Floats
     from delone.sphere.delaunay import Delaunay
-
-    Floats = NDArray[np.float64]
 
 __all__ = ["globe_nodes"]
 

@@ -17,10 +17,8 @@ from delone.sphere.flat import flat_polygon
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Floats, Rows
     from delone.sphere.voronoi import Voronoi
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int64]
 
 __all__ = [
     "Rings",
@@ -46,8 +44,8 @@ class Rings(NamedTuple):
     """Corners, starts of rings in corners, starts of cells in rings, and which rings are holes."""
 
     vectors: Floats
-    rings: Indices
-    cells: Indices
+    rings: Rows
+    cells: Rows
     holes: NDArray[np.bool_]
 
 
@@ -141,7 +139,7 @@ def _meridians(edges: Floats) -> tuple[Floats, NDArray[np.int32]]:
 
 def as_corners(
     lon: ArrayLike, lat: ArrayLike, *, degrees: bool, workers: int | None
-) -> tuple[Floats, Indices, tuple[int, ...]]:
+) -> tuple[Floats, Rows, tuple[int, ...]]:
     """Return places of two-dimensional arrays, (m, 3), those of cells, (n, k), and the shape."""
     x, y = np.asarray(lon), np.asarray(lat)
     if x.shape != y.shape or x.ndim not in {2, 3} or 0 in x.shape:
@@ -168,7 +166,7 @@ def as_starts(
     *,
     degrees: bool,
     workers: int | None,
-) -> tuple[Floats, Indices]:
+) -> tuple[Floats, Rows]:
     """Return corners, (k, 3), and where those of each cell start."""
     given = xyz if xyz is not None else lonlat
     shape = np.shape(given) if given is not None else ()
@@ -229,7 +227,7 @@ def merged_corners(vectors: Floats, merge: float) -> tuple[Floats, int]:
     return (found, changed) if changed else (vectors, 0)
 
 
-def _first(count: int, one: Indices, other: Indices) -> Indices:
+def _first(count: int, one: Rows, other: Rows) -> Rows:
     """Return the least number of those that pairs lead to from each, in steps that double."""
     first = np.arange(count)
     while len(one):
@@ -283,7 +281,7 @@ def geometries(given: Any, *, degrees: bool, workers: int | None) -> Rings:
     )
 
 
-def voronoi(diagram: Voronoi) -> tuple[Floats, Indices]:
+def voronoi(diagram: Voronoi) -> tuple[Floats, Rows]:
     """Return the corners of the cells of a diagram, and where those of each site start."""
     if diagram._region is not None:
         raise InputError("the diagram is clipped: use Grid.from_polygons(diagram.to_geopandas())")
@@ -298,7 +296,7 @@ def voronoi(diagram: Voronoi) -> tuple[Floats, Indices]:
     return diagram.vertices[entries[rows_of]], starts
 
 
-def _runs(arrays: tuple[Any, ...]) -> tuple[Indices, Indices, Indices, Indices]:
+def _runs(arrays: tuple[Any, ...]) -> tuple[Rows, Rows, Rows, Rows]:
     """Return the row, the western and eastern meridian, and the number of each cell."""
     _, starts, _, numbers, _ = arrays
     row = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
@@ -312,7 +310,7 @@ def _runs(arrays: tuple[Any, ...]) -> tuple[Indices, Indices, Indices, Indices]:
     return row[west][order], west[order], last[order] + 1, numbers[west][order].astype(np.int64)
 
 
-def corners(arrays: tuple[Any, ...]) -> tuple[Floats, Indices, Indices]:
+def corners(arrays: tuple[Any, ...]) -> tuple[Floats, Rows, Rows]:
     """Return the four corners of each cell between meridians and parallels, and their starts."""
     tangents, _, meridians, _, count = arrays
     row, west, east, _ = _runs(arrays)

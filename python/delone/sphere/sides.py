@@ -23,11 +23,8 @@ from delone.georeference import caller_level
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Bools, Floats, Indices
     from delone.constrained.geodata import Parts
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["SIDES", "Origin", "PolygonWarning", "divided", "whole_sphere"]
 

@@ -24,10 +24,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone._core import ConstrainedTriangulation
+    from delone._types import Bools, Floats, Indices
 
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
     Rows = NDArray[np.integer]
 
 __all__ = ["ConstrainedSphereReport", "SphereReport", "validate", "validate_constrained"]

@@ -25,13 +25,12 @@ from delone.sphere.coordinates import numbers_of
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Floats, Rows
     from delone.interpolate.values import Field
     from delone.interpolate.weights import Weights
     from delone.sphere.delaunay import Delaunay
 
-    Floats = NDArray[np.float64]
     Complexes = NDArray[np.complex128]
-    Rows = NDArray[np.int64]
     # A field, the interpolator of its sites, and its values after the policies.
     Settled = tuple[Field, Any, Floats]
 

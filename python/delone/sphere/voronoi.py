@@ -31,11 +31,10 @@ from delone.voronoi.rows import as_lists, of_pairs
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Floats, Indices
     from delone.sphere.clipping import Clipped, Region
     from delone.sphere.validation import SphereReport
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
     # The radius, and where cells end.
     Options = tuple[float, Region | None]
 

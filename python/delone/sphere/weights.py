@@ -19,11 +19,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._types import Bools, Floats, Rows
     from delone.sphere.grid import Grid
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int64]
-    Flags = NDArray[np.bool_]
 
 __all__ = ["METHODS", "Weights", "as_mask"]
 
@@ -101,7 +98,7 @@ class Weights(Paired):
     def _of(
         cls,
         method: str,
-        rows: tuple[Indices, NDArray[np.int32], Floats],
+        rows: tuple[Rows, NDArray[np.int32], Floats],
         fractions: tuple[Floats, Floats],
         areas: tuple[Floats, Floats],
         shapes: tuple[tuple[int, ...], tuple[int, ...]],
@@ -342,7 +339,7 @@ class Weights(Paired):
             )
         return array.reshape(-1, count), lead, target
 
-    def _mixed(self, part: Floats, skipna: bool, least: float) -> tuple[Floats, Flags]:
+    def _mixed(self, part: Floats, skipna: bool, least: float) -> tuple[Floats, Bools]:
         """Return sums of products, and which are missing.
 
         Sums are over differences from the smallest value of each field, so that a constant remains
@@ -394,7 +391,7 @@ class Weights(Paired):
 
     def _majority(
         self, given: NDArray[Any], skipna: bool, least: float
-    ) -> tuple[NDArray[Any], Flags]:
+    ) -> tuple[NDArray[Any], Bools]:
         """Return the value that covers most of each target cell, the smallest of several."""
         row = np.repeat(np.arange(len(self.fractions)), np.diff(self.indptr))
         found = np.zeros((len(given), len(self.fractions)), dtype=given.dtype)
@@ -514,7 +511,7 @@ class Weights(Paired):
         return cls._of(*read_map(path))
 
 
-def as_mask(mask: ArrayLike | None, shape: tuple[int, ...], name: str) -> Flags | None:
+def as_mask(mask: ArrayLike | None, shape: tuple[int, ...], name: str) -> Bools | None:
     """Return which cells take part, (n,)."""
     if mask is None:
         return None

@@ -32,9 +32,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Bools, Floats, Indices
 
 __all__ = ["BOUNDARIES", "improve"]
 

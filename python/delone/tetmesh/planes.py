@@ -11,8 +11,8 @@ from delone import _core
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Rows = NDArray[np.int64]
+    from delone._types import Floats, Rows
+
     # Triangles and the number of the part that each belongs to.
     Labeled = tuple[NDArray[Any], NDArray[Any]]
 

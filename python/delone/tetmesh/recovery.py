@@ -11,9 +11,7 @@ from delone.counting import agreed, counted, listed
 from delone.immutable import ReadOnly
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Rows = NDArray[np.int64]
+    from delone._types import Rows
 
 __all__ = ["RECOVERY_COUNTS", "RECOVERY_ROWS", "RecoveryReport"]
 

@@ -16,9 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone._core import ImprovedMesh
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["CAUSES", "COUNTS", "ImproveReport", "report"]
 

@@ -18,9 +18,8 @@ from delone.triangulation import Triangulation
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Indices
     from delone.exchange.parts import Parts
-
-    Indices = NDArray[np.int32]
 
 __all__ = ["TetMesh"]
 

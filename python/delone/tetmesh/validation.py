@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Floats, Indices
 
 __all__ = ["TetMeshReport", "faults", "six_volumes"]
 

@@ -11,9 +11,8 @@ from delone.space.locking import cells, sides
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Indices
     from delone.tetmesh.tetmesh import TetMesh
-
-    Indices = NDArray[np.int32]
 
 __all__ = ["Kept"]
 

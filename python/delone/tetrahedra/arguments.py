@@ -12,12 +12,10 @@ from delone.surface.check import as_faces
 from delone.tetrahedra.seeds import as_hole_seeds, as_region_seeds
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from delone._types import Floats, Indices
     from delone.tetrahedra.sources import Given
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["Task", "task"]
 

@@ -19,12 +19,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone._core import RecoveryCounts
+    from delone._types import Bools, Floats, Indices, Rows
     from delone.surface import SurfaceCheck
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
 
 __all__ = ["Parts", "counts_of", "parts_of", "reported"]
 

@@ -40,14 +40,11 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone._core import RecoveryCounts
+    from delone._types import Bools, Floats, Indices
     from delone.surface import SurfaceCheck
     from delone.tetrahedra.arguments import Task
     from delone.tetrahedra.covering import Parts
     from delone.tetrahedra.recutting import Recut
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
 
 __all__ = ["tetrahedralize"]
 

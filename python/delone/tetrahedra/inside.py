@@ -16,14 +16,9 @@ import numpy as np
 from delone.errors import InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Bools, Indices, Rows
     from delone.space.locking import Sides
     from delone.tetrahedra.covering import Parts
-
-    Bools = NDArray[np.bool_]
-    Indices = NDArray[np.int32]
-    Rows = NDArray[np.int64]
 
 __all__ = ["RULES", "inner_cells"]
 

@@ -17,12 +17,8 @@ from delone.tetmesh.planes import PLANES
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Bools, Floats, Indices, Rows
     from delone.tetrahedra.covering import Parts
-
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
-    Keys = NDArray[np.int64]
 
 __all__ = ["Recut", "recut", "uncut"]
 
@@ -34,7 +30,7 @@ class Recut(NamedTuple):
     before: Parts
     parts: Parts
     # (k,): rows whose sources were joined.
-    rows: Keys
+    rows: Rows
 
     def reported(self, there: Bools) -> dict[str, NDArray[np.int64]]:
         """Return what a report has of the parts that are `there`, which flips do not change."""
@@ -49,14 +45,14 @@ class Recut(NamedTuple):
 class _Edges(NamedTuple):
     """Edges from a to b of a triangle t with the corner c, and back of u with the corner d."""
 
-    t: Keys
-    u: Keys
+    t: Rows
+    u: Rows
     a: Indices
     b: Indices
     c: Indices
     d: Indices
 
-    def at(self, rows: Keys | Bools) -> _Edges:
+    def at(self, rows: Rows | Bools) -> _Edges:
         t, u, a, b, c, d = self
         return _Edges(t[rows], u[rows], a[rows], b[rows], c[rows], d[rows])
 
@@ -118,17 +114,17 @@ def _pairs(faces: Indices, npoints: int) -> _Edges:
     return _Edges(t, u, faces[t, i - 2], faces[t, i - 1], faces[t, i], faces[u, j])
 
 
-def _keys(faces: Indices, npoints: int) -> tuple[Keys, Bools]:
+def _keys(faces: Indices, npoints: int) -> tuple[Rows, Bools]:
     """Return a number for each edge, and whether it goes from the smaller vertex to the larger."""
     a, b = faces[:, [1, 2, 0]].T.ravel(), faces[:, [2, 0, 1]].T.ravel()
     return _key(a, b, npoints), a < b
 
 
-def _key(a: Indices, b: Indices, npoints: int) -> Keys:
+def _key(a: Indices, b: Indices, npoints: int) -> Rows:
     return np.minimum(a, b).astype(np.int64) * npoints + np.maximum(a, b)
 
 
-def _among(keys: Keys, ascending: Keys) -> Bools:
+def _among(keys: Rows, ascending: Rows) -> Bools:
     if not len(ascending):
         return np.zeros(len(keys), dtype=bool)
     at = np.minimum(np.searchsorted(ascending, keys), len(ascending) - 1)

@@ -13,11 +13,9 @@ from delone.errors import InputError, ShapeError
 from delone.space.topology import FACES
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Bools = NDArray[np.bool_]
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    from delone._types import Bools, Floats, Indices
 
 __all__ = ["Tiling", "as_hole_seeds", "as_region_seeds", "located"]
 

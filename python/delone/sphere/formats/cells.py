@@ -7,11 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int64]
-    Flags = NDArray[np.bool_]
+    from delone._types import Bools, Floats, Rows
 
 __all__ = ["Cells", "Choices", "flags_of"]
 
@@ -45,10 +41,10 @@ class Cells(NamedTuple):
     # Places of corners, which of them each cell has (all in sequence without numbers), and where
     # the corners of each cell start.
     nodes: Floats | None = None
-    corners: Indices | None = None
-    starts: Indices | None = None
+    corners: Rows | None = None
+    starts: Rows | None = None
     # Which cells take part; None if the dataset does not say.
-    mask: Flags | None = None
+    mask: Bools | None = None
     # How many bounds moved to those of their neighbors.
     merged: int = 0
     # Whether cells share corners bit for bit, so that none need to be merged.
@@ -57,9 +53,9 @@ class Cells(NamedTuple):
     coords: tuple[Any, Any] | None = None
 
 
-def flags_of(mask: Any, count: int, *, used: int = 1) -> Flags | None:
+def flags_of(mask: Any, count: int, *, used: int = 1) -> Bools | None:
     """Return which cells take part; None if the variable has another size."""
     if mask is None or mask.size != count:
         return None
-    found: Flags = np.asarray(mask.values).ravel() == used
+    found: Bools = np.asarray(mask.values).ravel() == used
     return found

@@ -19,12 +19,9 @@ from delone.sphere.formats.variables import (
 )
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from delone._types import Floats
     from delone.sphere.formats.cells import Choices
 
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int64]
     Variables = dict[str, Any]
 
 __all__ = [

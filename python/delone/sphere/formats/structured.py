@@ -19,9 +19,9 @@ from delone.sphere.rings import as_bounds
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Floats
     from delone.sphere.formats.cells import Choices
 
-    Floats = NDArray[np.float64]
     Variables = dict[str, Any]
     Pair = tuple[str, str]
 

@@ -14,11 +14,8 @@ from delone.sphere.coordinates import directions_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._types import Bools, Floats, Rows
     from delone.sphere.formats.cells import Choices
-
-    Floats = NDArray[np.float64]
-    Indices = NDArray[np.int64]
-    Flags = NDArray[np.bool_]
 
 __all__ = [
     "attribute",
@@ -117,7 +114,7 @@ def places(
     return directions_of(both, None, degrees=any(degrees), workers=choices.workers, any_turns=True)
 
 
-def _refuse(wrong: Flags, name: str, what: str, *, error: type[Any]) -> None:
+def _refuse(wrong: Bools, name: str, what: str, *, error: type[Any]) -> None:
     """Raise an error for the rows of a variable, if there are any."""
     rows = np.flatnonzero(wrong)
     if len(rows):
@@ -128,7 +125,7 @@ def _refuse(wrong: Flags, name: str, what: str, *, error: type[Any]) -> None:
         )
 
 
-def padded(lon: NDArray[Any], lat: NDArray[Any], names: tuple[str, str]) -> tuple[Flags, Indices]:
+def padded(lon: NDArray[Any], lat: NDArray[Any], names: tuple[str, str]) -> tuple[Bools, Rows]:
     """Return which corners of (n, k) there are, and where those of each cell start.
 
     NaN after the last corner of a cell is padding.
@@ -139,7 +136,7 @@ def padded(lon: NDArray[Any], lat: NDArray[Any], names: tuple[str, str]) -> tupl
     return _trailing(absent, names[0])
 
 
-def _trailing(absent: Flags, name: str) -> tuple[Flags, Indices]:
+def _trailing(absent: Bools, name: str) -> tuple[Bools, Rows]:
     """Return what is there, and the starts of rows, of a table padded at the ends of rows."""
     holes = (absent[:, :-1] & ~absent[:, 1:]).any(axis=1)
     if holes.any():
@@ -158,7 +155,7 @@ def connected(
     start: int,
     counts: NDArray[Any] | None = None,
     transposed: bool = False,
-) -> tuple[Indices, Indices]:
+) -> tuple[Rows, Rows]:
     """Return the nodes of all cells in sequence, and where those of each cell start.
 
     Rows are padded by the declared fill value, by NaN, or by numbers below 0; or the numbers of
@@ -182,9 +179,9 @@ def connected(
     return _nodes(table[there], name, nodes, start, starts), starts
 
 
-def _filled(variable: Any, table: NDArray[Any]) -> Flags:
+def _filled(variable: Any, table: NDArray[Any]) -> Bools:
     """Return which entries are padding."""
-    found: Flags
+    found: Bools
     if table.dtype.kind == "f":
         found = np.isnan(table) | (table < 0)
         return found
@@ -200,7 +197,7 @@ def _filled(variable: Any, table: NDArray[Any]) -> Flags:
 
 def ragged(
     variable: Any, name: str, nodes: int, *, start: int, counts: NDArray[Any]
-) -> tuple[Indices, Indices]:
+) -> tuple[Rows, Rows]:
     """Return the nodes of all cells and their starts, from a flat list."""
     flat = numbers(variable, name)
     starts = np.concatenate(([0], np.cumsum(np.asarray(counts).astype(np.int64))))
@@ -209,7 +206,7 @@ def ragged(
     return _nodes(flat, name, nodes, start, starts), starts
 
 
-def _nodes(entries: NDArray[Any], name: str, nodes: int, start: int, starts: Indices) -> Indices:
+def _nodes(entries: NDArray[Any], name: str, nodes: int, start: int, starts: Rows) -> Rows:
     """Return numbers from 0, or refuse one that is out of range by its cell."""
     with np.errstate(invalid="ignore"):
         found = np.asarray(entries).astype(np.int64)
