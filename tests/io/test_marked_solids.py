@@ -76,6 +76,65 @@ def test_groups_of_markers_and_regions(suffix, tmp_path):
     assert groups == expected
 
 
+# The manual of Abaqus: the nodes, from 1, of each side of C3D4 and CPS3.
+ABAQUS = {
+    4: {"S1": (1, 2, 3), "S2": (1, 4, 2), "S3": (2, 4, 3), "S4": (3, 4, 1)},
+    3: {"S1": (1, 2), "S2": (2, 3), "S3": (3, 1)},
+}
+
+
+def surfaces(path, simplices):
+    """The corners of the sides of each surface of an INP file, and how often each is named."""
+    found = {}
+    now = None
+    for line in path.read_text().splitlines():
+        if line.startswith("*"):
+            head, _, name = line.partition("NAME=")
+            now = found.setdefault(name, []) if head.startswith("*SURFACE,") else None
+        elif now is not None:
+            element, side = line.split(", ")
+            corners = simplices[int(element) - 1].tolist()
+            own = ABAQUS[len(corners)][side]
+            now.append(tuple(sorted(corners[k - 1] for k in own)))
+    return found
+
+
+def test_surfaces_of_inp_are_sides_of_elements(tmp_path):
+    path = tmp_path / "a.inp"
+    delone.io.write_mesh(path, MESH)
+    expected = {}
+    for row, value in WALLS.items():
+        expected.setdefault(f"surface_{value}", []).append(row)
+    found = surfaces(path, MESH.simplices)
+    assert {name: sorted(rows) for name, rows in found.items()} == {
+        name: sorted(rows) for name, rows in expected.items()
+    }
+    # A wall is a side of the first element.
+    wall = path.read_text().partition("NAME=surface_12\n")[2].partition("*")[0]
+    numbers = [int(line.partition(",")[0]) for line in wall.splitlines()]
+    first = [
+        min(t for t, corners in enumerate(MESH.simplices.tolist()) if set(row) <= set(corners))
+        for row in expected["surface_12"]
+    ]
+    assert sorted(numbers) == sorted(t + 1 for t in first)
+
+
+def test_surfaces_of_inp_in_2d(tmp_path):
+    path = tmp_path / "a.inp"
+    square = [(0, 0), (2, 0), (2, 2), (0, 2)]
+    flat = delone.mesh(square, max_area=0.5, segment_markers=[4, 4, 0, 6])
+    delone.io.write_mesh(path, flat)
+    expected = {}
+    for (a, b), value in zip(flat.segments.tolist(), flat.segment_markers.tolist(), strict=True):
+        if value:
+            expected.setdefault(f"surface_{value}", []).append((min(a, b), max(a, b)))
+    found = surfaces(path, flat.simplices)
+    assert {name: sorted(rows) for name, rows in found.items()} == {
+        name: sorted(rows) for name, rows in expected.items()
+    }
+    assert sorted(found) == ["surface_4", "surface_6"]
+
+
 @pytest.mark.parametrize("suffix", [".smesh", ".poly"])
 def test_tetgen_files_have_region_seeds_and_markers(suffix, tmp_path):
     path = tmp_path / f"a{suffix}"

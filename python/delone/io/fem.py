@@ -1,7 +1,8 @@
 """Meshes for solvers: XDMF, MED, INP, VTK and Medit by meshio (extra ``mesh``), and SU2.
 
 Triangles or tetrahedra are written, and the segments of a mesh with their markers: as named parts
-of the boundary in SU2, as values in XDMF, as groups in MED, which has regions as well.
+of the boundary in SU2, as values in XDMF, as groups in MED, which has regions as well, and as sets
+of elements and surfaces in INP.
 """
 
 from __future__ import annotations
@@ -33,6 +34,11 @@ _MODULES = {
 }  # fmt: skip
 # Those with values of points and cells.
 _VALUED = (".xdmf", ".vtk")
+# The sides of elements of Abaqus by the local numbers of their nodes, in the order S1, S2, ...
+_ABAQUS_SIDES = {
+    3: ((0, 1), (1, 2), (2, 0)),
+    4: ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)),
+}
 # The numbers that SU2 has for cells, those of VTK.
 _LINE, _TRIANGLE, _TETRAHEDRON = 3, 5, 10
 
@@ -68,8 +74,10 @@ def write_mesh(
         return
     made = to_meshio(found.whole())
     families = _families(made) if suffix == ".med" else None
+    surfaces = ""
     if suffix == ".inp":
         made.cell_sets = _sets(made)
+        surfaces = _surfaces(made)
     references = _references(made) if suffix == ".mesh" else {}
     if suffix in (".inp", ".med", ".mesh"):
         made.point_data, made.cell_data = {}, {}
@@ -88,6 +96,9 @@ def write_mesh(
         path.write_bytes(buffer.getvalue())
     else:
         module.write(path, made)
+    if surfaces:
+        with path.open("a", encoding="utf-8") as file:
+            file.write(surfaces)
 
 
 def _families(mesh: Any) -> tuple[dict[str, list[NDArray[np.int64]]], dict[int, list[str]]]:
@@ -134,6 +145,31 @@ def _sets(mesh: Any) -> dict[str, list[NDArray[np.int64]]]:
                 rows[block] = np.flatnonzero(value == own)
                 found[f"{name}_{own}"] = rows
     return found
+
+
+def _surfaces(mesh: Any) -> str:
+    """The surfaces of an INP file: the sides of elements that are the facets of each marker.
+
+    A wall between two elements is a side of the first one.
+    """
+    if "marker" not in mesh.cell_data or len(mesh.cells) < 2:
+        return ""
+    simplices, facets = (np.asarray(block.data) for block in mesh.cells[:2])
+    sides = _ABAQUS_SIDES[simplices.shape[1]]
+    corners = np.concatenate([simplices[:, side] for side in sides])
+    both = np.sort(np.concatenate((corners, facets)), axis=1)
+    # The first row of each facet: np.unique returns first occurrences.
+    _, first, place = np.unique(both, axis=0, return_index=True, return_inverse=True)
+    number = first[place.reshape(-1)[len(corners) :]]
+    side, element = np.divmod(number, len(simplices))
+    marker = np.asarray(mesh.cell_data["marker"][1])
+    lines = []
+    for own in np.setdiff1d(marker[number < len(corners)], 0).tolist():
+        lines.append(f"*SURFACE, TYPE=ELEMENT, NAME=surface_{own}")
+        rows = np.flatnonzero((marker == own) & (number < len(corners)))
+        rows = rows[np.lexsort((side[rows], element[rows]))]
+        lines += [f"{element[row] + 1}, S{side[row] + 1}" for row in rows.tolist()]
+    return "".join(f"{line}\n" for line in lines)
 
 
 def _su2(parts: Parts) -> str:
