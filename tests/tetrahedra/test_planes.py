@@ -111,6 +111,29 @@ def plate(size: int, seed: int) -> Surface:
     return np.array(points), np.array(faces)
 
 
+def cubes(seed: int) -> Surface:
+    """A union of random cubes, also with edges of four faces; flips in its planes at random."""
+    rng = np.random.default_rng(seed)
+    full = np.pad(rng.random(rng.integers(1, 5, 3)) < rng.choice([0.3, 0.6, 0.9]), 1)
+    full[1, 1, 1] = True
+    rows: dict[tuple[int, ...], int] = {}
+    faces: list[Triangle] = []
+    for cube in np.argwhere(full):
+        for axis, step in ((axis, step) for axis in range(3) for step in (0, 1)):
+            next_to = cube.copy()
+            next_to[axis] += 2 * step - 1
+            if full[tuple(next_to)]:
+                continue
+            corners = []
+            for u, v in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                place = np.roll([step, u, v], axis) + cube
+                corners.append(rows.setdefault(tuple(place.tolist()), len(rows)))
+            a, b, c, d = corners if step else corners[::-1]
+            faces += [(a, b, c), (a, c, d)] if rng.random() < 0.5 else [(a, b, d), (b, c, d)]
+    points = np.array(list(rows), dtype=float)
+    return points, np.array(flipped(points, faces, rng))
+
+
 def rim_of(triangles: Sequence[Triangle]) -> list[tuple[int, int]]:
     """The edges of one triangle, in its direction."""
     edges = {edge for a, b, c in triangles for edge in ((a, b), (b, c), (c, a))}
@@ -120,23 +143,37 @@ def rim_of(triangles: Sequence[Triangle]) -> list[tuple[int, int]]:
 def flipped(grid: Any, triangles: Sequence[Triangle], rng: np.random.Generator) -> list[Triangle]:
     """Triangles after flips of edges at random; coordinates are small integers."""
     found = list(triangles)
-    at = np.asarray(grid).astype(int).tolist()
+    at = np.zeros((len(grid), 3), dtype=int)
+    at[:, : np.shape(grid)[1]] = grid
+    # The triangles at each edge.
+    near: dict[frozenset[int], set[int]] = {}
 
-    def turn(a: int, b: int, c: int) -> int:
-        (ax, ay), (bx, by), (cx, cy) = at[a], at[b], at[c]
-        return int((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))
+    def change(t: int, face: Triangle) -> None:
+        for old, edges in ((True, found[t]), (False, face)):
+            for k in range(3):
+                own = near.setdefault(frozenset((edges[k], edges[k - 2])), set())
+                (own.discard if old else own.add)(t)
+        found[t] = face
 
-    for _ in range(20 * len(found)):
-        t = int(rng.integers(len(found)))
-        k = int(rng.integers(3))
+    def normal(a: int, b: int, c: int) -> Any:
+        return np.cross(at[b] - at[a], at[c] - at[a])
+
+    for t, face in enumerate(triangles):
+        change(t, face)
+    for _ in range(10 * len(found)):
+        t, k = int(rng.integers(len(found))), int(rng.integers(3))
         a, b, c = found[t][k], found[t][k - 2], found[t][k - 1]
-        back = (row for row, face in enumerate(found) if {a, b} < set(face) and row != t)
-        u = next(back, None)
-        if u is None:
+        back = near[frozenset((a, b))] - {t}
+        if len(back) != 1:
             continue
+        (u,) = back
         (d,) = set(found[u]) - {a, b}
-        if turn(c, a, d) > 0 and turn(d, b, c) > 0:
-            found[t], found[u] = (c, a, d), (d, b, c)
+        up = normal(a, b, c)
+        one, other = (c, a, d), (d, b, c)
+        flat = up @ (at[d] - at[a]) == 0 and not near.get(frozenset((c, d)))
+        if flat and all(up @ normal(*face) > 0 for face in (found[u], one, other)):
+            change(t, one)
+            change(u, other)
     return found
 
 
@@ -181,6 +218,16 @@ def test_effort_for_a_cylinder(way: str) -> None:
 def test_a_plate(seed: int) -> None:
     points, faces = plate(6, seed)
     judge(delone.tetrahedralize(points, faces), points, faces)
+
+
+@pytest.mark.parametrize("seed", seeds(4, deep=60))
+@pytest.mark.parametrize("turn", [False, True])
+def test_cubes(seed: int, turn: bool) -> None:
+    points, faces = tilted(cubes(seed)) if turn else cubes(seed)
+    mesh = delone.tetrahedralize(points, faces)
+    judge(mesh, points, faces)
+    report: Any = mesh.report
+    assert report.flips < 10 * len(faces)
 
 
 @pytest.mark.parametrize("seed", seeds(2, deep=20))
