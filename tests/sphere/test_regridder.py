@@ -304,3 +304,17 @@ def test_fields_of_models() -> None:
         found = Regridder(grid, "1x1", dims=["ncol"])(fields)
         assert found.psi.shape == (180, 360)
         assert abs(found.psi.values - truth.psi.values).mean() < 0.01
+
+
+def test_classes_that_have_a_grid_become_plain_ones() -> None:
+    class Own(xarray.Dataset):
+        __slots__ = ()
+
+    given = model()
+    parts = (
+        {name: given.variables[name] for name in names} for names in (given.data_vars, given.coords)
+    )
+    own = Own(*parts, attrs=given.attrs)
+    found = Regridder(given, TARGET)(own)
+    assert type(found) is xarray.Dataset
+    assert found.identical(given.delone.regrid(TARGET))

@@ -234,6 +234,13 @@ class Regridder(Immutable):
         xarray = require("xarray", extra="xarray", what="regridding datasets")
         options = {"skipna": skipna, "min_fraction": min_fraction, "fill": fill}
         if isinstance(data, xarray.Dataset):
+            if type(data) is not xarray.Dataset:
+                # One of uxarray has its own grid, which is not that of the result.
+                parts = [
+                    {name: data.variables[name] for name in names}
+                    for names in (data.data_vars, data.coords)
+                ]
+                data = xarray.Dataset(*parts, attrs=data.attrs)
             return self._of_dataset(data, options)
         if not isinstance(data, xarray.DataArray):
             raise DtypeError(f"data must be xarray objects, got {type(data).__name__}")
