@@ -1,5 +1,7 @@
 """Markers of faces and regions of tetrahedra in all formats that can carry them."""
 
+import pickle
+
 import meshio
 import numpy as np
 import pytest
@@ -182,3 +184,57 @@ def test_parts_of_the_boundary_of_su2(tmp_path):
     # The walls inside are no boundary.
     outer = {row: value for row, value in WALLS.items() if value <= 6}
     assert sides == outer
+
+
+VOIDS = {
+    "a void": [(9, 0, False), (6, 3, True)],
+    "a body in a void": [(9, 0, False), (7, 2, True), (5, 4, False)],
+    "two voids": [(9, 0, False), (3, 1, True), (7, 5, True)],
+    "two regions": [(9, 0, False), (6, 3, False)],
+    "no void": [(9, 0, False)],
+}
+
+
+def nested(boxes):
+    made = [solids.box((low,) * 3, (high,) * 3) for high, low, _ in boxes]
+    made = [
+        (points, np.asarray(faces)[:, ::-1] if inward else faces)
+        for (points, faces), (_, _, inward) in zip(made, boxes, strict=True)
+    ]
+    return solids.joined(*made)
+
+
+@pytest.mark.parametrize("suffix", [".smesh", ".poly"])
+@pytest.mark.parametrize("name", VOIDS)
+def test_voids_are_still_voids_in_files_of_tetgen(name, suffix, tmp_path):
+    boxes = VOIDS[name]
+    mesh = tetrahedralize(*nested(boxes))
+    empty = name.count("void") and sum(inward for _, _, inward in boxes)
+    assert len(mesh.holes) == empty
+    assert (mesh.find_simplex(mesh.holes.reshape(-1, 3)) == -1).all()
+    path = tmp_path / f"a{suffix}"
+    delone.io.write_mesh(path, mesh)
+    assert np.array_equal(read_mesh(path).holes.reshape(-1, 3), mesh.holes)
+    again = tetrahedralize(path)
+    assert again.volumes.sum() == pytest.approx(mesh.volumes.sum())
+    assert np.array_equal(again.holes, mesh.holes)
+
+
+def test_seeds_of_voids_remain(tmp_path):
+    mesh = tetrahedralize(*nested(VOIDS["a body in a void"]))
+    (place,) = mesh.holes.tolist()
+    # In the shell between the second box and the body.
+    assert all(2 < x < 7 for x in place) and not all(4 <= x <= 5 for x in place)
+    mesh.save(tmp_path / "a.npz")
+    for again in (
+        pickle.loads(pickle.dumps(mesh)),
+        delone.TetMesh.load(tmp_path / "a.npz"),
+        delone.improve(mesh),
+        delone.improve(mesh, boundary="surface"),
+    ):
+        assert again.holes.tolist() == [place]
+    # What is emptied up to the outside has no faces around it.
+    assert len(tetrahedralize(*nested(VOIDS["a body in a void"]), holes=[(1, 1, 1)]).holes) == 0
+    # A hole that is asked for is one of them, whichever point was given.
+    regions = tetrahedralize(*nested(VOIDS["two regions"]), holes=[(4, 4, 4)])
+    assert len(regions.holes) == 1 and (np.abs(regions.holes - 4.5) < 1.5).all()

@@ -120,6 +120,7 @@ def _check_faces(**arrays: NDArray[Any]) -> None:
     check_range("face_source", arrays["face_source"], 0, 2**31)
     for name in ("face_source", "face_markers"):
         require(len(arrays[name]) == len(faces), f"{name} and input_faces do not match")
+    require(np.isfinite(arrays["holes"]).all(), "a seed of a hole is not finite")
     require(len(arrays["added"]) == 1, "added is not one number")
     check_range("added", arrays["added"], 0, len(points) + 1)
     found = sides(arrays["simplices"], faces, len(points)).face

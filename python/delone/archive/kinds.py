@@ -101,6 +101,7 @@ _TET_MESH = Kind(
         "input_faces": ("<i4", 3),
         "face_source": ("<i4", 0),
         "face_markers": ("<i4", 0),
+        "holes": ("<f8", 3),
         "added": ("<i8", 0),
         # The report of the recovery of faces, or else of the improvement; the other one is empty.
         "recovery": ("<i8", 0),

@@ -222,8 +222,11 @@ def write_mesh(
                     [f"1 0 {marker}", corners] if suffix == ".poly" else [f"{corners} {marker}"]
                 )
             seeds = region_seeds(triangulation, points, faces)
+            holes = getattr(triangulation, "holes", np.empty((0, 3))).tolist()
+            lines += [str(len(holes))]
+            lines += [" ".join(map(repr, (i, *place))) for i, place in enumerate(holes)]
             text = table(f"{len(points)} 3 0 0", (points,))
-            text += "\n".join([f"{len(faces)} 1", *lines, "0", str(len(seeds)), *seeds]) + "\n"
+            text += "\n".join([f"{len(faces)} 1", *lines, str(len(seeds)), *seeds]) + "\n"
     path.write_text(text, encoding="utf-8")
 
 

@@ -181,7 +181,10 @@ def improve(
     }
     if kept is not None:
         arrays |= kept.arrays(made.labels)
-    nadded = mesh.nadded if isinstance(mesh, TetMesh) else 0
+    nadded = 0
+    if isinstance(mesh, TetMesh):
+        # The boundary is the same set, and so is what it leaves empty.
+        nadded, arrays["holes"] = mesh.nadded, mesh.holes
     better = TetMesh._of(arrays, judged, nadded)
     better._cache["quality"] = after
     return better

@@ -18,7 +18,7 @@ from delone.triangulation import Triangulation
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Indices
+    from delone._types import Floats, Indices
     from delone.exchange.parts import Parts
 
 __all__ = ["TetMesh"]
@@ -30,6 +30,7 @@ _NOTHING: dict[str, NDArray[Any]] = {
     "input_faces": np.empty((0, 3), dtype=np.int32),
     "face_source": _NO_ROWS,
     "face_markers": _NO_ROWS,
+    "holes": np.empty((0, 3)),
 }
 _NO_COUNTS = np.empty(0, dtype=np.int64)
 _NO_NUMBERS = np.empty(0)
@@ -72,6 +73,8 @@ class TetMesh(Triangulation):
         again, one in the same plane part (see `RecoveryReport`).
     face_markers : ndarray of int32, shape (k,)
         The marker of that input face.
+    holes : ndarray of float64, shape (h, 3)
+        A point in each region that these faces enclose and that is left empty.
     nadded : int
         The number of points that `tetrahedralize` added; they are the last rows.
     report : RecoveryReport or ImproveReport
@@ -97,6 +100,7 @@ class TetMesh(Triangulation):
     __slots__ = (
         "_face_markers",
         "_face_source",
+        "_holes",
         "_input_faces",
         "_nadded",
         "_region",
@@ -111,10 +115,12 @@ class TetMesh(Triangulation):
         "input_faces",
         "face_source",
         "face_markers",
+        "holes",
     )
 
     _face_markers: Indices
     _face_source: Indices
+    _holes: Floats
     _input_faces: Indices
     _nadded: int
     _region: Indices
@@ -187,6 +193,11 @@ class TetMesh(Triangulation):
     def face_markers(self) -> Indices:
         """The marker of each of `input_faces`, (k,); 0 if no markers were given."""
         return self._face_markers
+
+    @property
+    def holes(self) -> Floats:
+        """A point in each region that faces enclose and that is left empty, (h, 3)."""
+        return self._holes
 
     @property
     def nadded(self) -> int:

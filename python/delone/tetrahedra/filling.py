@@ -358,6 +358,13 @@ class _Stages(NamedTuple):
             "input_faces": parts.faces[there],
             "face_source": source,
             "face_markers": self.task.markers[source],
+            "holes": seeds.of_voids(
+                tiling,
+                seeds.Cells(solid.cell, solid.sides.face),
+                kept,
+                there,
+                self.task.workers,
+            ),
         }
         entries = counts_of(found.counts, nadded) | cut.reported(there)
         report = reported(entries, self.task.faces, cut.before, there, check)

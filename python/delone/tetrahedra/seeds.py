@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -17,9 +18,11 @@ if TYPE_CHECKING:
 
     from delone._types import Bools, Floats, Indices
 
-__all__ = ["Tiling", "as_hole_seeds", "as_region_seeds", "located"]
+__all__ = ["Cells", "Tiling", "as_hole_seeds", "as_region_seeds", "located", "of_voids"]
 
 _SHOWN = 10
+# So many of the largest tetrahedra of a void are tried: rounding may move the center of a thin one.
+_TRIED = 20
 
 
 def as_hole_seeds(holes: ArrayLike | None) -> Floats:
@@ -117,3 +120,55 @@ def _on_surface(points: Floats, corners: Indices, faces: Indices, places: Floats
         simplex = tuple(sorted(corners[row][~zero[row]].tolist()))
         on[row] = simplex in known[len(simplex)]
     return on
+
+
+class Cells(NamedTuple):
+    """The cell of each tetrahedron, and the row of the face opposite each corner, or -1."""
+
+    cell: Indices
+    face: Indices
+
+
+def of_voids(
+    tiling: Tiling, cells: Cells, kept: Bools, there: Bools, workers: int | None
+) -> Floats:
+    """Return a point in each cell that is empty and that remaining faces enclose, (h, 3).
+
+    `there` says which faces remain. A cell that is open to the outside, where faces do not remain,
+    needs no seed.
+    """
+    cell = cells.cell
+    empty = np.setdiff1d(np.unique(cell[~kept]), sorted(_opened(tiling, cells, kept, there)))
+    if not len(empty):
+        return np.empty((0, 3))
+    rows = np.flatnonzero(np.isin(cell, empty))
+    a, b, c, d = (tiling.points[column] for column in tiling.simplices[rows].T)
+    size = np.abs(np.einsum("ij,ij->i", a - d, np.cross(b - d, c - d)))
+    rows = rows[np.lexsort((-size, cell[rows]))]
+    find = _core.Locator3(*tiling[:3]).find
+    places = []
+    for start, end in pairwise([*np.searchsorted(cell[rows], empty).tolist(), len(rows)]):
+        tried = rows[start : min(end, start + _TRIED)]
+        centers = tiling.points[tiling.simplices[tried]].mean(axis=1)
+        found = find(centers, as_workers(workers))
+        right = (found >= 0) & (cell[found] == cell[tried])
+        right[right] = ~_on_surface(
+            tiling.points, tiling.simplices[found[right]], tiling.faces, centers[right]
+        )
+        places += centers[np.flatnonzero(right)[:1]].tolist()
+    return np.array(places).reshape(-1, 3)
+
+
+def _opened(tiling: Tiling, cells: Cells, kept: Bools, there: Bools) -> set[int]:
+    """Return the empty cells from which a way leads outside, through faces that do not remain."""
+    cell, face = cells
+    gone = (face >= 0) & ~there[face] & ~kept[:, None]
+    t, k = np.nonzero(gone)
+    beyond = tiling.neighbors[t, k]
+    other = np.where(beyond < 0, -1, cell[beyond])
+    pairs = {frozenset(pair) for pair in zip(cell[t].tolist(), other.tolist(), strict=True)}
+    reached = {-1}
+    # Terminates: each round but the last reaches another cell.
+    while more := {each for pair in pairs if pair & reached for each in pair} - reached:
+        reached |= more
+    return reached - {-1}
