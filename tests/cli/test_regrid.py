@@ -116,6 +116,21 @@ def test_grids_of_other_files_and_variables(model, tmp_path, command, figures):
     assert set(result.data_vars) == {"height", "lon_bnds", "lat_bnds"}
 
 
+@pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf"])
+def test_pictures(model, tmp_path, figures, suffix):
+    pytest.importorskip("matplotlib")
+    picture, file = tmp_path / f"maps{suffix}", tmp_path / "out.nc"
+    found = figures("regrid", model, "healpix:2", "-o", picture, "-o", file)
+    assert found["outputs"] == [str(picture), str(file)]
+    heads = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
+    assert picture.read_bytes().startswith(heads[suffix])
+    if suffix == ".svg":
+        text = picture.read_text()
+        assert "rain, 162 cells" in text
+        assert "rain, 48 cells" in text
+    assert opened(file).rain.shape == (4, 48)
+
+
 def test_without_an_output_only_the_report(model, tmp_path, figures):
     before = sorted(tmp_path.iterdir())
     assert figures("regrid", model, "1x1")["weights"] == 64800
@@ -130,7 +145,8 @@ def test_without_an_output_only_the_report(model, tmp_path, figures):
         (("none.nc", "1x1"), 3, "none.nc: No such file"),
         (("{text}", "1x1"), 3, "not a NetCDF file"),
         (("{model}", "{text}"), 3, "not a NetCDF file"),
-        (("{model}", "1x1", "-o", "a.tif"), 2, "regrid writes NetCDF"),
+        (("{model}", "1x1", "-o", "a.tif"), 2, "this can only be written to .nc .nc4 .cdf .png"),
+        (("{model}", "1x1", "--save-weights", "a.png"), 2, "only be written to .nc .nc4 .cdf"),
         (("{model}", "1x1", "-o", "{model}"), 2, "would replace the input"),
         (("{model}", "1x1", "--coords", "lon"), 2, "a longitude and a latitude"),
         (("{model}", "1x1", "--variables", "snow"), 2, "no variable 'snow'; it has rain"),

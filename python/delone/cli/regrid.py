@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from delone import __version__, sphere
+from delone import __version__, datasets, sphere
 from delone.atomic import check_target, replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import note
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["regrid"]
 
 _SUFFIXES = (".nc", ".nc4", ".cdf")
+_IMAGES = (".png", ".svg", ".pdf")
 # Arguments in messages, and the options that set them.
 _ARGUMENTS = (
     (r"infer_bounds=True", "--infer-bounds"),
@@ -49,8 +50,13 @@ def regrid(
     ],
     *,
     output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", metavar="OUTPUT", help="NetCDF file to write."),
+        list[Path] | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="OUTPUT",
+            help="File to write, once or more: " + " ".join(_SUFFIXES + _IMAGES),
+        ),
     ] = None,
     method: Annotated[
         str,
@@ -106,16 +112,17 @@ def regrid(
 
     The grids are those of CF, UGRID, SCRIP, ESMF, MPAS, ICON, FESOM, Exodus, OASIS, GEOS-CS and
     HEALPix. Times, levels, attributes and float32 remain; variables with only some of the
-    dimensions of cells are left out with a note.
+    dimensions of cells are left out with a note. Images show the first field on both grids.
     """
+    outputs = output or []
+    written = [*outputs, *([save_weights] if save_weights else [])]
     named = Path(target)
     inputs = [path for path in (source, grid, weights, named if named.exists() else None) if path]
     with writing():
-        protect_inputs([path for path in (output, save_weights) if path], *inputs)
-        for path in (output, save_weights):
-            if path is not None:
-                _require_suffix(path)
-                check_target(path)
+        protect_inputs(written, *inputs)
+        for path in written:
+            _require_suffix(path, _SUFFIXES + (_IMAGES if path is not save_weights else ()))
+            check_target(path)
     pair = None if coords is None else _pair(coords)
     watch = Stopwatch()
     with spinner(quiet or as_json) as say, _options():
@@ -145,7 +152,13 @@ def regrid(
         with reading(quiet=quiet), watch.stage("regrid"):
             options = {"skipna": skipna, "min_fraction": min_fraction, "fill": fill}
             found = _noted(regridder, fields, options, quiet=quiet)
-        _write(found, whole, output, watch)
+        for path in outputs:
+            with writing(), watch.stage(f"write {path.name}"), replacing(path) as temporary:
+                if path.suffix.lower() in _IMAGES:
+                    _draw(temporary, regridder, fields, found)
+                else:
+                    unlimited = set(whole.encoding.get("unlimited_dims", ())) & set(found.dims)
+                    found.to_netcdf(temporary, engine="netcdf4", unlimited_dims=unlimited)
         if save_weights is not None:
             with writing(), watch.stage(f"write {save_weights.name}"):
                 regridder.weights.to_netcdf(
@@ -153,7 +166,7 @@ def regrid(
                 )
         figures = _figures(source, regridder, fields, found) | {
             "stages": watch.rows(regridder.target.ncells),
-            "outputs": [str(path) for path in (output, save_weights) if path is not None],
+            "outputs": [str(path) for path in written],
             "peak_memory_bytes": peak_memory(),
         }
     if as_json:
@@ -177,9 +190,11 @@ def _options() -> Iterator[None]:
         raise
 
 
-def _require_suffix(path: Path) -> None:
-    if path.suffix.lower() not in _SUFFIXES:
-        raise Failure(f"{path}: regrid writes NetCDF, to {' '.join(_SUFFIXES)}", Exit.USAGE)
+def _require_suffix(path: Path, known: tuple[str, ...]) -> None:
+    if path.suffix.lower() not in known:
+        raise Failure(f"{path}: this can only be written to {' '.join(known)}", Exit.USAGE)
+    if path.suffix.lower() in _IMAGES:
+        require("matplotlib", extra="plot", what="drawing")
 
 
 def _pair(text: str) -> tuple[str, str]:
@@ -222,23 +237,42 @@ def _noted(regridder: Any, fields: Any, options: dict[str, Any], *, quiet: bool)
     return found
 
 
-def _write(found: Any, fields: Any, output: Path | None, watch: Stopwatch) -> None:
-    if output is None:
-        return
-    unlimited = set(fields.encoding.get("unlimited_dims", ())) & set(found.dims)
-    with writing(), watch.stage(f"write {output.name}"), replacing(output) as temporary:
-        found.to_netcdf(temporary, engine="netcdf4", unlimited_dims=unlimited)
+def _draw(path: Path, regridder: Any, fields: Any, found: Any) -> None:
+    """Draw the first field, at the first of its other dimensions, on both grids."""
+    figures = require("matplotlib.figure", extra="plot", what="drawing")
+    names = _regridded(regridder, fields, found)
+    if not names:
+        raise Failure("there is no field to draw", Exit.USAGE)
+    before, after = fields[names[0]], found[names[0]]
+    own = regridder.source_dims or before.dims[before.ndim - len(regridder.source.grid_shape) :]
+    figure = figures.Figure(figsize=(9.0, 9.0), dpi=140, layout="constrained")
+    for ax, grid, array, dims in zip(
+        figure.subplots(2, 1),
+        (regridder.source, regridder.target),
+        (before, after),
+        (own, regridder.target_dims),
+        strict=True,
+    ):
+        others = {dim: 0 for dim in array.dims if dim not in dims}
+        values = array.isel(others).transpose(*dims).values
+        title = f"{names[0]}, {grid.ncells:,} cells"
+        grid.plot(ax, values=values, sides=False, coast=datasets.land(), title=title)
+    figure.savefig(path, facecolor="white", format=path.suffix.lower().lstrip("."))
+
+
+def _regridded(regridder: Any, fields: Any, found: Any) -> list[str]:
+    """Return the names of the fields on the target."""
+    on_target = set(regridder.target_dims)
+    return [
+        str(name)
+        for name, part in found.data_vars.items()
+        if name in fields.data_vars and on_target <= set(part.dims)
+    ]
 
 
 def _figures(source: Path, regridder: Any, fields: Any, found: Any) -> dict[str, Any]:
     weights = regridder.weights
     covered = weights.target_areas[weights.fractions > 0].sum() / weights.target_areas.sum()
-    on_target = set(regridder.target_dims)
-    regridded = [
-        str(name)
-        for name, part in found.data_vars.items()
-        if name in fields.data_vars and on_target <= set(part.dims)
-    ]
     return {
         "delone": __version__,
         "input": str(source),
@@ -251,7 +285,7 @@ def _figures(source: Path, regridder: Any, fields: Any, found: Any) -> dict[str,
         },
         "weights": len(weights.values),
         "target_covered": float(covered),
-        "variables": regridded,
+        "variables": _regridded(regridder, fields, found),
     }
 
 

@@ -66,6 +66,8 @@ class Regridder(Immutable):
         The grids.
     weights : Weights
         What each source cell contributes.
+    source_dims : tuple or None
+        Dimensions of fields on the source; None if they follow from the shape of each field.
     target_dims : tuple
         Dimensions of results on the target.
 
@@ -189,6 +191,11 @@ class Regridder(Immutable):
     def weights(self) -> Weights:
         """What each source cell contributes to each target cell."""
         return self._weights
+
+    @property
+    def source_dims(self) -> tuple[Any, ...] | None:
+        """The dimensions of fields on the source; None if they follow from their shapes."""
+        return self._dims
 
     @property
     def target_dims(self) -> tuple[Any, ...]:
