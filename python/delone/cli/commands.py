@@ -129,7 +129,7 @@ TASKS = {
     "Look at a file": ("info", "explore"),
     "Triangulate": ("triangulate", "sphere", "tile", "check"),
     "Outlines, cells, neighbors": ("hull", "voronoi", "graph", "cluster"),
-    "Interpolate": ("interpolate", "crossval"),
+    "Interpolate": ("interpolate", "crossval", "regrid"),
     "Terrain": ("dem", "contours", "profile", "volume"),
     "Mesh": ("mesh", "tetrahedralize"),
 }
