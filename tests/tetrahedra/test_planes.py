@@ -254,6 +254,28 @@ def test_walls_between_regions_keep_their_triangles(seed: int) -> None:
     assert len(np.unique(mesh.region)) == 2
 
 
+@pytest.mark.parametrize("seed", seeds(3, deep=40))
+def test_a_sheet_inside(seed: int) -> None:
+    # What is in the way of a flip may be on the other side, around the rim of the sheet.
+    rng = np.random.default_rng(seed)
+    size = 5
+    grid = [(x, y) for x in range(size + 1) for y in range(size + 1)]
+    made = [
+        (k, k + size + 1, k + size + 2) if way else (k, k + size + 2, k + 1)
+        for k in (x * (size + 1) + y for x in range(size) for y in range(size))
+        for way in (0, 1)
+    ]
+    sheet = np.array(flipped(grid, made, rng))
+    points, faces = solids.box((-1, -1, -1), (size + 1, size + 1, 1))
+    inner = np.array([(x, y, 0.0) for x, y in grid])
+    both = np.concatenate((faces, sheet + len(points)))
+    mesh = delone.tetrahedralize(np.concatenate((points, inner)), both)
+    uses = solids.triangles(mesh.simplices)
+    assert all(uses[frozenset(face)] == 2 for face in (sheet + len(points)).tolist())
+    assert solids.filled(mesh.points, mesh.simplices) == 2 * (size + 2) ** 2
+    assert mesh.validate(), str(mesh.validate())
+
+
 def test_the_order_of_rows_does_not_matter() -> None:
     points, faces = plate(5, 3)
     rng = np.random.default_rng(4)

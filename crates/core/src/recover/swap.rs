@@ -279,11 +279,16 @@ impl Work<'_> {
         let mut old: Vec<u32> = Vec::new();
         let mut new: Vec<Corners> = Vec::new();
         let mut fans = Vec::new();
-        for (vertices, cells) in halves {
+        let other = [halves[1].1, halves[0].1];
+        for ((vertices, cells), other) in halves.into_iter().zip(other) {
             if let Some(made) = self.half([a, b], vertices.clone()) {
                 new.extend(made);
                 old.extend(cells);
-            } else if let Some((region, made)) = self.region([a, b], &vertices, cells, &old) {
+                continue;
+            }
+            // Around the rim of a sheet, what is in the way may be on its other side.
+            let taken = [&old[..], other].concat();
+            if let Some((region, made)) = self.region([a, b], &vertices, cells, &taken) {
                 new.extend(made);
                 old.extend(region);
             } else if points {
