@@ -119,6 +119,7 @@ def test_no_class_is_known_to_the_room() -> None:
     room = Path(delone.__file__).parent / "exchange"
     allowed = {
         "delone._arrays",
+        "delone._types",
         "delone.blocks",
         "delone.errors",
         "delone.extras",

@@ -298,7 +298,7 @@ def test_results_cannot_be_changed() -> None:
         ([(0, 1, 2), (0, 3, 2)], r"simplices\[1\] = \[0, 3, 2\] is not counter-clockwise"),
         ([(0, 1, 1)], r"simplices\[0\] = \[0, 1, 1\] is not counter-clockwise"),
         ([(0, 1, 2), (0, 2, 3)], "point 4 is a vertex of no simplex"),
-        ([(0, 1, 4), (1, 2, 4), (0, 4, 3)], "no convex cycle at the edge"),
+        ([(0, 1, 4), (1, 2, 4), (0, 4, 3)], "not a convex cycle at the edge"),
         ([(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4), (0, 1, 2)], "0 -> 1 occurs twice"),
         (np.empty((0, 3), dtype=np.int32), "no simplices"),
         ([(0, 1), (1, 2)], "shape"),

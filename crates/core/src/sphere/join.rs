@@ -87,6 +87,7 @@ fn join_halves(
             patch.before(g)
         })?,
     ];
+    // The first half contains the axis, so that no triangle between the rings may.
     let around = Around { directions, axis };
     let is_inside = rings[0]
         .iter()
@@ -176,6 +177,7 @@ fn bridge(directions: &Directions, [above, below]: &[Vec<Side>; 2]) -> Option<[u
     let step = (above.len() / TRIES).max(1);
     (0..above.len()).step_by(step).find_map(|i| {
         let before = above[(i + above.len() - 1) % above.len()];
+        // From a vertex above to the one below that is nearest to it: mostly a bridge.
         let a = above[i].tail;
         let head = directions.heads[a as usize];
         let product = |side: &Side| {
@@ -186,6 +188,7 @@ fn bridge(directions: &Directions, [above, below]: &[Vec<Side>; 2]) -> Option<[u
             (0..below.len()).max_by(|&i, &j| product(&below[i]).total_cmp(&product(&below[j])))?;
         let (after, b) = (below[j], below[j].head);
         let last = below[(j + below.len() - 1) % below.len()];
+        // Outside of a convex ring is what lies right of one of the two sides at the vertex.
         let leaves = right(before.tail, a, b) || right(a, above[i].head, b);
         let meets = right(after.tail, b, a) || right(b, last.head, a);
         (leaves && meets).then_some([i, j])
@@ -215,6 +218,7 @@ fn zip(
         let (up, down) = (above[(start[0] + i) % n], below[(start[1] + j) % m]);
         let (a, ahead) = (up.tail, up.head);
         let (b, beyond) = (down.head, down.tail);
+        // Of two triangles that are possible, the one whose circle does not contain the other apex.
         let is_left = |v: u32| directions.orient([a, b, v]) == Sign::Positive;
         let by_above = i < n && is_left(ahead);
         let by_below = j < m && is_left(beyond);
@@ -236,6 +240,7 @@ fn zip(
         let (on_ring, leaving) = if above_next { (1, 0) } else { (0, 1) };
         patch.set(t, [a, b, apex]);
         patch.link(8 * t + on_ring, side.inner);
+        // The triangle takes the record of the ghost, and joins the one before it across the bridge.
         match last {
             Some(code) => patch.link(code, 8 * t + 2),
             None => first = 8 * t + 2,
@@ -273,6 +278,7 @@ fn flip(
         pace.spend(1)?;
         let o = patch.opposite(e);
         let corners = [next(e), prev(e), e, o].map(|c| patch.vertex(c));
+        // An edge that is not Delaunay is flipped, and the four around it are looked at again.
         if directions.in_circle(corners) {
             if flips == most {
                 return Ok(false);
