@@ -112,7 +112,6 @@ ABSENCES: dict[tuple[str, str], str] = {
     ("guide/compat.rst", "``C-0``, ``A-1``"): "there is no tolerance to merge facets",
     ("guide/compat.rst", "``QJ``"): "nothing is rounded",
     ("guide/compat.rst", "attributes ``tree``"): "they belong to SciPy's implementation",
-    ("guide/dynamic.rst", "no point yet"): "an empty Dynamic, not a missing feature",
     (
         "guide/georeference.rst",
         "Computations in delone are planar",
