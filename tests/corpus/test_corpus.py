@@ -19,7 +19,7 @@ FILES = sorted(FOLDER.rglob("*.json"))
 def test_file_is_complete(path: Path) -> None:
     case = json.loads(path.read_text(encoding="utf-8"))
     assert case["sentence"].endswith(".")
-    ndim = 3 if path.parent.name == "space" else 2
+    ndim = 3 if path.parent.name in ("space", "sphere") else 2
     assert all(len(point) == ndim for point in case["points"])
     assert np.isfinite(np.array(case["points"], dtype=np.float64)).all()
     assert ("reason" in case) == (path.parent.name == "degenerate")

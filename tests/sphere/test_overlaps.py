@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import pickle
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +17,6 @@ from tiers import seeds
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -237,3 +238,55 @@ def test_cells_beyond_the_first_lot() -> None:
         many = Overlaps(source, target, workers=3)
         assert np.array_equal(one.indices, many.indices)
         assert one.areas.tobytes() == many.areas.tobytes()
+
+
+CORPUS = Path(__file__).parents[1] / "corpus" / "sphere"
+
+
+def hard(name: str) -> Floats:
+    """Vectors of the corpus."""
+    case = json.loads((CORPUS / f"{name}.json").read_text(encoding="utf-8"))
+    return np.array(case["points"], dtype=np.float64)
+
+
+def test_a_triangle_around_a_pole() -> None:
+    source = Grid.from_mesh(xyz=[hard("triangle-around-a-pole")])
+    for step in (90, 30, 7.5):
+        assert abs(Overlaps(source, degrees(step)).covered_source - 1) < 1e-14
+    # One row from pole to pole.
+    lunes = Grid.from_lonlat(np.arange(0, 361, 20), np.array([-90.0, 90.0]))
+    fine = Grid.from_lonlat(np.arange(0, 361, 20), np.arange(-90, 91, 10))
+    parts = [Overlaps(source, grid).covered_target * grid.areas for grid in (lunes, fine)]
+    assert np.allclose(parts[0], parts[1].reshape(18, 18).sum(axis=0), rtol=1e-14, atol=1e-15)
+
+
+@pytest.mark.parametrize("seed", seeds(6, deep=60))
+def test_triangles_that_span_continents(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rings = rng.normal(size=(40, 3, 3)) if seed % 2 else rng.integers(-4, 5, size=(40, 3, 3))
+    # Triangles with area whose corners are well within a hemisphere.
+    rings = rings[np.abs(np.linalg.det(rings)) > 1e-6].astype(np.float64)
+    rows = Grid.from_lonlat(
+        np.arange(0, 361, 45), np.array([-90.0, *np.sort(rng.uniform(-90, 90, 4)), 90.0])
+    )
+    source = Grid.from_mesh(rings)
+    octants = Grid.from_mesh(
+        [
+            np.diag(s).astype(float)
+            for s in np.array(np.meshgrid([1, -1], [1, -1], [1, -1])).T.reshape(8, 3)
+        ]
+    )
+    for target in (rows, octants):
+        assert np.abs(Overlaps(source, target).covered_source - 1).max() < 1e-13
+        assert np.abs(Overlaps(target, source).covered_target - 1).max() < 1e-13
+
+
+def test_a_ring_that_runs_around_twice_is_refused() -> None:
+    with pytest.raises(delone.DirectionError, match="cross"):
+        Grid.from_mesh(xyz=[hard("ring-that-runs-around-twice")])
+
+
+def test_triangles_that_touch_share_nothing() -> None:
+    vectors = hard("triangles-that-meet-at-the-equator")
+    upper, lower = (Grid.from_mesh(xyz=[part], merge=0) for part in np.split(vectors, [4]))
+    assert Overlaps(upper, lower).areas.size == Overlaps(lower, upper).areas.size == 0

@@ -322,8 +322,8 @@ class Grid(GridCells):
         Raises
         ------
         DirectionError
-            A cell has opposite ends of a side, sides that cross, or no hemisphere that contains
-            it; ``error.rows`` has the first.
+            A cell has opposite ends of a side, sides that cross or are repeated, or no hemisphere
+            that contains it; ``error.rows`` has the first.
         ShapeError, DtypeError, NonFiniteError
             Arrays have other shapes, or a corner is not a number.
 

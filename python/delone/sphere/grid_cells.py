@@ -29,7 +29,7 @@ __all__ = ["GridCells"]
 _FAULTS = {
     2: ("a side that joins opposite directions", "add a corner between them"),
     3: ("corners that no hemisphere contains", "split such cells"),
-    4: ("sides that cross", "repair them, for example with shapely.make_valid"),
+    4: ("sides that cross or are repeated", "repair them, for example with shapely.make_valid"),
 }
 # Cells of one grid that share more of the smaller one than this overlap; less is a rounding.
 _SHARED = 1e-12

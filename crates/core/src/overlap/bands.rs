@@ -21,6 +21,9 @@ const HEIGHTS: f64 = 16.0;
 /// See above.
 const PARTS: f64 = 64.0;
 
+/// The tangent of 60 degrees: rows beyond this latitude on both sides are cut at the equator.
+const FAR: f64 = 1.75;
+
 /// Cells between meridians and parallels, by rows.
 pub struct Rows<'a> {
     /// The tangents of the latitudes south and north of each row, infinite at poles.
@@ -97,13 +100,14 @@ impl Rows<'_> {
             });
             match blocks.last_mut() {
                 Some(block) if same && block.tan.last() == Some(&south) => {
-                    block.tan.push(north);
                     let numbers = self.spread(row, limit)?.1;
-                    block.numbers.extend(numbers);
+                    block.push(north, &numbers);
                 }
                 _ => {
                     let (lon, numbers) = self.spread(row, limit)?;
-                    blocks.push(Block::new(vec![south, north], lon, numbers));
+                    let mut block = Block::new(south, lon);
+                    block.push(north, &numbers);
+                    blocks.push(block);
                 }
             }
             last = Some((row, limit));
@@ -183,11 +187,12 @@ fn cut(lon: &mut Vec<Point2>, a: Point2, b: Point2, parts: usize) {
 }
 
 impl Block {
-    fn new(tan: Vec<f64>, lon: Vec<Point2>, numbers: Vec<i32>) -> Self {
+    /// A block without rows, north of a parallel.
+    fn new(south: f64, lon: Vec<Point2>) -> Self {
         Self {
-            tan,
+            tan: vec![south],
             lon,
-            numbers,
+            numbers: Vec::new(),
             lat: Vec::new(),
             phi: Vec::new(),
             len: Vec::new(),
@@ -195,6 +200,21 @@ impl Block {
             angle: Vec::new(),
             width: Vec::new(),
         }
+    }
+
+    /// Adds a row to the north, cut at the equator if it reaches far to both sides: then one pole is
+    /// far from the opposite of all its places.
+    fn push(&mut self, north: f64, numbers: &[i32]) {
+        let wide = self.tan.last().is_some_and(|&south| south < -FAR) && north > FAR;
+        for t in wide.then_some(0.0).into_iter().chain([north]) {
+            self.tan.push(t);
+            self.numbers.extend(numbers);
+        }
+    }
+
+    /// The chart in which areas of a row are summed: that of the pole that is nearer.
+    pub fn axis(&self, row: usize) -> usize {
+        usize::from(self.phi[row] + self.phi[row + 1] < 0.0)
     }
 
     /// Fills what follows from meridians and parallels.

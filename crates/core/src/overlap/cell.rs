@@ -190,11 +190,22 @@ impl Cell {
         }
     }
 
-    /// Whether no corner is to the right of a side.
+    /// Whether no corner is to the right of a side, and the ring runs around once. One that runs around
+    /// several times, with no corner to the right of a side, visits the corners of its hull again.
     fn is_convex(&self) -> bool {
         let count = self.corners.len();
         let one_ring = (0..count).all(|k| self.corners[k].next as usize == (k + 1) % count);
+        let distinct = |p: &Corner, q: &Corner| {
+            (0..3).any(|k| (p.unit[k].hi - q.unit[k].hi).abs() > 1e-12) || !same(p.v, q.v)
+        };
+        let once = || {
+            (1..count).all(|k| {
+                let before = &self.corners[..k];
+                before.iter().all(|p| distinct(p, &self.corners[k]))
+            })
+        };
         one_ring
+            && once()
             && (0..count).all(|e| {
                 let next = self.corners[e].next as usize;
                 (0..count).all(|k| {
@@ -219,7 +230,7 @@ impl Cell {
         }
     }
 
-    /// Two sides that cross in their insides, if any do.
+    /// Two sides that cross in their insides, or run the same way in a common part, if any do.
     pub fn crossing(&self) -> Option<[usize; 2]> {
         if self.convex {
             return None;
@@ -253,6 +264,9 @@ impl Cell {
         let (first, second) = (self.side(e), self.side(f));
         let s1 = side(first, second.a, Moved::Neither);
         let s2 = side(first, second.b, Moved::Neither);
+        if s1 == 0 && s2 == 0 {
+            return same_way(first, second);
+        }
         if s1 * s2 >= 0 {
             return false;
         }
@@ -261,6 +275,26 @@ impl Cell {
         // One arc, not its antipode, crosses the other: see `meet`.
         s3 * s4 < 0 && s1 == s4
     }
+}
+
+/// Whether sides of one circle run the same way in a common part: the cell is to the left of both, so
+/// it covers what is beside them twice.
+fn same_way(e: Side, f: Side) -> bool {
+    // On one circle, turns are seen along the largest coordinate of its normal, and are exact there.
+    let top = (1..3).fold(0, |top: usize, k| {
+        if e.n[k].hi.abs() > e.n[top].hi.abs() {
+            k
+        } else {
+            top
+        }
+    });
+    let (i, j) = ((top + 1) % 3, (top + 2) % 3);
+    let turn = |p: Point3, q: Point3| orient2d([p[i], p[j]], [q[i], q[j]], [0.0; 2]);
+    let way = turn(e.a, e.b);
+    // Whether a corner is after the start of a side, or is it, and before its end.
+    let from = |s: Side, q: Point3| same(s.a, q) || turn(s.a, q) == way;
+    let starts = |s: Side, q: Point3| from(s, q) && turn(q, s.b) == way;
+    turn(f.a, f.b) == way && (starts(e, f.a) || starts(f, e.a))
 }
 
 /// The direction as pairs.
@@ -286,39 +320,87 @@ fn has_opposite(ring: &Ring) -> bool {
     })
 }
 
-/// A center of a hemisphere that contains all corners, and the largest distance from it.
-///
-/// The mean of the corners, else some steps towards the farthest one (M. Bădoiu and K. L. Clarkson,
-/// 2003).
+/// A center of a hemisphere that contains all corners, and the largest distance from it: the mean of
+/// the corners, else the center of the smallest cap that contains them.
 fn around(rings: &[(bool, Ring)]) -> Option<(Point3, f64)> {
     let units: Vec<Point3> = rings
         .iter()
         .flat_map(|(_, ring)| ring.iter().map(|(_, unit)| heads(unit)))
         .collect();
-    let normal = |c: Point3| {
-        let length = (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]).sqrt();
-        (length > 1e-9).then(|| c.map(|x| x / length))
-    };
-    let product = |a: &Point3, b: &Point3| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let mut sum = [0.0; 3];
     for p in &units {
         sum = [0, 1, 2].map(|k| sum[k] + p[k]);
     }
-    let mut center = normal(sum).unwrap_or(units[0]);
-    for step in 0..128 {
-        let far = units
-            .iter()
-            .min_by(|p, q| product(p, &center).total_cmp(&product(q, &center)))?;
-        if product(far, &center) > WITHIN {
-            let distance = |p: &Point3| (0..3).map(|k| (p[k] - center[k]).powi(2)).sum::<f64>();
-            // By differences: near the center, products do not tell corners apart.
-            let farthest = units.iter().map(distance).fold(0.0, f64::max);
-            return Some((center, farthest.sqrt()));
+    let mean = scaled(sum).unwrap_or(units[0]);
+    let center = if within(&units, mean) {
+        mean
+    } else {
+        smallest_cap(&units).filter(|&center| within(&units, center))?
+    };
+    // By differences: near the center, products do not tell corners apart.
+    let distance = |p: &Point3| (0..3).map(|k| (p[k] - center[k]).powi(2)).sum::<f64>();
+    let farthest = units.iter().map(distance).fold(0.0, f64::max);
+    Some((center, farthest.sqrt()))
+}
+
+fn dotted(a: &Point3, b: &Point3) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The vector divided by its length, if that is not tiny.
+fn scaled(c: Point3) -> Option<Point3> {
+    let length = dotted(&c, &c).sqrt();
+    (length > 1e-9).then(|| c.map(|x| x / length))
+}
+
+/// Whether all directions are within the hemisphere around a center.
+fn within(units: &[Point3], center: Point3) -> bool {
+    units.iter().all(|p| dotted(p, &center) > WITHIN)
+}
+
+/// The center of the smallest cap that contains all directions, if that is less than a hemisphere:
+/// it touches two or three of them (E. Welzl, "Smallest enclosing disks", 1991). Where roundings
+/// mislead it, `within` fails.
+fn smallest_cap(units: &[Point3]) -> Option<Point3> {
+    // An order that has nothing to do with that of the ring: else the loops below are cubic.
+    let count = units.len();
+    let stride = (count * 618 / 1000..=count)
+        .find(|&stride| gcd(stride, count) == 1)
+        .unwrap_or(1);
+    let order: Vec<Point3> = (0..count).map(|k| units[k * stride % count]).collect();
+    // Whether a direction is in the cap around a center through another one.
+    let beyond = |c: &Point3, on: &Point3, p: &Point3| dotted(c, p) < dotted(c, on) - 1e-15;
+    let (mut center, mut on) = (order[0], order[0]);
+    for i in 1..count {
+        let p = order[i];
+        if !beyond(&center, &on, &p) {
+            continue;
         }
-        let share = 1.0 / f64::from(step + 2);
-        center = normal([0, 1, 2].map(|k| center[k] + share * (far[k] - center[k])))?;
+        // The smallest cap of the first ones that touches p.
+        (center, on) = (p, p);
+        for j in 0..i {
+            let q = order[j];
+            if !beyond(&center, &on, &q) {
+                continue;
+            }
+            // The one that touches p and q.
+            center = scaled([0, 1, 2].map(|k| p[k] + q[k]))?;
+            for r in &order[..j] {
+                if beyond(&center, &on, r) {
+                    let [u, v] = [q, *r].map(|x| [0, 1, 2].map(|k| x[k] - p[k]));
+                    let n = heads(&cross_of(u, v));
+                    let sign = if dotted(&n, &p) < 0.0 { -1.0 } else { 1.0 };
+                    let length = dotted(&n, &n).sqrt();
+                    center = n.map(|x| sign * x / length);
+                }
+            }
+        }
     }
-    None
+    Some(center)
+}
+
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 fn compare(a: &Point3, b: &Point3) -> Ordering {

@@ -15,7 +15,7 @@ use delone_predicates::sphere::leveled;
 
 use super::cell::Cell;
 use super::pairs::{
-    Pair3, Turn, chart, chart_of, cross, cross_of, dot, factor, heads, quotient, unit,
+    Pair3, Turn, base, chart, chart_of, cross, cross_of, dot, factor, heads, quotient, unit,
 };
 use super::signs::{Moved, Side, side};
 
@@ -71,12 +71,13 @@ pub fn shared(p: &Cell, q: &Cell, work: &mut Work) -> f64 {
     }
     corners_inside(first, (p, q), at, second.sides.len(), Moved::Side);
     corners_inside(second, (q, p), of, first.sides.len(), Moved::Corner);
-    let axis = axis_for((p, first), (q, second));
+    // What both share is within the hemisphere around the smaller one.
+    let axis = chart_of(if p.radius < q.radius { p } else { q }.center);
     let (mut turn, mut crossed) = (Turn::new(), false);
     let (count, across) = (first.sides.len(), second.sides.len());
     for (k, &e) in first.sides.iter().enumerate() {
         let (a, b) = ends(p, e);
-        let start = chart(axis, &a.unit);
+        let start = base(axis, &a.unit, &b.unit);
         if first.inside[k] {
             turn.mul(factor(&start, &chart(axis, &b.unit)), false);
         }
@@ -92,7 +93,8 @@ pub fn shared(p: &Cell, q: &Cell, work: &mut Work) -> f64 {
             let leaves = ends_e[0] > 0;
             let x = chart(axis, &crossing((p, e), (q, f), leaves));
             turn.mul(factor(&start, &x), !leaves);
-            turn.mul(factor(&chart(axis, &ends(q, f).0.unit), &x), leaves);
+            let (c, d) = ends(q, f);
+            turn.mul(factor(&base(axis, &c.unit, &d.unit), &x), leaves);
         }
     }
     if !crossed {
@@ -111,45 +113,13 @@ pub fn shared(p: &Cell, q: &Cell, work: &mut Work) -> f64 {
     for (l, &f) in second.sides.iter().enumerate() {
         if second.inside[l] {
             let (c, d) = ends(q, f);
-            turn.mul(factor(&chart(axis, &c.unit), &chart(axis, &d.unit)), false);
+            turn.mul(
+                factor(&base(axis, &c.unit, &d.unit), &chart(axis, &d.unit)),
+                false,
+            );
         }
     }
     turn.area()
-}
-
-/// The chart for the sum: around the smaller cell, unless corners of large cells may be near the
-/// opposite of its pole.
-fn axis_for((p, first): (&Cell, &Near), (q, second): (&Cell, &Near)) -> usize {
-    let small = if p.radius < q.radius { p } else { q };
-    let near = chart_of(small.center);
-    if p.radius.max(q.radius) < 0.5 {
-        return near;
-    }
-    let starts = || {
-        let of = |cell: &'_ Cell, k: u32| heads(&cell.corners[k as usize].unit);
-        let own = first.sides.iter().map(move |&k| of(p, k));
-        own.chain(second.sides.iter().map(move |&k| of(q, k)))
-    };
-    let lowest = |axis: usize| {
-        let height = |v: Point3| {
-            let (k, sign) = [
-                (2, 1.0),
-                (2, -1.0),
-                (0, 1.0),
-                (0, -1.0),
-                (1, 1.0),
-                (1, -1.0),
-            ][axis];
-            sign * v[k]
-        };
-        starts().fold(1.0, |least: f64, v| least.min(height(v)))
-    };
-    if lowest(near) > -0.9 {
-        return near;
-    }
-    (0..6)
-        .max_by(|&a, &b| lowest(a).total_cmp(&lowest(b)))
-        .unwrap_or(near)
 }
 
 fn ends(cell: &Cell, k: u32) -> (&super::cell::Corner, &super::cell::Corner) {
@@ -295,16 +265,30 @@ fn crossing((p, e): (&Cell, u32), (q, f): (&Cell, u32), leaves: bool) -> Pair3 {
         let k = quotient(dot(n, &x), dot(n, n));
         return unit(&[0, 1, 2].map(|j| x[j] - n[j] * k));
     }
-    let between = |u: &Pair3, x: &Pair3, y: &Pair3| {
-        let distance =
-            |v: &Pair3, w: &Pair3| (0..3).map(|k| (v[k].hi - w[k].hi).powi(2)).sum::<f64>();
-        distance(x, u).max(distance(y, u)) / distance(x, y)
+    // How far an end is from the middle of the other side, over half the length of that: at most 1
+    // on it.
+    let between = |u: &Pair3, x: &Pair3, y: &Pair3, normal: &Pair3| {
+        let [u, x, y, n] = [u, x, y, normal].map(heads);
+        let middle = if x[0] * y[0] + x[1] * y[1] + x[2] * y[2] < 0.0 {
+            // The sum of the ends cancels.
+            let d = [0, 1, 2].map(|k| x[k] - y[k]);
+            [(1, 2), (2, 0), (0, 1)].map(|(i, j)| n[i] * d[j] - n[j] * d[i])
+        } else {
+            [0, 1, 2].map(|k| x[k] + y[k])
+        };
+        let length = middle.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let distance = |v: Point3| {
+            (0..3)
+                .map(|k| (v[k] - middle[k] / length).powi(2))
+                .sum::<f64>()
+        };
+        distance(u) / distance(x).max(distance(y))
     };
     let ends = [
-        (between(&a.unit, &c.unit, &d.unit), a.unit),
-        (between(&b.unit, &c.unit, &d.unit), b.unit),
-        (between(&c.unit, &a.unit, &b.unit), c.unit),
-        (between(&d.unit, &a.unit, &b.unit), d.unit),
+        (between(&a.unit, &c.unit, &d.unit, m), a.unit),
+        (between(&b.unit, &c.unit, &d.unit, m), b.unit),
+        (between(&c.unit, &a.unit, &b.unit, n), c.unit),
+        (between(&d.unit, &a.unit, &b.unit, n), d.unit),
     ];
     let mut best = ends[0];
     for end in &ends[1..] {

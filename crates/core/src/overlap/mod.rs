@@ -2,7 +2,7 @@
 //!
 //! Cells are polygons with arcs of great circles as sides ([`Polygons`]), or between meridians and
 //! parallels ([`Rows`]). Which parts there are is decided by exact signs without ties (`signs`),
-//! and each area is right to a few units in its last place and 1e-30 steradians, whatever the size
+//! and each area is right to a few units in its last place and 1e-24 steradians, whatever the size
 //! of the cells: so sums over rows, columns and all are right together, without any exchange
 //! between cells (`meet`, `walk`).
 //!

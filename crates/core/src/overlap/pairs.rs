@@ -122,6 +122,11 @@ pub fn chart(axis: usize, p: &Pair3) -> Pair3 {
     }
 }
 
+/// Parts of cells are above this height in the chart of their sum: a row that crosses the equator
+/// reaches at most 60.3 degrees beyond it (`bands`), to -0.87, and a cell within the hemisphere around
+/// a vector reaches -sqrt(2/3) in the chart of that.
+pub const LOWEST: f64 = -0.9;
+
 /// The chart whose pole is the axis nearest to a vector.
 pub fn chart_of(c: Point3) -> usize {
     let mut top = 0;
@@ -131,6 +136,22 @@ pub fn chart_of(c: Point3) -> usize {
         }
     }
     [[2, 3], [4, 5], [0, 1]][top][usize::from(c[top] < 0.0)]
+}
+
+/// Where the area of a side is measured from: its start, or its end if the start is below
+/// [`LOWEST`], near the opposite of the pole, where factors lose digits and then vanish.
+///
+/// A side that has a place at or above `LOWEST` has an end there: its height is a sine, which below
+/// zero has no maximum but at its ends. And a start below `LOWEST` is in no part that is above, so
+/// no part begins there.
+#[inline]
+pub fn base(axis: usize, start: &Pair3, end: &Pair3) -> Pair3 {
+    let from = chart(axis, start);
+    if from[2].hi < LOWEST {
+        chart(axis, end)
+    } else {
+        from
+    }
 }
 
 /// The factor of the triangle of the pole and two unit vectors of its chart.

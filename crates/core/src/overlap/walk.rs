@@ -17,7 +17,9 @@ use crate::error::{Error, Result};
 
 use super::bands::{Block, angle};
 use super::cell::Cell;
-use super::pairs::{ONE, Pair3, Turn, chart, factor, negated, pair, quotient, root, sliver, unit};
+use super::pairs::{
+    ONE, Pair3, Turn, base, chart, factor, negated, pair, quotient, root, sliver, unit,
+};
 use super::signs::{Side, above, corner, east, eastward, falling, reaches, rise};
 
 /// Something that a side does.
@@ -82,25 +84,11 @@ pub fn shared(
     for k in 0..p.corners.len() {
         follow(p, k, block, work)?;
     }
-    let heights = || p.corners.iter().map(|c| c.unit[2].hi);
-    let (low, high) = (
-        heights().fold(1.0, f64::min),
-        heights().fold(-1.0, f64::max),
-    );
-    let north = p.center[2] >= 0.0;
-    // Only a cell of almost a hemisphere reaches far into the other half.
-    let far = if north { low < -0.9 } else { high > 0.9 };
-    let axis = if far {
-        usize::from(low + high < 0.0)
-    } else {
-        usize::from(!north)
-    };
     let at = std::mem::take(&mut work.at);
     let walked = Walked {
         p,
         block,
-        north,
-        axis,
+        north: p.center[2] >= 0.0,
         at: &at,
     };
     let done = walked.give(work, give);
@@ -245,8 +233,6 @@ struct Walked<'a> {
     block: &'a Block,
     /// Whether the south pole is outside the polygon; else the north pole is.
     north: bool,
-    /// The chart of areas, whose pole is far from the opposite of all corners.
-    axis: usize,
     /// The row and the column of each corner.
     at: &'a [(i64, usize)],
 }
@@ -323,7 +309,7 @@ impl Walked<'_> {
         places: &mut Vec<Place>,
     ) -> f64 {
         let block = self.block;
-        let axis = self.axis;
+        let axis = block.axis(row);
         let start = self.reference(column);
         places.clear();
         let mut turn = Turn::new();
@@ -334,12 +320,10 @@ impl Walked<'_> {
         for &(_, k) in run {
             let (side, event) = &events[k as usize];
             let corner = &self.p.corners[*side as usize];
-            let from = chart(axis, &corner.unit);
+            let end = &self.p.corners[corner.next as usize].unit;
+            let from = base(axis, &corner.unit, end);
             match *event {
-                Event::End { .. } => {
-                    let end = &self.p.corners[corner.next as usize].unit;
-                    turn.mul(factor(&from, &chart(axis, end)), false);
-                }
+                Event::End { .. } => turn.mul(factor(&from, &chart(axis, end)), false),
                 Event::Meridian { m, row, eastward } => {
                     let x = self.at_meridian(m, row, *side as usize, eastward);
                     // It leaves the cell to the west if it runs east.
