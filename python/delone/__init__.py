@@ -76,6 +76,7 @@ if TYPE_CHECKING:
     from delone.alpha.concave import concave_hull
     from delone.alpha.filtration import AlphaComplex
     from delone.alpha.shape import AlphaShape, ConcaveHull
+    from delone.areal.overlaps import AreaWeights, OverlapReport, Overlaps
     from delone.constrained.delaunay import ConstrainedDelaunay
     from delone.constrained.editing import Editing
     from delone.constrained.polygons import PolygonTriangles, from_geometry, triangulate_polygon
@@ -106,6 +107,7 @@ if TYPE_CHECKING:
 __all__ = [
     "AlphaComplex",
     "AlphaShape",
+    "AreaWeights",
     "BudgetExceededError",
     "BusyError",
     "CRSWarning",
@@ -142,6 +144,8 @@ __all__ = [
     "OpenSurfaceError",
     "OutputError",
     "OutsideError",
+    "OverlapReport",
+    "Overlaps",
     "PeriodicDelaunay",
     "PolygonTriangles",
     "Quality",
@@ -215,6 +219,7 @@ _MODULES = {
 _HOMES = {
     "AlphaComplex": "alpha.filtration",
     "AlphaShape": "alpha.shape",
+    "AreaWeights": "areal.overlaps",
     "ConcaveHull": "alpha.shape",
     "ConstrainedDelaunay": "constrained.delaunay",
     "ConstrainedReport": "constrained.validation",
@@ -226,6 +231,8 @@ _HOMES = {
     "LloydResult": "voronoi.centroidal",
     "Mesh": "refine.meshed",
     "MeshReport": "refine.report",
+    "OverlapReport": "areal.overlaps",
+    "Overlaps": "areal.overlaps",
     "PeriodicDelaunay": "periodic",
     "PolygonTriangles": "constrained.polygons",
     "RecoveryReport": "tetmesh.recovery",

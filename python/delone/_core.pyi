@@ -47,6 +47,7 @@ __all__ = [
     "NaturalWeights",
     "PeriodicFaults",
     "PeriodicTriangulation",
+    "PlaneCells",
     "RecoveredFaces",
     "RecoveryCounts",
     "RefinedMesh",
@@ -269,7 +270,7 @@ class CheckedCells:
 
     @property
     def areas(self) -> NDArray[np.float64]:
-        """Areas in steradians, 0 of cells that have none, (n,)."""
+        """Areas, on the sphere in steradians, 0 of cells that have none, (n,)."""
     @property
     def faults(self) -> NDArray[np.uint8]:
         """0, 1 for empty cells, 2 for opposite ends of a side, 3 for cells beyond a
@@ -1214,6 +1215,25 @@ class PeriodicTriangulation:
         """Rows that are not hidden, in order along the line, if there is no triangle, (k,)."""
 
 @final
+class PlaneCells:
+    """The cells of a grid in the plane."""
+
+    def __new__(
+        cls,
+        points: NDArray[np.float64],
+        rings: NDArray[np.int64],
+        cells: NDArray[np.int64],
+        holes: NDArray[np.bool_],
+    ) -> PlaneCells:
+        """Cells of corners, where their rings start, where the rings of cells start, and
+        whether rings are holes.
+        """
+    def check(self, crossing: bool, workers: int) -> CheckedCells:
+        """Areas and faults; sides that cross are looked for if `crossing`."""
+    def overlaps(self, other: PlaneCells, workers: int) -> SharedCells:
+        """What the cells share with those of another grid; cells with faults share nothing."""
+
+@final
 class RecoveredFaces:
     """Tetrahedra that have given faces."""
 
@@ -1409,7 +1429,7 @@ class SharedCells:
         """Cells of the second grid, (k,)."""
     @property
     def areas(self) -> NDArray[np.float64]:
-        """Areas in steradians, (k,)."""
+        """Areas, on the sphere in steradians, (k,)."""
     @property
     def first(self) -> NDArray[np.float64]:
         """Sums over the cells of the first grid, (n,)."""

@@ -46,7 +46,7 @@ PYTHON: tuple[set[str], ...] = (
     {"delaunay", "constrained", "regular", "tetmesh"},
     {"dynamic", "hull", "periodic", "refine"},
     {"alpha", "graphs", "io"},
-    {"voronoi", "interpolate", "cluster", "tetrahedra"},
+    {"voronoi", "interpolate", "cluster", "tetrahedra", "areal"},
     {"compat", "distributed", "explorer", "sphere", "terrain"},
     {"xarray"},
     # Data and oracles: nothing that they test may use them, and they use the ground alone.

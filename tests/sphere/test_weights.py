@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import delone
+from delone.areal.weights import METHODS
 from delone.sphere import Grid, Overlaps, Weights
-from delone.sphere.weights import METHODS
 
 if TYPE_CHECKING:
     from collections.abc import Callable

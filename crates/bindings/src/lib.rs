@@ -104,7 +104,7 @@ mod _core {
         qualities, sizes, transforms,
     };
     #[pymodule_export]
-    use super::overlap::{CellGrid, CheckedCells, SharedCells};
+    use super::overlap::{CellGrid, CheckedCells, PlaneCells, SharedCells};
     #[pymodule_export]
     use super::predicates::{incircle, insphere, orient2d, orient3d};
     #[pymodule_export]

@@ -1,7 +1,9 @@
-//! Grids of cells on the sphere, and the areas that two of them share.
+//! Grids of cells on the sphere and in the plane, and the areas that two of them share.
 
 use delone_core::error::Result;
-use delone_core::overlap::{Checked, Grid, Polygons, Rows, check, overlaps};
+use delone_core::overlap::{
+    Checked, Grid, Polygons, Rows, Shared, check, check_plane, overlaps, overlaps_plane,
+};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
@@ -109,7 +111,7 @@ impl Lent<'_> {
 /// What is known of each cell of a grid.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct CheckedCells {
-    /// Areas in steradians, 0 of cells that have none, (n,).
+    /// Areas, on the sphere in steradians, 0 of cells that have none, (n,).
     pub areas: Column<f64>,
     /// 0, 1 for empty cells, 2 for opposite ends of a side, 3 for cells beyond a hemisphere, 4 for
     /// sides that cross, (n,).
@@ -122,6 +124,18 @@ pub struct CheckedCells {
     pub repeated: usize,
 }
 
+impl CheckedCells {
+    fn of(py: Python<'_>, found: Checked) -> Self {
+        Self {
+            areas: column(py, found.areas),
+            faults: column(py, found.faults),
+            turned: column(py, found.turned),
+            concave: column(py, found.concave),
+            repeated: found.repeated,
+        }
+    }
+}
+
 /// The areas that cells of two grids share, as compressed rows.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct SharedCells {
@@ -129,12 +143,24 @@ pub struct SharedCells {
     pub indptr: Column<i64>,
     /// Cells of the second grid, (k,).
     pub indices: Column<i32>,
-    /// Areas in steradians, (k,).
+    /// Areas, on the sphere in steradians, (k,).
     pub areas: Column<f64>,
     /// Sums over the cells of the first grid, (n,).
     pub first: Column<f64>,
     /// Sums over the cells of the second grid, (m,).
     pub second: Column<f64>,
+}
+
+impl SharedCells {
+    fn of(py: Python<'_>, found: Shared) -> Self {
+        Self {
+            indptr: column(py, found.starts),
+            indices: column(py, found.cells),
+            areas: column(py, found.areas),
+            first: column(py, found.first),
+            second: column(py, found.second),
+        }
+    }
 }
 
 /// The cells of a grid on the sphere.
@@ -184,14 +210,8 @@ impl CellGrid {
     fn check(&self, py: Python<'_>, crossing: bool, workers: usize) -> Outcome<CheckedCells> {
         let lent = self.0.lent(py)?;
         let grid = lent.grid()?;
-        let found: Checked = watched(py, |watch| check(&grid, crossing, workers, watch))?;
-        Ok(CheckedCells {
-            areas: column(py, found.areas),
-            faults: column(py, found.faults),
-            turned: column(py, found.turned),
-            concave: column(py, found.concave),
-            repeated: found.repeated,
-        })
+        let found = watched(py, |watch| check(&grid, crossing, workers, watch))?;
+        Ok(CheckedCells::of(py, found))
     }
 
     /// What the cells share with those of another grid; cells with faults share nothing.
@@ -200,12 +220,83 @@ impl CellGrid {
         let grid = lent.grid()?;
         let target = beside.grid()?;
         let found = watched(py, |watch| overlaps(&grid, &target, workers, watch))?;
-        Ok(SharedCells {
-            indptr: column(py, found.starts),
-            indices: column(py, found.cells),
-            areas: column(py, found.areas),
-            first: column(py, found.first),
-            second: column(py, found.second),
+        Ok(SharedCells::of(py, found))
+    }
+}
+
+/// The cells of a grid in the plane.
+#[pyclass(frozen, module = "delone._core")]
+pub struct PlaneCells {
+    points: Py<PyArray2<f64>>,
+    rings: Py<PyArray1<i64>>,
+    cells: Py<PyArray1<i64>>,
+    holes: Py<PyArray1<bool>>,
+}
+
+/// The arrays of [`PlaneCells`], lent for a call.
+struct LentPlane<'py> {
+    points: PyReadonlyArray2<'py, f64>,
+    rings: PyReadonlyArray1<'py, i64>,
+    cells: PyReadonlyArray1<'py, i64>,
+    holes: PyReadonlyArray1<'py, bool>,
+}
+
+impl LentPlane<'_> {
+    fn cells(&self) -> Result<Polygons<'_, 2>> {
+        Ok(Polygons {
+            vectors: rows(&self.points, "points")?,
+            rings: flat(&self.rings, "rings")?,
+            cells: flat(&self.cells, "cells")?,
+            holes: flat(&self.holes, "holes")?,
         })
+    }
+}
+
+impl PlaneCells {
+    fn lent<'py>(&self, py: Python<'py>) -> Outcome<LentPlane<'py>> {
+        use numpy::PyArrayMethods;
+        Ok(LentPlane {
+            points: self.points.bind(py).try_readonly()?,
+            rings: self.rings.bind(py).try_readonly()?,
+            cells: self.cells.bind(py).try_readonly()?,
+            holes: self.holes.bind(py).try_readonly()?,
+        })
+    }
+}
+
+#[pymethods]
+impl PlaneCells {
+    /// Cells of corners, where their rings start, where the rings of cells start, and whether rings
+    /// are holes.
+    #[new]
+    fn new(
+        points: Py<PyArray2<f64>>,
+        rings: Py<PyArray1<i64>>,
+        cells: Py<PyArray1<i64>>,
+        holes: Py<PyArray1<bool>>,
+    ) -> Self {
+        Self {
+            points,
+            rings,
+            cells,
+            holes,
+        }
+    }
+
+    /// Areas and faults; sides that cross are looked for if `crossing`.
+    fn check(&self, py: Python<'_>, crossing: bool, workers: usize) -> Outcome<CheckedCells> {
+        let lent = self.lent(py)?;
+        let cells = lent.cells()?;
+        let found = watched(py, |watch| check_plane(&cells, crossing, workers, watch))?;
+        Ok(CheckedCells::of(py, found))
+    }
+
+    /// What the cells share with those of another grid; cells with faults share nothing.
+    fn overlaps(&self, py: Python<'_>, other: &Self, workers: usize) -> Outcome<SharedCells> {
+        let (lent, beside) = (self.lent(py)?, other.lent(py)?);
+        let cells = lent.cells()?;
+        let others = beside.cells()?;
+        let found = watched(py, |watch| overlaps_plane(&cells, &others, workers, watch))?;
+        Ok(SharedCells::of(py, found))
     }
 }

@@ -54,6 +54,8 @@ def check_overlaps(**arrays: NDArray[Any]) -> None:
         require(len(sums) == len(cells), f"{name}_sums and {name}_areas do not match")
         fits = len(shape) > 0 and (shape >= 0).all() and (shape <= len(cells)).all()
         require(fits and int(np.prod(shape)) == len(cells), f"{name}_shape does not fit")
+        if f"{name}_turned" in arrays:
+            check_range(f"{name}_turned", arrays[f"{name}_turned"], 0, len(cells))
         for values in (cells, sums):
             require(bool((np.isfinite(values) & (values >= 0)).all()), f"{name}: a wrong area")
     require(bool((np.isfinite(areas) & (areas > 0)).all()), "an area is not positive")

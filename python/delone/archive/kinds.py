@@ -43,6 +43,16 @@ def _delaunay(ndim: int) -> dict[str, tuple[str, int]]:
     return _simplices(ndim) | {"duplicates": ("<i4", 2)}
 
 
+# Areas that cells share.
+_AREAS = {
+    "indptr": ("<i8", 0),
+    "indices": ("<i4", 0),
+    "areas": ("<f8", 0),
+    "source_areas": ("<f8", 0),
+    "target_areas": ("<f8", 0),
+    "source_sums": ("<f8", 0),
+    "target_sums": ("<f8", 0),
+}
 # Segments, and what they came from.
 _ARCS = {
     "constrained": ("|b1", 3),
@@ -271,16 +281,19 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
     "sphere.Overlaps": (
         Kind(
             "delone.sphere.Overlaps",
-            {
-                "indptr": ("<i8", 0),
-                "indices": ("<i4", 0),
-                "areas": ("<f8", 0),
-                "source_areas": ("<f8", 0),
-                "target_areas": ("<f8", 0),
-                "source_sums": ("<f8", 0),
-                "target_sums": ("<f8", 0),
+            _AREAS | {"source_shape": ("<i8", 0), "target_shape": ("<i8", 0)},
+            directions.check_overlaps,
+        ),
+    ),
+    "Overlaps": (
+        Kind(
+            "delone.Overlaps",
+            _AREAS
+            | {
                 "source_shape": ("<i8", 0),
                 "target_shape": ("<i8", 0),
+                "source_turned": ("<i8", 0),
+                "target_turned": ("<i8", 0),
             },
             directions.check_overlaps,
         ),

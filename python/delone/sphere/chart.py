@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone._arrays import as_number, as_workers
+from delone.areal.paired import row_sums
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.extras import require
 from delone.plot.axes import new_axes, thin
 from delone.sphere.coordinates import lonlat_of
-from delone.sphere.paired import row_sums
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

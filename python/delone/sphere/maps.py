@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone.areal.paired import added
 from delone.atomic import replacing
 from delone.errors import FileFormatError, InputError
 from delone.extras import require
 from delone.sphere.coordinates import lonlat_of
-from delone.sphere.paired import added
 
 if TYPE_CHECKING:
     import os

@@ -2,82 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self
 
-import numpy as np
-
-from delone._arrays import as_choice, as_workers
+from delone._arrays import as_workers
+from delone.areal.shared import OverlapReport, SharedAreas
 from delone.complex import Stored
-from delone.counting import counted
 from delone.errors import DtypeError
-from delone.immutable import ReadOnly, kept, sealed
+from delone.immutable import sealed
 from delone.sphere.grid import Grid
-from delone.sphere.paired import Paired, row_sums
-from delone.sphere.weights import METHODS, Weights, as_mask
+from delone.sphere.weights import Weights
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
     from delone._types import Floats, Rows
 
 __all__ = ["OverlapReport", "Overlaps"]
 
-# Shares that differ from 0 or 1 by less are roundings of corners.
-_ROUNDING = 1e-9
-# Names of arrays in files.
-_ROWS = "indptr", "indices", "areas"
-_SUMS = "source_areas", "target_areas", "source_sums", "target_sums"
-_SHAPES = "source_shape", "target_shape"
 
-
-@dataclass(frozen=True, repr=False, eq=False)
-class OverlapReport(ReadOnly):
-    """Which cells are covered by the other grid, within 1e-9 of their area.
-
-    Attributes
-    ----------
-    npairs : int
-        Number of pairs of cells that share area.
-    source_outside, target_outside : ndarray of int64
-        Cells that share nothing, without empty ones.
-    source_partly, target_partly : ndarray of int64
-        Cells of which a part is not covered.
-    source_repeatedly, target_repeatedly : ndarray of int64
-        Cells that are covered more than once, as cells of the other grid overlap.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone import sphere
-    >>> north = sphere.Grid.from_lonlat(np.arange(0, 361, 10), [-5, 30, 60, 90])
-    >>> sphere.Overlaps(north, sphere.Grid.from_healpix(4)).report
-    <OverlapReport: 500 pairs, 72 target cells outside, 32 target cells partly covered>
-    """
-
-    npairs: int
-    source_outside: Rows
-    source_partly: Rows
-    source_repeatedly: Rows
-    target_outside: Rows
-    target_partly: Rows
-    target_repeatedly: Rows
-
-    def __repr__(self) -> str:
-        parts = [counted(self.npairs, "pair")]
-        ends = {
-            "outside": "outside",
-            "partly": "partly covered",
-            "repeatedly": "covered repeatedly",
-        }
-        for side in ("source", "target"):
-            for name, end in ends.items():
-                if count := len(getattr(self, f"{side}_{name}")):
-                    parts.append(f"{counted(count, f'{side} cell')} {end}")
-        return f"<OverlapReport: {', '.join(parts)}>"
-
-
-class Overlaps(Paired, Stored):
+class Overlaps(SharedAreas, Stored):
     """The areas that cells of two grids share: the basis of conservative regridding.
 
     Parameters
@@ -143,9 +87,8 @@ class Overlaps(Paired, Stored):
 
     __slots__ = ("_areas", "_grids", "_rows", "_shapes", "_sums")
 
+    _weights = Weights
     _grids: tuple[Grid, Grid] | None
-    # The sums of the parts of source and target cells.
-    _sums: tuple[Floats, Floats]
 
     def __init__(self, source: Grid, target: Grid, *, workers: int | None = None) -> None:
         for name, grid in (("source", source), ("target", target)):
@@ -189,27 +132,11 @@ class Overlaps(Paired, Stored):
         return "sphere.Overlaps"
 
     def _saved(self) -> dict[str, NDArray[Any]]:
-        found: dict[str, NDArray[Any]] = dict(zip(_ROWS, self._rows, strict=True))
-        found |= zip(_SUMS, self._areas + self._sums, strict=True)
-        for name, shape in zip(_SHAPES, self._shapes, strict=True):
-            found[name] = np.array(shape, dtype=np.int64)
-        return found
+        return self._arrays()
 
     @classmethod
     def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
-        a, b, c = (arrays[name] for name in _ROWS)
-        s, t, u, v = (arrays[name] for name in _SUMS)
-        source, target = (tuple(arrays[name].tolist()) for name in _SHAPES)
-        return cls._again((a, b, c), (s, t, u, v), (source, target), None, None)
-
-    def _described(self) -> str:
-        cells = f"{len(self.source_areas)} source and {len(self.target_areas)} target cells"
-        return f"{cells}: {counted(len(self.areas), 'pair')}"
-
-    @property
-    def areas(self) -> Floats:
-        """Areas of the shared parts in steradians, (k,)."""
-        return self._rows[2]
+        return cls._again(*cls._parts(arrays), None, None)
 
     @property
     def source(self) -> Grid | None:
@@ -220,30 +147,6 @@ class Overlaps(Paired, Stored):
     def target(self) -> Grid | None:
         """The target; None if this was loaded from a file, which has no grids."""
         return None if self._grids is None else self._grids[1]
-
-    @property
-    @kept
-    def covered_source(self) -> Floats:
-        """The fraction of each source cell that target cells cover; NaN for empty cells."""
-        return sealed(_shares(self._sums[0], self._areas[0]))
-
-    @property
-    @kept
-    def covered_target(self) -> Floats:
-        """The fraction of each target cell that source cells cover; NaN for empty cells."""
-        return sealed(_shares(self._sums[1], self._areas[1]))
-
-    @property
-    @kept
-    def report(self) -> OverlapReport:
-        """Which cells are covered by the other grid."""
-        rows = []
-        for share in (self.covered_source, self.covered_target):
-            outside = share == 0
-            partly = ~outside & (share < 1 - _ROUNDING)
-            more = share > 1 + _ROUNDING
-            rows += [np.flatnonzero(x) for x in (outside, partly, more)]
-        return OverlapReport(len(self.areas), *rows)
 
     def to_weights(
         self,
@@ -302,45 +205,5 @@ class Overlaps(Paired, Stored):
         >>> overlaps.to_weights("normalized", source_mask=[0, 1, 0]).apply([[9, 6, 3]]).tolist()
         [[6.0, nan]]
         """
-        kind = as_choice(method, METHODS, name="method")
-        sources = as_mask(source_mask, self.source_shape, "source_mask")
-        targets = as_mask(target_mask, self.target_shape, "target_mask")
-        indptr, indices, areas = self._rows
-        of_source, of_target = self._sums
-        if sources is not None or targets is not None:
-            row = np.repeat(np.arange(len(self.target_areas)), np.diff(indptr))
-            kept = np.ones(len(areas), dtype=bool)
-            if sources is not None:
-                kept &= sources[indices]
-            if targets is not None:
-                kept &= targets[row]
-            indices, areas, row = indices[kept], areas[kept], row[kept]
-            counts = np.bincount(row, minlength=len(self.target_areas))
-            indptr = np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
-            of_target = row_sums(indptr, areas)
-            of_source = np.bincount(indices, areas, len(self.source_areas)).astype(np.float64)
-        lengths = np.diff(indptr)
-        if kind == "normalized":
-            over = np.repeat(of_target, lengths)
-        elif kind == "sum":
-            over = self.source_areas[indices]
-        else:
-            over = np.repeat(self.target_areas, lengths)
-        fractions = [
-            np.nan_to_num(_shares(sums, whole))
-            for sums, whole in ((of_source, self.source_areas), (of_target, self.target_areas))
-        ]
-        return Weights._of(
-            kind,
-            (indptr, indices, areas / over),
-            (fractions[0], fractions[1]),
-            (self.source_areas, self.target_areas),
-            self._shapes,
-        )
-
-
-def _shares(sums: Floats, areas: Floats) -> Floats:
-    """Return quotients, NaN for cells without area."""
-    found = np.full(len(areas), np.nan)
-    np.divide(sums, areas, out=found, where=areas > 0)
-    return found
+        found: Weights = self._to_weights(method, source_mask, target_mask)  # type: ignore[assignment]
+        return found

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone._arrays import as_choice, as_flag, as_number
+from delone.areal.weights import METHODS
 from delone.counting import counted
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.extras import require
@@ -17,7 +18,7 @@ from delone.sphere.formats import Choices
 from delone.sphere.overlaps import Overlaps
 from delone.sphere.pointwise import POINTWISE
 from delone.sphere.targets import side_of
-from delone.sphere.weights import METHODS, Weights
+from delone.sphere.weights import Weights
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -15,6 +15,7 @@ use delone_predicates::{Point3, Sign, orient2d};
 
 use crate::points::Extent;
 
+use super::outline::{Fault, Prepared, distinct, start_at_smallest};
 use super::pairs::{Pair3, Turn, chart, chart_of, cross_of, factor, heads};
 use super::signs::{Moved, Side, side};
 
@@ -25,19 +26,8 @@ pub const LEAST: f64 = 1e-29;
 /// The least cosine of the angle between the center and a corner.
 const WITHIN: f64 = 1e-6;
 
-/// What is wrong with a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Fault {
-    /// Fewer than three distinct corners, or no area.
-    Empty = 1,
-    /// A side joins opposite directions.
-    Opposite = 2,
-    /// No hemisphere contains it.
-    Large = 3,
-    /// Two of its sides cross.
-    Crossing = 4,
-}
+/// Directions that agree in multiples of its inverse are one for the smallest cap.
+const GRAIN: f64 = 1e9;
 
 /// A corner and the side that starts there.
 #[derive(Clone)]
@@ -74,12 +64,8 @@ pub struct Cell {
 /// Corners with their directions.
 type Ring = Vec<(Point3, Pair3)>;
 
-/// The rings of a cell: whether each is a hole, and its corners.
-pub type Rings<'a> = &'a mut dyn Iterator<Item = (bool, &'a [Point3])>;
-
-impl Cell {
-    /// Prepares a cell.
-    pub fn of(rings: Rings<'_>) -> (Option<Self>, Option<Fault>) {
+impl Prepared<3> for Cell {
+    fn of(rings: &mut dyn Iterator<Item = (bool, &[Point3])>) -> (Option<Self>, Option<Fault>) {
         let mut cell = Self {
             corners: Vec::new(),
             area: 0.0,
@@ -118,7 +104,7 @@ impl Cell {
                 ring.reverse();
                 cell.turned |= !*hole;
             }
-            start_at_smallest(ring);
+            start_at_smallest(ring, |p, q| compare(&p.0, &q.0));
         }
         // Again, now that the order of corners is independent of that of the input: charts depend on
         // the last bits of a center that is as near to one axis as to another.
@@ -145,22 +131,59 @@ impl Cell {
         (Some(cell), None)
     }
 
+    fn area(&self) -> f64 {
+        self.area
+    }
+
+    fn turned(&self) -> bool {
+        self.turned
+    }
+
+    fn repeated(&self) -> usize {
+        self.repeated
+    }
+
+    /// Two sides that cross in their insides, or run the same way in a common part, if any do.
+    fn crossing(&self) -> Option<[usize; 2]> {
+        if self.convex {
+            return None;
+        }
+        let mut spans: Vec<(f64, f64, usize)> = (0..self.corners.len())
+            .map(|k| {
+                let next = self.corners[k].next as usize;
+                let ([p, q], r) = ([k, next].map(|i| heads(&self.corners[i].unit)), self.center);
+                // Along the longest way from a pole of coordinates that is far from the center.
+                let axis = chart_of(r) / 2;
+                let (x, y) = (p[axis], q[axis]);
+                let bulge = 0.5 * (0..3).map(|i| (p[i] - q[i]) * (p[i] - q[i])).sum::<f64>();
+                (x.min(y) - bulge - 1e-12, x.max(y) + bulge + 1e-12, k)
+            })
+            .collect();
+        spans.sort_by(|p, q| p.0.total_cmp(&q.0));
+        for (at, &(_, end, e)) in spans.iter().enumerate() {
+            for &(start, _, f) in &spans[at + 1..] {
+                if start > end {
+                    break;
+                }
+                if self.cross(e, f) {
+                    return Some([e.min(f), e.max(f)]);
+                }
+            }
+        }
+        None
+    }
+}
+
+impl Cell {
     /// The corners of a ring, leveled, without those that repeat the one before.
     ///
     /// A coordinate below 2^-1022 of the largest may lose digits: the corner moves by 2^-1073
     /// before anything is decided.
     fn distinct(&mut self, ring: &[Point3]) -> Ring {
-        let mut found: Ring = Vec::with_capacity(ring.len());
-        for &v in ring {
-            // Adding 0 removes the sign of a negative zero.
-            let v = leveled(v).map(|x| x + 0.0);
-            if found.last().is_none_or(|before| !same(before.0, v)) {
-                found.push((v, unit_of(v)));
-            }
-        }
-        while found.len() > 1 && same(found[0].0, found[found.len() - 1].0) {
-            found.pop();
-        }
+        // Adding 0 removes the sign of a negative zero.
+        let corners = ring.iter().map(|&v| leveled(v).map(|x| x + 0.0));
+        let found = distinct(corners, |&a, &b| same(a, b), compare);
+        let found: Ring = found.into_iter().map(|v| (v, unit_of(v))).collect();
         self.repeated += ring.len() - found.len();
         found
     }
@@ -228,36 +251,6 @@ impl Cell {
             min: corners.min.map(|x| x - bulge),
             max: corners.max.map(|x| x + bulge),
         }
-    }
-
-    /// Two sides that cross in their insides, or run the same way in a common part, if any do.
-    pub fn crossing(&self) -> Option<[usize; 2]> {
-        if self.convex {
-            return None;
-        }
-        let mut spans: Vec<(f64, f64, usize)> = (0..self.corners.len())
-            .map(|k| {
-                let next = self.corners[k].next as usize;
-                let ([p, q], r) = ([k, next].map(|i| heads(&self.corners[i].unit)), self.center);
-                // Along the longest way from a pole of coordinates that is far from the center.
-                let axis = chart_of(r) / 2;
-                let (x, y) = (p[axis], q[axis]);
-                let bulge = 0.5 * (0..3).map(|i| (p[i] - q[i]) * (p[i] - q[i])).sum::<f64>();
-                (x.min(y) - bulge - 1e-12, x.max(y) + bulge + 1e-12, k)
-            })
-            .collect();
-        spans.sort_by(|p, q| p.0.total_cmp(&q.0));
-        for (at, &(_, end, e)) in spans.iter().enumerate() {
-            for &(start, _, f) in &spans[at + 1..] {
-                if start > end {
-                    break;
-                }
-                if self.cross(e, f) {
-                    return Some([e.min(f), e.max(f)]);
-                }
-            }
-        }
-        None
     }
 
     fn cross(&self, e: usize, f: usize) -> bool {
@@ -362,12 +355,21 @@ fn within(units: &[Point3], center: Point3) -> bool {
 /// it touches two or three of them (E. Welzl, "Smallest enclosing disks", 1991). Where roundings
 /// mislead it, `within` fails.
 fn smallest_cap(units: &[Point3]) -> Option<Point3> {
-    // An order that has nothing to do with that of the ring: else the loops below are cubic.
-    let count = units.len();
+    // Places that differ, whatever the order of the ring, and in one that has nothing to do
+    // with where they are: else the loops below are cubic.
+    let mut places: Vec<[i64; 3]> = units
+        .iter()
+        .map(|p| p.map(|x| (x * GRAIN).round() as i64))
+        .collect();
+    places.sort_unstable();
+    places.dedup();
+    let count = places.len();
     let stride = (count * 618 / 1000..=count)
         .find(|&stride| gcd(stride, count) == 1)
         .unwrap_or(1);
-    let order: Vec<Point3> = (0..count).map(|k| units[k * stride % count]).collect();
+    let order: Vec<Point3> = (0..count)
+        .map(|k| places[k * stride % count].map(|x| x as f64 / GRAIN))
+        .collect();
     // Whether a direction is in the cap around a center through another one.
     let beyond = |c: &Point3, on: &Point3, p: &Point3| dotted(c, p) < dotted(c, on) - 1e-15;
     let (mut center, mut on) = (order[0], order[0]);
@@ -407,19 +409,4 @@ fn compare(a: &Point3, b: &Point3) -> Ordering {
     a[0].total_cmp(&b[0])
         .then(a[1].total_cmp(&b[1]))
         .then(a[2].total_cmp(&b[2]))
-}
-
-/// Turns a ring so that the sequence of its corners is the smallest one.
-fn start_at_smallest(ring: &mut Ring) {
-    let count = ring.len();
-    let mut best = 0;
-    for start in 1..count {
-        let later = (0..count)
-            .map(|k| compare(&ring[(start + k) % count].0, &ring[(best + k) % count].0))
-            .find(|order| order.is_ne());
-        if later == Some(Ordering::Less) {
-            best = start;
-        }
-    }
-    ring.rotate_left(best);
 }

@@ -15,6 +15,8 @@ use crate::watch::{Pace, Watch};
 use super::bands::Block;
 use super::cell::Cell;
 use super::meet;
+use super::outline::{Outline, Work};
+use super::plane::{self, Region};
 use super::rows;
 use super::walk;
 use super::{Grid, Polygons};
@@ -52,19 +54,31 @@ pub fn overlaps(p: &Grid, q: &Grid, workers: usize, watch: &Watch) -> Result<Sha
     let size = (p.len(), q.len());
     match (p, q) {
         (Grid::Polygons(p), Grid::Polygons(q)) => {
-            gathered(of_polygons(p, q, workers, watch)?, size, false, watch)
+            gathered(of_polygons(p, q, workers, watch)?, size, false, TINY, watch)
         }
         (Grid::Polygons(p), Grid::Rows(q)) => {
             let blocks = q.checked()?;
-            gathered(with_rows(p, &blocks, workers, watch)?, size, false, watch)
+            gathered(
+                with_rows(p, &blocks, workers, watch)?,
+                size,
+                false,
+                TINY,
+                watch,
+            )
         }
         (Grid::Rows(p), Grid::Polygons(q)) => {
             let blocks = p.checked()?;
-            gathered(with_rows(q, &blocks, workers, watch)?, size, true, watch)
+            gathered(
+                with_rows(q, &blocks, workers, watch)?,
+                size,
+                true,
+                TINY,
+                watch,
+            )
         }
         (Grid::Rows(p), Grid::Rows(q)) => {
             let (p, q) = (p.checked()?, q.checked()?);
-            gathered(of_rows(&p, &q, workers, watch)?, size, false, watch)
+            gathered(of_rows(&p, &q, workers, watch)?, size, false, TINY, watch)
         }
     }
 }
@@ -78,26 +92,25 @@ struct Extents {
 impl Extents {
     fn of(cells: &Polygons, workers: usize, watch: &Watch) -> Result<Self> {
         let tasks: Vec<usize> = (0..cells.len()).step_by(LOT).collect();
-        let parts = map_watched(workers, tasks, watch, |first| {
-            let own = first..(first + LOT).min(cells.len());
-            let mut part = with_room(own.len())?;
-            for i in own {
-                // Singles have 24 bits, and coordinates are at most 2.
-                part.push(
-                    cells
-                        .cell(i)
-                        .0
-                        .map_or(([f32::MAX; 3], [f32::MIN; 3]), |cell| {
+        let parts =
+            map_watched(workers, tasks, watch, |first| {
+                let own = first..(first + LOT).min(cells.len());
+                let mut part = with_room(own.len())?;
+                for i in own {
+                    // Singles have 24 bits, and coordinates are at most 2.
+                    part.push(cells.cell::<Cell>(i).0.map_or(
+                        ([f32::MAX; 3], [f32::MIN; 3]),
+                        |cell| {
                             let extent = cell.extent();
                             (
                                 extent.min.map(|x| (x - 2.5e-7) as f32),
                                 extent.max.map(|x| (x + 2.5e-7) as f32),
                             )
-                        }),
-                );
-            }
-            Ok(part)
-        })?;
+                        },
+                    ));
+                }
+                Ok(part)
+            })?;
         let mut all = Self {
             min: with_room(cells.len())?,
             max: with_room(cells.len())?,
@@ -158,19 +171,89 @@ fn of_polygons(
     );
     let (order, targets) = (of_p.order(watch)?, of_q.order(watch)?);
     let tree = Boxes::packed(targets, |i| of_q.extent(i), watch)?;
+    let meets = |i: usize, j: usize| of_q.meets(j, &of_p.extent(i));
+    let sides = (&|i| (p.cell::<Cell>(i).0, of_p.extent(i)), &|j| {
+        q.cell::<Cell>(j).0
+    });
+    let shared = |p: &Cell, q: &Cell, work: &mut Work| {
+        let area = meet::shared(p, q, work);
+        if area > TINY { area } else { 0.0 }
+    };
+    of_cells((order, tree), sides, meets, shared, workers, watch)
+}
+
+/// Parts of cells of the plane.
+pub fn overlaps_plane(
+    p: &Polygons<2>,
+    q: &Polygons<2>,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Shared> {
+    p.check()?;
+    q.check()?;
+    let extents = |cells: &Polygons<2>| -> Result<(Vec<Extent<2>>, Vec<u32>)> {
+        let tasks: Vec<usize> = (0..cells.len()).step_by(LOT).collect();
+        let parts = map_watched(workers, tasks, watch, |first| {
+            let mut part = with_room(LOT)?;
+            for i in first..(first + LOT).min(cells.len()) {
+                let cell = cells.cell::<Region>(i).0;
+                part.push(cell.map_or(Extent::of([]), |cell| cell.extent()));
+            }
+            Ok(part)
+        })?;
+        let mut all: Vec<Extent<2>> = with_room(cells.len())?;
+        all.extend(parts.into_iter().flatten());
+        let mut usable: Vec<u32> = with_room(all.len())?;
+        usable.extend((0..all.len() as u32).filter(|&i| all[i as usize].min < all[i as usize].max));
+        let mut middles: Vec<[f64; 2]> = with_room(usable.len())?;
+        middles.extend(usable.iter().map(|&i| {
+            let Extent { min, max } = all[i as usize];
+            [0, 1].map(|k| 0.5 * min[k] + 0.5 * max[k])
+        }));
+        let order = if middles.is_empty() {
+            Vec::new()
+        } else {
+            order_of::<2>(&middles, 1, watch)?.concat()
+        };
+        Ok((all, order.into_iter().map(|k| usable[k as usize]).collect()))
+    };
+    let ((of_p, order), (of_q, targets)) = (extents(p)?, extents(q)?);
+    let tree = Boxes::packed(targets, |i| of_q[i], watch)?;
+    let meets = |i: usize, j: usize| {
+        let (a, b) = (&of_p[i], &of_q[j]);
+        (0..2).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k])
+    };
+    let sides = (&|i| (p.cell::<Region>(i).0, of_p[i]), &|j| {
+        q.cell::<Region>(j).0
+    });
+    let parts = of_cells((order, tree), sides, meets, plane::shared, workers, watch)?;
+    gathered(parts, (p.len(), q.len()), false, 0.0, watch)
+}
+
+/// Parts of the cells of an order and of a tree of boxes.
+fn of_cells<C: Outline, const D: usize>(
+    (order, tree): (Vec<u32>, Boxes<D>),
+    (first, second): (
+        &(impl Fn(usize) -> (Option<C>, Extent<D>) + Sync),
+        &(impl Fn(usize) -> Option<C> + Sync),
+    ),
+    meets: impl Fn(usize, usize) -> bool + Sync,
+    shared: impl Fn(&C, &C, &mut Work) -> f64 + Sync,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<Vec<Part>>> {
     map_watched(workers, order.chunks(LOT).collect(), watch, |own| {
-        let (mut found, mut work) = (Vec::new(), meet::Work::default());
-        let mut kept: HashMap<usize, Option<Cell>> = HashMap::new();
+        let (mut found, mut work) = (Vec::new(), Work::default());
+        let mut kept: HashMap<usize, Option<C>> = HashMap::new();
         let mut pace = Pace::new(watch, PACE);
         let mut near = Vec::new();
         for &i in own {
-            let Some(cell) = p.cell(i as usize).0 else {
+            let (Some(cell), extent) = first(i as usize) else {
                 continue;
             };
             near.clear();
-            let extent = of_p.extent(i as usize);
             tree.meeting(&extent, |j| {
-                if of_q.meets(j, &extent) {
+                if meets(i as usize, j) {
                     near.push(j);
                 }
             });
@@ -178,11 +261,11 @@ fn of_polygons(
                 kept.clear();
             }
             for &j in &near {
-                let other = kept.entry(j).or_insert_with(|| q.cell(j).0);
+                let other = kept.entry(j).or_insert_with(|| second(j));
                 let Some(other) = other else { continue };
-                pace.spend(cell.corners.len() * other.corners.len())?;
-                let area = meet::shared(&cell, other, &mut work);
-                if area > TINY {
+                pace.spend(cell.count() * other.count())?;
+                let area = shared(&cell, other, &mut work);
+                if area > 0.0 {
                     push(&mut found, (i, j as u32, area))?;
                 }
             }
@@ -204,7 +287,9 @@ fn with_rows(
         let (mut found, mut work) = (Vec::new(), walk::Work::default());
         let mut pace = Pace::new(watch, PACE / 64);
         for i in first..(first + LOT).min(p.len()) {
-            let Some(cell) = p.cell(i).0 else { continue };
+            let Some(cell) = p.cell::<Cell>(i).0 else {
+                continue;
+            };
             let [south, north] = walk::latitudes(&cell);
             for block in blocks {
                 if block.phi[0] > north || block.phi[block.rows()] < south {
@@ -244,11 +329,12 @@ fn of_rows(p: &[Block], q: &[Block], workers: usize, watch: &Watch) -> Result<Ve
     })
 }
 
-/// Parts as compressed rows: sorted, and those of one pair added.
+/// Parts as compressed rows: sorted, and those of one pair added; those up to the least are dropped.
 fn gathered(
     parts: Vec<Vec<Part>>,
     (p, q): (usize, usize),
     exchanged: bool,
+    least: f64,
     watch: &Watch,
 ) -> Result<Shared> {
     let count = p.max(q);
@@ -296,7 +382,7 @@ fn gathered(
         row.sort_by_key(|entry| entry.0);
         for run in row.chunk_by(|a, b| a.0 == b.0) {
             let area = run.iter().map(|entry| entry.1).sum::<f64>();
-            if area > TINY {
+            if area > least {
                 shared.cells.push(run[0].0 as i32);
                 shared.areas.push(area);
                 first = first + Pair::from_double(area);

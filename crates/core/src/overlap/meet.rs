@@ -1,215 +1,117 @@
 //! The area that two cells with arcs of great circles share.
-//!
-//! With G_e(x) the integral of the area form along a side e from its start to x, the area is the
-//! sum of G_e(end) over sides e of either cell that end in the other one, and of +-(G_e(x) -
-//! G_f(x)) over all crossings x of a side e of the first and f of the second cell, + where e leaves
-//! the second one (W. R. Franklin, "Polygon properties calculated from the vertex neighborhoods",
-//! 1987, in the plane). Nothing is sorted along a side, and concave cells, parts and holes are like
-//! others.
-//!
-//! The second cell has moved: see [`super::signs`]. Signs decide which terms there are; each term
-//! is computed from the corners as given.
 
 use delone_predicates::Point3;
 use delone_predicates::sphere::leveled;
 
-use super::cell::Cell;
+use super::cell::{Cell, Corner};
+use super::outline::{Met, Outline, Sum, Work, cross_at, meet};
 use super::pairs::{
     Pair3, Turn, base, chart, chart_of, cross, cross_of, dot, factor, heads, quotient, unit,
 };
 use super::signs::{Moved, Side, side};
 
-/// Buffers.
-#[derive(Default)]
-pub struct Work {
-    /// Corners of the first cell at sides of the second one, and the other way round.
-    at: Vec<i8>,
-    of: Vec<i8>,
-    first: Near,
-    second: Near,
+impl Outline for Cell {
+    fn count(&self) -> usize {
+        self.corners.len()
+    }
+
+    #[inline]
+    fn next(&self, k: u32) -> u32 {
+        self.corners[k as usize].next
+    }
+
+    fn convex(&self) -> bool {
+        self.convex
+    }
+
+    #[inline]
+    fn sign(&self, k: u32, other: &Self, corner: u32, moved: Moved) -> i8 {
+        let v = other.corners[corner as usize].v;
+        side(self.side(k as usize), v, moved) as i8
+    }
+
+    fn holds(&self, other: &Self, corner: u32, moved: Moved) -> bool {
+        inside(self, other.corners[corner as usize].v, moved)
+    }
+
+    fn near(&self, other: &Self, found: &mut Vec<u32>) {
+        let extent = other.extent();
+        for k in 0..self.corners.len() as u32 {
+            let (a, b) = ends(self, k);
+            let (p, q) = (heads(&a.unit), heads(&b.unit));
+            // An arc rises above its chord by less than the square of that.
+            let bulge = (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f64>() + 1e-12;
+            let meets = (0..3).all(|i| {
+                p[i].min(q[i]) - bulge <= extent.max[i] && extent.min[i] <= p[i].max(q[i]) + bulge
+            });
+            if meets {
+                found.push(k);
+            }
+        }
+    }
 }
 
-/// Sides of a cell near the other one, and which of its corners are in that.
-#[derive(Default)]
-struct Near {
-    sides: Vec<u32>,
-    inside: Vec<bool>,
+/// The sum as one product.
+struct Product<'a> {
+    p: &'a Cell,
+    q: &'a Cell,
+    axis: usize,
+    turn: Turn,
+    /// The side of the first cell, and where it is measured from.
+    e: u32,
+    from: Pair3,
 }
 
-/// Whether two arcs cross, from the signs of the second one's ends at the first one, and of the
-/// first one's ends at the second one.
-///
-/// Both circles separate the other arc's ends, so each arc meets one of the two points where the
-/// circles meet. At n x m the second arc, with normal m, comes from the right of the first and ends
-/// to its left, and the first comes from the left of the second and ends to its right; at -n x m
-/// the other way round. So the points are the same if and only if the second sign of one is the
-/// first of the other.
-#[inline]
-fn cross_at(at: [i8; 2], of: [i8; 2]) -> bool {
-    at[0] != at[1] && of[0] != of[1] && of[0] == at[1]
+impl Sum for Product<'_> {
+    fn side(&mut self, e: u32) {
+        let (a, b) = ends(self.p, e);
+        (self.e, self.from) = (e, base(self.axis, &a.unit, &b.unit));
+    }
+
+    fn first(&mut self) {
+        let end = chart(self.axis, &ends(self.p, self.e).1.unit);
+        self.turn.mul(factor(&self.from, &end), false);
+    }
+
+    fn crossing(&mut self, f: u32, leaves: bool) {
+        let x = chart(self.axis, &crossing((self.p, self.e), (self.q, f), leaves));
+        self.turn.mul(factor(&self.from, &x), !leaves);
+        let (c, d) = ends(self.q, f);
+        let from = base(self.axis, &c.unit, &d.unit);
+        self.turn.mul(factor(&from, &x), leaves);
+    }
+
+    fn second(&mut self, f: u32) {
+        let (c, d) = ends(self.q, f);
+        let from = base(self.axis, &c.unit, &d.unit);
+        self.turn
+            .mul(factor(&from, &chart(self.axis, &d.unit)), false);
+    }
 }
 
 /// The area that cells share; the second one has moved.
 pub fn shared(p: &Cell, q: &Cell, work: &mut Work) -> f64 {
-    let Work {
-        at,
-        of,
-        first,
-        second,
-    } = work;
-    near(p, q, first);
-    near(q, p, second);
-    if first.sides.is_empty() && second.sides.is_empty() {
-        // A cell inside the other one has its sides in the box of that.
-        return 0.0;
-    }
-    // Signs: rows are sides, columns both ends of the sides of the other cell.
-    if !signs(at, (q, &second.sides), (p, &first.sides), Moved::Side)
-        || !signs(of, (p, &first.sides), (q, &second.sides), Moved::Corner)
-    {
-        return 0.0;
-    }
-    corners_inside(first, (p, q), at, second.sides.len(), Moved::Side);
-    corners_inside(second, (q, p), of, first.sides.len(), Moved::Corner);
     // What both share is within the hemisphere around the smaller one.
     let axis = chart_of(if p.radius < q.radius { p } else { q }.center);
-    let (mut turn, mut crossed) = (Turn::new(), false);
-    let (count, across) = (first.sides.len(), second.sides.len());
-    for (k, &e) in first.sides.iter().enumerate() {
-        let (a, b) = ends(p, e);
-        let start = base(axis, &a.unit, &b.unit);
-        if first.inside[k] {
-            turn.mul(factor(&start, &chart(axis, &b.unit)), false);
-        }
-        for (l, &f) in second.sides.iter().enumerate() {
-            // The ends of e at f, and those of f at e.
-            let (i, j) = (2 * (l * count + k), 2 * (k * across + l));
-            let (ends_e, ends_f) = ([at[i], at[i + 1]], [of[j], of[j + 1]]);
-            if !cross_at(ends_f, ends_e) {
-                continue;
-            }
-            crossed = true;
-            // To the left of a side is inside.
-            let leaves = ends_e[0] > 0;
-            let x = chart(axis, &crossing((p, e), (q, f), leaves));
-            turn.mul(factor(&start, &x), !leaves);
-            let (c, d) = ends(q, f);
-            turn.mul(factor(&base(axis, &c.unit, &d.unit), &x), leaves);
-        }
+    let mut sum = Product {
+        p,
+        q,
+        axis,
+        turn: Turn::new(),
+        e: 0,
+        from: p.corners[0].unit,
+    };
+    match meet(p, q, work, &mut sum) {
+        Met::Nothing => 0.0,
+        Met::First => p.area,
+        Met::Second => q.area,
+        Met::Part => sum.turn.area(),
     }
-    if !crossed {
-        // One cell inside the other: its area as it is.
-        let all = |near: &Near, cell: &Cell| {
-            near.sides.len() == cell.corners.len() && near.inside.iter().all(|&x| x)
-        };
-        let none = |near: &Near| !near.inside.contains(&true);
-        if all(first, p) && none(second) {
-            return p.area;
-        }
-        if all(second, q) && none(first) {
-            return q.area;
-        }
-    }
-    for (l, &f) in second.sides.iter().enumerate() {
-        if second.inside[l] {
-            let (c, d) = ends(q, f);
-            turn.mul(
-                factor(&base(axis, &c.unit, &d.unit), &chart(axis, &d.unit)),
-                false,
-            );
-        }
-    }
-    turn.area()
 }
 
-fn ends(cell: &Cell, k: u32) -> (&super::cell::Corner, &super::cell::Corner) {
+fn ends(cell: &Cell, k: u32) -> (&Corner, &Corner) {
     let a = &cell.corners[k as usize];
     (a, &cell.corners[a.next as usize])
-}
-
-/// Cells with fewer corners take all their sides.
-const FEW: usize = 12;
-
-/// Sides of a cell whose boxes meet that of the other one.
-fn near(cell: &Cell, other: &Cell, found: &mut Near) {
-    found.sides.clear();
-    let count = cell.corners.len() as u32;
-    if cell.corners.len() < FEW {
-        found.sides.extend(0..count);
-        return;
-    }
-    let extent = other.extent();
-    for k in 0..count {
-        let (a, b) = ends(cell, k);
-        let (p, q) = (heads(&a.unit), heads(&b.unit));
-        // An arc rises above its chord by less than the square of that.
-        let bulge = (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f64>() + 1e-12;
-        let meets = (0..3).all(|i| {
-            p[i].min(q[i]) - bulge <= extent.max[i] && extent.min[i] <= p[i].max(q[i]) + bulge
-        });
-        if meets {
-            found.sides.push(k);
-        }
-    }
-}
-
-/// The signs of the ends of the other cell's sides at the sides of a cell. False if all are to the
-/// right of one side of a convex cell, which then shares nothing.
-fn signs(
-    into: &mut Vec<i8>,
-    (cell, sides): (&Cell, &[u32]),
-    (other, others): (&Cell, &[u32]),
-    moved: Moved,
-) -> bool {
-    into.clear();
-    let all = others.len() == other.corners.len();
-    for &k in sides {
-        let own = cell.side(k as usize);
-        let from = into.len();
-        let mut any = false;
-        for (at, &l) in others.iter().enumerate() {
-            // Sides in sequence share corners.
-            let a = match at.checked_sub(1) {
-                Some(before) if other.corners[others[before] as usize].next == l => {
-                    into[from + 2 * before + 1]
-                }
-                _ => side(own, other.corners[l as usize].v, moved) as i8,
-            };
-            let next = other.corners[l as usize].next;
-            let b = if next == others[0] {
-                // The end of the last side is the start of the first.
-                if at == 0 { a } else { into[from] }
-            } else {
-                side(own, other.corners[next as usize].v, moved) as i8
-            };
-            into.extend([a, b]);
-            any |= a > 0 || b > 0;
-        }
-        if !any && all && cell.convex {
-            return false;
-        }
-    }
-    true
-}
-
-/// Which sides of a cell end in the other one.
-fn corners_inside(
-    near: &mut Near,
-    (cell, other): (&Cell, &Cell),
-    at: &[i8],
-    rows: usize,
-    moved: Moved,
-) {
-    let count = near.sides.len();
-    near.inside.clear();
-    for (k, &e) in near.sides.iter().enumerate() {
-        let found = if other.convex && rows == other.corners.len() {
-            (0..rows).all(|l| at[2 * (l * count + k) + 1] > 0)
-        } else {
-            inside(other, ends(cell, e).1.v, moved)
-        };
-        near.inside.push(found);
-    }
 }
 
 /// Whether a corner of the other cell is in a cell, where `moved` tells which of the two has moved:

@@ -1,4 +1,5 @@
-//! The areas that cells of two grids on the sphere share: for conservative regridding.
+//! The areas that cells of two grids share, on the sphere or in the plane: for conservative
+//! regridding and areal interpolation.
 //!
 //! Cells are polygons with arcs of great circles as sides ([`Polygons`]), or between meridians and
 //! parallels ([`Rows`]). Which parts there are is decided by exact signs without ties (`signs`),
@@ -14,34 +15,37 @@ mod cell;
 mod exact;
 mod gather;
 mod meet;
+mod outline;
 mod pairs;
+mod plane;
 mod rows;
 mod signs;
 mod walk;
 
-use delone_predicates::Point3;
-
 use crate::error::{Error, Result};
 use crate::memory::{push, with_room};
 use crate::parallel::map_watched;
+use crate::points::scan;
 use crate::sphere::directions::check as check_vectors;
 use crate::watch::Watch;
 
 pub use bands::Rows;
-pub use cell::Fault;
-pub use gather::{Shared, overlaps};
+pub use gather::{Shared, overlaps, overlaps_plane};
+pub use outline::Fault;
 
 use bands::Block;
 use cell::Cell;
+use outline::Prepared;
+use plane::Region;
 
 /// Cells that are prepared together.
 const LOT: usize = 1 << 10;
 
-/// Cells with arcs of great circles as sides.
+/// Cells with rings of corners: with arcs of great circles as sides, or in the plane.
 #[derive(Clone, Copy)]
-pub struct Polygons<'a> {
+pub struct Polygons<'a, const D: usize = 3> {
     /// Corners, ring by ring.
-    pub vectors: &'a [Point3],
+    pub vectors: &'a [[f64; D]],
     /// Where the corners of each ring start, and their number.
     pub rings: &'a [i64],
     /// Where the rings of each cell start, and their number.
@@ -88,7 +92,7 @@ pub struct Checked {
     pub repeated: usize,
 }
 
-impl<'a> Polygons<'a> {
+impl<const D: usize> Polygons<'_, D> {
     /// The number of cells.
     pub fn len(&self) -> usize {
         self.cells.len().saturating_sub(1)
@@ -99,7 +103,7 @@ impl<'a> Polygons<'a> {
         self.len() == 0
     }
 
-    fn check(&self) -> Result<()> {
+    fn check_parts(&self) -> Result<()> {
         let parts = |starts: &[i64], count: usize| {
             starts.first() == Some(&0)
                 && starts.last() == Some(&(count as i64))
@@ -117,56 +121,80 @@ impl<'a> Polygons<'a> {
         if self.len() >= i32::MAX as usize {
             return Err(Error::Shape("a grid has more than 2^31 cells".into()));
         }
-        check_vectors(self.vectors)
+        Ok(())
     }
 
     /// A cell, prepared.
-    fn cell(&self, i: usize) -> (Option<Cell>, Option<Fault>) {
+    fn cell<C: Prepared<D>>(&self, i: usize) -> (Option<C>, Option<Fault>) {
         let own = self.cells[i] as usize..self.cells[i + 1] as usize;
         let mut rings = own.map(|r| {
             let corners = self.rings[r] as usize..self.rings[r + 1] as usize;
             (self.holes[r], &self.vectors[corners])
         });
-        Cell::of(&mut rings)
+        C::of(&mut rings)
+    }
+}
+
+impl Polygons<'_> {
+    fn check(&self) -> Result<()> {
+        self.check_parts()?;
+        check_vectors(self.vectors)
+    }
+}
+
+impl Polygons<'_, 2> {
+    fn check(&self) -> Result<()> {
+        self.check_parts()?;
+        scan(self.vectors)
     }
 }
 
 /// Areas and faults of the cells of a grid. Sides that cross are only looked for if `crossing`.
 pub fn check(grid: &Grid, crossing: bool, workers: usize, watch: &Watch) -> Result<Checked> {
     match grid {
-        Grid::Polygons(cells) => check_polygons(cells, crossing, workers, watch),
+        Grid::Polygons(cells) => {
+            cells.check()?;
+            check_cells::<Cell, 3>(cells, crossing, workers, watch)
+        }
         Grid::Rows(rows) => check_rows(rows),
     }
 }
 
-fn check_polygons(
-    cells: &Polygons,
+/// The same for cells in the plane.
+pub fn check_plane(
+    cells: &Polygons<2>,
     crossing: bool,
     workers: usize,
     watch: &Watch,
 ) -> Result<Checked> {
     cells.check()?;
+    check_cells::<Region, 2>(cells, crossing, workers, watch)
+}
+
+fn check_cells<C: Prepared<D>, const D: usize>(
+    cells: &Polygons<D>,
+    crossing: bool,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Checked> {
     let count = cells.len();
     let tasks: Vec<usize> = (0..count).step_by(LOT).collect();
     let parts = map_watched(workers, tasks, watch, |first| {
         let mut part = Checked::default();
         for i in first..(first + LOT).min(count) {
-            let (cell, mut fault) = cells.cell(i);
-            let crosses = |cell: &Cell| crossing && cell.crossing().is_some();
+            let (cell, mut fault) = cells.cell::<C>(i);
+            let crosses = |cell: &C| crossing && cell.crossing().is_some();
             if cell.as_ref().is_some_and(crosses) {
                 fault = Some(Fault::Crossing);
             }
-            push(&mut part.areas, cell.as_ref().map_or(0.0, |cell| cell.area))?;
+            push(&mut part.areas, cell.as_ref().map_or(0.0, C::area))?;
             push(&mut part.faults, fault.map_or(0, |fault| fault as u8))?;
-            push(
-                &mut part.turned,
-                cell.as_ref().is_some_and(|cell| cell.turned),
-            )?;
+            push(&mut part.turned, cell.as_ref().is_some_and(C::turned))?;
             push(
                 &mut part.concave,
-                cell.as_ref().is_some_and(|cell| !cell.convex),
+                cell.as_ref().is_some_and(|cell| !cell.convex()),
             )?;
-            part.repeated += cell.map_or(0, |cell| cell.repeated);
+            part.repeated += cell.map_or(0, |cell| cell.repeated());
         }
         Ok(part)
     })?;

@@ -39,12 +39,12 @@ class Paired(Immutable):
 
     @property
     def source_areas(self) -> Floats:
-        """Areas of the source cells in steradians."""
+        """Areas of the source cells, on the sphere in steradians."""
         return self._areas[0]
 
     @property
     def target_areas(self) -> Floats:
-        """Areas of the target cells in steradians."""
+        """Areas of the target cells, on the sphere in steradians."""
         return self._areas[1]
 
     @property

@@ -1,0 +1,399 @@
+//! Cells in the plane, and the area that two of them share.
+//!
+//! Signs are those of orientation tests. Where one is zero, the second cell of a pair has moved by
+//! (h, k) with 0 < k << h << 1: to first order the test of a, b and a moved corner q changes by k
+//! (b - a)_x - h (b - a)_y, which is not zero, since a and b differ. So all signs are those of one
+//! pair of cells without ties.
+//!
+//! # Errors
+//!
+//! Terms are computed as pairs of doubles relative to a corner of the smaller cell, of extent s.
+//! A side is measured from an end within 4 s of that corner, else from the place of its line that is
+//! nearest to it: so each term is a product of two lengths near s, and errs by 2^-100 s^2, times
+//! the quotient of the length L of the side and s, as a crossing errs by 2^-103 L. On lines that
+//! are nearly parallel, a crossing errs along both, which changes the two terms alike.
+
+use std::cmp::Ordering;
+
+use delone_predicates::arithmetic::Pair;
+use delone_predicates::{Point2, Sign, orient2d};
+
+use crate::points::Extent;
+
+use super::outline::{Fault, Met, Outline, Prepared, Sum, Work, distinct, meet, start_at_smallest};
+use super::pairs::{ZERO, pair, quotient};
+use super::signs::Moved;
+
+/// Cells with more corners count as concave, so that testing that takes no long time.
+const MANY: usize = 64;
+/// Cells with smaller areas, over the square of their extent, are empty.
+const LEAST: f64 = 1e-28;
+/// Smaller parts, over the square of the extent of the smaller cell, cannot be told from cells that
+/// only touch.
+const TINY: f64 = 1e-24;
+
+/// A corner and the side that starts there.
+#[derive(Clone, Copy)]
+struct Corner {
+    v: Point2,
+    /// The end of the side.
+    next: u32,
+}
+
+/// A cell: what is to the left of its rings, which start at their smallest corners.
+pub struct Region {
+    /// All corners, ring by ring.
+    corners: Vec<Corner>,
+    area: f64,
+    extent: Extent<2>,
+    convex: bool,
+    turned: bool,
+    repeated: usize,
+}
+
+fn compare(a: &Point2, b: &Point2) -> Ordering {
+    a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
+}
+
+/// Twice the area of the triangle of the origin and two places, relative to it.
+fn cross(a: &[Pair; 2], b: &[Pair; 2]) -> Pair {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+fn from(origin: Point2, v: Point2) -> [Pair; 2] {
+    [0, 1].map(|k| Pair::difference(v[k], origin[k]))
+}
+
+/// Twice the area to the left of a ring.
+fn doubled(origin: Point2, ring: &[Point2]) -> Pair {
+    let mut sum = ZERO;
+    let mut last = from(origin, ring[ring.len() - 1]);
+    for &v in ring {
+        let next = from(origin, v);
+        sum = sum + cross(&last, &next);
+        last = next;
+    }
+    sum
+}
+
+impl Prepared<2> for Region {
+    fn of(rings: &mut dyn Iterator<Item = (bool, &[Point2])>) -> (Option<Self>, Option<Fault>) {
+        let mut region = Self {
+            corners: Vec::new(),
+            area: 0.0,
+            extent: Extent::of([]),
+            convex: false,
+            turned: false,
+            repeated: 0,
+        };
+        let mut sum = ZERO;
+        let mut origin = None;
+        for (hole, ring) in rings {
+            // Adding 0 removes the sign of a negative zero.
+            let mut kept = distinct(
+                ring.iter().map(|v| v.map(|x| x + 0.0)),
+                |a, b| a == b,
+                compare,
+            );
+            region.repeated += ring.len() - kept.len();
+            if kept.len() < 3 {
+                continue;
+            }
+            let origin = *origin.get_or_insert(kept[0]);
+            if (doubled(origin, &kept).hi < 0.0) != hole {
+                kept.reverse();
+                region.turned |= !hole;
+            }
+            start_at_smallest(&mut kept, compare);
+            // Now the order of terms is independent of that of the input.
+            sum = sum + doubled(kept[0], &kept);
+            let first = region.corners.len();
+            for (k, &v) in kept.iter().enumerate() {
+                let next = if k + 1 == kept.len() { 0 } else { k + 1 };
+                region.corners.push(Corner {
+                    v,
+                    next: (first + next) as u32,
+                });
+            }
+        }
+        region.extent = Extent::of(region.corners.iter().map(|c| c.v));
+        region.area = sum.hi / 2.0;
+        let side = region.extent.side();
+        // Also if there are no corners, or the area is beyond the range of doubles.
+        if !(region.area > LEAST * side * side && region.area < f64::INFINITY) {
+            // Parts to both sides of a crossing may cancel.
+            let crossed = region.first_pair(proper).is_some();
+            let fault = if crossed {
+                Fault::Crossing
+            } else {
+                Fault::Empty
+            };
+            return (None, Some(fault));
+        }
+        region.convex = region.corners.len() <= MANY && region.is_convex();
+        (Some(region), None)
+    }
+
+    fn area(&self) -> f64 {
+        self.area
+    }
+
+    fn turned(&self) -> bool {
+        self.turned
+    }
+
+    fn repeated(&self) -> usize {
+        self.repeated
+    }
+
+    /// Two sides that cross in their insides, or run the same way in a common part, if any do.
+    fn crossing(&self) -> Option<[usize; 2]> {
+        if self.convex {
+            return None;
+        }
+        self.first_pair(crosses)
+    }
+}
+
+impl Region {
+    #[inline]
+    fn ends(&self, k: u32) -> [Point2; 2] {
+        let a = self.corners[k as usize];
+        [a.v, self.corners[a.next as usize].v]
+    }
+
+    /// A pair of sides whose spans meet and of which `bad` is true.
+    fn first_pair(&self, bad: impl Fn([Point2; 2], [Point2; 2]) -> bool) -> Option<[usize; 2]> {
+        let mut spans: Vec<(f64, f64, u32)> = (0..self.corners.len() as u32)
+            .map(|k| {
+                let [a, b] = self.ends(k);
+                (a[0].min(b[0]), a[0].max(b[0]), k)
+            })
+            .collect();
+        spans.sort_by(|p, q| p.0.total_cmp(&q.0));
+        for (at, &(_, end, e)) in spans.iter().enumerate() {
+            for &(start, _, f) in &spans[at + 1..] {
+                if start > end {
+                    break;
+                }
+                if bad(self.ends(e), self.ends(f)) {
+                    return Some([e.min(f) as usize, e.max(f) as usize]);
+                }
+            }
+        }
+        None
+    }
+
+    /// The box of the corners.
+    pub fn extent(&self) -> Extent<2> {
+        self.extent
+    }
+
+    /// Whether no corner is to the right of a side, and the ring runs around once: see `Cell`.
+    fn is_convex(&self) -> bool {
+        let count = self.corners.len();
+        let one_ring = (0..count).all(|k| self.corners[k].next as usize == (k + 1) % count);
+        let once = (1..count).all(|k| self.corners[..k].iter().all(|p| p.v != self.corners[k].v));
+        one_ring
+            && once
+            && (0..count as u32).all(|e| {
+                let [a, b] = self.ends(e);
+                let own = self.corners.iter().map(|c| c.v);
+                own.filter(|v| *v != a && *v != b)
+                    .all(|v| orient2d(a, b, v) != Sign::Negative)
+            })
+    }
+}
+
+/// Whether sides of one cell cross in their insides, or run the same way in a common part: the cell
+/// would cover what is beside that twice.
+fn crosses([a, b]: [Point2; 2], [c, d]: [Point2; 2]) -> bool {
+    let [s, t] = [c, d].map(|v| orient2d(a, b, v));
+    if s == Sign::Zero && t == Sign::Zero {
+        // Along the coordinate in which the first one is longer; differences may be rounded.
+        let axis = usize::from((b[1] - a[1]).abs() > (b[0] - a[0]).abs());
+        let [a, b, c, d] = [a, b, c, d].map(|v| v[axis]);
+        let up = b > a;
+        let (low, high) = if up { (a, b) } else { (b, a) };
+        return up == (d > c) && c.min(d) < high && low < c.max(d);
+    }
+    proper([a, b], [c, d])
+}
+
+/// Whether sides cross in their insides.
+fn proper([a, b]: [Point2; 2], [c, d]: [Point2; 2]) -> bool {
+    let apart = |a, b, c, d| orient2d(a, b, c) as i8 * orient2d(a, b, d) as i8 == -1;
+    apart(a, b, c, d) && apart(c, d, a, b)
+}
+
+/// The side of a line on which a corner is, without ties.
+#[inline]
+fn side([a, b]: [Point2; 2], q: Point2, moved: Moved) -> i8 {
+    let found = orient2d(a, b, q) as i8;
+    if found != 0 {
+        return found;
+    }
+    let grows = |x: f64, y: f64| i8::from(y > x) - i8::from(y < x);
+    let change = match -grows(a[1], b[1]) {
+        0 => grows(a[0], b[0]),
+        sign => sign,
+    };
+    match moved {
+        Moved::Corner => change,
+        Moved::Side => -change,
+        Moved::Neither => 0,
+    }
+}
+
+impl Outline for Region {
+    fn count(&self) -> usize {
+        self.corners.len()
+    }
+
+    #[inline]
+    fn next(&self, k: u32) -> u32 {
+        self.corners[k as usize].next
+    }
+
+    fn convex(&self) -> bool {
+        self.convex
+    }
+
+    #[inline]
+    fn sign(&self, k: u32, other: &Self, corner: u32, moved: Moved) -> i8 {
+        side(self.ends(k), other.corners[corner as usize].v, moved)
+    }
+
+    /// The parity of sides that cross the ray from the corner in the direction of the first axis.
+    fn holds(&self, other: &Self, corner: u32, moved: Moved) -> bool {
+        let q = other.corners[corner as usize].v;
+        // A corner that has moved is above others of its height; so are corners of sides that have.
+        let above = |v: Point2| v[1] > q[1] || (v[1] == q[1] && moved == Moved::Side);
+        let mut odd = false;
+        for k in 0..self.corners.len() as u32 {
+            let [a, b] = self.ends(k);
+            let up = above(b);
+            if above(a) != up {
+                odd ^= up == (side([a, b], q, moved) > 0);
+            }
+        }
+        odd
+    }
+
+    fn near(&self, other: &Self, found: &mut Vec<u32>) {
+        let extent = other.extent;
+        found.extend((0..self.corners.len() as u32).filter(|&k| {
+            let [a, b] = self.ends(k);
+            (0..2).all(|i| a[i].min(b[i]) <= extent.max[i] && extent.min[i] <= a[i].max(b[i]))
+        }));
+    }
+}
+
+/// The sum of terms, relative to a corner of the smaller cell.
+struct Doubled<'a> {
+    p: &'a Region,
+    q: &'a Region,
+    origin: Point2,
+    size: f64,
+    sum: Pair,
+    /// The side of the first cell, and where it is measured from.
+    e: u32,
+    from: [Pair; 2],
+}
+
+impl Doubled<'_> {
+    /// Where a side is measured from. If neither end is near the origin, neither is in the smaller
+    /// cell, and any place of the line will do.
+    fn base(&self, [a, b]: [Point2; 2]) -> [Pair; 2] {
+        let ends = [a, b].map(|v| from(self.origin, v));
+        let near = |v: &[Pair; 2]| v[0].hi.abs().max(v[1].hi.abs()) <= 4.0 * self.size;
+        if let Some(end) = ends.iter().find(|end| near(end)) {
+            return *end;
+        }
+        let along = from(a, b);
+        let dot = |u: &[Pair; 2], v: &[Pair; 2]| u[0] * v[0] + u[1] * v[1];
+        let t = pair(-quotient(dot(&ends[0], &along), dot(&along, &along)).hi);
+        [0, 1].map(|k| ends[0][k] + along[k] * t)
+    }
+
+    fn add(&mut self, base: &[Pair; 2], x: &[Pair; 2], minus: bool) {
+        let term = cross(base, x);
+        self.sum = if minus {
+            self.sum - term
+        } else {
+            self.sum + term
+        };
+    }
+}
+
+impl Sum for Doubled<'_> {
+    fn side(&mut self, e: u32) {
+        (self.e, self.from) = (e, self.base(self.p.ends(e)));
+    }
+
+    fn first(&mut self) {
+        let end = from(self.origin, self.p.ends(self.e)[1]);
+        let base = self.from;
+        self.add(&base, &end, false);
+    }
+
+    fn crossing(&mut self, f: u32, leaves: bool) {
+        let ([a, b], [c, d]) = (self.p.ends(self.e), self.q.ends(f));
+        let across = from(c, d);
+        let [s, t] = [a, b].map(|v| cross(&across, &from(c, v)));
+        let whole = s - t;
+        // On one line, any place of it serves.
+        let share = if whole.hi == 0.0 {
+            ZERO
+        } else {
+            quotient(s, whole)
+        };
+        let share = match share.hi {
+            x if x >= 1.0 => pair(1.0),
+            x if x > 0.0 => share,
+            _ => ZERO,
+        };
+        let along = from(a, b);
+        let start = from(self.origin, a);
+        let x = [0, 1].map(|k| start[k] + along[k] * share);
+        let base = self.from;
+        self.add(&base, &x, !leaves);
+        let base = self.base([c, d]);
+        self.add(&base, &x, leaves);
+    }
+
+    fn second(&mut self, f: u32) {
+        let ends = self.q.ends(f);
+        let base = self.base(ends);
+        let end = from(self.origin, ends[1]);
+        self.add(&base, &end, false);
+    }
+}
+
+/// The area that cells share; the second one has moved.
+pub fn shared(p: &Region, q: &Region, work: &mut Work) -> f64 {
+    let (first, second) = (p.extent.side(), q.extent.side());
+    let small = if first < second { p } else { q };
+    let mut sum = Doubled {
+        p,
+        q,
+        origin: small.corners[0].v,
+        size: first.min(second),
+        sum: ZERO,
+        e: 0,
+        from: [ZERO; 2],
+    };
+    match meet(p, q, work, &mut sum) {
+        Met::Nothing => 0.0,
+        Met::First => p.area,
+        Met::Second => q.area,
+        Met::Part => {
+            let area = sum.sum.hi / 2.0;
+            if area > TINY * sum.size * sum.size {
+                area
+            } else {
+                0.0
+            }
+        }
+    }
+}

@@ -1,0 +1,5 @@
+"""Areas that cells share, in the plane and on the sphere, and what is transferred by them."""
+
+from delone.areal.overlaps import AreaWeights, OverlapReport, Overlaps
+
+__all__ = ["AreaWeights", "OverlapReport", "Overlaps"]

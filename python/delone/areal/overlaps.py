@@ -1,0 +1,342 @@
+"""The class Overlaps: the areas that cells of two grids in the plane share."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from delone._arrays import as_workers
+from delone.areal.cells import as_cells
+from delone.areal.shared import OverlapReport, SharedAreas
+from delone.areal.weights import AreaWeights
+from delone.complex import Stored
+from delone.errors import InputError, ShapeError
+from delone.immutable import sealed
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone._types import Rows
+
+__all__ = ["AreaWeights", "OverlapReport", "Overlaps"]
+
+# Names of arrays in files that those on the sphere do not have.
+_ROWS = "source_turned", "target_turned"
+
+
+class Overlaps(SharedAreas, Stored):
+    """The areas that cells of two layers in the plane share: the basis of areal interpolation.
+
+    Parameters
+    ----------
+    source, target : GeoDataFrame, GeoSeries, sequence of geometries, triangulation or Voronoi
+        Where values are, and where they are wanted: polygons and multipolygons of shapely (extra
+        ``geo``), GeoJSON, a list of rings of shape (k, 2); triangles of a 2-D triangulation; or
+        the cells of a 2-D `Voronoi` with a clip. A cell per geometry; missing and empty geometries
+        are cells without area.
+    workers : int, optional
+        Maximum number of threads; by default one per core. The result does not depend on it.
+
+    Attributes
+    ----------
+    indptr : ndarray of int64, shape (ntarget + 1,)
+        Where the entries of each target cell start, and their number: compressed rows (CSR).
+    indices : ndarray of int32, shape (k,)
+        Source cells, ascending in each row.
+    areas : ndarray of float64, shape (k,)
+        Areas of the shared parts, in the square of the unit of coordinates.
+    source_areas, target_areas : ndarray of float64
+        Areas of the cells.
+    source_turned, target_turned : ndarray of int64
+        Cells with a clockwise outer ring, which count as if it were counterclockwise.
+
+    Raises
+    ------
+    InputError
+        A geometry is not a polygon, a cell is unbounded, coordinates are longitudes and latitudes,
+        or the reference systems differ and pyproj cannot transform.
+    CrossingSegmentsError
+        Sides of a polygon cross.
+    MissingExtraError
+        The extra for geometries is not installed.
+    MemoryError
+        The system refuses the memory of the result.
+
+    Warns
+    -----
+    CRSWarning
+        Only one of the layers has a reference system: both are taken as the same.
+
+    See Also
+    --------
+    delone.sphere.Overlaps : The same for longitudes and latitudes.
+
+    Notes
+    -----
+    Which cells share area is decided by exact orientation tests, with an infinitesimal move of the
+    target in place of ties, so that common corners and sides are like any other place. An area is a
+    sum over corners and crossings (Franklin, 1990) in double-double arithmetic relative to the
+    smaller cell: it is right to its last bits also for small cells far from the origin. No polygon
+    is clipped. Parts below 1e-24 of the square of the smaller cell's extent cannot be told from
+    cells that only touch, and are not pairs.
+
+    Time is O(n log n + k) for cells with few corners. For pairs of polygons with many corners, the
+    corners of one near the box of the other count.
+
+    References
+    ----------
+    W. R. Franklin, "Calculating map overlay polygon' areas without explicitly calculating the
+    polygons - implementation", 4th International Symposium on Spatial Data Handling (1990).
+
+    Examples
+    --------
+    >>> from delone import Overlaps
+    >>> districts = [[(0, 0), (2, 0), (2, 2), (0, 2)], [(2, 0), (4, 0), (4, 2), (2, 2)]]
+    >>> zones = [[(1, 0), (3, 0), (3, 2), (1, 2)]]
+    >>> overlaps = Overlaps(districts, zones)
+    >>> overlaps
+    <Overlaps of 2 source and 1 target cell: 2 pairs>
+    >>> overlaps.areas.tolist()
+    [2.0, 2.0]
+    >>> overlaps.transfer({"people": [100, 60]}, {"people": "sum"})["people"].tolist()
+    [80.0]
+    """
+
+    __slots__ = ("_areas", "_rows", "_shapes", "_sums", "_turned")
+
+    _turned: tuple[Rows, Rows]
+
+    def __init__(self, source: Any, target: Any, *, workers: int | None = None) -> None:
+        threads = as_workers(workers)
+        first = as_cells(source, name="source", crs=None, to="", workers=threads)
+        second = as_cells(target, name="target", crs=first.crs, to="source", workers=threads)
+        found = second.made.overlaps(first.made, threads)
+        self._fill(
+            (found.indptr, found.indices, found.areas),
+            (first.areas, second.areas, found.second, found.first),
+            (first.turned, second.turned),
+            workers,
+        )
+        if (crs := first.crs or second.crs) is not None:
+            object.__setattr__(self, "_system", crs)
+
+    def _fill(
+        self,
+        rows: tuple[Any, Any, Any],
+        sums: tuple[Any, Any, Any, Any],
+        turned: tuple[Rows, Rows],
+        workers: int | None,
+    ) -> None:
+        a, b, c = (sealed(x) for x in rows)
+        s, t, u, v = (sealed(x) for x in sums)
+        p, q = (sealed(x) for x in turned)
+        shapes = (len(s),), (len(t),)
+        self._hold(
+            rows=(a, b, c), areas=(s, t), sums=(u, v), shapes=shapes, turned=(p, q), workers=workers
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        sums = self._areas + self._sums
+        return self._again, (self._rows, sums, self._turned, self._workers)
+
+    @classmethod
+    def _again(cls, *parts: Any) -> Self:
+        made = cls.__new__(cls)
+        made._fill(*parts)
+        return made
+
+    @classmethod
+    def _stored_as(cls) -> str:
+        return "Overlaps"
+
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        return self._arrays() | dict(zip(_ROWS, self._turned, strict=True))
+
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        rows, sums, _ = cls._parts(arrays)
+        p, q = (arrays[name] for name in _ROWS)
+        return cls._again(rows, sums, (p, q), None)
+
+    @property
+    def source_turned(self) -> Rows:
+        """Source cells with a clockwise outer ring."""
+        return self._turned[0]
+
+    @property
+    def target_turned(self) -> Rows:
+        """Target cells with a clockwise outer ring."""
+        return self._turned[1]
+
+    def to_weights(
+        self,
+        method: str = "conservative",
+        *,
+        source_mask: ArrayLike | None = None,
+        target_mask: ArrayLike | None = None,
+    ) -> AreaWeights:
+        """Return what each source cell contributes to each target cell.
+
+        Parameters
+        ----------
+        method : {"conservative", "normalized", "sum", "majority"}, optional
+            How values are combined:
+
+            - "conservative": integrals over the target cell, divided by its area. The sum of values
+              times areas is that of the source. A cell of which a part is not covered has as much
+              less.
+            - "normalized": means over the covered part. A constant remains one.
+            - "sum": amounts, such as numbers of inhabitants: each source cell gives its value to
+              target cells by the share of its area.
+            - "majority": categories: the value that covers most of the target cell.
+        source_mask, target_mask : array_like of bool, optional
+            True, or 1, for cells that take part. By default all do.
+
+        Returns
+        -------
+        AreaWeights
+            They hold no cells. Masked target cells have no entries.
+
+        Raises
+        ------
+        InputError
+            `method` is unknown.
+        ShapeError, DtypeError
+            A mask has another shape, or is not boolean.
+
+        Examples
+        --------
+        >>> from delone import Overlaps
+        >>> source = [[(k, 0), (k + 1, 0), (k + 1, 1), (k, 1)] for k in range(3)]
+        >>> target = [[(k, 0), (k + 2, 0), (k + 2, 1), (k, 1)] for k in (0, 2)]
+        >>> overlaps = Overlaps(source, target)
+        >>> for method in ("conservative", "normalized", "sum", "majority"):
+        ...     print(method, overlaps.to_weights(method).apply([6.0, 6.0, 3.0]).tolist())
+        conservative [6.0, 1.5]
+        normalized [6.0, 3.0]
+        sum [12.0, 3.0]
+        majority [6.0, 3.0]
+        """
+        return self._to_weights(method, source_mask, target_mask)
+
+    def transfer(
+        self,
+        data: Any,
+        methods: Mapping[str, str],
+        *,
+        skipna: bool = False,
+        min_fraction: float = 0.0,
+    ) -> dict[str, NDArray[Any]]:
+        """Return columns of the source on the target.
+
+        Parameters
+        ----------
+        data : DataFrame, GeoDataFrame or mapping
+            Columns with a value for each source cell.
+        methods : mapping
+            For each column that is wanted, "sum", "normalized", "conservative" or "majority", as
+            for `to_weights`. Columns of text are transferred by "majority" alone.
+        skipna : bool, optional
+            Whether NaN and None are missing values, whose cells take no part. By default NaN
+            propagates to all target cells that share area with it.
+        min_fraction : float, optional
+            Target cells of which a smaller fraction has values are missing.
+
+        Returns
+        -------
+        dict
+            An array for each column, with a value for each target cell: NaN, or None in columns of
+            text, where nothing is known. ``targets.assign(**result)`` adds them to a table.
+
+        Raises
+        ------
+        InputError
+            A column does not exist, a method is unknown, or that of text is not "majority".
+        ShapeError
+            A column has not one value for each source cell.
+
+        See Also
+        --------
+        covered_target : How much of each target cell is covered.
+
+        Examples
+        --------
+        >>> from delone import Overlaps
+        >>> source = [[(k, 0), (k + 1, 0), (k + 1, 1), (k, 1)] for k in range(3)]
+        >>> target = [[(k, 0), (k + 2, 0), (k + 2, 1), (k, 1)] for k in (0, 2)]
+        >>> data = {"people": [10, 20, 30], "use": ["field", "wood", "town"]}
+        >>> found = Overlaps(source, target).transfer(data, {"people": "sum", "use": "majority"})
+        >>> found["people"].tolist(), found["use"].tolist()
+        ([30.0, 30.0], ['field', 'town'])
+        """
+        found: dict[str, NDArray[Any]] = {}
+        made: dict[str, AreaWeights] = {}
+        for column, method in methods.items():
+            if column not in data:
+                raise InputError(f"data has no column {column!r:.60}")
+            values = np.asarray(data[column])
+            count = len(self.source_areas)
+            if values.shape != (count,):
+                raise ShapeError(
+                    f"column {column!r:.60} must have one value for each of {count} source cells, "
+                    f"got shape {values.shape}"
+                )
+            if method not in made:
+                made[method] = self.to_weights(method)
+            options: dict[str, Any] = {"skipna": skipna, "min_fraction": min_fraction}
+            # Integers have no NaN for cells without a value.
+            numbers = _numbers(values)
+            found[column] = (
+                _of_text(made[method], column, values, options)
+                if numbers is None
+                else made[method].apply(numbers, **options)
+            )
+        return found
+
+
+def _is_missing(item: Any) -> bool:
+    """Return whether a value of a column is None, NaN, or one of pandas' missing values."""
+    if isinstance(item, float):
+        return math.isnan(item)
+    return item is None or type(item).__name__ in {"NAType", "NaTType"}
+
+
+def _numbers(values: NDArray[Any]) -> NDArray[Any] | None:
+    """Return a column as floating-point numbers; None for text and other objects."""
+    if values.dtype.kind == "f":
+        return values
+    if values.dtype.kind in "iub":
+        return values.astype(np.float64)
+    items = values.tolist()
+    if values.dtype.kind != "O" or not all(
+        _is_missing(x) or isinstance(x, bool | int | float) for x in items
+    ):
+        return None
+    return np.array([math.nan if _is_missing(x) else float(x) for x in items])
+
+
+def _of_text(
+    weights: AreaWeights, column: str, values: NDArray[Any], options: dict[str, Any]
+) -> NDArray[Any]:
+    """Return the categories that cover most of the target cells; None where there is none."""
+    if weights.method != "majority":
+        raise InputError(
+            f"column {column!r:.60} is not numeric: its method must be 'majority', got "
+            f"{weights.method!r}"
+        )
+    items = values.tolist()
+    missing = np.array([_is_missing(x) for x in items], dtype=np.bool_)
+    names, codes = np.unique([str(x) for x in items], return_inverse=True)
+    kinds = np.full(len(names), None, dtype=object)
+    kinds[codes[~missing]] = values.astype(object)[~missing]
+    numbers = codes.astype(np.float64)
+    numbers[missing] = np.nan if options["skipna"] else len(names)
+    best = weights.apply(numbers, **options)
+    known = ~np.isnan(best)
+    found = np.full(len(best), None, dtype=object)
+    found[known] = np.array([*kinds, None], dtype=object)[best[known].astype(np.int64)]
+    return found

@@ -1,0 +1,187 @@
+"""The base of Overlaps on the sphere and in the plane: areas that cells of two grids share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from delone._arrays import as_choice
+from delone.areal.paired import Paired, row_sums
+from delone.areal.weights import METHODS, AreaWeights, as_mask
+from delone.counting import counted
+from delone.immutable import ReadOnly, kept, sealed
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone._types import Floats, Rows
+
+__all__ = ["OverlapReport", "SharedAreas"]
+
+# Shares that differ from 0 or 1 by less are roundings of corners.
+_ROUNDING = 1e-9
+# Names of arrays in files.
+_ROWS = "indptr", "indices", "areas"
+_SUMS = "source_areas", "target_areas", "source_sums", "target_sums"
+_SHAPES = "source_shape", "target_shape"
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class OverlapReport(ReadOnly):
+    """Which cells are covered by the other grid, within 1e-9 of their area.
+
+    Attributes
+    ----------
+    npairs : int
+        Number of pairs of cells that share area.
+    source_outside, target_outside : ndarray of int64
+        Cells that share nothing, without empty ones.
+    source_partly, target_partly : ndarray of int64
+        Cells of which a part is not covered.
+    source_repeatedly, target_repeatedly : ndarray of int64
+        Cells that are covered more than once, as cells of the other grid overlap.
+    source_empty, target_empty : ndarray of int64
+        Cells without area, which share nothing.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone import sphere
+    >>> north = sphere.Grid.from_lonlat(np.arange(0, 361, 10), [-5, 30, 60, 90])
+    >>> sphere.Overlaps(north, sphere.Grid.from_healpix(4)).report
+    <OverlapReport: 500 pairs, 72 target cells outside, 32 target cells partly covered>
+    """
+
+    npairs: int
+    source_outside: Rows
+    source_partly: Rows
+    source_repeatedly: Rows
+    source_empty: Rows
+    target_outside: Rows
+    target_partly: Rows
+    target_repeatedly: Rows
+    target_empty: Rows
+
+    def __repr__(self) -> str:
+        parts = [counted(self.npairs, "pair")]
+        ends = {
+            "outside": "outside",
+            "partly": "partly covered",
+            "repeatedly": "covered repeatedly",
+            "empty": "without area",
+        }
+        for side in ("source", "target"):
+            for name, end in ends.items():
+                if count := len(getattr(self, f"{side}_{name}")):
+                    parts.append(f"{counted(count, f'{side} cell')} {end}")
+        return f"<OverlapReport: {', '.join(parts)}>"
+
+
+class SharedAreas(Paired):
+    """The areas that cells of two grids share, and what follows from them."""
+
+    __slots__ = ()
+
+    # The class of weights.
+    _weights: ClassVar[type[AreaWeights]] = AreaWeights
+    # The sums of the parts of source and target cells.
+    _sums: tuple[Floats, Floats]
+
+    def _arrays(self) -> dict[str, NDArray[Any]]:
+        """Return the arrays of files."""
+        found: dict[str, NDArray[Any]] = dict(zip(_ROWS, self._rows, strict=True))
+        found |= zip(_SUMS, self._areas + self._sums, strict=True)
+        for name, shape in zip(_SHAPES, self._shapes, strict=True):
+            found[name] = np.array(shape, dtype=np.int64)
+        return found
+
+    @staticmethod
+    def _parts(arrays: dict[str, NDArray[Any]]) -> tuple[Any, ...]:
+        """Return rows, sums and shapes of the arrays of files."""
+        a, b, c = (arrays[name] for name in _ROWS)
+        s, t, u, v = (arrays[name] for name in _SUMS)
+        source, target = (tuple(arrays[name].tolist()) for name in _SHAPES)
+        return (a, b, c), (s, t, u, v), (source, target)
+
+    def _described(self) -> str:
+        sources, targets = len(self.source_areas), len(self.target_areas)
+        cells = f"{sources} source and {counted(targets, 'target cell')}"
+        return f"{cells}: {counted(len(self.areas), 'pair')}"
+
+    @property
+    def areas(self) -> Floats:
+        """Areas of the shared parts, on the sphere in steradians, (k,)."""
+        return self._rows[2]
+
+    @property
+    @kept
+    def covered_source(self) -> Floats:
+        """The fraction of each source cell that target cells cover; NaN for empty cells."""
+        return sealed(_shares(self._sums[0], self._areas[0]))
+
+    @property
+    @kept
+    def covered_target(self) -> Floats:
+        """The fraction of each target cell that source cells cover; NaN for empty cells."""
+        return sealed(_shares(self._sums[1], self._areas[1]))
+
+    @property
+    @kept
+    def report(self) -> OverlapReport:
+        """Which cells are covered by the other grid."""
+        rows = []
+        for share in (self.covered_source, self.covered_target):
+            outside = share == 0
+            partly = ~outside & (share < 1 - _ROUNDING)
+            more = share > 1 + _ROUNDING
+            rows += [np.flatnonzero(x) for x in (outside, partly, more, np.isnan(share))]
+        return OverlapReport(len(self.areas), *rows)
+
+    def _to_weights(
+        self, method: str, source_mask: ArrayLike | None, target_mask: ArrayLike | None
+    ) -> AreaWeights:
+        """Return the weights of `to_weights`."""
+        kind = as_choice(method, METHODS, name="method")
+        sources = as_mask(source_mask, self.source_shape, "source_mask")
+        targets = as_mask(target_mask, self.target_shape, "target_mask")
+        indptr, indices, areas = self._rows
+        of_source, of_target = self._sums
+        if sources is not None or targets is not None:
+            row = np.repeat(np.arange(len(self.target_areas)), np.diff(indptr))
+            kept = np.ones(len(areas), dtype=bool)
+            if sources is not None:
+                kept &= sources[indices]
+            if targets is not None:
+                kept &= targets[row]
+            indices, areas, row = indices[kept], areas[kept], row[kept]
+            counts = np.bincount(row, minlength=len(self.target_areas))
+            indptr = np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
+            of_target = row_sums(indptr, areas)
+            of_source = np.bincount(indices, areas, len(self.source_areas)).astype(np.float64)
+        lengths = np.diff(indptr)
+        if kind == "normalized":
+            over = np.repeat(of_target, lengths)
+        elif kind == "sum":
+            over = self.source_areas[indices]
+        else:
+            over = np.repeat(self.target_areas, lengths)
+        fractions = [
+            np.nan_to_num(_shares(sums, whole))
+            for sums, whole in ((of_source, self.source_areas), (of_target, self.target_areas))
+        ]
+        return self._weights._of(
+            kind,
+            (indptr, indices, areas / over),
+            (fractions[0], fractions[1]),
+            (self.source_areas, self.target_areas),
+            self._shapes,
+        )
+
+
+def _shares(sums: Floats, areas: Floats) -> Floats:
+    """Return quotients, NaN for cells without area."""
+    found = np.full(len(areas), np.nan)
+    np.divide(sums, areas, out=found, where=areas > 0)
+    return found
