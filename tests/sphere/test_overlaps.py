@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import delone
-from delone import sphere
+from delone import _core, sphere
 from delone.sphere import Grid, Overlaps
 from tiers import seeds
 
@@ -240,6 +240,7 @@ def test_cells_beyond_the_first_lot() -> None:
         assert one.areas.tobytes() == many.areas.tobytes()
 
 
+SIGNS = np.array(np.meshgrid([1, -1], [1, -1], [1, -1])).T.reshape(8, 3)
 CORPUS = Path(__file__).parents[1] / "corpus" / "sphere"
 
 
@@ -270,12 +271,7 @@ def test_triangles_that_span_continents(seed: int) -> None:
         np.arange(0, 361, 45), np.array([-90.0, *np.sort(rng.uniform(-90, 90, 4)), 90.0])
     )
     source = Grid.from_mesh(rings)
-    octants = Grid.from_mesh(
-        [
-            np.diag(s).astype(float)
-            for s in np.array(np.meshgrid([1, -1], [1, -1], [1, -1])).T.reshape(8, 3)
-        ]
-    )
+    octants = Grid.from_mesh([np.diag(s).astype(float) for s in SIGNS])
     for target in (rows, octants):
         assert np.abs(Overlaps(source, target).covered_source - 1).max() < 1e-13
         assert np.abs(Overlaps(target, source).covered_target - 1).max() < 1e-13
@@ -290,3 +286,22 @@ def test_triangles_that_touch_share_nothing() -> None:
     vectors = hard("triangles-that-meet-at-the-equator")
     upper, lower = (Grid.from_mesh(xyz=[part], merge=0) for part in np.split(vectors, [4]))
     assert Overlaps(upper, lower).areas.size == Overlaps(lower, upper).areas.size == 0
+
+
+@pytest.mark.parametrize("size", [217, 184])
+def test_shortest_sides(size: int) -> None:
+    ring = hard(f"quadrilateral-with-a-side-of-1e-{size}")
+    octants = np.concatenate([np.diag(s) for s in SIGNS]).astype(np.float64)
+    cells = [(ring, [0, 4]), (octants, np.arange(0, 25, 3))]
+    one, all_of_it = (
+        _core.CellGrid.polygons(
+            vectors,
+            np.array(starts, dtype=np.int64),
+            np.arange(len(starts), dtype=np.int64),
+            np.zeros(len(starts) - 1, dtype=np.bool_),
+        )
+        for vectors, starts in cells
+    )
+    whole = one.check(True, 1).areas
+    for found in (one.overlaps(all_of_it, 1).first, all_of_it.overlaps(one, 1).second):
+        assert found == pytest.approx(whole, rel=1e-14, abs=0)

@@ -6,7 +6,7 @@ use delone_predicates::sphere::leveled;
 use super::cell::{Cell, Corner};
 use super::outline::{Met, Outline, Sum, Work, cross_at, meet};
 use super::pairs::{
-    Pair3, Turn, base, chart, chart_of, cross, cross_of, dot, factor, heads, quotient, unit,
+    Pair3, Turn, base, chart, chart_of, cross, cross_of, dot, factor, heads, quotient, raised, unit,
 };
 use super::signs::{Moved, Side, side};
 
@@ -164,6 +164,7 @@ fn crossing((p, e): (&Cell, u32), (q, f): (&Cell, u32), leaves: bool) -> Pair3 {
     }
     if size > 1e-26 * scale {
         let x = unit(&x);
+        let n = &raised(n);
         let k = quotient(dot(n, &x), dot(n, n));
         return unit(&[0, 1, 2].map(|j| x[j] - n[j] * k));
     }

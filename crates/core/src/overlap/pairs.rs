@@ -93,6 +93,23 @@ pub fn heads(a: &Pair3) -> Point3 {
     a.map(|x| x.hi)
 }
 
+/// The vector, of which only the direction counts, large enough that squares do not vanish: normals of
+/// sides as short as 1e-300 are as small.
+#[inline]
+pub fn raised(v: &Pair3) -> Pair3 {
+    const LIFT: f64 = f64::from_bits((1023 + 500) << 52);
+    let top = v.iter().fold(0.0, |top: f64, x| top.max(x.hi.abs()));
+    if top >= 1e-100 || top == 0.0 {
+        return *v;
+    }
+    let once = v.map(|x| times(x, LIFT));
+    if top >= 1e-250 {
+        once
+    } else {
+        once.map(|x| times(x, LIFT))
+    }
+}
+
 /// The vector divided by its length; zero stays zero.
 #[inline]
 pub fn unit(v: &Pair3) -> Pair3 {

@@ -18,7 +18,7 @@ use crate::error::{Error, Result};
 use super::bands::{Block, angle};
 use super::cell::Cell;
 use super::pairs::{
-    ONE, Pair3, Turn, base, chart, factor, negated, pair, quotient, root, sliver, unit,
+    ONE, Pair3, Turn, base, chart, factor, negated, pair, quotient, raised, root, sliver, unit,
 };
 use super::signs::{Side, above, corner, east, eastward, falling, reaches, rise};
 
@@ -428,7 +428,7 @@ impl Walked<'_> {
     /// column serves.
     fn at_parallel(&self, l: usize, column: usize, k: usize, up: bool) -> Pair3 {
         let (corner, t) = (&self.p.corners[k], pair(self.block.tan[l]));
-        let n = &corner.n;
+        let n = &raised(&corner.n);
         let m = n[0] * n[0] + n[1] * n[1];
         if m.hi <= 1e-48 * n[2].hi * n[2].hi {
             let next = corner.next as usize;

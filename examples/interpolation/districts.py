@@ -1,0 +1,59 @@
+"""
+Transfer inhabitants from districts to hexagons
+===============================================
+
+Numbers that are known for districts are wanted for a regular grid. Each district gives its inhabitants to the hexagons by the
+shares of its area; none are lost on the way.
+
+Install: ``pip install "delone[plot]"``.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import PolyCollection
+
+from delone import Overlaps, Voronoi
+
+# %%
+# Districts are the cells of a Voronoi diagram, smaller towards the center of a town of 10 km, with some 2,000 inhabitants each.
+
+rng = np.random.default_rng(4)
+sites = 5 + rng.normal(size=(400, 2)) * 1.8
+sites = sites[np.all((sites > 0) & (sites < 10), axis=1)]
+districts = Voronoi(sites, clip=(0, 0, 10, 10))
+people = rng.poisson(2000, len(sites))
+density = people / districts.cell_areas
+
+# %%
+# Hexagons of 1 km, which reach beyond the town.
+
+side = 1 / np.sqrt(3)
+turns = np.radians(np.arange(30, 390, 60))
+corners = side * np.column_stack((np.cos(turns), np.sin(turns)))
+centers = [(k + 0.5 * (row % 2), row * 1.5 * side) for row in range(13) for k in range(11)]
+hexagons = [corners + center for center in centers]
+
+overlaps = Overlaps(districts, hexagons)
+print(overlaps, overlaps.report)
+
+# %%
+# "sum" transfers amounts: the total stays, up to rounding, as hexagons cover all districts.
+
+arrived = overlaps.transfer({"people": people}, {"people": "sum"})["people"]
+print(f"{people.sum()} inhabitants of districts, {np.nansum(arrived):.6f} in hexagons")
+
+fig, axes = plt.subplots(1, 2, figsize=(11, 5), sharex=True, sharey=True, layout="constrained")
+areas = overlaps.target_areas
+rings = [districts.cell(k).parts[0][0] for k in range(len(sites))]
+for ax, cells, values, title in (
+    (axes[0], rings, density, "districts"),
+    (axes[1], hexagons, arrived / areas, "hexagons"),
+):
+    drawn = PolyCollection(cells, array=values, cmap="viridis", edgecolors="white", linewidths=0.3)
+    drawn.set_clim(0, 40000)
+    ax.add_collection(drawn)
+    ax.set_aspect("equal")
+    ax.set(title=title, xlabel="km")
+    ax.autoscale_view()
+fig.colorbar(drawn, ax=axes, label="inhabitants per km²")
+plt.show()
