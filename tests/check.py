@@ -63,6 +63,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     # Modules of the core.
     "consistency": ("delaunay", "validation"),
     "contour": ("terrain",),
+    "simplify": ("terrain",),
     "delaunay2": ("delaunay", "platforms"),
     "delaunay3": ("space", "platforms"),
     "error": ("errors",),

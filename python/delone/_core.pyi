@@ -56,6 +56,7 @@ __all__ = [
     "RegularFaults3",
     "RegularTriangulation",
     "SharedCells",
+    "Simplified2",
     "SmoothedMesh",
     "SphereDual",
     "SphereLocator",
@@ -133,6 +134,7 @@ __all__ = [
     "regular",
     "resolve_touches3",
     "ring2",
+    "simplify2",
     "sizes",
     "smooth2",
     "spanning",
@@ -1438,6 +1440,22 @@ class SharedCells:
         """Sums over the cells of the second grid, (m,)."""
 
 @final
+class Simplified2:
+    """Points in the order in which they make a coarse surface finer."""
+
+    @property
+    def order(self) -> NDArray[np.int32]:
+        """The points that are inserted, as rows, (k,)."""
+    @property
+    def errors(self) -> NDArray[np.float64]:
+        """A bound on the vertical distance of all points before the first insertion and after
+        each, (k + 1,).
+        """
+    @property
+    def triangles(self) -> NDArray[np.int32]:
+        """The number of triangles before the first insertion and after each, (k + 1,)."""
+
+@final
 class SmoothedMesh:
     """A mesh whose free vertices have moved."""
 
@@ -2124,6 +2142,23 @@ def ring2(points: object) -> tuple[NDArray[np.float64], NDArray[np.int32]] | Non
     """A read-only copy of the points and the triangles of one ring; None unless the ring
     is known to be simple and `points` is a contiguous array of doubles.  It holds the
     GIL: such rings are short, and releasing it would cost as much as triangulating.
+    """
+
+def simplify2(
+    coarse: _Sheet,
+    segments: NDArray[np.int32],
+    present: int,
+    points: NDArray[np.float64],
+    z: NDArray[np.float64],
+    homes: NDArray[np.int32],
+    max_error: float,
+    max_triangles: int,
+    workers: int,
+) -> Simplified2:
+    """Inserts points into a `coarse` surface, always the one that is farthest from it,
+    until none is farther than `max_error` or there would be more than `max_triangles`.
+    `segments` are edges that stay, `present` is the number of triangles, `points` (rows
+    of x, y, z) and `homes` are the other points and their triangles.
     """
 
 def sizes(

@@ -122,6 +122,9 @@ ALLOWED: dict[str, dict[str, str]] = {
         "np.abs(length - limit) <= limit * 2.0 ** (-48) + 2.0 ** (-1070)": FILTER,
     },
     "terrain/contouring.py": {"_lengths(points, starts) >= least": WANTED},
+    "terrain/deviations.py": {
+        "_distance(part.points[k], part.corners[k]) > Fraction(limit)": EXACT,
+    },
     "terrain/overlay.py": {
         "mesh.areas[off].sum() <= closeness(tin.points, pad.points) * length": DRAWN,
         "np.hypot(*normal.T) > limit": DRAWN,

@@ -164,6 +164,7 @@ CORE: dict[str, set[str]] = {
     }
     | GROUND,
     "contour": {"delone_predicates"} | GROUND,
+    "simplify": {"constrained", "mesh2", "order", "delone_predicates"} | GROUND,
     "overlay": {"locate", "order", "parallel", "points", "delone_predicates"} | GROUND,
     "interpolate": {"locate", "delaunay2", "parallel", "wide", "delone_predicates"} | GROUND,
     "interpolate_sphere": {"interpolate", "sphere", "parallel", "delone_predicates"} | GROUND,

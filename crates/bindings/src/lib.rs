@@ -133,7 +133,10 @@ mod _core {
     #[pymodule_export]
     use super::surface::{CheckedSurface, FacePairs, check_surface3, resolve_touches3};
     #[pymodule_export]
-    use super::terrain::{ContourBands, ContourLines, contour_bands2, contour_lines2, volumes2};
+    use super::terrain::{
+        ContourBands, ContourLines, Simplified2, contour_bands2, contour_lines2, simplify2,
+        volumes2,
+    };
     #[pymodule_export]
     use super::triangulation::{Faults2, Triangulation, methods2, triangulate2, validate2};
     #[pymodule_export]

@@ -1,13 +1,14 @@
-//! Contours of triangulated surfaces, and volumes between them.
+//! Contours of triangulated surfaces, volumes between them, and their simplification.
 
 use delone_core::arrays::Given;
 use delone_core::contour;
 use delone_core::error::{Error, Result};
 use delone_core::overlay::{self, Other, Surface};
+use delone_core::simplify::{Task, simplify};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, flat, table};
+use crate::arrays::{Column, Table, column, each_in_range, flat, in_range, rows, table};
 use crate::errors::Outcome;
 use crate::given::{checked, unequal};
 use crate::signals::watched;
@@ -158,4 +159,64 @@ pub fn volumes2(
         overlay::volumes(surface, other, region, workers, watch)
     })?;
     Ok(found.map(|values| column(py, values)))
+}
+
+/// Points in the order in which they make a coarse surface finer.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct Simplified2 {
+    /// The points that are inserted, as rows, (k,).
+    pub order: Column<i32>,
+    /// A bound on the vertical distance of all points before the first insertion and after each,
+    /// (k + 1,).
+    pub errors: Column<f64>,
+    /// The number of triangles before the first insertion and after each, (k + 1,).
+    pub triangles: Column<i32>,
+}
+
+/// Inserts points into a `coarse` surface, always the one that is farthest from it, until none is farther
+/// than `max_error` or there would be more than `max_triangles`. `segments` are edges that stay,
+/// `present` is the number of triangles, `points` (rows of x, y, z) and `homes` are the other points and
+/// their triangles.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)]
+pub fn simplify2(
+    py: Python<'_>,
+    coarse: Sheet<'_>,
+    segments: PyReadonlyArray2<'_, i32>,
+    present: usize,
+    points: PyReadonlyArray2<'_, f64>,
+    z: PyReadonlyArray1<'_, f64>,
+    homes: PyReadonlyArray1<'_, i32>,
+    max_error: f64,
+    max_triangles: usize,
+    workers: usize,
+) -> Outcome<Simplified2> {
+    let surface = coarse.surface()?;
+    let points = rows(&points, "points")?;
+    let (z, homes) = (heights_of(&z, points.len())?, flat(&homes, "homes")?);
+    if homes.len() != points.len() {
+        return Err(unequal().into());
+    }
+    each_in_range(homes, 0, surface.given.simplices.len(), "homes")?;
+    let segments = rows::<i32, 2>(&segments, "segments")?;
+    in_range(segments, 0, surface.given.points.len(), "segments")?;
+    let segments: Vec<_> = segments.iter().map(|s| s.map(|v| v as u32)).collect();
+    let task = Task {
+        coarse: surface.given,
+        heights: surface.heights,
+        segments: &segments,
+        triangles: present,
+        points,
+        z,
+        homes,
+        max_error,
+        max_triangles,
+        workers,
+    };
+    let found = watched(py, |watch| simplify(task, watch))?;
+    Ok(Simplified2 {
+        order: column(py, found.order),
+        errors: column(py, found.errors),
+        triangles: column(py, found.triangles),
+    })
 }

@@ -37,6 +37,7 @@ pub mod recover;
 pub mod refine;
 pub mod regular;
 pub mod regular3;
+pub mod simplify;
 pub mod sphere;
 pub mod surface;
 pub mod voronoi;

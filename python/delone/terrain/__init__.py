@@ -1,4 +1,4 @@
-"""Terrain: triangulated surfaces with breaklines, their contours, profiles and volumes.
+"""Terrain: triangulated surfaces with breaklines; contours, profiles, volumes, levels of detail.
 
 >>> from delone.terrain import TIN
 >>> tin = TIN.from_points([(0, 0, 1), (8, 0, 5), (8, 6, 9), (0, 6, 3)])
@@ -9,8 +9,19 @@
 from __future__ import annotations
 
 from delone.terrain.contouring import Bands, Contours
+from delone.terrain.deviations import Deviations
 from delone.terrain.profiles import Profile, Sight
+from delone.terrain.simplifying import Simplification
 from delone.terrain.tin import TIN
 from delone.terrain.volumes import Volume
 
-__all__ = ["TIN", "Bands", "Contours", "Profile", "Sight", "Volume"]
+__all__ = [
+    "TIN",
+    "Bands",
+    "Contours",
+    "Deviations",
+    "Profile",
+    "Sight",
+    "Simplification",
+    "Volume",
+]

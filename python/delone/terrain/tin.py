@@ -15,6 +15,7 @@ from delone.refine.validation import MeshValidation, validate
 from delone.renames import renamed
 from delone.terrain import building, contouring, profiles, slopes, volumes
 from delone.terrain import faces as faces_
+from delone.terrain.detail import Detailed
 from delone.terrain.earthworks import Earthworks
 from delone.terrain.surveyed import Surveyed
 
@@ -40,7 +41,7 @@ class _Sheet(NamedTuple):
 
 @made_by("create a TIN with TIN.from_points, from_raster or from_file")
 @renamed(volume="volume_to", gradient="gradients")
-class TIN(Surveyed, Earthworks):
+class TIN(Surveyed, Earthworks, Detailed):
     """A triangulated irregular network: a surface over triangles, linear in each.
 
     Create one with `from_points`, `from_raster` or `from_file`.

@@ -203,6 +203,36 @@ impl Marked {
         });
         let parted = on.filter(|&e| mesh.is_marked(e));
         let parted = parted.map(|e| [next(e), prev(e)].map(|c| mesh.vertex(c)));
+        let v = self.split_at(p, home, on)?;
+        Ok((v, parted))
+    }
+
+    /// A new vertex at `p` in triangle `home`, or on its edge `on`.
+    pub fn split_at(&mut self, p: Point2, home: u32, on: Option<Code>) -> Result<u32> {
+        let v = self.begin_at(p, home, on)?;
+        for i in 0..self.stack.len() {
+            self.touch(triangle(self.stack[i]));
+        }
+        self.legalize()?;
+        Ok(v)
+    }
+
+    /// The same, faster, and returns a corner of the new vertex; `near` is not kept, so that nothing may
+    /// follow that needs it. Only edges opposite the vertex can be illegal.
+    pub fn star_at(&mut self, p: Point2, home: u32, on: Option<Code>) -> Result<Code> {
+        self.begin_at(p, home, on)?;
+        let corner = self.stack[0];
+        while let Some(e) = self.stack.pop() {
+            if self.must_flip(e)? {
+                let other = self.patch().flip_marked(e);
+                self.stack.extend([e, other]);
+            }
+        }
+        Ok(corner)
+    }
+
+    /// A new vertex whose opposite edges, on the stack, may be illegal.
+    fn begin_at(&mut self, p: Point2, home: u32, on: Option<Code>) -> Result<u32> {
         self.grow()?;
         let v = self.count as u32;
         self.points[v as usize] = p;
@@ -214,11 +244,7 @@ impl Marked {
         }
         self.count += 1;
         self.near.push(0);
-        for i in 0..self.stack.len() {
-            self.touch(triangle(self.stack[i]));
-        }
-        self.legalize()?;
-        Ok((v, parted))
+        Ok(v)
     }
 
     /// Makes room for one more vertex.

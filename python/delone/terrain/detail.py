@@ -1,0 +1,121 @@
+"""Levels of detail: a surface with fewer points, up to an error."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Self, cast
+
+from delone.terrain import simplifying
+from delone.triangulation import HullTiling
+
+if TYPE_CHECKING:
+    from delone.terrain.building import Built
+    from delone.terrain.surface import Surface
+
+__all__ = ["Detailed"]
+
+
+class Detailed(HullTiling):
+    """The ways to leave out points of a surface."""
+
+    __slots__ = ()
+
+    @classmethod
+    def _built(cls, made: Built, workers: int | None) -> Self:
+        """Return a surface of these arrays."""
+        raise NotImplementedError
+
+    def simplify(
+        self,
+        *,
+        max_error: float | None = None,
+        max_triangles: int | None = None,
+        keep: str = "breaklines",
+    ) -> Self:
+        """Return a surface of fewer points that is within an error of all of them.
+
+        Parameters
+        ----------
+        max_error : float, optional
+            The greatest vertical distance of a point of this surface from the new one.
+        max_triangles : int, optional
+            Instead: the number of triangles, of which the least error is made.
+        keep : {"breaklines", "hard", "boundary"}, optional
+            The edges that stay: those on all lines, on hard breaklines and the outline, or on the
+            outline alone. Of an outline that is the convex hull, corners stay.
+
+        Returns
+        -------
+        TIN
+            The surface: some of the points, with their heights, and the edges that stay.
+
+        Raises
+        ------
+        InputError
+            Not one of `max_error` and `max_triangles` is given, one is out of range, or the edges
+            that stay have more than `max_triangles`.
+        MemoryError
+            Memory does not suffice.
+
+        See Also
+        --------
+        simplification : All levels of detail at once.
+
+        Notes
+        -----
+        Greedy insertion [1]_: from the edges that stay on, the point that is farthest from the
+        surface is inserted until none is too far. The bound holds for the given numbers exactly, at
+        all points, also those on edges that went; it is proven as points are inserted, and again by
+        `Simplification.validate`. Between points, the distance from this surface may be larger.
+
+        Triangles are constrained Delaunay. The result does not depend on the order of points. About
+        O(n log n) for n points of terrain.
+
+        References
+        ----------
+        .. [1] M. Garland and P. S. Heckbert, "Fast polygonal approximation of terrains and height
+           fields", Carnegie Mellon University, CMU-CS-95-181, 1995.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from delone.terrain import TIN
+        >>> x, y = np.meshgrid(np.arange(33.0), np.arange(33.0))
+        >>> hill = np.column_stack((x.ravel(), y.ravel(), 20 - np.hypot(x - 16, y - 16).ravel()))
+        >>> tin = TIN.from_points(hill)
+        >>> tin.simplify(max_error=0.5)
+        <TIN of 34 points: 50 triangles, heights -2.62742 to 20>
+        """
+        found = self.simplification(max_error=max_error, max_triangles=max_triangles, keep=keep)
+        surface: Self = found.surface(max_error=max_error, max_triangles=max_triangles)
+        return surface
+
+    def simplification(
+        self,
+        *,
+        max_error: float | None = None,
+        max_triangles: int | None = None,
+        keep: str = "breaklines",
+    ) -> simplifying.Simplification:
+        """Compute all levels of detail, from the coarsest one to an error or a number of triangles.
+
+        Parameters
+        ----------
+        max_error, max_triangles, keep
+            As for `simplify`; levels end there.
+
+        Returns
+        -------
+        Simplification
+            The order in which points are inserted, and the error of each level.
+
+        Raises
+        ------
+        InputError, MemoryError
+            As for `simplify`.
+
+        Examples
+        --------
+        See `Simplification`.
+        """
+        ground = simplifying.ground_of(cast("Surface", self), keep)
+        return simplifying.simplified(ground, self._built, max_error, max_triangles)
