@@ -103,6 +103,11 @@ COMMANDS = {
         "volume",
         "Compute the volumes to cut and to fill between a surface and a height or another surface.",
     ),
+    "simplify": Listed(
+        "simplify",
+        "simplify",
+        "Leave out points of a surface up to an error that holds at all of them.",
+    ),
     "hull": Listed("hull", "hull", "Compute the outline of points, and write its polygons."),
     "mesh": Listed(
         "mesh",
@@ -130,7 +135,7 @@ TASKS = {
     "Triangulate": ("triangulate", "sphere", "tile", "check"),
     "Outlines, cells, neighbors": ("hull", "voronoi", "graph", "cluster"),
     "Interpolate": ("interpolate", "crossval", "regrid"),
-    "Terrain": ("dem", "contours", "profile", "volume"),
+    "Terrain": ("dem", "contours", "profile", "volume", "simplify"),
     "Mesh": ("mesh", "tetrahedralize"),
 }
 

@@ -1,0 +1,123 @@
+"""The command ``simplify``: a surface with fewer triangles, within an error of all points."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from delone.cli.exits import Exit, Failure, protect_inputs, writing
+from delone.cli.options import Chord, Classes, Json, Layer, Quiet, Workers
+from delone.cli.outputs import ready, write_all
+from delone.cli.referenced import Crs, Planar, require_known
+from delone.cli.report import Stopwatch
+from delone.cli.show import spinner
+from delone.cli.surfaces import (
+    Boundary,
+    Breaklines,
+    Columns,
+    Crossing,
+    Duplicates,
+    EastingFirst,
+    MaxEdge,
+    Retriangulate,
+    SoftBreaklines,
+    Step,
+    SurfaceOptions,
+    Survey,
+    Tolerance,
+    Voids,
+    figures_of,
+    print_figures,
+    surface,
+)
+from delone.errors import InternalError
+from delone.terrain.simplifying import KEEP
+
+if TYPE_CHECKING:
+    from delone.terrain import Simplification
+
+__all__ = ["simplify"]
+
+
+def simplify(
+    source: Survey,
+    *,
+    max_error: Annotated[
+        float | None,
+        typer.Option(help="Greatest vertical distance of a point from the new surface."),
+    ] = None,
+    max_triangles: Annotated[
+        int | None, typer.Option(help="Number of triangles instead, with the least error.")
+    ] = None,
+    keep: Annotated[
+        str, typer.Option(help="Edges that stay: " + ", ".join(KEEP) + ".")
+    ] = "breaklines",
+    prove: Annotated[
+        bool, typer.Option("--prove", help="Prove the error by exact arithmetic.")
+    ] = False,
+    output: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--output", "-o", metavar="OUTPUT", help="Mesh to write, once or more: .ply .xml ..."
+        ),
+    ] = None,
+    breaklines: Breaklines = None,
+    soft_breaklines: SoftBreaklines = None,
+    boundary: Boundary = None,
+    max_edge: MaxEdge = None,
+    voids: Voids = False,
+    duplicates: Duplicates = "raise",
+    crossing: Crossing = "raise",
+    tolerance: Tolerance = 0.0,
+    chord: Chord = None,
+    step: Step = 1,
+    columns: Columns = None,
+    classes: Classes = None,
+    layer: Layer = None,
+    retriangulate: Retriangulate = False,
+    easting_first: EastingFirst = False,
+    crs: Crs = None,
+    planar: Planar = False,
+    workers: Workers = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Leave out points of a surface up to an error that holds at all of them.
+
+    Lines and the outline stay.
+    """
+    if (max_error is None) == (max_triangles is None):
+        raise Failure("give one of --max-error and --max-triangles", Exit.USAGE)
+    options = SurfaceOptions.among(locals())
+    require_known(crs)
+    with writing():
+        protect_inputs(output or [], source, *options.inputs())
+        writers = {path: ready(path) for path in output or []}
+    watch = Stopwatch()
+    goal: dict[str, Any] = {"max_error": max_error, "max_triangles": max_triangles}
+    with spinner(quiet or as_json) as say:
+        tin = surface(source, options, watch, say)
+        say("simplifying")
+        with watch.stage("simplify"):
+            levels = tin.simplification(**goal, keep=keep)
+            small = levels.surface(**goal)
+        if prove:
+            say("proving the error")
+            with watch.stage("prove"):
+                _prove(levels, goal)
+        write_all(writers, small, watch, say, z=small.z, crs=small.crs)
+    figures = figures_of(source, small, output) | {
+        "points_before": tin.npoints,
+        "triangles_before": tin.nsimplex,
+        "error": float(levels.errors[levels.triangles == small.nsimplex].min()),
+        "stages": watch.rows(tin.npoints),
+    }
+    print_figures(source, figures, as_json=as_json, quiet=quiet)
+
+
+def _prove(levels: Simplification, goal: dict[str, Any]) -> None:
+    found = levels.validate(**goal)
+    if not found:
+        raise InternalError(f"the error of the surface does not hold: {found}")
