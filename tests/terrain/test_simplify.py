@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from delone import InputError
+from delone.interpolate import Grid
+from delone.io import LeftOutWarning
 from delone.terrain import TIN
 
 
@@ -187,6 +189,44 @@ def test_levels_by_triangles_have_the_least_error():
         exact = max(distances(levels.points, small))
         assert exact <= Fraction(float(possible))
     assert TIN.from_points(scattered()).simplify(max_triangles=50).nsimplex <= 50
+
+
+def bumps():
+    x, y = np.arange(40.0), np.arange(30.0)
+    values = np.hypot(x - 20, (y - 10)[:, None])
+    values[3, 4] = values[29, 39] = np.nan
+    return Grid(values, x, y)
+
+
+def rows(tin):
+    return sorted(map(tuple, tin.xyz.tolist()))
+
+
+def test_rasters_need_no_full_triangulation():
+    full = TIN.from_raster(bumps())
+    for goal in ({"max_error": 0.3}, {"max_triangles": 60}):
+        found = TIN.from_raster(bumps(), crs="EPSG:28992", units="m", **goal)
+        assert rows(found) == rows(full.simplify(**goal))
+        assert found.validate() and (found.crs, found.units) == ("EPSG:28992", "m")
+    fine = [(5, 5, 40), (30, 20, 40)]
+    lined = {"breaklines": [fine], "crossing": "max", "duplicates": "max"}
+    found = TIN.from_raster(bumps(), max_error=0.3, **lined)
+    assert rows(found) == rows(TIN.from_raster(bumps(), **lined).simplify(max_error=0.3))
+
+
+def test_files_of_rasters(tmp_path):
+    path = tmp_path / "dem.asc"
+    head = "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 2\nNODATA_value -9999\n"
+    path.write_text(head + "1 2 3\n4 -9999 6\n")
+    with pytest.warns(LeftOutWarning, match="1 cell"):
+        tin = TIN.from_raster(path)
+    assert rows(tin) == [(11, 21, 4), (11, 23, 1), (13, 23, 2), (15, 21, 6), (15, 23, 3)]
+    with pytest.warns(LeftOutWarning):
+        assert TIN.from_raster(str(path), max_error=0.5).npoints == 4
+    with pytest.warns(LeftOutWarning), pytest.raises(InputError, match="give one of"):
+        TIN.from_raster(path, max_error=1, max_triangles=2)
+    with pytest.raises(InputError, match="band and step are for files"):
+        TIN.from_raster(bumps(), step=2)
 
 
 def test_units_and_systems_are_kept():

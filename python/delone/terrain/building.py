@@ -52,6 +52,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Built",
+    "bare",
     "build",
     "compact",
     "degrees_of",
@@ -142,6 +143,17 @@ def build(
             raise InputError(f"max_edge must be above 0, got {max_edge!r:.80}")
         kept = peeled(mesh, kept, limit, voids=voids)
     return compact(mesh, heights, kept, soft, system, heights_in)
+
+
+def bare(
+    xyz: Any, *, crs: Any, units: Any, planar: bool
+) -> tuple[Floats, Floats, str | None, str | None]:
+    """Return positions, heights, reference system and units of points without lines."""
+    points, system = _points_of(xyz), system_of(crs, xyz)
+    heights_in = settled_units(units, system, None, str(system))
+    flat = np.ascontiguousarray(points[:, :2])
+    warn_of_degrees(xyz, flat, planar=planar, by=degrees_of(system))
+    return flat, np.ascontiguousarray(points[:, 2]), system, heights_in
 
 
 def as_tolerance(given: Any) -> float:

@@ -6,22 +6,18 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from delone._arrays import as_flag
 from delone.counting import counted
-from delone.errors import InputError
 from delone.immutable import kept, made_by, sealed
 from delone.plane import topology
 from delone.refine.validation import MeshValidation, validate
 from delone.renames import renamed
 from delone.terrain import building, contouring, profiles, slopes, volumes
-from delone.terrain import faces as faces_
 from delone.terrain.detail import Detailed
 from delone.terrain.earthworks import Earthworks
+from delone.terrain.sources import Sources
 from delone.terrain.surveyed import Surveyed
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import ArrayLike, NDArray
 
     from delone._types import Bools, Floats, Indices
@@ -41,7 +37,7 @@ class _Sheet(NamedTuple):
 
 @made_by("create a TIN with TIN.from_points, from_raster or from_file")
 @renamed(volume="volume_to", gradient="gradients")
-class TIN(Surveyed, Earthworks, Detailed):
+class TIN(Sources, Surveyed, Earthworks, Detailed):
     """A triangulated irregular network: a surface over triangles, linear in each.
 
     Create one with `from_points`, `from_raster` or `from_file`.
@@ -209,149 +205,6 @@ class TIN(Surveyed, Earthworks, Detailed):
             ),
         )
         return cls._built(made, workers)
-
-    @classmethod
-    def from_raster(cls, dem: Any, *, crs: Any = None, **options: Any) -> Self:
-        """Triangulate the nodes of a raster of heights.
-
-        Parameters
-        ----------
-        dem : delone.interpolate.Grid or xarray.DataArray
-            Heights at the centers of cells. Cells without a value (NaN) are left out.
-        crs : optional
-            As for `from_points`.
-        **options
-            Further options of `from_points`.
-
-        Returns
-        -------
-        TIN
-            The surface.
-
-        Raises
-        ------
-        InputError
-            `dem` is not a raster with one height in each cell; otherwise as for `from_points`.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> from delone.interpolate import Grid
-        >>> from delone.terrain import TIN
-        >>> x, y = np.arange(3.0), np.arange(4.0)
-        >>> TIN.from_raster(Grid(np.add.outer(y, x), x, y))
-        <TIN of 12 points: 12 triangles, heights 0 to 5>
-        """
-        values, x, y = slopes.cells_of(dem)
-        grid = np.stack((*np.meshgrid(x, y), values), axis=-1).reshape(-1, 3)
-        return cls.from_points(grid[~np.isnan(grid[:, 2])], crs=crs, **options)
-
-    @classmethod
-    def from_file(
-        cls,
-        path: Any,
-        *,
-        columns: Sequence[str | int] | None = None,
-        layer: str | None = None,
-        order: str | None = None,
-        chord: float | None = None,
-        **options: Any,
-    ) -> Self:
-        r"""Make a surface of a file: LandXML, DXF, or points in LAS, LAZ, CSV and others.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The file, of any format of `delone.io.read_surface` or `delone.io.read_points`.
-        columns : sequence of str or int, optional
-            The columns of x, y and z; by default by their names.
-        layer, order : str, optional
-            As for these functions: the name of a surface or layer, ``"enz"`` for eastings first.
-        chord : float, optional
-            For curves of DXF, as for `delone.io.read_surface`.
-        **options
-            Options of `from_surface` for LandXML and DXF, else of `from_points`.
-
-        Returns
-        -------
-        TIN
-            The surface.
-
-        Raises
-        ------
-        FileFormatError, MissingExtraError, OSError
-            As for these functions; otherwise as for `from_surface` and `from_points`.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> from pathlib import Path
-        >>> from delone.terrain import TIN
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     path = Path(folder) / "survey.csv"
-        ...     _ = path.write_text("x,y,z\n0,0,1\n4,0,2\n0,4,3\n")
-        ...     TIN.from_file(path)
-        <TIN of 3 points: 1 triangle, heights 1 to 3>
-        """
-        from delone import io
-        from delone.io.registry import holds_surface
-
-        if holds_surface(path):
-            if columns is not None:
-                raise InputError(f"{path}: surfaces have x, y and z, and no columns")
-            found = io.read_surface(path, layer=layer, order=order, chord=chord)
-            return cls.from_surface(found, **options)
-        if chord is not None:
-            raise InputError(f"{path}: chord is for DXF files, which have curves")
-        if order is not None:
-            raise InputError(f"{path}: order is for LandXML files; name the columns")
-        survey = io.read_points(path, columns=columns, layer=layer)
-        return cls.from_points(survey, **options)
-
-    @classmethod
-    def from_surface(cls, surface: Any, *, faces: bool = True, **options: Any) -> Self:
-        """Make a TIN of the surface of a file, with the triangles of the file.
-
-        Parameters
-        ----------
-        surface : delone.io.SurfaceFile
-            The result of `delone.io.read_surface`.
-        faces : bool, optional
-            Keep the faces, if there are some, as triangles. Else points and lines are triangulated.
-        **options
-            Options of `from_points`; those for lines and edges only where no faces are kept.
-
-        Returns
-        -------
-        TIN
-            The surface, with the units and the reference system of the file.
-
-        Raises
-        ------
-        InputError
-            Faces overlap; the message has a place. Otherwise as for `from_points`.
-        ConflictingValuesError
-            Points with the same x and y have different heights: a vertical wall.
-
-        Notes
-        -----
-        Vertices are the points of visible faces. Their edges on breaklines are breaklines, and
-        those that a Delaunay triangulation would not have are soft ones. Faces without an area seen
-        from above are left out.
-
-        Examples
-        --------
-        See `delone.io.read_surface`.
-        """
-        surface.warn_left_out()
-        if as_flag(faces, name="faces") and len(surface.faces):
-            return cls._built(faces_.build_faces(surface, options), options.get("workers"))
-        options = faces_.with_lines(surface, options)
-        system = options["crs"] = building.system_of(options.get("crs"), surface)
-        options["units"] = building.settled_units(
-            options.get("units") or surface.units, system, surface.lengths, surface.source
-        )
-        return cls.from_points(surface.points, **options)
 
     @classmethod
     def _built(cls, made: building.Built, workers: int | None) -> Self:

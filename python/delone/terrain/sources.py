@@ -1,0 +1,220 @@
+"""What a surface is made of, besides points and lines: rasters, files, and the faces of files."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from delone._arrays import as_flag
+from delone.errors import InputError
+from delone.terrain import building, simplifying, slopes
+from delone.terrain import faces as faces_
+from delone.triangulation import HullTiling
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["Sources"]
+
+
+class Sources(HullTiling):
+    """The ways to make a surface of rasters and files."""
+
+    __slots__ = ()
+
+    @classmethod
+    def _built(cls, made: building.Built, workers: int | None) -> Self:
+        """Return a surface of these arrays."""
+        raise NotImplementedError
+
+    @classmethod
+    def _of_points(cls, xyz: Any, crs: Any, options: dict[str, Any]) -> Self:
+        made: Any = cls
+        return made.from_points(xyz, crs=crs, **options)  # type: ignore[no-any-return]
+
+    @classmethod
+    def from_raster(
+        cls,
+        dem: Any,
+        *,
+        max_error: float | None = None,
+        max_triangles: int | None = None,
+        band: int | None = None,
+        step: int = 1,
+        crs: Any = None,
+        **options: Any,
+    ) -> Self:
+        """Triangulate the nodes of a raster of heights, all or as few as an error needs.
+
+        Parameters
+        ----------
+        dem : delone.interpolate.Grid, xarray.DataArray, str or path-like
+            Heights at the centers of cells, or a file of them: GeoTIFF or ESRI ASCII grid. Cells
+            without a value (NaN, in files nodata) are left out.
+        max_error, max_triangles : optional
+            As for `simplify`; without lines, the points that are left out are never triangulated.
+        band, step : int, optional
+            Of a file: as for `delone.io.read_raster`.
+        crs : optional
+            As for `from_points`.
+        **options
+            Further options of `from_points`.
+
+        Returns
+        -------
+        TIN
+            The surface.
+
+        Raises
+        ------
+        InputError
+            `dem` is not a raster with one height in each cell, or `band` or `step` are given for
+            one that is not a file; otherwise as for `from_points` and `simplify`.
+        FileFormatError, MissingExtraError, OSError
+            As for `delone.io.read_raster`.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from delone.interpolate import Grid
+        >>> from delone.terrain import TIN
+        >>> x, y = np.arange(3.0), np.arange(4.0)
+        >>> TIN.from_raster(Grid(np.add.outer(y, x), x, y))
+        <TIN of 12 points: 12 triangles, heights 0 to 5>
+        >>> TIN.from_raster(Grid(np.add.outer(y, x), x, y), max_error=0)
+        <TIN of 4 points: 2 triangles, heights 0 to 5>
+        """
+        nodes: Any
+        distinct = True
+        if isinstance(dem, str | os.PathLike):
+            from delone.io import read_raster
+
+            nodes = read_raster(dem, band=band, step=step)
+        else:
+            if band is not None or step != 1:
+                raise InputError("band and step are for files of rasters: give a path, or a slice")
+            values, x, y = slopes.cells_of(dem)
+            grid = np.stack((*np.meshgrid(x, y), values), axis=-1).reshape(-1, 3)
+            nodes = grid[~np.isnan(grid[:, 2])]
+            distinct = len(np.unique(x)) == len(x) and len(np.unique(y)) == len(y)
+        if max_error is None and max_triangles is None:
+            return cls._of_points(nodes, crs, options)
+        goal: dict[str, Any] = {"max_error": max_error, "max_triangles": max_triangles}
+        if not distinct or options.keys() - {"units", "planar", "workers"}:
+            surface: Any = cls._of_points(nodes, crs, options)
+            return surface.simplify(**goal)  # type: ignore[no-any-return]
+        bare = building.bare(
+            nodes, crs=crs, units=options.get("units"), planar=options.get("planar", False)
+        )
+        ground = simplifying.ground_of_points(*bare, options.get("workers"))
+        found = simplifying.simplified(ground, cls._built, **goal)
+        return found.surface(**goal)  # type: ignore[no-any-return]
+
+    @classmethod
+    def from_file(
+        cls,
+        path: Any,
+        *,
+        columns: Sequence[str | int] | None = None,
+        layer: str | None = None,
+        order: str | None = None,
+        chord: float | None = None,
+        **options: Any,
+    ) -> Self:
+        r"""Make a surface of a file: LandXML, DXF, or points in LAS, LAZ, CSV and others.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file, of any format of `delone.io.read_surface` or `delone.io.read_points`.
+        columns : sequence of str or int, optional
+            The columns of x, y and z; by default by their names.
+        layer, order : str, optional
+            As for these functions: the name of a surface or layer, ``"enz"`` for eastings first.
+        chord : float, optional
+            For curves of DXF, as for `delone.io.read_surface`.
+        **options
+            Options of `from_surface` for LandXML and DXF, else of `from_points`.
+
+        Returns
+        -------
+        TIN
+            The surface.
+
+        Raises
+        ------
+        FileFormatError, MissingExtraError, OSError
+            As for these functions; otherwise as for `from_surface` and `from_points`.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> from delone.terrain import TIN
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = Path(folder) / "survey.csv"
+        ...     _ = path.write_text("x,y,z\n0,0,1\n4,0,2\n0,4,3\n")
+        ...     TIN.from_file(path)
+        <TIN of 3 points: 1 triangle, heights 1 to 3>
+        """
+        from delone import io
+        from delone.io.registry import holds_surface
+
+        if holds_surface(path):
+            if columns is not None:
+                raise InputError(f"{path}: surfaces have x, y and z, and no columns")
+            found = io.read_surface(path, layer=layer, order=order, chord=chord)
+            return cls.from_surface(found, **options)
+        if chord is not None:
+            raise InputError(f"{path}: chord is for DXF files, which have curves")
+        if order is not None:
+            raise InputError(f"{path}: order is for LandXML files; name the columns")
+        survey = io.read_points(path, columns=columns, layer=layer)
+        return cls._of_points(survey, options.pop("crs", None), options)
+
+    @classmethod
+    def from_surface(cls, surface: Any, *, faces: bool = True, **options: Any) -> Self:
+        """Make a TIN of the surface of a file, with the triangles of the file.
+
+        Parameters
+        ----------
+        surface : delone.io.SurfaceFile
+            The result of `delone.io.read_surface`.
+        faces : bool, optional
+            Keep the faces, if there are some, as triangles. Else points and lines are triangulated.
+        **options
+            Options of `from_points`; those for lines and edges only where no faces are kept.
+
+        Returns
+        -------
+        TIN
+            The surface, with the units and the reference system of the file.
+
+        Raises
+        ------
+        InputError
+            Faces overlap; the message has a place. Otherwise as for `from_points`.
+        ConflictingValuesError
+            Points with the same x and y have different heights: a vertical wall.
+
+        Notes
+        -----
+        Vertices are the points of visible faces. Their edges on breaklines are breaklines, and
+        those that a Delaunay triangulation would not have are soft ones. Faces without an area seen
+        from above are left out.
+
+        Examples
+        --------
+        See `delone.io.read_surface`.
+        """
+        surface.warn_left_out()
+        if as_flag(faces, name="faces") and len(surface.faces):
+            return cls._built(faces_.build_faces(surface, options), options.get("workers"))
+        options = faces_.with_lines(surface, options)
+        system = options["crs"] = building.system_of(options.get("crs"), surface)
+        options["units"] = building.settled_units(
+            options.get("units") or surface.units, system, surface.lengths, surface.source
+        )
+        return cls._of_points(surface.points, options.pop("crs", None), options)
