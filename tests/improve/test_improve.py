@@ -516,3 +516,45 @@ def test_the_report_draws_itself() -> None:
     ax = report.plot()
     assert len(ax.patches) == 2 * len(report.before)
     assert ax.get_yscale() == "log"
+
+
+def box(turned: bool) -> np.ndarray:
+    """Points of the sides of a box, and others inside, turned or not."""
+    rng = np.random.default_rng(3)
+    axis = np.linspace(0, 1, 7)
+    grid = np.stack(np.meshgrid(axis, axis, axis), axis=-1).reshape(-1, 3)
+    sides = grid[((grid == 0) | (grid == 1)).any(axis=1)]
+    points = np.concatenate((sides, 0.1 + 0.8 * rng.random((60, 3))))
+    if not turned:
+        return points
+    (a, b), (c, d) = (np.cos([0.7, 0.4]), np.sin([0.7, 0.4]))
+    turn = np.array([[a, -c, 0], [c, a, 0], [0, 0, 1]]) @ [[1, 0, 0], [0, b, -d], [0, d, b]]
+    return points @ turn.T
+
+
+def thickness(corners: list[Any]) -> Fraction:
+    """The square of the smallest height of a tetrahedron."""
+    p, q, r = (minus(end, corners[0]) for end in corners[1:])
+    across = [cross(p, q), cross(q, r), cross(r, p), cross(minus(q, p), minus(r, p))]
+    return dot(across[0], r) ** 2 / max(dot(each, each) for each in across)
+
+
+def test_a_turned_box_says_which_tetrahedra_are_as_thin_as_the_rounding() -> None:
+    straight = delone.improve(delone.Delaunay(box(turned=False)))
+    assert straight.report.ok
+    mesh = delone.improve(delone.Delaunay(box(turned=True)))
+    report = mesh.report
+    thin = report.cause == "rounding"
+    limit = (16 * Fraction(2) ** -53 * Fraction(float(np.abs(mesh.points).max()))) ** 2
+    for row, is_thin in zip(report.below, thin, strict=True):
+        corners = exact(mesh.points[mesh.simplices[row]])
+        assert (thickness(corners) <= limit) == is_thin
+    assert thin.sum() > 400
+    assert "as thin as the rounding of coordinates" in str(report)
+    # Without these, the turned box is as good as the straight one, within a factor of two.
+    rest = np.delete(mesh.simplices, report.below[thin], axis=0)
+    better = delone.improve((mesh.points, rest))
+    assert not (better.report.cause == "rounding").any()
+    assert better.report.smallest_after > straight.report.smallest_after / 2
+    assert better.quality().volume.sum() == pytest.approx(1, rel=1e-12)
+    assert len(np.unique(better.simplices)) == len(mesh.points)

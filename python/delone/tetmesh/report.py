@@ -20,8 +20,11 @@ if TYPE_CHECKING:
 
 __all__ = ["CAUSES", "COUNTS", "ImproveReport", "report"]
 
-CAUSES = ("angle", "boundary", "budget", "other")
-_ANGLE, _BOUNDARY, _BUDGET, _OTHER = range(4)
+CAUSES = ("angle", "boundary", "budget", "other", "rounding")
+_ANGLE, _BOUNDARY, _BUDGET, _OTHER, _ROUNDING = range(5)
+# Coordinates of points that were turned have some roundings each: a product for every axis, their
+# sum, and a shift. Of thin tetrahedra, four points are off their plane.
+_ROUNDINGS = 16
 # The fields of a report that are counts.
 COUNTS = (
     "edge_removals",
@@ -68,9 +71,10 @@ class ImproveReport(ReadOnly):
     below : ndarray of int64, shape (j,)
         The tetrahedra below the goal, ascending.
     cause : ndarray of str, shape (j,)
-        For each of these, ``"angle"`` (the boundary has this angle), ``"boundary"`` (all four
-        vertices are on the boundary, or fixed), ``"budget"`` (the limit on passes) or ``"other"``
-        (no single removal or move is an improvement).
+        For each of these, ``"rounding"`` (it is as thin as the rounding of coordinates: 16 times
+        the rounding of the largest), ``"angle"`` (the boundary has this angle), ``"boundary"`` (all
+        four vertices are on the boundary, or fixed), ``"budget"`` (the limit on passes) or
+        ``"other"`` (no single removal or move is an improvement).
 
     Attributes
     ----------
@@ -178,6 +182,7 @@ class ImproveReport(ReadOnly):
 
 
 _SENTENCES = {
+    "rounding": "as thin as the rounding of coordinates",
     "angle": "because of the angle of the boundary",
     "boundary": "with all vertices fixed or on the boundary",
     "budget": "because of the limit on passes",
@@ -202,6 +207,7 @@ def report(
     held = _on_walls(simplices, walls, len(points)) | fixed
     cause[held[simplices[below]].all(axis=1)] = _BOUNDARY
     cause[_forced(points, simplices[below], walls[below], min_angle)] = _ANGLE
+    cause[_thin(points, simplices[below], after.volume[below])] = _ROUNDING
     judged = ImproveReport(
         min_angle=min_angle,
         smallest_before=float(before.smallest_dihedral.min(initial=180.0)),
@@ -224,6 +230,22 @@ def report(
         cause=np.array(CAUSES)[cause],
     )
     return judged, after
+
+
+def _thin(points: Floats, simplices: Indices, volume: Floats) -> NDArray[np.bool_]:
+    """Return which tetrahedra are as thin as the rounding of the largest coordinate."""
+    corners = points[simplices]
+    spread = np.abs(corners).max(initial=0.0)
+    # Relative to a corner, in units of the largest coordinate: products stay within the doubles.
+    unit = spread if spread > 0 else 1.0
+    sides = (corners[:, 1:] - corners[:, :1]) / unit
+    a, b, c = sides[:, 0], sides[:, 1], sides[:, 2]
+    doubled = [np.cross(a, b), np.cross(b, c), np.cross(c, a), np.cross(b - a, c - a)]
+    largest = np.max([np.sqrt((each**2).sum(axis=1)) for each in doubled], axis=0)
+    height = 6 * (volume / unit / unit / unit)
+    rounding = _ROUNDINGS * np.finfo(np.float64).eps / 2
+    found: NDArray[np.bool_] = height <= rounding * largest
+    return found
 
 
 def _walls(neighbors: Indices, region: Indices) -> NDArray[np.bool_]:
