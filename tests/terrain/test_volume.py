@@ -123,6 +123,25 @@ def test_there_and_back_is_the_same(seed):
     assert there.net == pytest.approx(-back.net, rel=1e-11)
 
 
+@pytest.mark.parametrize("shift", [0.0, 0.375])
+def test_volumes_across_holes_are_sums_of_prisms(shift):
+    # One triangle spans the hole and the notch of the other surface, and parts behind them.
+    one = TIN.from_points([(-9, -9, 0), (30, -9, 2), (-9, 30, -1)])
+    xyz = [(x + shift, y, (x * y) % 5 - 1) for x in range(8) for y in range(8)]
+    holes = [[(x + shift, y) for x, y in ((1, 1), (6, 1), (6, 6), (1, 6))]]
+    island = TIN.from_points(
+        [(x / 2 + 2 + shift, y / 2 + 2, 3) for x in range(4) for y in range(4)]
+    )
+    other = TIN.from_points(xyz, holes=holes)
+    for pair in ((one, other), (other, one), (island, other), (other, island)):
+        if island in pair:
+            with pytest.warns(UserWarning, match="no area in common"):
+                found = pair[0].volume_to(pair[1])
+        else:
+            found = pair[0].volume_to(pair[1])
+        assert numbers(found) == pytest.approx(exact(*pair), rel=1e-12)
+
+
 def test_large_coordinates_lose_nothing():
     shift = (500_000.0, 5_400_000.0)
     near = surface(1).volume_to(surface(2))

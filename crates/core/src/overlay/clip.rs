@@ -1,11 +1,15 @@
 //! Convex polygons, cut by triangles: I. E. Sutherland and G. W. Hodgman, "Reentrant polygon
 //! clipping", Communications of the ACM 17 (1974).
 
+use crate::arrays::Triangles;
 use crate::error::Result;
+use crate::locate::Boxes;
 use crate::memory::push;
 use crate::points::Extent;
 use crate::watch::Watch;
 use delone_predicates::Point2;
+
+use super::walk::Pair;
 
 /// A triangle cut by two others has nine corners at most.
 pub const MOST: usize = 10;
@@ -71,6 +75,32 @@ impl Polygon {
             }
             *cuts = !before;
         }
+        self.cut_by(&lines, cuts, space)
+    }
+
+    /// The same for a triangle, where the sides of its corners are known.
+    #[inline]
+    pub fn in_pair<'a>(&'a self, pair: &Pair, space: &'a mut [Self; 3]) -> Option<&'a Self> {
+        let beyond = |s: &[f64; 3]| (s[0] <= 0.0) & (s[1] <= 0.0) & (s[2] <= 0.0);
+        if pair.sides.iter().any(beyond) {
+            return None;
+        }
+        let [a, b, c] = pair.corners;
+        let lines = [Line::new(a, b), Line::new(b, c), Line::new(c, a)];
+        let cuts = pair
+            .sides
+            .map(|s| !((s[0] >= 0.0) & (s[1] >= 0.0) & (s[2] >= 0.0)));
+        self.cut_by(&lines, cuts, space)
+    }
+
+    /// The part to the left of those lines that cut.
+    #[inline]
+    fn cut_by<'a>(
+        &'a self,
+        lines: &[Line; 3],
+        cuts: [bool; 3],
+        space: &'a mut [Self; 3],
+    ) -> Option<&'a Self> {
         let mut part = self;
         for ((line, cuts), to) in lines.iter().zip(cuts).zip(space) {
             if cuts {
@@ -112,13 +142,15 @@ impl Polygon {
 }
 
 /// A directed line.
-struct Line {
+pub struct Line {
     at: Point2,
     along: Point2,
 }
 
 impl Line {
-    fn new(a: Point2, b: Point2) -> Self {
+    /// From a point to another one.
+    #[inline]
+    pub fn new(a: Point2, b: Point2) -> Self {
         Self {
             at: a,
             along: relative(b, a),
@@ -127,13 +159,13 @@ impl Line {
 
     /// Above zero to the left.
     #[inline]
-    fn side(&self, p: Point2) -> f64 {
+    pub fn side(&self, p: Point2) -> f64 {
         let [x, y] = relative(p, self.at);
         self.along[0] * y - self.along[1] * x
     }
 }
 
-/// Triangles that may overlap others, relative to an origin, by their boxes.
+/// Triangles of a region that may overlap another one, relative to an origin, by their boxes.
 #[derive(Default)]
 pub struct Candidates {
     boxes: Vec<Extent<2>>,
@@ -143,30 +175,32 @@ pub struct Candidates {
 }
 
 impl Candidates {
-    /// Forgets all triangles.
-    pub fn clear(&mut self) {
+    /// Takes the triangles of a region whose boxes in a tree are near those of a triangle.
+    pub fn gather(
+        &mut self,
+        region: Triangles,
+        boxes: &Boxes<2>,
+        corners: &[Point2; 3],
+        origin: Point2,
+    ) -> Result<()> {
         self.boxes.clear();
         self.corners.clear();
+        let mut end = Ok(());
+        boxes.meeting(&Extent::of(*corners), |t| {
+            if end.is_ok() {
+                end = self.add(region.corners(t).map(|p| relative(p, origin)));
+            }
+        });
+        end
     }
 
-    /// Adds a counterclockwise triangle if its box meets another one, and says whether it does.
-    pub fn add(
-        &mut self,
-        corners: [Point2; 3],
-        origin: Point2,
-        around: &Extent<2>,
-    ) -> Result<bool> {
-        let corners = corners.map(|p| relative(p, origin));
-        let extent = Extent::of(corners);
-        if !meet(&extent, around) {
-            return Ok(false);
-        }
-        push(&mut self.boxes, extent)?;
+    fn add(&mut self, corners: [Point2; 3]) -> Result<()> {
+        push(&mut self.boxes, Extent::of(corners))?;
         push(&mut self.corners, corners)?;
         if self.found.len() < self.boxes.len() {
             push(&mut self.found, 0)?;
         }
-        Ok(true)
+        Ok(())
     }
 
     /// The rows of those whose boxes have an area in common with another one, and the corners of
@@ -194,14 +228,6 @@ impl Candidates {
     }
 }
 
-/// A box relative to an origin.
-pub fn extent_from(extent: &Extent<2>, origin: Point2) -> Extent<2> {
-    Extent {
-        min: relative(extent.min, origin),
-        max: relative(extent.max, origin),
-    }
-}
-
 /// Whether two boxes have an area in common.
 #[inline]
 fn meet(one: &Extent<2>, other: &Extent<2>) -> bool {
@@ -211,6 +237,8 @@ fn meet(one: &Extent<2>, other: &Extent<2>) -> bool {
         & (other.min[1] < one.max[1])
 }
 
-fn relative(p: Point2, origin: Point2) -> Point2 {
+/// A point relative to an origin.
+#[inline]
+pub fn relative(p: Point2, origin: Point2) -> Point2 {
     [p[0] - origin[0], p[1] - origin[1]]
 }

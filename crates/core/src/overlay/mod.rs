@@ -5,30 +5,35 @@
 //! measures and rounded; coordinates are relative to a point nearby, so that large coordinates lose
 //! nothing.
 //!
-//! Triangles are processed in groups along the curve; a tree of boxes finds the triangles of the
-//! other surface that may overlap a group. Each triangle of the first surface gets its own
-//! results, which are independent of the number of threads.
+//! Triangles are processed along the curve; a walk through the other surface finds those that may
+//! overlap each. Each triangle of the first surface gets its own results, summed in the order of the
+//! rows of the other one, relative to its own corner: they depend on no other triangle and not on
+//! the number of threads.
 
 mod clip;
+mod packed;
 mod prism;
+mod walk;
 
 use crate::arrays::Triangles;
 use crate::error::Result;
-use crate::locate::boxes::Boxes;
-use crate::memory::{push, with_room, zeroed};
+use crate::locate::{Boxes, Output};
+use crate::memory::push;
 use crate::order::order_of;
 use crate::parallel;
 use crate::points::Extent;
 use crate::watch::Watch;
 use delone_predicates::Point2;
 
-use clip::{Candidates, Polygon, WATCH_EVERY, extent_from};
+use clip::{Candidates, Polygon};
+use packed::Packed;
 use prism::{Linear, Sums};
+use walk::{Ground, Walk};
 
-/// Triangles that look for overlaps together.
+/// Triangles per task.
+const SHARE: usize = 1 << 12;
+/// Triangles between two checks for interruption.
 const GROUP: usize = 16;
-/// Groups per task.
-const SHARE: usize = 1 << 8;
 
 /// A triangulated surface.
 #[derive(Clone, Copy)]
@@ -65,30 +70,35 @@ pub fn volumes(
         .map(|t| center(surface.given.corners(t)))
         .collect();
     let order = order_of::<2>(&centers, workers, watch)?.concat();
-    let over = match other {
+    let here = || order.iter().map(|&t| t as usize);
+    let packed = Packed::of(&surface, here(), watch)?;
+    let beside = match other {
         Other::Plane(_) => None,
-        Other::Surface(other) => Some(tree(other.given, watch)?),
-    };
-    let within = region.map(|region| tree(region, watch)).transpose()?;
-    let work = Work {
-        surface,
-        other,
-        region,
-        over,
-        within,
-    };
-    let tasks = order.chunks(GROUP * SHARE).collect();
-    let rows = parallel::map_watched(workers, tasks, watch, |order| work.rows(order, watch))?;
-    let mut found = [const { Vec::new() }; 5];
-    for column in &mut found {
-        *column = zeroed(order.len())?;
-    }
-    for (&t, row) in order.iter().zip(rows.iter().flatten()) {
-        for (column, value) in found.iter_mut().zip(row) {
-            column[t as usize] = *value;
+        Other::Surface(other) => {
+            let rows = 0..other.given.simplices.len();
+            Some((Packed::of(&other, rows, watch)?, other.given.neighbors))
         }
-    }
-    Ok(found)
+    };
+    let beside = beside
+        .as_ref()
+        .map(|(packed, neighbors)| packed.surface(neighbors));
+    let column = || Output::filled(order.len(), 0.0, watch);
+    let work = Work {
+        surface: packed.surface(surface.given.neighbors),
+        other: match (other, beside) {
+            (Other::Surface(_), Some(beside)) => Other::Surface(beside),
+            (other, _) => other,
+        },
+        region,
+        over: beside
+            .map(|beside| Ground::of(beside.given, watch))
+            .transpose()?,
+        within: region.map(|region| tree(region, watch)).transpose()?,
+        found: [column()?, column()?, column()?, column()?, column()?],
+    };
+    let tasks = order.chunks(SHARE).collect();
+    parallel::map_watched(workers, tasks, watch, |order| work.rows(order, watch))?;
+    Ok(work.found.map(Output::into_vec))
 }
 
 fn center(corners: [Point2; 3]) -> Point2 {
@@ -105,115 +115,82 @@ struct Work<'a> {
     surface: Surface<'a>,
     other: Other<'a>,
     region: Option<Triangles<'a>>,
-    over: Option<Boxes<2>>,
+    over: Option<Ground<'a>>,
     within: Option<Boxes<2>>,
-}
-
-/// What may overlap the triangles of a group, relative to an origin near them.
-#[derive(Default)]
-struct Near {
-    origin: Point2,
-    /// Triangles of the region.
-    within: Candidates,
-    /// Triangles of the other surface.
-    over: Candidates,
-    /// Its heights over them.
-    above: Vec<Linear>,
+    found: [Output<f64>; 5],
 }
 
 impl Work<'_> {
-    /// The results of the triangles of a task.
-    fn rows(&self, order: &[u32], watch: &Watch) -> Result<Vec<[f64; 5]>> {
-        let mut rows = with_room(order.len())?;
-        let mut near = Near::default();
+    /// Computes the rows of the triangles of a task.
+    fn rows(&self, order: &[u32], watch: &Watch) -> Result<()> {
+        let over = self.over.as_ref();
+        let mut walk = over.map(|over| Walk::new(over, watch)).transpose()?;
+        let mut within = Candidates::default();
         for group in order.chunks(GROUP) {
             watch.check()?;
-            self.look_around(group, &mut near)?;
             for &t in group {
-                rows.push(self.row(t as usize, &mut near, watch)?);
+                let sums = self.row(t as usize, &mut within, walk.as_mut(), watch)?;
+                for (column, value) in self.found.iter().zip(sums.row()) {
+                    column.set(t as usize, value);
+                }
             }
         }
-        Ok(rows)
+        Ok(())
     }
 
-    /// Finds what may overlap the triangles of a group.
-    fn look_around(&self, group: &[u32], near: &mut Near) -> Result<()> {
-        let corners = |t: &u32| self.surface.given.corners(*t as usize);
-        let extent = Extent::of(group.iter().flat_map(corners));
-        near.origin = corners(&group[0])[0];
-        let origin = near.origin;
-        let around = extent_from(&extent, origin);
-        near.within.clear();
-        near.over.clear();
-        near.above.clear();
-        let mut end = Ok(());
-        if let (Some(region), Some(boxes)) = (self.region, &self.within) {
-            boxes.meeting(&extent, |t| {
-                if end.is_ok() {
-                    let corners = region.corners(t);
-                    end = near.within.add(corners, origin, &around).map(|_| ());
-                }
-            });
-        }
-        if let (Other::Surface(other), Some(boxes)) = (self.other, &self.over) {
-            boxes.meeting(&extent, |t| {
-                if end.is_ok() {
-                    let corners = other.given.corners(t);
-                    end = near.over.add(corners, origin, &around).and_then(|meets| {
-                        if !meets {
-                            return Ok(());
-                        }
-                        let linear = Linear::over(corners, other.heights_of(t), origin);
-                        push(&mut near.above, linear)
-                    });
-                }
-            });
-        }
-        end
-    }
-
-    /// The results of a triangle.
-    fn row(&self, t: usize, near: &mut Near, watch: &Watch) -> Result<[f64; 5]> {
+    /// The sums of a triangle.
+    fn row(
+        &self,
+        t: usize,
+        within: &mut Candidates,
+        walk: Option<&mut Walk>,
+        watch: &Watch,
+    ) -> Result<Sums> {
         let corners = self.surface.given.corners(t);
-        let whole = Polygon::triangle(corners, near.origin);
-        let below = Linear::over(corners, self.surface.heights_of(t), near.origin);
+        let origin = corners[0];
+        let whole = Polygon::triangle(corners, origin);
+        let below = Linear::over(corners, self.surface.heights_of(t), origin);
         let mut sums = Sums::default();
-        let Near {
-            origin,
-            within,
-            over,
-            above,
-        } = near;
-        let mut add = |part: &Polygon| -> Result<()> {
-            if let Other::Plane(plane) = self.other {
-                sums.add(part, &below, &Linear::plane(plane, *origin));
-                return Ok(());
-            }
-            let mut space = [Polygon::EMPTY; 3];
-            let (rows, corners) = over.meeting(&part.extent(), watch)?;
-            for (i, &row) in rows.iter().enumerate() {
-                if i % WATCH_EVERY == WATCH_EVERY - 1 {
-                    watch.check()?;
-                }
-                let row = row as usize;
-                if let Some(common) = part.clipped(&corners[row], &mut space) {
-                    sums.add(common, &below, &above[row]);
-                }
-            }
-            Ok(())
-        };
-        if self.region.is_none() {
-            add(&whole)?;
-            return Ok(sums.row());
-        }
         let mut space = [Polygon::EMPTY; 3];
-        let (rows, corners) = within.meeting(&whole.extent(), watch)?;
-        for &row in rows {
-            if let Some(part) = whole.clipped(&corners[row as usize], &mut space) {
-                add(part)?;
+        let mut parts: Vec<Polygon> = Vec::new();
+        if let (Some(region), Some(boxes)) = (self.region, &self.within) {
+            within.gather(region, boxes, &corners, origin)?;
+            let (rows, corners) = within.meeting(&whole.extent(), watch)?;
+            for &row in rows {
+                if let Some(part) = whole.clipped(&corners[row as usize], &mut space) {
+                    push(&mut parts, *part)?;
+                }
+            }
+            if parts.is_empty() {
+                return Ok(sums);
             }
         }
-        Ok(sums.row())
+        match (self.other, walk) {
+            (Other::Plane(plane), _) => {
+                let above = Linear::plane(plane, origin);
+                let whole = self.region.is_none().then_some(&whole);
+                whole
+                    .into_iter()
+                    .chain(&parts)
+                    .for_each(|part| sums.add(part, &below, &above));
+            }
+            (Other::Surface(other), Some(walk)) => walk.meeting(corners, |t, pair| {
+                let above = || Linear::over(other.given.corners(t), other.heights_of(t), origin);
+                if self.region.is_none() {
+                    if let Some(common) = whole.in_pair(pair, &mut space) {
+                        sums.add(common, &below, &above());
+                    }
+                    return;
+                }
+                for part in &parts {
+                    if let Some(common) = part.clipped(&pair.corners, &mut space) {
+                        sums.add(common, &below, &above());
+                    }
+                }
+            })?,
+            (Other::Surface(_), None) => (),
+        }
+        Ok(sums)
     }
 }
 
