@@ -28,6 +28,8 @@ STORED = Path(__file__).with_name("counts.json")
 # How much more a job may take, relatively. The same code counts alike to a thousandth: what remains
 # are copies in the C library, which are chosen by processor.
 TOLERANCE = 0.02
+# How much a job may change, either way, before the last lines name it.
+NOTABLE = 0.01
 # Where the function's name begins and ends with anything: it is generic, and its name has a hash.
 COUNTED = "*counts*counted*"
 BUILD = (
@@ -74,10 +76,18 @@ def exceeds(now: int, before: int | None) -> bool:
     return before is not None and now > before * (1 + TOLERANCE)
 
 
+def is_notable(now: int, before: int | None) -> bool:
+    """Return whether a job takes clearly more or less than before."""
+    return before is not None and abs(now - before) > before * NOTABLE
+
+
 def compare(counts: dict[str, int], stored: dict[str, int], *, same: bool) -> int:
     """Print counts beside those that are stored; return the exit code."""
     for job, now in counts.items():
         print(line(job, now, stored.get(job)))
+    changed = [job for job, now in counts.items() if is_notable(now, stored.get(job))]
+    if changed:
+        print(f"changed by more than {NOTABLE:.0%}: {', '.join(changed)}")
     slower = [job for job, now in counts.items() if exceeds(now, stored.get(job))]
     if slower and same:
         print(f"more than {TOLERANCE:.0%} above benchmarks/counts.json: {', '.join(slower)}")

@@ -48,6 +48,22 @@ def test_only_more_than_the_tolerance_fails(
     assert "+0.00 %" in told
 
 
+@pytest.mark.parametrize(("now", "named"), [(989, True), (990, False), (1010, False), (1011, True)])
+@pytest.mark.parametrize("same", [True, False])
+def test_changes_above_one_percent_are_named(
+    counts: Any, capsys: pytest.CaptureFixture[str], now: int, named: bool, same: bool
+) -> None:
+    assert counts.compare({"a": 500, "b": now}, {"a": 500, "b": 1000}, same=same) == 0
+    assert ("changed by more than 1%: b\n" in capsys.readouterr().out) == named
+
+
+def test_each_room_has_a_job() -> None:
+    program = (ROOT / "crates" / "core" / "examples" / "counts.rs").read_text(encoding="utf-8")
+    used = set(re.findall(r"\b(\w+)::", program))
+    rooms = ["delaunay2", "delaunay3", "constrained", "locate", "sphere", "live", "graphs"]
+    assert used.issuperset([*rooms, "alpha", "contour", "recover", "overlay"])
+
+
 def test_a_new_job_fails_nothing(counts: Any, capsys: pytest.CaptureFixture[str]) -> None:
     assert counts.compare({"a": 500}, {}, same=True) == 0
     assert "new" in capsys.readouterr().out

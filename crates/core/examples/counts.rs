@@ -10,16 +10,19 @@ use std::hint::black_box;
 use delone_core::arrays::Given;
 use delone_core::constrained::{Options, constrain};
 use delone_core::delaunay2::{Method, triangulate};
-use delone_core::delaunay3;
+use delone_core::live::plane::Plane;
 use delone_core::locate::{Batch, Kept, Locator, find};
+use delone_core::overlay::{Other, Surface, volumes};
+use delone_core::recover::{Task, recover};
 use delone_core::watch::{IDLE, Watch};
 use delone_core::{Point2, Point3};
+use delone_core::{alpha, contour, delaunay3, graphs, sphere};
 
 type Outcome = Result<(), Box<dyn Error>>;
 type Job = fn() -> Outcome;
 
 /// A job with its name; its points are few, as callgrind takes fifty times as long.
-const JOBS: [(&str, Job); 7] = [
+const JOBS: [(&str, Job); 15] = [
     ("uniform", || planar(&uniform(20_000))),
     ("lattice", || planar(&lattice(100))),
     ("clusters", || planar(&clusters(10_000))),
@@ -27,6 +30,14 @@ const JOBS: [(&str, Job); 7] = [
     ("find", finding),
     ("space", || spatial(&uniform(3_000))),
     ("voxels", || spatial(&voxels(12))),
+    ("sphere", spherical),
+    ("edits", edits),
+    ("tree", spanning),
+    ("neighbors", nearest),
+    ("alpha", shapes),
+    ("contours", contours),
+    ("recover", surface),
+    ("volumes", overlaid),
 ];
 
 fn main() -> Outcome {
@@ -102,6 +113,188 @@ fn finding() -> Outcome {
     };
     counted(|| find(&batch))?;
     Ok(())
+}
+
+/// Directions to points of a cube around the center.
+fn spherical() -> Outcome {
+    let vectors: Vec<Point3> = uniform(3_000)
+        .into_iter()
+        .map(|p: Point3| p.map(|x| x - 0.5))
+        .collect();
+    counted(|| sphere::triangulate(&vectors, 1, &Watch::idle()))?;
+    Ok(())
+}
+
+/// A batch of insertions, one of small moves, and single removals in a live triangulation.
+fn edits() -> Outcome {
+    let watch = &Watch::idle();
+    let points: Vec<Point2> = uniform(3_000);
+    let more: Vec<Point2> = uniform(4_000).split_off(3_000);
+    let rows: Vec<i64> = (0..3_000).step_by(60).collect();
+    let near: Vec<Point2> = rows
+        .iter()
+        .map(|&row| points[row as usize].map(|x| x + 0.001))
+        .collect();
+    let mut live = Plane::new(&points, 1, watch)?;
+    counted(|| {
+        live.insert(&more, 1, watch)?;
+        live.relocate(&rows, &near, 1, watch)?;
+        rows.iter()
+            .try_for_each(|&row| live.remove(&[row], 1, watch))
+    })?;
+    Ok(())
+}
+
+/// The minimum spanning tree of points.
+fn spanning() -> Outcome {
+    let watch = &Watch::idle();
+    let points: Vec<Point2> = uniform(5_000);
+    let made = triangulate(&points, Method::Auto, 1, watch)?.arrays;
+    counted(|| {
+        graphs::spanning_tree_of_triangles(&points, &made.simplices, &made.neighbors, 1, watch)
+    })?;
+    Ok(())
+}
+
+/// The nearest neighbors of points, from the tree on.
+fn nearest() -> Outcome {
+    let watch = &Watch::idle();
+    let points: Vec<Point3> = uniform(3_000);
+    counted(|| {
+        let tree = graphs::Tree::of(&points, 1, watch)?;
+        graphs::nearest(&tree, 6, graphs::Neighbors::Either, points.len(), 1, watch)
+    })?;
+    Ok(())
+}
+
+/// The values of simplices of alpha complexes in 2-D and 3-D.
+fn shapes() -> Outcome {
+    let watch = &Watch::idle();
+    let (flat, solid): (Vec<Point2>, Vec<Point3>) = (uniform(3_000), uniform(1_000));
+    let plane = triangulate(&flat, Method::Auto, 1, watch)?.arrays;
+    let space = delaunay3::triangulate(&solid, 1, watch)?;
+    let weights = &[];
+    counted(|| {
+        let sites = alpha::Sites {
+            points: &flat,
+            weights,
+        };
+        alpha::flat(sites, &plane.simplices, &plane.neighbors, 1, watch)?;
+        let sites = alpha::Sites {
+            points: &solid,
+            weights,
+        };
+        alpha::solid(
+            sites,
+            &space.arrays.simplices,
+            &space.arrays.neighbors,
+            1,
+            watch,
+        )
+    })?;
+    Ok(())
+}
+
+/// A triangulated surface with a height for each point.
+struct Sheet {
+    points: Vec<Point2>,
+    simplices: Vec<[i32; 3]>,
+    neighbors: Vec<[i32; 3]>,
+    heights: Vec<f64>,
+}
+
+impl Sheet {
+    fn of(points: Vec<Point2>, height: fn(Point2) -> f64) -> Result<Self, Box<dyn Error>> {
+        let made = triangulate(&points, Method::Auto, 1, &Watch::idle())?.arrays;
+        Ok(Self {
+            heights: points.iter().map(|&p| height(p)).collect(),
+            points,
+            simplices: made.simplices,
+            neighbors: made.neighbors,
+        })
+    }
+
+    fn surface(&self) -> Surface<'_> {
+        Surface {
+            given: Given {
+                points: &self.points,
+                simplices: &self.simplices,
+                neighbors: &self.neighbors,
+            },
+            heights: &self.heights,
+        }
+    }
+}
+
+/// Contour lines of a saddle.
+fn contours() -> Outcome {
+    let sheet = Sheet::of(uniform(3_000), |[x, y]| (x - 0.5) * (y - 0.3))?;
+    let levels: Vec<f64> = (-20..20).map(|k| f64::from(k) / 128.0).collect();
+    let Surface { given, heights } = sheet.surface();
+    let watch = &Watch::idle();
+    counted(|| contour::lines(given, heights, (&levels, &[]), false, usize::MAX, watch))?;
+    Ok(())
+}
+
+/// The inside of a surface that the Delaunay triangulation of its corners lacks in part.
+fn surface() -> Outcome {
+    let side = 6;
+    let (points, faces) = ridges(side);
+    let task = Task {
+        points: &points,
+        faces: &faces,
+        max_points: 10_000,
+        flips: true,
+        workers: 1,
+    };
+    counted(|| recover(task, &Watch::idle()))?;
+    Ok(())
+}
+
+/// The volume between two surfaces.
+fn overlaid() -> Outcome {
+    let one = Sheet::of(uniform(2_000), |[x, y]| x * y)?;
+    let other = Sheet::of(uniform(4_000).split_off(2_000), |[x, y]| 1.0 - x * y)?;
+    let other = Other::Surface(other.surface());
+    counted(|| volumes(one.surface(), other, None, 1, &Watch::idle()))?;
+    Ok(())
+}
+
+/// A closed surface: a bottom and a top of sharp ridges, whose rows cross at right angles.
+fn ridges(side: i32) -> (Vec<Point3>, Vec<[i32; 3]>) {
+    let row = side + 1;
+    let all = row * row;
+    let mut points = Vec::new();
+    for top in [false, true] {
+        for i in 0..all {
+            let (x, y) = (i % row, i / row);
+            let along = if top { x } else { y };
+            let ridge = if along % 2 == 1 { 0.9 } else { 0.0 };
+            points.push([
+                f64::from(x),
+                f64::from(y),
+                if top { 2.0 - ridge } else { ridge },
+            ]);
+        }
+    }
+    let mut faces = Vec::new();
+    for i in 0..side * side {
+        let a = i % side + i / side * row;
+        let (b, c, d) = (a + 1, a + row, a + row + 1);
+        faces.extend([[a, c, b], [b, c, d]]);
+        faces.extend([[a, b, c], [b, d, c]].map(|face| face.map(|v| v + all)));
+    }
+    for k in 0..side {
+        let sides = [[k, k + 1], [(k + 1) * row, k * row]];
+        let far = [
+            [side * row + k + 1, side * row + k],
+            [k * row + side, (k + 1) * row + side],
+        ];
+        for [a, b] in sides.into_iter().chain(far) {
+            faces.extend([[a, b, b + all], [a, b + all, a + all]]);
+        }
+    }
+    (points, faces)
 }
 
 fn uniform<const D: usize>(n: usize) -> Vec<[f64; D]> {
