@@ -81,6 +81,24 @@ pub enum Error {
         /// Tetrahedra that can be held, ghosts included.
         limit: usize,
     },
+    /// Points in four or more dimensions that all lie in a flat of fewer dimensions.
+    #[error("{}", flat(*dimension, *distinct, rows))]
+    Flat {
+        /// The number of coordinates.
+        dimension: usize,
+        /// The number of distinct points.
+        distinct: usize,
+        /// Rows that span the flat, ascending: one more than its dimension.
+        rows: Vec<u32>,
+    },
+    /// More simplices in four or more dimensions than the mesh's 32-bit codes can address.
+    #[error(
+        "the simplices exceed the limit of {limit} for one triangulation: triangulate fewer points"
+    )]
+    TooManySimplices {
+        /// Simplices that can be held, ghosts included.
+        limit: usize,
+    },
     /// Segments that cross: the pairs of their rows, and the points where they cross.
     #[error("{}", crossing(pairs, points))]
     Crossing {
@@ -157,8 +175,11 @@ impl Error {
             | Self::TooFewInSpace { .. }
             | Self::Collinear { .. }
             | Self::Coplanar { .. }
+            | Self::Flat { .. }
             | Self::OneGreatCircle { .. } => "DegenerateInputError",
-            Self::TooMany { .. } | Self::TooManyTetrahedra { .. } => "LimitError",
+            Self::TooMany { .. }
+            | Self::TooManyTetrahedra { .. }
+            | Self::TooManySimplices { .. } => "LimitError",
             Self::Crossing { .. } | Self::CrossingArcs { .. } => "CrossingSegmentsError",
             Self::Budget { .. } => "BudgetExceededError",
             Self::Shape(_) => "ShapeError",
@@ -172,6 +193,7 @@ impl Error {
     pub fn rows(&self) -> &[u32] {
         match self {
             Self::NonFinite { rows, .. }
+            | Self::Flat { rows, .. }
             | Self::ZeroVectors { rows, .. }
             | Self::OppositeEnds { rows, .. } => rows,
             Self::TooFew { chain }
@@ -241,6 +263,22 @@ fn opposite(rows: &[u32], count: usize) -> String {
         1 => format!("segment {row} joins"),
         _ => format!("{count} segments join, first row {row},"),
     }
+}
+
+/// Says in which flat the points lie.
+fn flat(dimension: usize, distinct: usize, rows: &[u32]) -> String {
+    if distinct <= dimension {
+        return format!(
+            "{} too few for a simplex in {dimension}-D: at least {} that are not in one flat are needed",
+            agreed(distinct, "distinct point is", "distinct points are"),
+            dimension + 1
+        );
+    }
+    format!(
+        "all {distinct} distinct points lie in a flat of dimension {}, spanned by rows {rows:?}, so there \
+         is no simplex in {dimension}-D: leave out coordinates that depend on the others",
+        rows.len().saturating_sub(1)
+    )
 }
 
 /// Names the first pair of segments that cross.

@@ -27,6 +27,7 @@ pub mod measure;
 pub mod memory;
 pub mod mesh2;
 pub mod mesh3;
+pub mod ndim;
 pub mod order;
 pub mod overlap;
 pub mod overlay;

@@ -1,0 +1,238 @@
+//! Insertion of a point: locate, remove the cells in conflict, and join the point to the rim.
+
+use super::cell::{INFINITE, Mesh};
+use crate::error::{Error, Result};
+use crate::memory::{self, clear_with_room, filled};
+use crate::watch::Pace;
+
+/// A facet of the rim: a removed cell, the number of the corner opposite, and the cell outside.
+type Side = (u32, usize, u32);
+
+/// A ridge that one new cell has: its hash, `16 c + k` of the cell and the corner opposite, and the
+/// insertion.
+type Entry = (u64, u32, u32);
+
+/// Room for insertions, kept between them.
+pub struct Room {
+    hole: Vec<u32>,
+    rim: Vec<Side>,
+    ghosts: Vec<u32>,
+    ridges: Vec<Entry>,
+    stamp: u32,
+}
+
+impl Room {
+    pub fn new() -> Self {
+        Self {
+            hole: Vec::new(),
+            rim: Vec::new(),
+            ghosts: Vec::new(),
+            ridges: Vec::new(),
+            stamp: 0,
+        }
+    }
+}
+
+/// A word for a vertex; ridges have the sum of those of their vertices. (The finalizer of
+/// splitmix64, whose words look random.)
+#[inline(always)]
+fn word(v: u32) -> u64 {
+    let x = (u64::from(v) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ x >> 31
+}
+
+impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
+    /// Adds a point that is not a vertex yet.
+    pub fn insert(&mut self, p: u32, room: &mut Room, pace: &mut Pace) -> Result<()> {
+        let start = self.locate(p, pace)?;
+        self.open(p, start, room, pace)?;
+        self.fill(p, room, pace)
+    }
+
+    /// A cell in conflict with a point.
+    fn locate(&mut self, p: u32, pace: &mut Pace) -> Result<u32> {
+        let at = self.sites.scaled[p as usize];
+        let mut here = self.last;
+        if self.conflict(here, p)? {
+            return Ok(here);
+        }
+        if self.cells[here as usize].is_ghost() {
+            here = self.cells[here as usize].neighbors[D];
+        }
+        // Down the rounded power, which falls with each step: no cell is visited twice.
+        let mut value = self.value(here, &at).0;
+        loop {
+            if value < 0.0 && self.conflict(here, p)? {
+                return Ok(here);
+            }
+            let (mut least, mut next) = (value, INFINITE);
+            for t in self.cells[here as usize].neighbors {
+                pace.spend(1)?;
+                if self.cells[t as usize].is_ghost() {
+                    if self.conflict(t, p)? {
+                        return Ok(t);
+                    }
+                    continue;
+                }
+                let there = self.value(t, &at).0;
+                if there < least {
+                    (least, next) = (there, t);
+                }
+            }
+            if next == INFINITE {
+                break;
+            }
+            (value, here) = (least, next);
+        }
+        self.walk(p, here, pace)
+    }
+
+    /// The same by an exact visibility walk, where rounding or ties stop the descent. It ends, as the
+    /// triangulation is regular (H. Edelsbrunner, "An acyclicity theorem for cell complexes in d
+    /// dimensions", 1990).
+    fn walk(&mut self, p: u32, start: u32, pace: &mut Pace) -> Result<u32> {
+        self.counts.walks += 1;
+        let mut here = start;
+        while !self.conflict(here, p)? {
+            let mut next = None;
+            for i in 0..V {
+                pace.spend(1)?;
+                if self.side(here, i, p)? < 0 {
+                    next = Some(self.cells[here as usize].neighbors[i]);
+                    break;
+                }
+            }
+            match next {
+                // The point is strictly beyond the facet.
+                Some(t) if self.cells[t as usize].is_ghost() => return Ok(t),
+                Some(t) => here = t,
+                // A point in a simplex that is none of its corners lies inside its sphere.
+                None => {
+                    return Err(Error::Internal(
+                        "a point in a simplex is in no conflict".into(),
+                    ));
+                }
+            }
+        }
+        Ok(here)
+    }
+
+    /// Finds the cells in conflict, which are connected, and the facets around them.
+    fn open(&mut self, p: u32, start: u32, room: &mut Room, pace: &mut Pace) -> Result<()> {
+        room.stamp += 2;
+        let (inside, outside) = (room.stamp, room.stamp + 1);
+        room.hole.clear();
+        room.rim.clear();
+        memory::push(&mut room.hole, start)?;
+        self.cells[start as usize].mark = inside;
+        let mut next = 0;
+        while next < room.hole.len() {
+            let c = room.hole[next];
+            next += 1;
+            pace.spend(1)?;
+            for (i, t) in self.cells[c as usize].neighbors.into_iter().enumerate() {
+                let mark = self.cells[t as usize].mark;
+                if mark == inside {
+                    continue;
+                }
+                if mark != outside && self.conflict(t, p)? {
+                    self.cells[t as usize].mark = inside;
+                    memory::push(&mut room.hole, t)?;
+                } else {
+                    self.cells[t as usize].mark = outside;
+                    memory::push(&mut room.rim, (c, i, t))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Replaces the cells in conflict by cells that join the point to the rim.
+    fn fill(&mut self, p: u32, room: &mut Room, pace: &mut Pace) -> Result<()> {
+        // Each ridge of the rim is in two of its facets, so the table is at most half full.
+        let size = (room.rim.len() * D).next_power_of_two().max(16);
+        if room.ridges.len() < size {
+            room.ridges = Vec::new();
+            room.ridges = filled(size, (0, 0, 0))?;
+        }
+        clear_with_room(&mut room.ghosts, 0)?;
+        let rim = std::mem::take(&mut room.rim);
+        for &(old, i, outside) in &rim {
+            pace.spend(1)?;
+            let c = self.star(p, old, i, outside)?;
+            if self.cells[c as usize].is_ghost() {
+                memory::push(&mut room.ghosts, c)?;
+            } else {
+                self.measure_simplex(c);
+                self.last = c;
+            }
+            self.join(c, &mut room.ridges[..size], room.stamp);
+        }
+        room.rim = rim;
+        for &ghost in &room.ghosts {
+            self.measure_ghost(ghost);
+        }
+        for &c in &room.hole {
+            self.discard(c)?;
+        }
+        Ok(())
+    }
+
+    /// The cell of a point and a facet of the rim, opposite corner `i` of a cell that goes.
+    fn star(&mut self, p: u32, old: u32, i: usize, outside: u32) -> Result<u32> {
+        let cell = &self.cells[old as usize];
+        let mut vertices = [p; V];
+        for (j, k) in (0..V).filter(|&k| k != i).enumerate() {
+            vertices[j + 1] = cell.vertices[k];
+        }
+        // The point is on the side of the facet where corner i is: in its place it has the same
+        // orientation. Moving it to the front takes i exchanges.
+        let positive = cell.is_positive() ^ (i % 2 == 1);
+        let c = self.make(vertices, positive)?;
+        self.cells[c as usize].neighbors[0] = outside;
+        let back = &mut self.cells[outside as usize].neighbors;
+        if let Some(k) = back.iter().position(|&n| n == old) {
+            back[k] = c;
+        }
+        Ok(c)
+    }
+
+    /// Joins a new cell to those others that share a ridge of the rim with it.
+    fn join(&mut self, c: u32, ridges: &mut [Entry], stamp: u32) {
+        let v = self.cells[c as usize].vertices;
+        let words = v.map(word);
+        let sum = words[1..].iter().fold(0u64, |sum, &w| sum.wrapping_add(w));
+        let (mask, shift) = (ridges.len() - 1, u64::BITS - ridges.len().trailing_zeros());
+        for k in 1..V {
+            let hash = sum.wrapping_sub(words[k]);
+            let mut at = (hash >> shift) as usize;
+            // The table is not full: the search ends.
+            loop {
+                let (found, corner, of) = ridges[at];
+                if of != stamp {
+                    ridges[at] = (hash, c * 16 + k as u32, stamp);
+                    break;
+                }
+                let (other, opposite) = (corner / 16, corner as usize % 16);
+                if found == hash && self.is_same_ridge(&v, k, other, opposite) {
+                    self.cells[c as usize].neighbors[k] = other;
+                    self.cells[other as usize].neighbors[opposite] = c;
+                    break;
+                }
+                at = (at + 1) & mask;
+            }
+        }
+    }
+
+    /// Whether the vertices but 0 and `k` are those of another cell but 0 and `opposite`.
+    #[inline(always)]
+    fn is_same_ridge(&self, v: &[u32; V], k: usize, other: u32, opposite: usize) -> bool {
+        let w = &self.cells[other as usize].vertices;
+        // As both have as many vertices, it is enough that all of the one are among those of the other.
+        (1..V)
+            .filter(|&j| j != k)
+            .all(|j| (1..V).fold(false, |any, l| any | ((l != opposite) & (w[l] == v[j]))))
+    }
+}

@@ -1,0 +1,267 @@
+//! Cells: simplices and ghosts, and the mesh that holds them.
+
+use super::filter::{Matrix, Test, dot, minus};
+use super::fine::Fine;
+use super::frame::Frame;
+use super::sites::Sites;
+use crate::error::{Error, Result};
+use crate::memory::{self, filled, is_plausible, with_room};
+
+/// The vertex at infinity. It is the last one of a ghost.
+pub const INFINITE: u32 = u32::MAX;
+
+/// Cells that one mesh can hold: corners are numbered by `16 c + k` in 32 bits.
+pub const LIMIT: usize = 1 << 28;
+
+/// In `Cell::slow`: no slow data.
+const NONE: u32 = (1 << 31) - 1;
+
+/// In `Cell::slow`: whether the corners are negatively oriented.
+const ODD: u32 = 1 << 31;
+
+/// From this many bytes on, more cells are made only if the system seems to have the memory.
+const PLAUSIBLE_FROM: usize = 1 << 26;
+
+/// A simplex, or a ghost outside of a facet of the hull.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct Cell<const D: usize, const V: usize> {
+    /// Decides most conflicts; from vertex 0.
+    pub test: Test<D>,
+    /// The newest vertex first, [`INFINITE`] last.
+    pub vertices: [u32; V],
+    /// The cell opposite each vertex.
+    pub neighbors: [u32; V],
+    /// The insertion that has visited it: twice its number, and 1 more if it is in no conflict.
+    pub mark: u32,
+    /// The row of its slow data, and its orientation.
+    slow: u32,
+}
+
+/// What only uncertain tests need.
+#[derive(Default)]
+pub struct Slow<const D: usize> {
+    /// The sphere in double-double.
+    pub fine: Option<Fine<D>>,
+    /// Integers.
+    pub frame: Option<Frame>,
+}
+
+/// How many decisions which stage has made.
+#[derive(Default, Clone, Copy, Debug)]
+pub struct Counts {
+    /// Decided by double-double.
+    pub fine: u64,
+    /// Zero by residues.
+    pub zeros: u64,
+    /// Decided by integers.
+    pub exact: u64,
+    /// Decided by the rule of ties.
+    pub ties: u64,
+    /// Walks that visit cells by exact signs.
+    pub walks: u64,
+}
+
+/// Simplices and neighbors.
+pub type Exported<const V: usize> = (Vec<[u32; V]>, Vec<[i32; V]>);
+
+/// The cells of a triangulation in the making.
+pub struct Mesh<const D: usize, const V: usize, const P: usize> {
+    pub sites: Sites<D, P>,
+    pub cells: Vec<Cell<D, V>>,
+    pub slow: Vec<Slow<D>>,
+    /// Unused rows of `slow`, and unused cells.
+    free_slow: Vec<u32>,
+    free: Vec<u32>,
+    pub counts: Counts,
+    /// The cell made last, where walks start.
+    pub last: u32,
+}
+
+impl<const D: usize, const V: usize> Cell<D, V> {
+    /// Whether it is a ghost.
+    #[inline(always)]
+    pub fn is_ghost(&self) -> bool {
+        self.vertices[D] == INFINITE
+    }
+
+    /// Whether its corners are positively oriented; those of a ghost with a point far outside as the
+    /// last one.
+    pub fn is_positive(&self) -> bool {
+        self.slow & ODD == 0
+    }
+}
+
+impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
+    /// A simplex with its ghosts.
+    pub fn new(sites: Sites<D, P>, corners: [u32; V]) -> Result<Self> {
+        let Some(frame) = Frame::new(&sites, &corners) else {
+            return Err(Error::Internal("the first simplex is flat".into()));
+        };
+        let mut mesh = Self {
+            sites,
+            cells: Vec::new(),
+            slow: Vec::new(),
+            free_slow: Vec::new(),
+            free: Vec::new(),
+            counts: Counts::default(),
+            last: 0,
+        };
+        let simplex = mesh.make(corners, frame.positive)?;
+        for i in 0..V {
+            // Ghost i has the corners but i in their order. With the infinite vertex in place i it
+            // would have the other orientation than the simplex; moving that to the end takes D - i
+            // exchanges.
+            let mut vertices = [INFINITE; V];
+            let mut neighbors = [simplex; V];
+            for (j, k) in (0..V).filter(|&k| k != i).enumerate() {
+                vertices[j] = corners[k];
+                neighbors[j] = k as u32 + 1;
+            }
+            let positive = frame.positive ^ (D - i).is_multiple_of(2);
+            let ghost = mesh.make(vertices, positive)?;
+            mesh.cells[ghost as usize].neighbors = neighbors;
+            mesh.cells[simplex as usize].neighbors[i] = ghost;
+        }
+        mesh.measure_simplex(simplex);
+        for ghost in 1..=V as u32 {
+            mesh.measure_ghost(ghost);
+        }
+        Ok(mesh)
+    }
+
+    /// A cell without neighbors and test.
+    pub fn make(&mut self, vertices: [u32; V], positive: bool) -> Result<u32> {
+        let cell = Cell {
+            test: Test::UNKNOWN,
+            vertices,
+            neighbors: [INFINITE; V],
+            mark: 0,
+            slow: NONE | if positive { 0 } else { ODD },
+        };
+        if let Some(c) = self.free.pop() {
+            self.cells[c as usize] = cell;
+            return Ok(c);
+        }
+        let made = self.cells.len();
+        if made == LIMIT {
+            return Err(Error::TooManySimplices { limit: LIMIT });
+        }
+        if made == self.cells.capacity() {
+            // Growing moves all cells: the old array and one that is twice as long.
+            let bytes = 2 * made * size_of::<Cell<D, V>>();
+            if bytes > PLAUSIBLE_FROM && !is_plausible(bytes) {
+                return Err(Error::Memory { bytes });
+            }
+        }
+        memory::push(&mut self.cells, cell)?;
+        Ok(made as u32)
+    }
+
+    /// Removes a cell.
+    pub fn discard(&mut self, c: u32) -> Result<()> {
+        let cell = &mut self.cells[c as usize];
+        let row = cell.slow & NONE;
+        // Unused cells look like ghosts.
+        cell.vertices[D] = INFINITE;
+        cell.slow |= NONE;
+        if row != NONE {
+            self.slow[row as usize] = Slow::default();
+            memory::push(&mut self.free_slow, row)?;
+        }
+        memory::push(&mut self.free, c)
+    }
+
+    /// The row of slow data of a cell.
+    pub fn slow_row(&mut self, c: u32) -> Result<usize> {
+        let row = self.cells[c as usize].slow & NONE;
+        if row != NONE {
+            return Ok(row as usize);
+        }
+        let new = match self.free_slow.pop() {
+            Some(row) => row,
+            None => {
+                memory::push(&mut self.slow, Slow::default())?;
+                self.slow.len() as u32 - 1
+            }
+        };
+        let cell = &mut self.cells[c as usize];
+        cell.slow = (cell.slow & ODD) | new;
+        Ok(new as usize)
+    }
+
+    /// The rounded differences of corners from the first one.
+    #[inline(always)]
+    pub fn differences(&self, v: &[u32; V]) -> Matrix<D, P> {
+        let o = &self.sites.scaled[v[0] as usize];
+        std::array::from_fn(|i| minus(&self.sites.scaled[v[i + 1] as usize], o))
+    }
+
+    /// Prepares the test of a simplex.
+    #[inline(always)]
+    pub fn measure_simplex(&mut self, c: u32) {
+        if self.sites.filtered {
+            let a = self.differences(&self.cells[c as usize].vertices);
+            self.cells[c as usize].test = Test::sphere(&a);
+        }
+    }
+
+    /// Prepares the test of a ghost, whose neighbor behind the facet is known.
+    pub fn measure_ghost(&mut self, c: u32) {
+        if self.sites.filtered {
+            let mut v = self.cells[c as usize].vertices;
+            let (behind, far) = self.behind(c);
+            v[D] = self.cells[behind as usize].vertices[far];
+            let a = self.differences(&v);
+            self.cells[c as usize].test = Test::plane(&a);
+        }
+    }
+
+    /// The simplex behind the facet of a ghost, and its corner off the facet.
+    pub fn behind(&self, ghost: u32) -> (u32, usize) {
+        let behind = self.cells[ghost as usize].neighbors[D];
+        let back = self.cells[behind as usize].neighbors;
+        let far = back.iter().position(|&n| n == ghost).unwrap_or(0);
+        (behind, far)
+    }
+
+    /// The value of a point in the test of a cell, and its bound.
+    #[inline(always)]
+    pub fn value(&self, c: u32, p: &[f64; P]) -> (f64, f64) {
+        let cell = &self.cells[c as usize];
+        let d = minus(p, &self.sites.scaled[cell.vertices[0] as usize]);
+        cell.test.value(&d, cell.is_ghost())
+    }
+
+    /// The finite simplices, positively oriented, and their neighbors, -1 outside.
+    pub fn export(&self) -> Result<Exported<V>> {
+        let mut number = filled(self.cells.len(), -1i32)?;
+        let mut count = 0;
+        for (n, _) in number
+            .iter_mut()
+            .zip(&self.cells)
+            .filter(|(_, c)| !c.is_ghost())
+        {
+            *n = count;
+            count += 1;
+        }
+        let mut simplices = with_room(count as usize)?;
+        let mut neighbors = with_room(count as usize)?;
+        for cell in self.cells.iter().filter(|c| !c.is_ghost()) {
+            let (mut v, mut n) = (cell.vertices, cell.neighbors.map(|t| number[t as usize]));
+            if !cell.is_positive() {
+                v.swap(D - 1, D);
+                n.swap(D - 1, D);
+            }
+            simplices.push(v);
+            neighbors.push(n);
+        }
+        Ok((simplices, neighbors))
+    }
+
+    /// log2 of a bound of the determinant of the differences of corners: Hadamard's inequality.
+    pub fn log_determinant(&self, v: &[u32; V]) -> f64 {
+        let a = self.differences(v);
+        a.iter().map(|row| 0.5 * dot(row, row).log2()).sum()
+    }
+}

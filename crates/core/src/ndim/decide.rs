@@ -1,0 +1,193 @@
+//! Whether a point is in conflict with a cell: the stages, and the rule of ties.
+
+use delone_predicates::arithmetic::decode_odd;
+
+use super::cell::Mesh;
+use super::filter::{barycentric, invert, minus};
+use super::fine::Fine;
+use super::frame::Frame;
+use super::residues::{Points, ROWS, is_zero};
+use crate::error::{Error, Result};
+
+/// Differences of at most this many bits go to integers at once: they are machine integers, and
+/// faster than residues.
+const FEW_BITS: u32 = 24;
+
+impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
+    /// Whether a point is in conflict with a cell.
+    #[inline(always)]
+    pub fn conflict(&mut self, c: u32, p: u32) -> Result<bool> {
+        let (value, bound) = self.value(c, &self.sites.scaled[p as usize]);
+        // A comparison that NaN fails.
+        if value.abs() > bound {
+            Ok(value < 0.0)
+        } else {
+            self.uncertain(c, p)
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn uncertain(&mut self, c: u32, p: u32) -> Result<bool> {
+        if self.cells[c as usize].is_ghost() {
+            let (behind, far) = self.behind(c);
+            return match self.side(behind, far, p)? {
+                0 => self.conflict(behind, p),
+                side => Ok(side < 0),
+            };
+        }
+        match self.power(c, p)? {
+            0 => {
+                self.counts.ties += 1;
+                self.tie(c, p)
+            }
+            power => Ok(power < 0),
+        }
+    }
+
+    /// The smallest of the point and of the corners that span it affinely decides.
+    fn tie(&mut self, c: u32, p: u32) -> Result<bool> {
+        let v = self.cells[c as usize].vertices;
+        let mut order: [usize; V] = std::array::from_fn(|i| i);
+        order.sort_unstable_by_key(|&i| v[i]);
+        for i in order {
+            if v[i] > p {
+                break;
+            }
+            let side = self.side(c, i, p)?;
+            if side != 0 {
+                return Ok(side < 0);
+            }
+        }
+        Ok(true)
+    }
+
+    /// The sign of the power of a point with respect to the sphere of a simplex: negative inside.
+    pub fn power(&mut self, c: u32, p: u32) -> Result<i32> {
+        let v = self.cells[c as usize].vertices;
+        let (value, bound) = self.value(c, &self.sites.scaled[p as usize]);
+        if value.abs() > bound {
+            return Ok(sign(value));
+        }
+        if self.sites.filtered && self.sites.bits > FEW_BITS {
+            let (value, bound) = self.fine_power(c, p)?;
+            if value.abs() > bound {
+                self.counts.fine += 1;
+                return Ok(sign(value));
+            }
+            // The determinant of the lifted points is that of the corners times the power. It is an
+            // integer in units to the power D + 2, and the power is at most twice the bound.
+            if bound.is_finite() {
+                let log = self.log_determinant(&v) + (2.0 * bound).log2();
+                let points = self.integers(v.iter().copied().chain([p]));
+                let degree = D as i64 + 2;
+                if is_zero(&points, true, ceil(log) - degree * self.sites.unit).is_some() {
+                    self.counts.zeros += 1;
+                    return Ok(0);
+                }
+            }
+        }
+        let row = self.framed(c)?;
+        let Some(frame) = &self.slow[row].frame else {
+            return Err(lost());
+        };
+        Ok(frame.power(&self.sites, v[0], p))
+    }
+
+    /// The power in double-double.
+    fn fine_power(&mut self, c: u32, p: u32) -> Result<(f64, f64)> {
+        let row = self.slow_row(c)?;
+        let v = self.cells[c as usize].vertices;
+        let at = |u: u32| &self.sites.scaled[u as usize];
+        let fine = match self.slow[row].fine {
+            Some(fine) => fine,
+            None => {
+                let fine = Fine::new(&v.map(at));
+                self.slow[row].fine = Some(fine);
+                fine
+            }
+        };
+        Ok(fine.power(at(p), at(v[0])))
+    }
+
+    /// The sign of the barycentric coordinate of corner `i` of a simplex at a point.
+    pub fn side(&mut self, c: u32, i: usize, p: u32) -> Result<i32> {
+        let v = self.cells[c as usize].vertices;
+        if self.sites.filtered {
+            let a = self.differences(&v);
+            let at = |u: u32| &self.sites.scaled[u as usize];
+            let d = minus(at(p), at(v[0]));
+            let (l, bound) = barycentric::<D, V, P>(&invert(&a), &d);
+            if l[i].abs() > bound {
+                return Ok(sign(l[i]));
+            }
+            // The determinant with the point in place of the corner is that of the corners times the
+            // coordinate, which is at most twice the bound.
+            if self.sites.bits > FEW_BITS && bound.is_finite() {
+                let log = self.log_determinant(&v) + (2.0 * bound).log2();
+                let mut with = v;
+                with[i] = p;
+                let points = self.integers(with.into_iter());
+                if is_zero(&points, false, ceil(log) - D as i64 * self.sites.unit).is_some() {
+                    self.counts.zeros += 1;
+                    return Ok(0);
+                }
+            }
+        }
+        let row = self.framed(c)?;
+        let Some(frame) = &self.slow[row].frame else {
+            return Err(lost());
+        };
+        Ok(frame.coordinate(&self.sites, v[0], i, p))
+    }
+
+    /// Makes the integers of a simplex; returns the row of slow data that has them.
+    fn framed(&mut self, c: u32) -> Result<usize> {
+        self.counts.exact += 1;
+        let row = self.slow_row(c)?;
+        if self.slow[row].frame.is_none() {
+            let frame = Frame::new(&self.sites, &self.cells[c as usize].vertices);
+            self.slow[row].frame = Some(frame.ok_or_else(flat)?);
+        }
+        Ok(row)
+    }
+
+    /// Points as integers for residues.
+    fn integers(&self, points: impl Iterator<Item = u32>) -> Points {
+        let mut rows = [[(0, 0); ROWS - 1]; ROWS + 1];
+        let mut count = 0;
+        for p in points {
+            for k in 0..D {
+                let (x, low) = self.sites.coordinate(p, k);
+                let (odd, exponent) = decode_odd(x);
+                if odd != 0 {
+                    let odd = if x < 0.0 { -(odd as i64) } else { odd as i64 };
+                    rows[count][k] = (odd, (i64::from(exponent) - low) as u32);
+                }
+            }
+            count += 1;
+        }
+        Points {
+            rows,
+            count,
+            dimension: D,
+        }
+    }
+}
+
+fn sign(x: f64) -> i32 {
+    if x < 0.0 { -1 } else { 1 }
+}
+
+/// An integer above a logarithm that is rounded.
+fn ceil(log: f64) -> i64 {
+    log.ceil() as i64 + 1
+}
+
+fn lost() -> Error {
+    Error::Internal("a simplex has lost its integers".into())
+}
+
+fn flat() -> Error {
+    Error::Internal("a simplex is flat".into())
+}

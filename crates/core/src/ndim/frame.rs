@@ -1,0 +1,204 @@
+//! The exact affine frame of a simplex: det, det A^-1 and det A^-1 b as integers, once for each simplex
+//! that needs them. After that each test is a scalar product: det P = det |d|^2 - (det A^-1 b) . d,
+//! det l_i = column i of (det A^-1) . d.
+//!
+//! By the fraction-free elimination of E. H. Bareiss (1968), whose entries are minors of the matrix
+//! [A | b | I]; b holds squares of lengths. With D rows and differences below 2^bits, Hadamard's
+//! inequality for columns bounds minors by D^(D / 2) 2^(D bits), and with b in place of a column by
+//! D D^(D / 2) 2^((D + 1) bits): below 2^[`minor_bits`].
+
+use std::ops::{Div, Mul, Sub};
+
+use num_bigint::BigInt;
+
+use super::sites::Sites;
+
+/// The integers of a simplex, with a positive determinant.
+pub struct Frame {
+    numbers: Numbers,
+    /// Whether the determinant of the differences was positive.
+    pub positive: bool,
+}
+
+enum Numbers {
+    Small(Solved<i128>),
+    Wide(Solved<BigInt>),
+}
+
+/// What elimination leaves.
+struct Solved<T> {
+    determinant: T,
+    /// det A^-1 b.
+    lifted: Vec<T>,
+    /// det A^-1, row by row.
+    adjoint: Vec<T>,
+    positive: bool,
+}
+
+/// Minors of [A | b | I] of differences below 2^bits are below 2^this, and so is D + 1 times the
+/// determinant of the lifted points, but for bits + 4.
+fn minor_bits(d: u32, bits: u32) -> u32 {
+    let log = u32::BITS - d.leading_zeros();
+    d * (bits + log.div_ceil(2)) + 2 * bits + log
+}
+
+impl Frame {
+    /// The frame of `corners`, the first of which is the origin. `None` if they lie in a flat.
+    pub fn new<const D: usize, const P: usize>(
+        sites: &Sites<D, P>,
+        corners: &[u32],
+    ) -> Option<Self> {
+        let minor = minor_bits(D as u32, sites.bits);
+        let small = |i: usize, k: usize| sites.small(corners[i + 1], corners[0], k);
+        // A step of the elimination computes the difference of two products of minors.
+        let products = 2 * minor + 1;
+        let numbers = if sites.is_small() && products < 63 {
+            let solved = eliminate::<i64, D>(|i, k| small(i, k).unwrap_or(0))?;
+            Numbers::Small(solved.map(i128::from))
+        } else if sites.is_small() && products < 127 {
+            Numbers::Small(eliminate::<i128, D>(|i, k| {
+                small(i, k).unwrap_or(0).into()
+            })?)
+        } else {
+            let solved = eliminate::<BigInt, D>(|i, k| sites.wide(corners[i + 1], corners[0], k))?;
+            // Scalar products have terms of the size of minors, and twice D of them.
+            if sites.is_small() && minor + sites.bits + 4 < 126 {
+                Numbers::Small(solved.map(|x| i128::try_from(x).unwrap_or(0)))
+            } else {
+                Numbers::Wide(solved)
+            }
+        };
+        let positive = match &numbers {
+            Numbers::Small(solved) => solved.positive,
+            Numbers::Wide(solved) => solved.positive,
+        };
+        Some(Self { numbers, positive })
+    }
+
+    /// The sign of the power of `p` where `o` is the first corner: negative inside.
+    pub fn power<const D: usize, const P: usize>(
+        &self,
+        sites: &Sites<D, P>,
+        o: u32,
+        p: u32,
+    ) -> i32 {
+        match &self.numbers {
+            Numbers::Small(s) => {
+                let mut sum = 0i128;
+                for k in 0..D {
+                    let x = i128::from(sites.small(p, o, k).unwrap_or(0));
+                    sum += x * (s.determinant * x - s.lifted[k]);
+                }
+                sum.signum() as i32
+            }
+            Numbers::Wide(s) => {
+                let mut sum = BigInt::ZERO;
+                for k in 0..D {
+                    let x = sites.wide(p, o, k);
+                    sum += &x * (&s.determinant * &x - &s.lifted[k]);
+                }
+                sign(&sum)
+            }
+        }
+    }
+
+    /// The sign of the barycentric coordinate of corner `i` at `p`.
+    pub fn coordinate<const D: usize, const P: usize>(
+        &self,
+        sites: &Sites<D, P>,
+        o: u32,
+        i: usize,
+        p: u32,
+    ) -> i32 {
+        let columns = if i == 0 { 0..D } else { i - 1..i };
+        match &self.numbers {
+            Numbers::Small(s) => {
+                let mut sum = 0i128;
+                for k in 0..D {
+                    let x = i128::from(sites.small(p, o, k).unwrap_or(0));
+                    sum += columns
+                        .clone()
+                        .map(|c| s.adjoint[k * D + c] * x)
+                        .sum::<i128>();
+                }
+                let value = if i == 0 { s.determinant - sum } else { sum };
+                value.signum() as i32
+            }
+            Numbers::Wide(s) => {
+                let mut sum = BigInt::ZERO;
+                for k in 0..D {
+                    let x = sites.wide(p, o, k);
+                    for c in columns.clone() {
+                        sum += &s.adjoint[k * D + c] * &x;
+                    }
+                }
+                sign(&if i == 0 { &s.determinant - sum } else { sum })
+            }
+        }
+    }
+}
+
+fn sign(x: &BigInt) -> i32 {
+    x.cmp(&BigInt::ZERO) as i32
+}
+
+impl<T> Solved<T> {
+    fn map<S>(self, to: impl Fn(T) -> S) -> Solved<S> {
+        Solved {
+            determinant: to(self.determinant),
+            lifted: self.lifted.into_iter().map(&to).collect(),
+            adjoint: self.adjoint.into_iter().map(&to).collect(),
+            positive: self.positive,
+        }
+    }
+}
+
+/// [A | b | I] -> [det I | det A^-1 b | det A^-1], with the signs of a positive determinant. `None` if
+/// A is singular.
+fn eliminate<T, const D: usize>(at: impl Fn(usize, usize) -> T) -> Option<Solved<T>>
+where
+    T: Clone + From<i64> + PartialOrd,
+    for<'a> &'a T: Mul<&'a T, Output = T> + Sub<&'a T, Output = T> + Div<&'a T, Output = T>,
+{
+    let (zero, one, width) = (T::from(0), T::from(1), 2 * D + 1);
+    let mut rows: Vec<Vec<T>> = (0..D).map(|_| vec![zero.clone(); width]).collect();
+    for (i, row) in rows.iter_mut().enumerate() {
+        for k in 0..D {
+            row[k] = at(i, k);
+            let negative = &zero - &(&row[k] * &row[k]);
+            row[D] = &row[D] - &negative;
+        }
+        row[D + 1 + i] = one.clone();
+    }
+    let (mut previous, mut positive) = (one, true);
+    for k in 0..D {
+        let pivot = (k..D).find(|&r| rows[r][k] != zero)?;
+        if pivot != k {
+            rows.swap(k, pivot);
+            positive = !positive;
+        }
+        let of_pivot = rows[k].clone();
+        for (i, row) in rows.iter_mut().enumerate() {
+            if i != k {
+                let factor = row[k].clone();
+                for j in 0..width {
+                    // The division has no remainder: the result is a minor.
+                    let cross = &(&of_pivot[k] * &row[j]) - &(&factor * &of_pivot[j]);
+                    row[j] = &cross / &previous;
+                }
+            }
+        }
+        previous = of_pivot[k].clone();
+    }
+    let negative = previous < zero;
+    let signed = |x: &T| if negative { &zero - x } else { x.clone() };
+    Some(Solved {
+        determinant: signed(&previous),
+        lifted: rows.iter().map(|row| signed(&row[D])).collect(),
+        adjoint: rows
+            .iter()
+            .flat_map(|row| row[D + 1..].iter().map(signed))
+            .collect(),
+        positive: positive ^ negative,
+    })
+}

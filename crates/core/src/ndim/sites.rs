@@ -1,0 +1,122 @@
+//! The points of a triangulation, sorted, scaled, and as integers in one unit.
+//!
+//! Let all coordinates be multiples of 2^low and smaller than 2^high in magnitude. They are scaled by
+//! 2^-high: all are below 1, and nothing overflows but inverses of thin simplices, whose bounds then
+//! are not finite and send the decision to the integers. If high - low is at most [`WIDEST`], the
+//! scaled coordinates are exact, differences that are not zero are at least 2^-400, and their squares
+//! at least 2^-800: what underflows is far below the floors in `filter`. Otherwise no filter is used.
+
+use delone_predicates::arithmetic::bit_span;
+use num_bigint::BigInt;
+
+use crate::error::Result;
+use crate::memory::with_room;
+use crate::wide;
+
+/// Bits from the lowest to the highest of coordinates that the filters take.
+const WIDEST: u32 = 400;
+
+/// Differences of fewer bits are kept as machine integers. Two of them are added without overflow.
+const SMALL: u32 = 61;
+
+/// Distinct points in lexicographic order.
+pub struct Sites<const D: usize, const P: usize> {
+    /// The coordinates times 2^-high, and zeros.
+    pub scaled: Vec<[f64; P]>,
+    /// Whether `scaled` is exact and filters hold.
+    pub filtered: bool,
+    /// Differences are below 2^bits units.
+    pub bits: u32,
+    /// The unit of `scaled` is 2^unit.
+    pub unit: i64,
+    /// The coordinates as they were given.
+    given: Vec<[f64; D]>,
+    /// The exponent of the unit of `given`.
+    low: i64,
+    /// The coordinates in units, if they have few bits.
+    small: Option<Vec<[i64; D]>>,
+}
+
+impl<const D: usize, const P: usize> Sites<D, P> {
+    /// From finite points, distinct and in lexicographic order.
+    pub fn new(given: Vec<[f64; D]>) -> Result<Self> {
+        let (mut low, mut high) = (i32::MAX, i32::MIN);
+        for p in &given {
+            // A width of zero: all coordinates are zero.
+            if let Some((least, width @ 1..)) = bit_span(&[*p]) {
+                low = low.min(least);
+                high = high.max(least + width as i32);
+            }
+        }
+        if low > high {
+            (low, high) = (0, 1);
+        }
+        let span = (high - low) as u32;
+        // Two factors, as one may not be a double.
+        let (first, second) = (factor(-high / 2), factor(-high - (-high / 2)));
+        let mut scaled = with_room(given.len())?;
+        scaled.extend(
+            given
+                .iter()
+                .map(|p| std::array::from_fn(|k| if k < D { p[k] * first * second } else { 0.0 })),
+        );
+        let mut sites = Self {
+            scaled,
+            filtered: span <= WIDEST,
+            bits: span + 1,
+            unit: -i64::from(span),
+            given,
+            low: i64::from(low),
+            small: None,
+        };
+        if sites.bits <= SMALL {
+            let mut small = with_room(sites.given.len())?;
+            // Below 2^60 units, so `scaled` times a power of two is an integer, exactly.
+            let units = factor(span as i32);
+            small.extend(sites.scaled.iter().map(|p| {
+                let integers: [i64; D] = std::array::from_fn(|k| (p[k] * units) as i64);
+                integers
+            }));
+            sites.small = Some(small);
+        }
+        Ok(sites)
+    }
+
+    /// The number of points.
+    pub fn len(&self) -> usize {
+        self.given.len()
+    }
+
+    /// Whether differences are machine integers.
+    pub fn is_small(&self) -> bool {
+        self.small.is_some()
+    }
+
+    /// Coordinate k of `p - o` in units, if differences are machine integers.
+    #[inline]
+    pub fn small(&self, p: u32, o: u32, k: usize) -> Option<i64> {
+        let small = self.small.as_ref()?;
+        Some(small[p as usize][k] - small[o as usize][k])
+    }
+
+    /// Coordinate k of `p - o` in units.
+    pub fn wide(&self, p: u32, o: u32, k: usize) -> BigInt {
+        match self.small(p, o, k) {
+            Some(difference) => difference.into(),
+            None => {
+                let at = |q: u32| wide::scaled(self.given[q as usize][k], self.low);
+                at(p) - at(o)
+            }
+        }
+    }
+
+    /// A coordinate as it was given, and the exponent of the unit.
+    pub fn coordinate(&self, p: u32, k: usize) -> (f64, i64) {
+        (self.given[p as usize][k], self.low)
+    }
+}
+
+/// 2^exponent, for exponents from -1022 to 1023.
+fn factor(exponent: i32) -> f64 {
+    f64::from_bits(((1023 + exponent) as u64) << 52)
+}

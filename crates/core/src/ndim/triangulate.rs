@@ -1,0 +1,141 @@
+//! Triangulates rows of coordinates: scan, sort, a first simplex, insertion, export.
+
+use delone_predicates::lexicographic;
+use num_bigint::BigInt;
+
+use super::cavity::Room;
+use super::cell::Mesh;
+use super::order::arranged;
+use super::sites::Sites;
+use crate::error::{Error, Result};
+use crate::memory::{self, filled, with_room};
+use crate::points;
+use crate::watch::{Pace, Watch};
+
+/// Units of work between two checks for interruption: a cell takes a microsecond, and one with
+/// integers up to a millisecond.
+const PACE: usize = 1 << 10;
+
+/// A triangulation as arrays.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simplices<const V: usize> {
+    /// Rows of the corners of each simplex, positively oriented.
+    pub simplices: Vec<[u32; V]>,
+    /// The simplex opposite each corner, -1 outside.
+    pub neighbors: Vec<[i32; V]>,
+    /// Rows that repeat earlier rows, ascending, and the first of these.
+    pub duplicates: Vec<[u32; 2]>,
+}
+
+/// The canonical Delaunay triangulation of points.
+///
+/// `V` is `D + 1`, and `P` is at least `D`: 4 in up to four dimensions, 8 in more, is fast.
+pub fn triangulate<const D: usize, const V: usize, const P: usize>(
+    points: &[[f64; D]],
+    watch: &Watch,
+) -> Result<Simplices<V>> {
+    const { assert!(V == D + 1 && P >= D && D >= 2 && D <= 8) };
+    let (sites, rows, duplicates) = sorted::<D, P>(points)?;
+    let mut pace = Pace::new(watch, PACE);
+    let order = arranged::<D, P>(&sites.scaled)?;
+    let mesh = inserted::<D, V, P>(sites, &rows, &order, &mut pace)?;
+    let (mut simplices, neighbors) = mesh.export()?;
+    for v in simplices.as_flattened_mut() {
+        *v = rows[*v as usize];
+    }
+    Ok(Simplices {
+        simplices,
+        neighbors,
+        duplicates,
+    })
+}
+
+/// Distinct points, the first row of each, and the pairs of rows that are equal.
+type Sorted<const D: usize, const P: usize> = (Sites<D, P>, Vec<u32>, Vec<[u32; 2]>);
+
+/// Finite points in lexicographic order, so that their numbers compare as they do.
+pub fn sorted<const D: usize, const P: usize>(points: &[[f64; D]]) -> Result<Sorted<D, P>> {
+    points::scan(points)?;
+    let mut all = with_room(points.len())?;
+    all.extend((0u32..).zip(points).map(|(row, _)| row));
+    let at = |row: u32| points[row as usize];
+    all.sort_unstable_by(|&i, &j| lexicographic(at(i), at(j)).then(i.cmp(&j)));
+    let (mut rows, mut duplicates) = (with_room(points.len())?, Vec::new());
+    for row in all {
+        match rows.last() {
+            Some(&first) if lexicographic(at(first), at(row)).is_eq() => {
+                memory::push(&mut duplicates, [row, first])?;
+            }
+            _ => rows.push(row),
+        }
+    }
+    duplicates.sort_unstable();
+    let mut distinct = with_room(rows.len())?;
+    distinct.extend(rows.iter().map(|&row| at(row)));
+    Ok((Sites::new(distinct)?, rows, duplicates))
+}
+
+/// A mesh of all sites, inserted in the given order.
+pub fn inserted<const D: usize, const V: usize, const P: usize>(
+    sites: Sites<D, P>,
+    rows: &[u32],
+    order: &[u32],
+    pace: &mut Pace,
+) -> Result<Mesh<D, V, P>> {
+    let first = independent(&sites, order, pace)?;
+    let Ok(corners) = <[u32; V]>::try_from(first.as_slice()) else {
+        let mut spanning: Vec<u32> = first.iter().map(|&v| rows[v as usize]).collect();
+        spanning.sort_unstable();
+        return Err(Error::Flat {
+            dimension: D,
+            distinct: sites.len(),
+            rows: spanning,
+        });
+    };
+    let mut used = filled(sites.len(), false)?;
+    for &v in &corners {
+        used[v as usize] = true;
+    }
+    let mut mesh = Mesh::new(sites, corners)?;
+    let mut room = Room::new();
+    for &p in order {
+        if !used[p as usize] {
+            mesh.insert(p, &mut room, pace)?;
+        }
+    }
+    Ok(mesh)
+}
+
+/// The first points of `order` that are affinely independent, up to D + 1 of them: exact, by
+/// fraction-free elimination of the differences (Bareiss), a row for each point that is kept.
+fn independent<const D: usize, const P: usize>(
+    sites: &Sites<D, P>,
+    order: &[u32],
+    pace: &mut Pace,
+) -> Result<Vec<u32>> {
+    let Some((&origin, others)) = order.split_first() else {
+        return Ok(Vec::new());
+    };
+    let (mut kept, mut rows) = (vec![origin], Vec::<(usize, [BigInt; D])>::new());
+    for &p in others {
+        pace.spend(16)?;
+        let mut row: [BigInt; D] = std::array::from_fn(|k| sites.wide(p, origin, k));
+        let mut previous = BigInt::from(1);
+        for (pivot, of_pivot) in &rows {
+            let factor = row[*pivot].clone();
+            for k in 0..D {
+                // The division has no remainder: the result is a minor.
+                row[k] = (&of_pivot[*pivot] * &row[k] - &factor * &of_pivot[k]) / &previous;
+            }
+            previous = of_pivot[*pivot].clone();
+        }
+        if let Some(pivot) = row.iter().position(|x| *x != BigInt::ZERO) {
+            rows.push((pivot, row));
+            kept.push(p);
+            if kept.len() == D + 1 {
+                break;
+            }
+        }
+    }
+    Ok(kept)
+}
