@@ -276,3 +276,9 @@ def test_levels_that_do_not_exist_are_refused():
         levels.surface(max_error=0.1)
     with pytest.raises(InputError, match="below the 2 triangles"):
         levels.surface(max_triangles=1)
+
+
+def test_errors_are_rounded_upwards():
+    third = TIN.from_points([(0, 0, 0), (3, 0, 0), (0, 3, 1), (1, 1, 0)])
+    error = float(third.simplification(max_error=1).errors[0])
+    assert Fraction(error) > Fraction(1, 3) > Fraction(np.nextafter(error, 0).item())
