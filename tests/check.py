@@ -71,6 +71,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "interpolate_sphere": ("sphere",),
     "overlap": ("sphere",),
     "locate3": ("locate",),
+    "ndim": ("space",),
     "joins": ("validation",),
     "memory": ("delaunay",),
     "mesh2": ("delaunay", "constrained"),

@@ -91,6 +91,7 @@ CORE: dict[str, set[str]] = {
     "alpha": {"measure", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "graphs": {"order", "points", "parallel", "delone_predicates"} | GROUND,
     "hull": {"order", "wide", "num_bigint", "delone_predicates"} | GROUND,
+    "ndim": {"points", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "live": {
         "constrained",
         "delaunay2",
@@ -165,7 +166,7 @@ CORE: dict[str, set[str]] = {
     | GROUND,
     "contour": {"delone_predicates"} | GROUND,
     "simplify": {"constrained", "mesh2", "order", "delone_predicates"} | GROUND,
-    "overlay": {"locate", "order", "parallel", "points", "delone_predicates"} | GROUND,
+    "overlay": {"delaunay2", "locate", "order", "parallel", "points", "delone_predicates"} | GROUND,
     "interpolate": {"locate", "delaunay2", "parallel", "wide", "delone_predicates"} | GROUND,
     "interpolate_sphere": {"interpolate", "sphere", "parallel", "delone_predicates"} | GROUND,
     "overlap": {

@@ -9,8 +9,6 @@ use crate::points::Extent;
 use crate::watch::Watch;
 use delone_predicates::Point2;
 
-use super::walk::Pair;
-
 /// A triangle cut by two others has nine corners at most.
 pub const MOST: usize = 10;
 /// Candidates between two checks for interruption.
@@ -80,16 +78,19 @@ impl Polygon {
 
     /// The same for a triangle, where the sides of its corners are known.
     #[inline]
-    pub fn in_pair<'a>(&'a self, pair: &Pair, space: &'a mut [Self; 3]) -> Option<&'a Self> {
+    pub fn in_pair<'a>(
+        &'a self,
+        corners: &[Point2; 3],
+        sides: &[[f64; 3]; 3],
+        space: &'a mut [Self; 3],
+    ) -> Option<&'a Self> {
         let beyond = |s: &[f64; 3]| (s[0] <= 0.0) & (s[1] <= 0.0) & (s[2] <= 0.0);
-        if pair.sides.iter().any(beyond) {
+        if sides.iter().any(beyond) {
             return None;
         }
-        let [a, b, c] = pair.corners;
+        let [a, b, c] = *corners;
         let lines = [Line::new(a, b), Line::new(b, c), Line::new(c, a)];
-        let cuts = pair
-            .sides
-            .map(|s| !((s[0] >= 0.0) & (s[1] >= 0.0) & (s[2] >= 0.0)));
+        let cuts = sides.map(|s| !((s[0] >= 0.0) & (s[1] >= 0.0) & (s[2] >= 0.0)));
         self.cut_by(&lines, cuts, space)
     }
 

@@ -12,6 +12,7 @@
 
 mod clip;
 mod packed;
+mod parts;
 mod prism;
 mod walk;
 
@@ -25,8 +26,11 @@ use crate::points::Extent;
 use crate::watch::Watch;
 use delone_predicates::Point2;
 
+pub use parts::Surface;
+
 use clip::{Candidates, Polygon};
 use packed::Packed;
+use parts::center;
 use prism::{Linear, Sums};
 use walk::{Ground, Walk};
 
@@ -34,15 +38,6 @@ use walk::{Ground, Walk};
 const SHARE: usize = 1 << 12;
 /// Triangles between two checks for interruption.
 const GROUP: usize = 16;
-
-/// A triangulated surface.
-#[derive(Clone, Copy)]
-pub struct Surface<'a> {
-    /// Its triangles.
-    pub given: Triangles<'a>,
-    /// The height of each point.
-    pub heights: &'a [f64],
-}
 
 /// What a surface is compared with.
 #[derive(Clone, Copy)]
@@ -99,10 +94,6 @@ pub fn volumes(
     let tasks = order.chunks(SHARE).collect();
     parallel::map_watched(workers, tasks, watch, |order| work.rows(order, watch))?;
     Ok(work.found.map(Output::into_vec))
-}
-
-fn center(corners: [Point2; 3]) -> Point2 {
-    std::array::from_fn(|k| corners.iter().map(|p| p[k] / 3.0).sum())
 }
 
 fn tree(given: Triangles, watch: &Watch) -> Result<Boxes<2>> {
@@ -177,7 +168,7 @@ impl Work<'_> {
             (Other::Surface(other), Some(walk)) => walk.meeting(corners, |t, pair| {
                 let above = || Linear::over(other.given.corners(t), other.heights_of(t), origin);
                 if self.region.is_none() {
-                    if let Some(common) = whole.in_pair(pair, &mut space) {
+                    if let Some(common) = whole.in_pair(&pair.corners, &pair.sides, &mut space) {
                         sums.add(common, &below, &above());
                     }
                     return;
@@ -191,11 +182,5 @@ impl Work<'_> {
             (Other::Surface(_), None) => (),
         }
         Ok(sums)
-    }
-}
-
-impl Surface<'_> {
-    fn heights_of(&self, t: usize) -> [f64; 3] {
-        self.given.simplices[t].map(|v| self.heights[v as usize])
     }
 }

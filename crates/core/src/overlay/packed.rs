@@ -7,7 +7,7 @@ use crate::memory::{copied, filled, with_room};
 use crate::watch::{Pace, Watch};
 use delone_predicates::Point2;
 
-use super::Surface;
+use super::parts::Surface;
 
 /// Triangles between two checks for interruption.
 const LOT: usize = 1 << 16;

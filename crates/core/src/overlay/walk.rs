@@ -19,8 +19,8 @@ use crate::points::Extent;
 use crate::watch::Watch;
 use delone_predicates::{Point2, Sign, orient2d};
 
-use super::center;
 use super::clip::{Line, WATCH_EVERY, relative};
+use super::parts::center;
 
 /// A bound of the rounding of [`Line::side`], relative to the largest coordinate of its line, times
 /// that of the line plus that of its point. Coordinates relative to an origin have one rounding each;

@@ -14,6 +14,7 @@ mod live;
 mod live3;
 mod locate;
 mod locate3;
+mod ndim;
 mod overlap;
 mod refine;
 mod sweep_and_lifting;
