@@ -71,7 +71,7 @@ class AreaWeights(Paired):
     >>> coarse = Delaunay([(0, 0), (1, 0), (1, 1), (0, 1)])
     >>> weights = Overlaps(Delaunay(points), coarse).to_weights("sum")
     >>> weights
-    <AreaWeights, sum, 185 to 2: 194 entries>
+    <AreaWeights, sum, 185 to 2: 209 entries>
     """
 
     __slots__ = ("_areas", "_fractions", "_method", "_rows", "_shapes")
