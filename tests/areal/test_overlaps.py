@@ -181,6 +181,20 @@ def test_tables_and_their_reference_systems() -> None:
         Overlaps(shapes, geopandas.GeoSeries([hole]))
 
 
+def test_ways_to_write_layers() -> None:
+    ring = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)]
+    square = {"type": "Polygon", "coordinates": [[*ring, ring[0]]]}
+    empty = {"type": "Polygon", "coordinates": []}
+    features = [{"type": "Feature", "properties": {}, "geometry": g} for g in (square, empty)]
+    collection = {"type": "FeatureCollection", "features": features}
+    for layer in (ring, [ring], np.array(ring), np.array([ring]), square, [square], collection):
+        overlaps = Overlaps(layer, [np.array(ring) + 1])
+        assert overlaps.areas.tolist() == [1]
+        assert len(overlaps.source_areas) == (2 if layer is collection else 1)
+    for nothing in ([], np.zeros((0, 4, 2))):
+        assert Overlaps(nothing, [ring]).covered_target.tolist() == [0]
+
+
 def test_what_is_refused() -> None:
     square = [[(0, 0), (1, 0), (1, 1), (0, 1)]]
     bow = [[(0, 0), (1, 1), (1, 0), (0, 1)]]

@@ -102,7 +102,7 @@ def _of_polygons(given: Any, name: str) -> tuple[Floats, Rows, Rows, Bools]:
     if isinstance(given, np.ndarray) and given.ndim == 3:
         given = list(given)
     if isinstance(given, list | tuple) and all(
-        isinstance(item, np.ndarray | list | tuple) for item in given
+        isinstance(item, np.ndarray | list | tuple) and np.ndim(item[:1]) == 2 for item in given
     ):
         given = [{"type": "Polygon", "coordinates": [np.asarray(item)]} for item in given]
     parts = parts_of(given, name=name)
@@ -123,7 +123,12 @@ def _count(given: Any) -> int:
     """Return the number of geometries, of which the last ones may have no parts."""
     if hasattr(given, "geometry"):
         return len(given.geometry)
-    return len(given) if hasattr(given, "__len__") and not isinstance(given, dict) else 1
+    if isinstance(given, dict) and "features" in given:
+        return len(given["features"])
+    if isinstance(given, dict) or not hasattr(given, "__len__"):
+        return 1
+    # A ring of places is one geometry.
+    return 1 if len(given) and np.ndim(given[0]) == 1 else len(given)
 
 
 def _require_range(points: Floats, name: str) -> None:
