@@ -157,8 +157,8 @@ def linear(points: Any, values: Any, queries: Any, order: str, runs: int) -> Non
     made = Linear(points, values, workers=1)
     made(queries[:1])
     line("the next field", median(lambda: made(queries, values=values), runs), count)
-    table = made.weights(queries)
-    line("the next field by `weights`", median(lambda: table @ values, runs), count)
+    table = made.weights_at(queries)
+    line("the next field by `weights_at`", median(lambda: table @ values, runs), count)
 
 
 def natural(points: Any, values: Any, queries: Any, order: str, runs: int) -> None:

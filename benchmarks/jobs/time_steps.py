@@ -39,7 +39,7 @@ def delone(given: argparse.Namespace, folder: Path) -> str:
         from delone import Delaunay
         from delone.interpolate import Linear
     with stage("weights"):
-        weights = Linear(Delaunay(stations)).weights(places)
+        weights = Linear(Delaunay(stations)).weights_at(places)
     return _steps(given.steps, stations, lambda values: weights @ values, folder)
 
 

@@ -160,7 +160,7 @@ def _check_improvement(**arrays: NDArray[Any]) -> None:
     require(arrays["after"].sum() == nsimplex, "after does not count all tetrahedra")
     check_range("below", arrays["below"], 0, nsimplex)
     require((np.diff(arrays["below"]) > 0).all(), "below is out of order")
-    check_range("cause", arrays["cause"], 0, 4)
+    check_range("cause", arrays["cause"], 0, 5)
 
 
 def check_input(**arrays: NDArray[Any]) -> None:

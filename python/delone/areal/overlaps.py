@@ -326,7 +326,7 @@ def _of_text(
     if weights.method != "majority":
         raise InputError(
             f"column {column!r:.60} is not numeric: its method must be 'majority', got "
-            f"{weights.method!r}"
+            f"{weights.method!r:.60}"
         )
     items = values.tolist()
     missing = np.array([_is_missing(x) for x in items], dtype=np.bool_)

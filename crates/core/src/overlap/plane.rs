@@ -348,10 +348,13 @@ impl Sum for Doubled<'_> {
         } else {
             quotient(s, whole)
         };
-        let share = match share.hi {
-            x if x >= 1.0 => pair(1.0),
-            x if x > 0.0 => share,
-            _ => ZERO,
+        // To both parts: a share that rounds to 1 may be less.
+        let share = if share.hi < 0.0 {
+            ZERO
+        } else if share.hi > 1.0 || (share.hi == 1.0 && share.lo > 0.0) {
+            pair(1.0)
+        } else {
+            share
         };
         let along = from(a, b);
         let start = from(self.origin, a);
