@@ -15,7 +15,7 @@ from matplotlib.collections import PolyCollection
 from delone import Overlaps, Voronoi
 
 # %%
-# Districts are the cells of a Voronoi diagram, smaller towards the center of a town of 10 km, with some 2,000 inhabitants each.
+# Districts are the cells of a Voronoi diagram, smaller toward the center of a town 10 km across, with some 2,000 inhabitants each.
 
 rng = np.random.default_rng(4)
 sites = 5 + rng.normal(size=(400, 2)) * 1.8
@@ -37,7 +37,7 @@ overlaps = Overlaps(districts, hexagons)
 print(overlaps, overlaps.report)
 
 # %%
-# "sum" transfers amounts: the total stays, up to rounding, as hexagons cover all districts.
+# "sum" transfers amounts: the total is preserved, up to rounding, as hexagons cover all districts.
 
 arrived = overlaps.transfer({"people": people}, {"people": "sum"})["people"]
 print(f"{people.sum()} inhabitants of districts, {np.nansum(arrived):.6f} in hexagons")

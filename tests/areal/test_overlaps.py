@@ -157,6 +157,15 @@ def test_columns_of_a_table() -> None:
         Overlaps(source, target).transfer({"people": [1, 2]}, {"people": "sum"})
 
 
+def test_missing_numbers_are_one_category() -> None:
+    source = boxes(np.array([0.0, 3, 6, 10]), np.array([0.0, 1.0]))
+    weights = Overlaps(source, boxes(np.array([0.0, 10]), np.array([0.0, 1.0]))).to_weights(
+        "majority"
+    )
+    assert np.isnan(weights.apply([np.nan, np.nan, 7.0])[0])
+    assert weights.apply([np.nan, np.nan, 7.0], skipna=True)[0] == 7
+
+
 def test_tables_and_their_reference_systems() -> None:
     geopandas = pytest.importorskip("geopandas")
     shapely = pytest.importorskip("shapely")

@@ -187,7 +187,7 @@ class Overlaps(SharedAreas, Stored):
             How values are combined:
 
             - "conservative": integrals over the target cell, divided by its area. The sum of values
-              times areas is that of the source. A cell of which a part is not covered has as much
+              times areas is that of the source. A partly covered cell gets proportionally
               less.
             - "normalized": means over the covered part. A constant remains one.
             - "sum": amounts, such as numbers of inhabitants: each source cell gives its value to
@@ -242,7 +242,7 @@ class Overlaps(SharedAreas, Stored):
             for `to_weights`. Columns of text are transferred by "majority" alone.
         skipna : bool, optional
             Whether NaN and None are missing values, whose cells take no part. By default NaN
-            propagates to all target cells that share area with it.
+            propagates to all target cells that share area with it; for "majority" it is a category.
         min_fraction : float, optional
             Target cells of which a smaller fraction has values are missing.
 
@@ -255,9 +255,9 @@ class Overlaps(SharedAreas, Stored):
         Raises
         ------
         InputError
-            A column does not exist, a method is unknown, or that of text is not "majority".
+            A column does not exist, a method is unknown, or a text column's is not "majority".
         ShapeError
-            A column has not one value for each source cell.
+            A column does not have one value for each source cell.
 
         See Also
         --------

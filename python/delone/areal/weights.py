@@ -147,7 +147,7 @@ class AreaWeights(Paired):
             levels, remain.
         skipna : bool, optional
             Whether NaN means a missing value, whose cell takes no part. By default NaN propagates
-            to all target cells that share area with it.
+            to all target cells that share area with it; for "majority" it is a category.
         min_fraction : float, optional
             Target cells of which a smaller fraction has values, by more than a rounding of 1e-12,
             are missing. By default any fraction will do.
@@ -304,7 +304,11 @@ class AreaWeights(Paired):
                 continue
             # Runs of one value in one cell, and their sums.
             first = np.ones(len(of), dtype=bool)
-            first[1:] = (of[1:] != of[:-1]) | (entries[1:] != entries[:-1])
+            differ = entries[1:] != entries[:-1]
+            if entries.dtype.kind == "f":
+                # NaN is one category.
+                differ &= ~(np.isnan(entries[1:]) & np.isnan(entries[:-1]))
+            first[1:] = (of[1:] != of[:-1]) | differ
             starts = np.flatnonzero(first)
             sums = np.add.reduceat(covers, starts)
             cell, value = of[starts], entries[starts]

@@ -1,4 +1,4 @@
-"""Simplification: the fewest points by greedy insertion whose surface keeps an error.
+"""Simplification: greedy insertion of points until the surface is within an error.
 
 Vertices on lines, on the outline and at corners of the hull stay. The core inserts the others where
 the error is greatest, and returns their order; each surface is triangulated from a part of it.

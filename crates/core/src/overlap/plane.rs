@@ -7,11 +7,11 @@
 //!
 //! # Errors
 //!
-//! Terms are computed as pairs of doubles relative to a corner of the smaller cell, of extent s.
-//! A side is measured from an end within 4 s of that corner, else from the place of its line that is
-//! nearest to it: so each term is a product of two lengths near s, and errs by 2^-100 s^2, times
-//! the quotient of the length L of the side and s, as a crossing errs by 2^-103 L. On lines that
-//! are nearly parallel, a crossing errs along both, which changes the two terms alike.
+//! Terms are computed as pairs of doubles relative to a corner of the smaller cell, of extent s. The
+//! end of a term is in both cells, and its start the start of a side, at most the length L of that
+//! away: so a term errs by 2^-100 L s, and a crossing is off by 2^-103 L, which changes an area by
+//! as much times s. On lines that are nearly parallel, a crossing errs along both, which changes the
+//! two terms alike; parallel lines do not cross, as one of them has moved.
 
 use std::cmp::Ordering;
 
@@ -294,7 +294,6 @@ struct Doubled<'a> {
     p: &'a Region,
     q: &'a Region,
     origin: Point2,
-    size: f64,
     sum: Pair,
     /// The side of the first cell, and where it is measured from.
     e: u32,
@@ -302,20 +301,6 @@ struct Doubled<'a> {
 }
 
 impl Doubled<'_> {
-    /// Where a side is measured from. If neither end is near the origin, neither is in the smaller
-    /// cell, and any place of the line will do.
-    fn base(&self, [a, b]: [Point2; 2]) -> [Pair; 2] {
-        let ends = [a, b].map(|v| from(self.origin, v));
-        let near = |v: &[Pair; 2]| v[0].hi.abs().max(v[1].hi.abs()) <= 4.0 * self.size;
-        if let Some(end) = ends.iter().find(|end| near(end)) {
-            return *end;
-        }
-        let along = from(a, b);
-        let dot = |u: &[Pair; 2], v: &[Pair; 2]| u[0] * v[0] + u[1] * v[1];
-        let t = pair(-quotient(dot(&ends[0], &along), dot(&along, &along)).hi);
-        [0, 1].map(|k| ends[0][k] + along[k] * t)
-    }
-
     fn add(&mut self, base: &[Pair; 2], x: &[Pair; 2], minus: bool) {
         let term = cross(base, x);
         self.sum = if minus {
@@ -328,7 +313,7 @@ impl Doubled<'_> {
 
 impl Sum for Doubled<'_> {
     fn side(&mut self, e: u32) {
-        (self.e, self.from) = (e, self.base(self.p.ends(e)));
+        (self.e, self.from) = (e, from(self.origin, self.p.ends(e)[0]));
     }
 
     fn first(&mut self) {
@@ -361,14 +346,13 @@ impl Sum for Doubled<'_> {
         let x = [0, 1].map(|k| start[k] + along[k] * share);
         let base = self.from;
         self.add(&base, &x, !leaves);
-        let base = self.base([c, d]);
+        let base = from(self.origin, c);
         self.add(&base, &x, leaves);
     }
 
     fn second(&mut self, f: u32) {
         let ends = self.q.ends(f);
-        let base = self.base(ends);
-        let end = from(self.origin, ends[1]);
+        let [base, end] = ends.map(|v| from(self.origin, v));
         self.add(&base, &end, false);
     }
 }
@@ -376,12 +360,15 @@ impl Sum for Doubled<'_> {
 /// The area that cells share; the second one has moved.
 pub fn shared(p: &Region, q: &Region, work: &mut Work) -> f64 {
     let (first, second) = (p.extent.side(), q.extent.side());
-    let small = if first < second { p } else { q };
+    let (small, size) = if first < second {
+        (p, first)
+    } else {
+        (q, second)
+    };
     let mut sum = Doubled {
         p,
         q,
         origin: small.corners[0].v,
-        size: first.min(second),
         sum: ZERO,
         e: 0,
         from: [ZERO; 2],
@@ -392,11 +379,7 @@ pub fn shared(p: &Region, q: &Region, work: &mut Work) -> f64 {
         Met::Second => q.area,
         Met::Part => {
             let area = sum.sum.hi / 2.0;
-            if area > TINY * sum.size * sum.size {
-                area
-            } else {
-                0.0
-            }
+            if area > TINY * size * size { area } else { 0.0 }
         }
     }
 }
