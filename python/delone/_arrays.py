@@ -25,6 +25,8 @@ from delone.errors import DtypeError, InputError, LimitError, NonFiniteError, Sh
 from delone.georeference import column_words
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
 Scalar = TypeVar("Scalar", bound=np.generic)
@@ -62,20 +64,21 @@ _REFUSED_KINDS = {
 
 
 def as_points(
-    points: ArrayLike, *, ndim: int | None = None, name: str = "points"
+    points: ArrayLike, *, ndim: int | None = None, most: int = 3, name: str = "points"
 ) -> NDArray[np.float64]:
     """Return points as a C-contiguous float64 array with exactly the values given, NaN included.
 
-    (n, 2) or (n, 3) from anything array-like; `ndim` requires one of them. No copy is made if none
-    is needed, so the result may be the input itself, even if read-only: never modify it.
+    From 2 to `most` columns from anything array-like; `ndim` requires a number. No copy is made if
+    none is needed, so the result may be the input itself, even if read-only: never modify it.
     """
-    if _is_right(points, ndim):
+    wanted = range(2, most + 1) if ndim is None else (ndim,)
+    if _is_right(points, wanted) and not _is_across(points, wanted):
         return points
     array = as_plain_array(_coordinates(points, ndim, name), name)
     _refuse_columns(points, array, name)
     refuse_geometries(array, name)
     _refuse_kind(array, name)
-    _refuse_shape(array, ndim, name)
+    _refuse_shape(array, wanted, name)
     if array.dtype.kind in "iu":
         _refuse_large_integers(array, name)
     elif array.dtype.itemsize > 8:
@@ -339,14 +342,14 @@ def frozen(array: NDArray[Scalar]) -> NDArray[Scalar]:
     return view
 
 
-def _is_right(points: Any, ndim: int | None) -> TypeGuard[NDArray[np.float64]]:
+def _is_right(points: Any, wanted: Sequence[int]) -> TypeGuard[NDArray[np.float64]]:
     """Return whether no conversion is needed; this is on the hot path of small inputs."""
     return (
         type(points) is np.ndarray
         and points.dtype is _FLOAT64
         and points.flags.carray
         and points.ndim == 2
-        and points.shape[1] in ((2, 3) if ndim is None else (ndim,))
+        and points.shape[1] in wanted
     )
 
 
@@ -419,15 +422,21 @@ def _refuse_kind(array: NDArray[Any], name: str) -> None:
     raise DtypeError(f"{name} contains {what} (dtype {array.dtype}), not real numbers; {hint}")
 
 
-def _refuse_shape(array: NDArray[Any], ndim: int | None, name: str) -> None:
-    wanted = (2, 3) if ndim is None else (ndim,)
-    if array.ndim == 2 and array.shape[1] in wanted:
+def _refuse_shape(array: NDArray[Any], wanted: Sequence[int], name: str) -> None:
+    if array.ndim == 2 and array.shape[1] in wanted and not _is_across(array, wanted):
         return
     shapes = " or ".join(f"(n, {d})" for d in wanted)
+    if len(wanted) > 2:
+        shapes = f"(n, d) with d from {wanted[0]} to {wanted[-1]}"
     hint = ""
-    if array.ndim == 2 and array.shape[0] in wanted:
+    if array.ndim == 2 and (array.shape[0] in wanted or _is_across(array, wanted)):
         hint = "; transpose it"
     raise ShapeError(f"{name} must have shape {shapes}, got {array.shape}{hint}")
+
+
+def _is_across(array: NDArray[Any], wanted: Sequence[int]) -> bool:
+    """Return whether the rows of many columns are x, y and z of points; they would be too few."""
+    return len(wanted) > 2 and array.shape[1] > 3 and array.shape[0] in (2, 3)
 
 
 def _refuse_large_integers(array: NDArray[Any], name: str) -> None:

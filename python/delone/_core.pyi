@@ -28,6 +28,7 @@ __all__ = [
     "FacePairs",
     "Faults2",
     "Faults3",
+    "FaultsN",
     "FlippedTriangulation",
     "Hull3",
     "ImprovedMesh",
@@ -44,6 +45,7 @@ __all__ = [
     "Location3",
     "Locator2",
     "Locator3",
+    "LocatorN",
     "NaturalWeights",
     "PeriodicFaults",
     "PeriodicTriangulation",
@@ -151,8 +153,10 @@ __all__ = [
     "transforms",
     "triangulate2",
     "triangulate3",
+    "triangulate_n",
     "validate2",
     "validate3",
+    "validate_n",
     "validate_periodic2",
     "validate_regular2",
     "validate_regular3",
@@ -707,6 +711,37 @@ class Faults3:
         """Pairs of cospherical tetrahedra that are not canonical, (k, 2)."""
 
 @final
+class FaultsN:
+    """Faults of a triangulation in four to eight dimensions; arrays are empty if there are
+    none.
+    """
+
+    @property
+    def orientation(self) -> NDArray[np.int32]:
+        """Simplices that are not positively oriented, (k,)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """Simplices whose row of neighbors is wrong, (k,)."""
+    @property
+    def hull(self) -> NDArray[np.int32]:
+        """Boundary facets that are not on the hull, (k, d)."""
+    @property
+    def missing(self) -> NDArray[np.int32]:
+        """Rows of distinct points that no simplex uses, (k,)."""
+    @property
+    def repeats(self) -> NDArray[np.int32]:
+        """Rows that are used although an earlier row has the same coordinates, (k,)."""
+    @property
+    def delaunay(self) -> NDArray[np.int32]:
+        """Pairs of simplices that are not locally Delaunay, (k, 2)."""
+    @property
+    def ties(self) -> NDArray[np.int32]:
+        """Pairs of cospherical simplices that are not canonical, (k, 2)."""
+    @property
+    def overlaps(self) -> NDArray[np.int32]:
+        """Simplices that cover a point of simplex 0, (k,)."""
+
+@final
 class FlippedTriangulation:
     """A triangulation made canonical by flips."""
 
@@ -1137,6 +1172,22 @@ class Locator3:
         """
     def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]:
         """The nearest vertex to each query, in a Delaunay triangulation."""
+
+@final
+class LocatorN:
+    """A Delaunay triangulation in four to eight dimensions that is kept for many calls."""
+
+    def __new__(
+        cls, points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
+    ) -> LocatorN: ...
+    def find(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]:
+        """For each query, the first simplex that contains it, or -1."""
+    def within(
+        self, xi: NDArray[np.float64], workers: int
+    ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+        """Simplices with barycentric coordinates."""
+    def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]:
+        """The nearest vertex to each query."""
 
 @final
 class NaturalWeights:
@@ -1810,7 +1861,7 @@ def disks2(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> NDArray
 def edges(
     simplices: NDArray[np.int32], neighbors: NDArray[np.int32], npoints: int, workers: int
 ) -> NDArray[np.int32]:
-    """Every edge of triangles or tetrahedra once: the smaller vertex first, rows ascending."""
+    """Every edge of simplices once: the smaller vertex first, rows ascending."""
 
 def erode(
     points: NDArray[np.float64],
@@ -1857,8 +1908,8 @@ def fault(
     neighbors: NDArray[np.int32],
     workers: int,
 ) -> tuple[str, int] | None:
-    """The first fault of triangles or tetrahedra: `("neighbors", row)` or `("orientation",
-    row)`; None if there is none.
+    """The first fault of simplices: `("neighbors", row)` or `("orientation", row)`; None
+    if there is none.
     """
 
 def find_simplex2(
@@ -2164,7 +2215,7 @@ def simplify2(
 def sizes(
     points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
 ) -> NDArray[np.float64]:
-    """The areas of triangles, or the volumes of tetrahedra."""
+    """The areas of triangles, or the volumes of simplices of more dimensions."""
 
 def smooth2(
     points: NDArray[np.float64],
@@ -2259,6 +2310,9 @@ def triangulate2(points: NDArray[np.float64], method: str, workers: int) -> Tria
 def triangulate3(points: NDArray[np.float64], workers: int) -> Triangulation:
     """The Delaunay triangulation of 3-D points."""
 
+def triangulate_n(points: NDArray[np.float64]) -> Triangulation:
+    """The Delaunay triangulation of points with four to eight coordinates."""
+
 def validate2(
     points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
 ) -> Faults2:
@@ -2268,6 +2322,11 @@ def validate3(
     points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
 ) -> Faults3:
     """Returns the faults of a 3-D triangulation."""
+
+def validate_n(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
+) -> FaultsN:
+    """Returns the faults of a triangulation in four to eight dimensions."""
 
 def validate_periodic2(
     points: NDArray[np.float64],

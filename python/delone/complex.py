@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, SupportsIndex
 
 import numpy as np
 
+from delone.dimension import FLAT_OR_SOLID, only
 from delone.errors import InputError
 from delone.georeference import crs_of
 from delone.immutable import Immutable, kept, sealed
@@ -87,6 +88,7 @@ class Exchanged(Referenced):
         """Return what other libraries take."""
         raise NotImplementedError
 
+    @only(FLAT_OR_SOLID, "draw two or three of the columns of its points")
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Draw with matplotlib (extra ``plot``) or, in 3-D, with PyVista (extra ``pyvista``).
 
@@ -121,6 +123,7 @@ class Exchanged(Referenced):
         drawn: Any = self
         return plot(drawn, ax, **options)
 
+    @only(FLAT_OR_SOLID, "meshio has no cells of more dimensions; use `save`")
     def to_meshio(self) -> Any:
         """Convert to a mesh of meshio (extra ``mesh``).
 
@@ -146,6 +149,7 @@ class Exchanged(Referenced):
 
         return to_meshio(self._parts())
 
+    @only(FLAT_OR_SOLID, "PyVista has no cells of more dimensions")
     def to_pyvista(self) -> Any:
         """Convert to a mesh of PyVista (extra ``pyvista``).
 
@@ -361,7 +365,7 @@ class Complex(Stored, Exchanged):
 
     @property
     def ndim(self) -> int:
-        """Number of coordinates, 2 or 3."""
+        """Number of coordinates."""
         return int(self._points.shape[1])
 
     @property

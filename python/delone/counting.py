@@ -20,6 +20,7 @@ _MANY = {
     "geometry": "geometries",
     "vertex": "vertices",
     "pass": "passes",
+    "simplex": "simplices",
 }
 
 

@@ -1,4 +1,4 @@
-"""The class Delaunay: a 2-D or 3-D Delaunay triangulation as immutable arrays.
+"""The class Delaunay: a Delaunay triangulation in 2 to 8 dimensions as immutable arrays.
 
 The core makes `simplices` and `neighbors`; what follows from them is in `triangulation`. Here are
 construction and proof.
@@ -13,10 +13,11 @@ from delone._arrays import as_workers
 from delone.counting import counted
 from delone.errors import DegenerateInputError, DtypeError, InputError, InternalError
 from delone.georeference import warn_of_degrees
+from delone.higher.dimension import MOST
 from delone.immutable import own_copy
 from delone.space.plane import plane_of
 from delone.triangulation import PointTriangulation
-from delone.validation import ValidationReport, of_tetrahedra, of_triangles
+from delone.validation import ValidationReport, of_simplices, of_tetrahedra, of_triangles
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -28,8 +29,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Delaunay"]
 
-# In 3-D there is one method; both names mean it.
-_METHODS = {2: _core.methods2(), 3: ["auto", "bowyer-watson"]}
+# From 3-D on there is one method; both names mean it.
+_METHODS = _core.methods2(), ["auto", "bowyer-watson"]
 # Arguments of scipy.spatial.Delaunay without a meaning here, and of other classes.
 _INSTEAD = {
     "furthest_site": "use delone.compat.scipy.Delaunay",
@@ -55,22 +56,23 @@ class _Elsewhere(TypedDict, total=False):
 
 
 class Delaunay(PointTriangulation):
-    """The Delaunay triangulation of 2-D or 3-D points.
+    """The Delaunay triangulation of points with two to eight coordinates.
 
     Parameters
     ----------
-    points : array_like, shape (n, 2) or (n, 3), or PointSet
+    points : array_like, shape (n, d), or PointSet
         Finite coordinates, in any unit: floats of up to 64 bits, integers up to 2**53. They are
-        copied, and results are exact for them. Three columns are 3-D points: for a surface with
-        heights, pass only the first two columns.
+        copied, and results are exact for them. There are as many dimensions as columns, from two to
+        eight: for a surface with heights, pass only the first two columns.
     method : str, optional
         The algorithm: ``"auto"`` (the fastest, the default), ``"bowyer-watson"`` (cavity insertion
         along a space-filling curve), ``"divide-and-conquer"`` (merging halves), ``"incremental"``
         (randomized insertion and flips), ``"sweep"`` (a sweep line) or ``"lifting"`` (the convex
-        hull of the points lifted to a paraboloid). The triangles do not depend on it. In 3-D the
-        choices are ``"auto"`` and ``"bowyer-watson"``.
+        hull of the points lifted to a paraboloid). The triangles do not depend on it. In more
+        dimensions the choices are ``"auto"`` and ``"bowyer-watson"``.
     workers : int, optional
-        Maximum number of threads; by default one per core. The result does not depend on it.
+        Maximum number of threads; by default one per core. The result does not depend on it. From
+        4-D on, the simplices are found on one thread.
     planar : bool, optional
         Treat longitudes and latitudes as coordinates of a plane; otherwise points known to be in
         degrees (from a reference system or column names) cause a warning.
@@ -80,14 +82,14 @@ class Delaunay(PointTriangulation):
     points : ndarray of float64, shape (n, d)
         The coordinates.
     simplices : ndarray of int32, shape (m, d + 1)
-        The simplices as rows of `points`: triangles, counter-clockwise, or tetrahedra, positively
-        oriented. (Seen from the first vertex, the other three turn clockwise; the determinant of
-        the vectors from the first to the others is positive.)
+        The simplices as rows of `points`: triangles, counter-clockwise, or simplices of more
+        corners, positively oriented: the determinant of the vectors from the first corner to the
+        others is positive. (In 3-D, seen from the first, the other three turn clockwise.)
     neighbors : ndarray of int32, shape (m, d + 1)
         ``neighbors[t, k]`` is the simplex across the edge or face opposite vertex k of simplex t;
         -1 outside.
     ndim : int
-        The number of coordinates, 2 or 3.
+        The number of coordinates.
     npoints, nsimplex : int
         Numbers of points (rows, duplicates included) and of simplices.
     min_bound, max_bound : ndarray of float64, shape (d,)
@@ -97,16 +99,18 @@ class Delaunay(PointTriangulation):
     ------
     DegenerateInputError
         Fewer than d + 1 points are distinct, or all lie on one line; ``error.chain`` has them in
-        order. Or 3-D points all lie in one plane; ``error.plane`` is its triangulation.
+        order. Or 3-D points all lie in one plane; ``error.plane`` is its triangulation. Or points
+        with more coordinates all lie in a flat of fewer dimensions; ``error.chain`` has rows that
+        span it, one more than it has dimensions.
     NonFiniteError
         A coordinate is NaN or infinite; ``error.rows`` has the first such rows.
     ShapeError, DtypeError
-        `points` is not a real array of shape (n, 2) or (n, 3).
+        `points` is not a real array of shape (n, d), with d from 2 to 8.
     InputError
         `method` or `workers` is not one of its choices.
     LimitError
-        There are more than 2**28 points in 2-D or 2**27 in 3-D, or more than 2**30 tetrahedra.
-        `delone.distributed` has no such limit in 2-D.
+        There are more than 2**28 points in 2-D or 2**27 in 3-D, more than 2**30 tetrahedra, or more
+        than 2**28 simplices in higher dimensions. `delone.distributed` has no such limit in 2-D.
     MemoryError
         There is not enough memory.
     KeyboardInterrupt
@@ -123,8 +127,13 @@ class Delaunay(PointTriangulation):
     vertex, including those in the middle of a side of the convex hull; of rows with the same
     coordinates (-0.0 and 0.0 are the same) the first is the vertex. If more than three points lie
     on one empty circle, their polygon is fanned from its lexicographically smallest vertex, so a
-    set of points has one triangulation, independent of the order of its rows. In 3-D, points on
-    one sphere are decided by the same perturbation, and no tetrahedron is flat.
+    set of points has one triangulation, independent of the order of its rows. In more dimensions,
+    points on one sphere are decided by the same perturbation, and no simplex is flat: a grid, even
+    with uneven steps, gets the d! simplices of Kuhn's triangulation in each cell.
+
+    The number of simplices grows fast with the number of dimensions: uniform points have 2
+    triangles each, 6.8 tetrahedra, and about 30, 150 and 600 simplices in 4-D, 5-D and 6-D, and
+    3,700 in 8-D. From 4-D on there are no pictures, exports or measures of shape.
 
     Names, dtypes and meanings are those of ``scipy.spatial.Delaunay``. All arrays are read-only,
     attributes cannot be set, and ``copy.copy`` and ``copy.deepcopy`` return the object itself.
@@ -169,6 +178,15 @@ class Delaunay(PointTriangulation):
     <Delaunay of 9 points: 12 tetrahedra>
     >>> cube.volumes.sum(), cube.convex_hull.shape
     (np.float64(8.0), (12, 3))
+
+    A table with four columns:
+
+    >>> import numpy as np
+    >>> table = Delaunay(np.stack(np.meshgrid(*4 * [range(3)]), axis=-1).reshape(-1, 4))
+    >>> table
+    <Delaunay of 81 points: 384 simplices>
+    >>> int(table.find_simplex((0.5, 0.25, 1.75, 1))) >= 0
+    True
     """
 
     __slots__ = ()
@@ -184,14 +202,14 @@ class Delaunay(PointTriangulation):
     ) -> None:
         if unknown:
             _refuse_options(unknown)
-        own = own_copy(points, ndim=None)
+        own = own_copy(points, ndim=None, most=MOST)
         warn_of_degrees(points, own, planar=planar)
         # Few points are one task, and to count cores takes as long as some of them.
         threads = 1 if workers is None and len(own) < _FEW else as_workers(workers)
-        methods = _METHODS[own.shape[1]]
+        methods = _METHODS[own.shape[1] > 2]
         if not isinstance(method, str) or method not in methods:
             names = ", ".join(map(repr, methods))
-            where = "" if own.shape[1] == 2 else " in 3-D"
+            where = "" if own.shape[1] == 2 else f" in {own.shape[1]}-D"
             raise InputError(f"method must be one of {names}{where}, got {method!r:.80}")
         try:
             made = _triangles(own, method, threads)
@@ -231,11 +249,12 @@ class Delaunay(PointTriangulation):
         >>> print(Delaunay([(0, 0), (1, 0), (0, 1)]).validate())
         a canonical Delaunay triangulation
         """
+        arrays = self._points, self._simplices, self._neighbors
+        if self.ndim == 2:
+            return of_triangles(_core.validate2(*arrays))
         if self.ndim == 3:
-            solid = _core.validate3(self._points, self._simplices, self._neighbors)
-            return of_tetrahedra(solid)
-        flat = _core.validate2(self._points, self._simplices, self._neighbors)
-        return of_triangles(flat)
+            return of_tetrahedra(_core.validate3(*arrays))
+        return of_simplices(_core.validate_n(*arrays))
 
     def _described(self) -> str:
         points = counted(self.npoints, "point")
@@ -256,6 +275,8 @@ def _triangles(points: NDArray[np.float64], method: str, workers: int) -> _core.
     """Return the triangulation, as the core returns it."""
     if points.shape[1] == 2:
         return _core.triangulate2(points, method, workers)
+    if points.shape[1] > 3:
+        return _core.triangulate_n(points)
     try:
         return _core.triangulate3(points, workers)
     except DegenerateInputError as error:

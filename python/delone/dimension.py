@@ -1,6 +1,7 @@
 """What differs between triangulations of one dimension and another: one table of functions each.
 
-`delone.plane` has the table of triangles in 2-D, `delone.space` that of tetrahedra in 3-D.
+`delone.plane` has the table of triangles in 2-D, `delone.space` that of tetrahedra in 3-D, and
+`delone.higher` those of simplices in four to eight dimensions.
 `delone.triangulation` calls them; no other place asks how many coordinates there are.
 """
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from delone._types import Floats, Indices
     from delone.measures import Measures
 
-__all__ = ["Dimension", "Locator", "only"]
+__all__ = ["FLAT_OR_SOLID", "Dimension", "Locator", "absent", "only"]
 
 
 class Locator(Protocol):
@@ -58,16 +59,26 @@ class Dimension:
 
 F = TypeVar("F", bound="Callable[..., Any]")
 
+# Dimensions that are not listed one by one.
+_MANY = 3
+# What has pictures, files of meshes and shapes of simplices.
+FLAT_OR_SOLID = (2, 3)
 
-def only(ndim: int, instead: str) -> Callable[[F], F]:
-    """Give a method, or the getter of a property, to instances of one dimension.
+
+def absent(*_: Any) -> Any:
+    """Stand for a function that a dimension does not have; attributes hide it by `only`."""
+    raise NotImplementedError
+
+
+def only(ndim: int | tuple[int, ...], instead: str) -> Callable[[F], F]:
+    """Give a method, or the getter of a property, to instances of one dimension, or of several.
 
     In others the attribute does not exist, also for ``hasattr``; the error says what to use
     `instead`.
     """
 
     def decorate(method: F) -> F:
-        found: Any = _Only(method, ndim, instead)
+        found: Any = _Only(method, (ndim,) if isinstance(ndim, int) else ndim, instead)
         return found  # type: ignore[no-any-return]
 
     return decorate
@@ -76,7 +87,7 @@ def only(ndim: int, instead: str) -> Callable[[F], F]:
 class _Only:
     """A method that instances of other dimensions do not have."""
 
-    def __init__(self, method: Callable[..., Any], ndim: int, instead: str) -> None:
+    def __init__(self, method: Callable[..., Any], ndim: tuple[int, ...], instead: str) -> None:
         functools.update_wrapper(self, method)
         self._method, self._ndim, self._instead = method, ndim, instead
 
@@ -91,7 +102,10 @@ class _Only:
         return self._method(owner, *args, **kwargs)
 
     def _check(self, owner: Any) -> None:
-        if owner.ndim != self._ndim:
+        # What has no number of coordinates, such as the sphere, is drawn in 2-D or 3-D.
+        if getattr(owner, "ndim", self._ndim[0]) not in self._ndim:
             name = self._method.__name__
-            message = f"{name} is only available in {self._ndim}-D: {self._instead}"
+            where = " and ".join(f"{d}-D" for d in self._ndim[:2])
+            where = where if len(self._ndim) < _MANY else f"{self._ndim[0]}-D and more dimensions"
+            message = f"{name} is only available in {where}: {self._instead}"
             raise AttributeError(message, name=name, obj=owner)

@@ -132,9 +132,9 @@ def sealed(array: NDArray[Any]) -> NDArray[Any]:
     return np.asarray(array.data)
 
 
-def own_copy(points: ArrayLike, *, ndim: int | None = 2) -> NDArray[np.float64]:
-    """Return points that nobody else can change, not even while the core runs."""
-    array = as_points(points, ndim=ndim)
+def own_copy(points: ArrayLike, *, ndim: int | None = 2, most: int = 3) -> NDArray[np.float64]:
+    """Return points that nobody else can change, not even while the core runs: `as_points`."""
+    array = as_points(points, ndim=ndim, most=most)
     if array is points:
         return copied(array)
     if isinstance(points, list | tuple):

@@ -16,6 +16,7 @@ import numpy as np
 
 from delone._arrays import as_number, as_vectors, as_workers, require_finite
 from delone.blocks import blocks
+from delone.dimension import FLAT_OR_SOLID
 from delone.errors import InputError, ShapeError
 from delone.renames import renamed
 
@@ -48,7 +49,7 @@ class Location:
         a corner. NaN outside.
     closest : ndarray of float64, shape (..., d)
         The point itself inside; outside, the nearest point of the boundary, rounded. NaN where the
-        query is not finite.
+        query is not finite, and outside in more than three dimensions.
     beside : ndarray of int32, shape (...)
         Outside, the simplex at that point of the boundary; else -1.
     facet : ndarray of int32, shape (..., d)
@@ -160,6 +161,11 @@ def locate_near(
 ) -> Location:
     """Locate points; outside at most `tolerance` away, at the nearest point of the boundary."""
     limit = as_tolerance(tolerance)
+    if limit and dimension.ndim not in FLAT_OR_SOLID:
+        raise InputError(
+            "tolerance is only available in 2-D and 3-D: in more dimensions distances from the "
+            "boundary are not computed"
+        )
     place = locate(dimension, index, points, xi, workers)
     if not limit:
         return place

@@ -14,7 +14,8 @@ import numpy as np
 from delone import location, measures
 from delone._arrays import as_workers
 from delone.complex import Complex
-from delone.dimension import only
+from delone.dimension import FLAT_OR_SOLID, only
+from delone.higher.dimension import HIGHER
 from delone.immutable import kept, sealed
 from delone.plane.dimension import PLANE
 from delone.plane.location import along
@@ -30,11 +31,11 @@ if TYPE_CHECKING:
 __all__ = ["HullTiling", "PointTriangulation", "Triangulation"]
 
 # By the number of coordinates.
-_DIMENSIONS = {2: PLANE, 3: SPACE}
+_DIMENSIONS = {2: PLANE, 3: SPACE} | HIGHER
 
 
 class Triangulation(Complex):
-    """Triangles in 2-D or tetrahedra in 3-D, and what follows from them."""
+    """Triangles in 2-D, tetrahedra in 3-D, simplices in up to 8-D, and what follows from them."""
 
     __slots__ = ()
 
@@ -71,7 +72,7 @@ class Triangulation(Complex):
         """The facets with a simplex on one side only, (h, d), in the order of the simplices.
 
         In 2-D edges, each with the triangulation to its left; in 3-D triangles, counter-clockwise
-        as seen from outside.
+        as seen from outside; in more dimensions simplices of d corners, by the same rule of signs.
         """
         return sealed(self._dimension.boundary(self._simplices, self._neighbors))
 
@@ -83,6 +84,7 @@ class Triangulation(Complex):
         return sealed(measures.edges(*topology))
 
     @property
+    @only(FLAT_OR_SOLID, "`edges` and `boundary` exist in every dimension")
     @kept
     def faces(self) -> Indices:
         """Every triangle once, (k, 3): vertices and rows ascending.
@@ -131,8 +133,8 @@ class Triangulation(Complex):
         With ``inverse, r = transform[t, :d], transform[t, d]``, where r is the last vertex of
         simplex t, ``c = inverse @ (x - r)`` are the first d barycentric coordinates of x, and
         ``1 - c.sum()`` is the last. No simplex is flat, so no row is NaN, however thin the simplex.
-        In 2-D entries have a relative error below 1e-13, in 3-D rows have one below 1e-13 of their
-        length. Values beyond the range of doubles are infinite.
+        In 2-D entries have a relative error below 1e-13, in more dimensions rows have one below
+        1e-13 of their length. Values beyond the range of doubles are infinite.
         """
         return sealed(measures.transform(self._points, self._simplices, self._workers))
 
@@ -160,14 +162,15 @@ class Triangulation(Complex):
         return self._sizes()
 
     @property
-    @only(3, "triangles have `areas`")
+    @only((3, *HIGHER), "triangles have `areas`")
     def volumes(self) -> Floats:
-        """Volumes of the tetrahedra, (m,), in the cube of the unit of the points; 3-D only.
+        """Volumes of the simplices, (m,), in the unit of the points to the power d; not in 2-D.
 
         All positive, with a relative error below 1e-13, except beyond the range of doubles.
         """
         return self._sizes()
 
+    @only(FLAT_OR_SOLID, "`volumes` and `circumcenters` exist in every dimension")
     @kept
     def quality(self) -> Any:
         """Measure the shapes of the simplices.
@@ -226,7 +229,7 @@ class Triangulation(Complex):
             Points outside at most this far away, in the unit of the points, are in the simplex at
             the nearest point of the boundary, such as points that lie on a side up to rounding.
             By default 0. The distance is compared exactly, which takes some 20 microseconds for
-            each point about this far away.
+            each point about this far away. Only in 2-D and 3-D.
 
         Returns
         -------
@@ -316,12 +319,14 @@ class Triangulation(Complex):
         tolerance : float, optional
             Points outside at most this far away, in the unit of the points, are inside, at the
             nearest point of the boundary, such as points that lie on a side up to rounding. By
-            default 0. The distance is compared exactly.
+            default 0. The distance is compared exactly. Only in 2-D and 3-D.
 
         Returns
         -------
         Location
-            With fields `simplex`, `barycentric`, `closest`, `beside`, `facet` and `weights`.
+            With fields `simplex`, `barycentric`, `closest`, `beside`, `facet` and `weights`. In
+            more than three dimensions the nearest points of the boundary are not sought: the last
+            four are NaN or -1 outside.
 
         Raises
         ------
@@ -468,6 +473,7 @@ class Triangulation(Complex):
 
         return to_matplotlib(self._parts())
 
+    @only(FLAT_OR_SOLID, "scikit-fem has no meshes of more dimensions")
     def to_skfem(self) -> Any:
         """Convert to a mesh of scikit-fem (extra ``fem``).
 
@@ -496,6 +502,7 @@ class Triangulation(Complex):
 
         return to_skfem(self._parts())
 
+    @only(FLAT_OR_SOLID, "DOLFINx has no meshes of more dimensions")
     def to_dolfinx_arrays(self) -> dict[str, NDArray[Any]]:
         """Convert to the arrays from which DOLFINx makes a mesh.
 

@@ -13,6 +13,8 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_neighbors, as_points, as_simplices, require_finite
+from delone.higher import topology as higher
+from delone.higher.dimension import MOST
 from delone.immutable import ReadOnly
 from delone.plane import topology
 from delone.space import topology as space
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["SpaceReport", "ValidationReport", "validate"]
+__all__ = ["HigherReport", "SpaceReport", "ValidationReport", "validate"]
 
 _SHOWN = 5
 
@@ -193,6 +195,52 @@ class SpaceReport(ValidationReport):
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = _SPACE_SENTENCES
 
 
+_HIGHER_SENTENCES = _SPACE_SENTENCES | {
+    "orientation": ("simplex is not positively oriented", "simplices are not positively oriented"),
+    "neighbors": ("simplex has wrong neighbors", "simplices have wrong neighbors"),
+    "hull": ("boundary facet is not on the hull", "boundary facets are not on the hull"),
+    "delaunay": (
+        "pair of simplices is not locally Delaunay",
+        "pairs of simplices are not locally Delaunay",
+    ),
+    "ties": (
+        "pair of cospherical simplices is not canonical",
+        "pairs of cospherical simplices are not canonical",
+    ),
+    "overlaps": ("simplex overlaps simplex 0", "simplices overlap simplex 0"),
+}
+del _HIGHER_SENTENCES["facets"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class HigherReport(ValidationReport):
+    """The result of ``validate()`` in more than three dimensions.
+
+    The fields are those of `ValidationReport`, for simplices instead of triangles, with facets of d
+    vertices in `hull`; `edges` and `count` are always empty. If a simplex is not positively
+    oriented, or has wrong neighbors, the other faults of simplices are not sought. One more:
+
+    Parameters
+    ----------
+    overlaps : ndarray of int, shape (k,)
+        Simplices that cover the center of gravity of simplex 0.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.validation import validate
+    >>> corners = np.vstack((np.zeros(4), np.eye(4)))
+    >>> print(validate(corners, [(0, 1, 2, 3, 4)]))
+    a canonical Delaunay triangulation
+    >>> print(validate(corners, [(1, 0, 2, 3, 4)]).orientation)
+    [0]
+    """
+
+    overlaps: NDArray[np.integer] = field(default_factory=no_rows)
+
+    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = _HIGHER_SENTENCES
+
+
 def validate(
     points: ArrayLike, simplices: ArrayLike, *, neighbors: ArrayLike | None = None
 ) -> ValidationReport:
@@ -200,10 +248,10 @@ def validate(
 
     Parameters
     ----------
-    points : array_like, shape (n, 2) or (n, 3)
-        Finite coordinates.
+    points : array_like, shape (n, d)
+        Finite coordinates, from two to eight of each point.
     simplices : array_like of int, shape (m, d + 1)
-        Vertices of the triangles or tetrahedra, as rows of `points`.
+        Vertices of the simplices, as rows of `points`.
     neighbors : array_like of int, shape (m, d + 1), optional
         The simplex opposite each vertex, -1 outside. By default they follow from the simplices.
 
@@ -212,7 +260,7 @@ def validate(
     ValidationReport
         Truthy if everything is correct. If only `ties` is filled, the triangulation is Delaunay but
         has different diagonals; if only `repeats` is, a duplicate other than the first is a
-        vertex. In 3-D it is a `SpaceReport`.
+        vertex. In 3-D it is a `SpaceReport`, in more dimensions a `HigherReport`.
 
     Raises
     ------
@@ -237,27 +285,24 @@ def validate(
     not a canonical Delaunay triangulation:
       ties: 1 pair of cocircular triangles is not canonical: 0-1
     """
-    rows = as_points(points)
+    rows = as_points(points, most=MOST)
     require_finite(rows)
-    if rows.shape[1] == 3:
-        return _validate_space(rows, simplices, neighbors)
+    d = rows.shape[1]
+    if d > 2:
+        cells = as_simplices(simplices, len(rows), d)
+        if neighbors is None:
+            beside = space.neighbors(cells) if d == 3 else higher.neighbors(cells)
+        else:
+            beside = as_neighbors(neighbors, len(cells), d)
+        if d == 3:
+            return of_tetrahedra(_core.validate3(rows, cells, beside))
+        return of_simplices(_core.validate_n(rows, cells, beside))
     triangles = as_simplices(simplices, len(rows), 2)
     if neighbors is None:
         beyond = topology.neighbors(triangles, len(rows))
     else:
         beyond = as_neighbors(neighbors, len(triangles), 2)
     return of_triangles(_core.validate2(rows, triangles, beyond))
-
-
-def _validate_space(
-    points: NDArray[np.float64], simplices: ArrayLike, neighbors: ArrayLike | None
-) -> SpaceReport:
-    tetrahedra = as_simplices(simplices, len(points), 3)
-    if neighbors is None:
-        beyond = space.neighbors(tetrahedra)
-    else:
-        beyond = as_neighbors(neighbors, len(tetrahedra), 3)
-    return of_tetrahedra(_core.validate3(points, tetrahedra, beyond))
 
 
 def of_triangles(faults: _core.Faults2) -> ValidationReport:
@@ -287,6 +332,12 @@ def of_tetrahedra(faults: _core.Faults3) -> SpaceReport:
         delaunay=faults.delaunay,
         ties=faults.ties,
     )
+
+
+def of_simplices(faults: _core.FaultsN) -> HigherReport:
+    """Make a report of what the core found wrong with simplices of more dimensions."""
+    names = (each.name for each in fields(HigherReport) if each.name not in ("edges", "count"))
+    return HigherReport(**{name: getattr(faults, name) for name in names})
 
 
 def not_across(

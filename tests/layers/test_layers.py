@@ -39,7 +39,7 @@ PYTHON: tuple[set[str], ...] = (
     {"dimension"},
     {"location"},
     {"plane"},
-    {"space"},
+    {"space", "higher"},
     {"archive", "validation"},
     {"complex"},
     {"triangulation", "regular_validation"},
@@ -91,7 +91,17 @@ CORE: dict[str, set[str]] = {
     "alpha": {"measure", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "graphs": {"order", "points", "parallel", "delone_predicates"} | GROUND,
     "hull": {"order", "wide", "num_bigint", "delone_predicates"} | GROUND,
-    "ndim": {"points", "wide", "num_bigint", "delone_predicates"} | GROUND,
+    "ndim": {
+        "consistency",
+        "locate",
+        "measure",
+        "order",
+        "points",
+        "wide",
+        "num_bigint",
+        "delone_predicates",
+    }
+    | GROUND,
     "live": {
         "constrained",
         "delaunay2",

@@ -163,8 +163,8 @@ def test_another_diagonal_is_not_canonical() -> None:
 
 
 def test_what_is_refused() -> None:
-    with pytest.raises(ShapeError, match=r"\(n, 2\) or \(n, 3\), got \(5, 4\)"):
-        Delaunay(np.zeros((5, 4)))
+    with pytest.raises(ShapeError, match=r"d from 2 to 8, got \(3, 5\); transpose it"):
+        Delaunay(np.zeros((3, 5)))
     with pytest.raises(InputError, match="in 3-D"):
         Delaunay(lattice(2), method="sweep")
     with pytest.raises(NonFiniteError) as caught:

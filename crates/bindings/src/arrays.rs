@@ -61,6 +61,36 @@ macro_rules! in_dimension {
 }
 pub(crate) use in_dimension;
 
+/// The result of `$work` in dimension `$d`, 4 to 8: in it `$D`, `$N` and `$P` are constants, the number
+/// of coordinates, that of the corners of a simplex, and the length of padded rows.
+macro_rules! in_many {
+    (@ $D:ident, $N:ident, $P:ident, $d:literal, $p:literal => $work:expr) => {{
+        #[allow(dead_code)]
+        const $D: usize = $d;
+        #[allow(dead_code)]
+        const $N: usize = $d + 1;
+        #[allow(dead_code)]
+        const $P: usize = $p;
+        $work
+    }};
+    ($d:expr, $D:ident, $N:ident, $P:ident => $work:expr) => {
+        match $d {
+            4 => crate::arrays::in_many!(@ $D, $N, $P, 4, 4 => $work),
+            5 => crate::arrays::in_many!(@ $D, $N, $P, 5, 8 => $work),
+            6 => crate::arrays::in_many!(@ $D, $N, $P, 6, 8 => $work),
+            7 => crate::arrays::in_many!(@ $D, $N, $P, 7, 8 => $work),
+            8 => crate::arrays::in_many!(@ $D, $N, $P, 8, 8 => $work),
+            other => Err(crate::arrays::not_many(other).into()),
+        }
+    };
+}
+pub(crate) use in_many;
+
+/// The error for points with a number of coordinates that is not from 4 to 8.
+pub fn not_many(columns: usize) -> Error {
+    Error::Shape(format!("points have {columns} coordinates, not 4 to 8"))
+}
+
 /// The error for points with a number of coordinates that is neither 2 nor 3.
 pub fn no_dimension(columns: usize) -> Error {
     Error::Shape(format!("points have {columns} coordinates, not 2 or 3"))

@@ -81,6 +81,10 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
             details.set_item("rows", rows)?;
             details.set_item("count", count)?;
         }
+        Error::Flat { rows, .. } => {
+            details.set_item("reason", reason(error))?;
+            details.set_item("chain", rows)?;
+        }
         Error::OneGreatCircle { chain }
         | Error::TooFew { chain }
         | Error::TooFewInSpace { chain }
@@ -127,6 +131,11 @@ fn reason(error: &Error) -> &'static str {
     match error {
         Error::Collinear { .. } => "collinear",
         Error::Coplanar { .. } => "coplanar",
+        Error::Flat {
+            dimension,
+            distinct,
+            ..
+        } if distinct > dimension => "flat",
         Error::OneGreatCircle { chain } if chain.len() >= 3 => "one great circle",
         _ => "too few points",
     }

@@ -24,6 +24,7 @@ mod locate;
 mod locate3;
 mod locator;
 mod measure;
+mod ndim;
 mod overlap;
 mod predicates;
 mod recover;
@@ -103,6 +104,8 @@ mod _core {
         around, below2, circumcenters, dihedral_angles3, edges, face_areas3, face_normals3, faces3,
         qualities, sizes, transforms,
     };
+    #[pymodule_export]
+    use super::ndim::{FaultsN, LocatorN, triangulate_n, validate_n};
     #[pymodule_export]
     use super::overlap::{CellGrid, CheckedCells, PlaneCells, SharedCells};
     #[pymodule_export]

@@ -1,17 +1,17 @@
 //! Measures of simplices: edges and faces, centers, sizes, shapes.
 
 use delone_core::error::Result;
-use delone_core::measure;
 use delone_core::watch::Watch;
+use delone_core::{measure, ndim};
 use numpy::{PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, columns, rows, shaped, table};
+use crate::arrays::{Column, Table, column, columns, in_many, rows, shaped, table};
 use crate::errors::Outcome;
 use crate::given::simplices_of;
 use crate::signals::watched;
 
-/// Every edge of triangles or tetrahedra once: the smaller vertex first, rows ascending.
+/// Every edge of simplices once: the smaller vertex first, rows ascending.
 #[pyfunction]
 pub fn edges(
     py: Python<'_>,
@@ -20,17 +20,24 @@ pub fn edges(
     npoints: usize,
     workers: usize,
 ) -> Outcome<Table<i32>> {
-    let found = if columns(&simplices) == 3 {
-        let simplices = simplices_of(&simplices, npoints)?;
-        let neighbors = rows(&neighbors, "neighbors")?;
-        watched(py, |watch| {
-            measure::edges2(simplices, neighbors, npoints, workers, watch)
-        })?
-    } else {
-        let simplices = simplices_of(&simplices, npoints)?;
-        watched(py, |watch| {
-            measure::edges3(simplices, npoints, workers, watch)
-        })?
+    let found = match columns(&simplices) {
+        3 => {
+            let simplices = simplices_of(&simplices, npoints)?;
+            let neighbors = rows(&neighbors, "neighbors")?;
+            watched(py, |watch| {
+                measure::edges2(simplices, neighbors, npoints, workers, watch)
+            })?
+        }
+        4 => {
+            let simplices: &[[i32; 4]] = simplices_of(&simplices, npoints)?;
+            watched(py, |watch| {
+                measure::edges(simplices, npoints, workers, watch)
+            })?
+        }
+        many => in_many!(many - 1, D, N, P => {
+            let simplices: &[[i32; N]] = simplices_of(&simplices, npoints)?;
+            watched(py, |watch| measure::edges(simplices, npoints, workers, watch))
+        })?,
     };
     table(py, found)
 }
@@ -83,7 +90,7 @@ fn measured<R: Send, const D: usize, const N: usize>(
     watched(py, |watch| of(points, simplices, workers, watch))
 }
 
-/// The areas of triangles, or the volumes of tetrahedra.
+/// The areas of triangles, or the volumes of simplices of more dimensions.
 #[pyfunction]
 pub fn sizes(
     py: Python<'_>,
@@ -93,7 +100,10 @@ pub fn sizes(
 ) -> Outcome<Column<f64>> {
     let found = match columns(&points) {
         2 => measured(py, &points, &simplices, workers, measure::areas)?,
-        _ => measured(py, &points, &simplices, workers, measure::volumes)?,
+        3 => measured(py, &points, &simplices, workers, measure::volumes)?,
+        many => in_many!(many, D, N, P => {
+            measured(py, &points, &simplices, workers, ndim::volumes::<D, N, P>)
+        })?,
     };
     Ok(column(py, found))
 }
@@ -137,10 +147,13 @@ pub fn circumcenters(
             py,
             measured(py, &points, &simplices, workers, measure::circumcenters2)?,
         ),
-        _ => table(
+        3 => table(
             py,
             measured(py, &points, &simplices, workers, measure::circumcenters3)?,
         ),
+        many => in_many!(many, D, N, P => {
+            table(py, measured(py, &points, &simplices, workers, ndim::circumcenters::<D, N, P>)?)
+        }),
     }
 }
 
@@ -198,19 +211,18 @@ pub fn transforms(
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> Outcome<Py<PyArray3<f64>>> {
-    let (flat, d) = match columns(&points) {
-        2 => (
-            measured(py, &points, &simplices, workers, measure::transforms2)?
-                .into_flattened()
-                .into_flattened(),
-            2,
-        ),
-        _ => (
-            measured(py, &points, &simplices, workers, measure::transforms3)?
-                .into_flattened()
-                .into_flattened(),
-            3,
-        ),
+    let d = columns(&points);
+    let flat = match d {
+        2 => measured(py, &points, &simplices, workers, measure::transforms2)?
+            .into_flattened()
+            .into_flattened(),
+        3 => measured(py, &points, &simplices, workers, measure::transforms3)?
+            .into_flattened()
+            .into_flattened(),
+        many => in_many!(many, D, N, P => {
+            let maps = measured(py, &points, &simplices, workers, ndim::transforms::<D, N, P>);
+            maps.map(|maps| maps.into_flattened().into_flattened())
+        })?,
     };
     let count = columns(&simplices) * d;
     let shape = [flat.len() / count, d + 1, d];

@@ -39,7 +39,8 @@ pub fn tetrahedra(given: Given<3, 4>, workers: usize, watch: &Watch) -> Result<O
     })
 }
 
-fn first<const D: usize, const N: usize>(
+/// The first fault of simplices whose orientation is given.
+pub fn first<const D: usize, const N: usize>(
     given: Given<D, N>,
     workers: usize,
     watch: &Watch,

@@ -63,11 +63,14 @@ def check_delaunay(
     neighbors: NDArray[np.int32],
     duplicates: NDArray[np.int32],
 ) -> None:
-    """Check triangles or tetrahedra that tile a convex hull."""
+    """Check simplices that tile a convex hull."""
     n, m = len(points), len(simplices)
     _check_simplices(points, simplices, neighbors)
     check_range("duplicates", duplicates, 0, n)
     _check_duplicates(points, simplices, duplicates)
+    if points.shape[1] > 3:
+        require((neighbors < 0).any(), "it has no boundary")
+        return
     if points.shape[1] == 3:
         _check_closed(boundary_faces(simplices, neighbors), n, convex=True)
         return
@@ -300,9 +303,10 @@ def _check_sound(
     if fault is None:
         return
     (kind, row), flat = fault, points.shape[1] == 2
+    simplex = {2: "triangle", 3: "tetrahedron"}.get(points.shape[1], "simplex")
     turn = "is not counter-clockwise" if flat else "is not positively oriented"
     wrong = "has neighbors that are not mutual" if kind == "neighbors" else turn
-    raise ContradictionError(f"{'triangle' if flat else 'tetrahedron'} {row} {wrong}")
+    raise ContradictionError(f"{simplex} {row} {wrong}")
 
 
 def check_range(name: str, indices: NDArray[np.int32], lowest: int, end: int) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from delone.archive import checks, directions
+from delone.higher.dimension import HIGHER
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -191,6 +192,10 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
     "Delaunay": (
         Kind("delone.Delaunay", _delaunay(2), checks.check_delaunay),
         Kind("delone.Delaunay of space", _delaunay(3), checks.check_delaunay),
+        *(
+            Kind(f"delone.Delaunay {ndim}-D", _delaunay(ndim), checks.check_delaunay)
+            for ndim in HIGHER
+        ),
     ),
     "ConstrainedDelaunay": (_CONSTRAINED,),
     "Mesh": (_MESH,),

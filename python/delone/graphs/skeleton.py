@@ -11,6 +11,7 @@ from delone import _core
 from delone._arrays import as_workers, require_finite
 from delone.complex import Stored, points_alone
 from delone.delaunay import Delaunay
+from delone.dimension import FLAT_OR_SOLID
 from delone.errors import DegenerateInputError, InputError
 from delone.georeference import warn_of_degrees
 from delone.graphs.coincident import repeated
@@ -78,6 +79,11 @@ def coordinates(points: Points, *, ndim: int | None, planar: bool) -> Floats:
             "PeriodicDelaunay has edges"
         )
     held = points_alone(points, what="a graph", needs=("periods",))
+    if held.shape[1] not in FLAT_OR_SOLID:
+        raise InputError(
+            f"graphs are only available in 2-D and 3-D: points are {held.shape[1]}-D; edges of a "
+            f"{type(points).__name__} exist in every dimension"
+        )
     if ndim not in (None, held.shape[1]):
         raise InputError(f"this graph is only available in {ndim}-D: points are {held.shape[1]}-D")
     return held

@@ -55,6 +55,8 @@ if TYPE_CHECKING:
 __all__ = ["Interpolator", "Sheet", "as_max_distance", "shaped_derivatives"]
 
 _NAMED = 5
+# The most coordinates that are taken; a grid needs no triangulation.
+_MOST_COLUMNS = 64
 # The share of the way to the middle of a triangle at which derivatives at its side are taken, and
 # how many units in the last place away it must be.
 _BEHIND = 2.0**-30
@@ -96,6 +98,8 @@ class Interpolator:
     """
 
     EXTRAPOLATE: ClassVar[tuple[str, ...]] = ("nan", "nearest", "linear", "raise")
+    # The most coordinates of sites.
+    _MOST: ClassVar[int] = 3
 
     def __init__(
         self,
@@ -128,7 +132,9 @@ class Interpolator:
         self._sites: Floats = _own(points) if known is None else known.points
         if known is None:
             warn_of_degrees(points, self._sites, planar=planar)
-        if self._ndim == SPACE:
+        if self._ndim > SPACE:
+            self._check_higher()
+        elif self._ndim == SPACE:
             self._check_space(given)
         self._constrained = getattr(given, "constrained", None) is not None
         field = None if values is None else as_field(values, len(self._sites))
@@ -136,8 +142,8 @@ class Interpolator:
         self._given = None if isinstance(given, Delaunay) else given
         several = field is not None and self._nan == "drop" and len(field.patterns()) > 1
         self._kept = None if several else self._kept_rows(field)
-        self._mesh: Triangulation = (
-            self._triangulated() if given is None or self._kept is not None else given
+        self._held: Triangulation | None = (
+            self._tiled() if given is None or self._kept is not None else given
         )
         if field is not None and several:
             self._field, self._parts = None, (field, self._narrowed(field))
@@ -146,8 +152,15 @@ class Interpolator:
 
     @property
     def _ndim(self) -> int:
-        """Number of coordinates, 2 or 3."""
+        """Number of coordinates."""
         return int(self._sites.shape[1])
+
+    @property
+    def _mesh(self) -> Triangulation:
+        """The triangulation; made now if values do not need it."""
+        if self._held is None:
+            self._held = self._triangulated()
+        return self._held
 
     @property
     def triangulation(self) -> Triangulation:
@@ -344,6 +357,20 @@ class Interpolator:
     def _check_space(self, given: Triangulation | None) -> None:
         """Raise for what is only available in 2-D."""
 
+    def _check_higher(self) -> None:
+        """Refuse what needs the nearest points of the hull, or is not there, from 4-D on."""
+        if self._ndim > self._MOST:
+            raise InputError(
+                f"{type(self).__name__} is only available in 2-D and 3-D: Linear and Nearest "
+                f"accept points with {self._ndim} coordinates"
+            )
+        if self._tolerance or self._extrapolate not in ("nan", "raise", self.EXTRAPOLATE[0]):
+            option = "tolerance" if self._tolerance else f"extrapolate={self._extrapolate!r}"
+            raise InputError(
+                f"{option} is only available in 2-D and 3-D: with {self._ndim} coordinates the "
+                "nearest points of the hull are not computed; Nearest has a value everywhere"
+            )
+
     def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
         """Values (k, c), derivatives (k, c, d) or second ones (k, c, 3); NaN outside."""
         raise NotImplementedError
@@ -393,7 +420,7 @@ class Interpolator:
         """What becomes of values, and which of the caller's rows are those of a table."""
         if "policies" not in self._cache:
             again = self._repeated
-            first = self._mesh.duplicate_of if again is None else again.duplicate_of
+            first = self._first_rows() if again is None else again.duplicate_of
             coincide = (first != np.arange(len(first))).any()
             self._cache["policies"] = Policies(
                 npoints=self.npoints,
@@ -548,11 +575,11 @@ class Interpolator:
         Their sides skip sites that lie on a straight side of the hull up to rounding.
         """
         if "skipped" not in self._cache:
-            mesh = self._mesh
+            held = self._held if self._ndim == len("xy") else None
             self._cache["skipped"] = (
-                slivers.at_outline(mesh.points, mesh.simplices, mesh.neighbors)
-                if self._ndim == len("xy")
-                else np.zeros(0, dtype=bool)
+                np.zeros(0, dtype=bool)
+                if held is None
+                else slivers.at_outline(held.points, held.simplices, held.neighbors)
             )
         skipped: Bools = self._cache["skipped"]
         return skipped
@@ -646,7 +673,7 @@ class Interpolator:
             other._kept, other._cache, other._others = kept, {}, {}
             other._field, other._parts = None, None
             if not _same(kept, self._kept):
-                other._mesh = other._triangulated()
+                other._held = other._tiled()
         return other
 
     def _require_one(self, values: ArrayLike | None = None) -> None:
@@ -662,6 +689,14 @@ class Interpolator:
         if self._nan != "drop" or field is None or not (dropped := field.not_finite).size:
             return None
         return np.delete(np.arange(len(field)), dropped)
+
+    def _first_rows(self) -> Indices:
+        """The first row of each site with the same coordinates."""
+        return self._mesh.duplicate_of
+
+    def _tiled(self) -> Triangulation | None:
+        """The triangulation that values need; None if they need none."""
+        return self._triangulated()
 
     def _triangulated(self) -> Triangulation:
         if self._given is not None:
@@ -692,7 +727,7 @@ def _own(points: Any) -> Floats:
         raise DtypeError(
             f"{type(points).__name__} is not a triangulation of delone; pass its points"
         )
-    return own_copy(points, ndim=None)
+    return own_copy(points, ndim=None, most=_MOST_COLUMNS)
 
 
 def _with_only(mesh: Any, kept: Rows) -> Triangulation:

@@ -8,6 +8,7 @@ import numpy as np
 
 from delone import location
 from delone._arrays import as_workers
+from delone.higher.dimension import MOST
 from delone.interpolate.base import Interpolator
 from delone.interpolate.weights import Weights, rectangular
 
@@ -26,8 +27,8 @@ class Nearest(Interpolator):
 
     Parameters
     ----------
-    points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Sites; of a triangulation of delone, its vertices.
+    points : array_like, shape (n, d), or a triangulation
+        Sites with two to eight coordinates; of a triangulation of delone, its vertices.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. Optional if each call passes its own values.
     extrapolate : {"nearest", "nan", "raise"}, optional
@@ -67,6 +68,7 @@ class Nearest(Interpolator):
     """
 
     EXTRAPOLATE: ClassVar[tuple[str, ...]] = ("nearest", "nan", "raise")
+    _MOST: ClassVar[int] = MOST
 
     def __init__(
         self,

@@ -251,7 +251,7 @@ def grid(
     else:
         made = interpolator(points, values, method, **options)
         values = None
-    if made._ndim == SPACE:
+    if made._ndim >= SPACE:
         refuse("a raster", "call the interpolator with the query points")
     field = made._field_of(values)
     nodes_x, nodes_y = _nodes(made, resolution, shape, x, y, bounds)

@@ -26,8 +26,8 @@ SPACE = 3
 
 
 def refuse(what: str, instead: str) -> None:
-    """Raise InputError for what is only available in 2-D; `instead` is what to use in 3-D."""
-    raise InputError(f"{what} is only available in 2-D; in 3-D {instead}")
+    """Raise InputError for what is only available in 2-D; `instead` is what to use otherwise."""
+    raise InputError(f"{what} is only available in 2-D; in more dimensions {instead}")
 
 
 def face_terms(place: Location, step: Floats, *, base: bool = True) -> Terms:
@@ -41,10 +41,10 @@ def face_terms(place: Location, step: Floats, *, base: bool = True) -> Terms:
 
 
 def slopes(points: Floats, corners: Indices, columns: Floats) -> Floats:
-    """The gradients, (k, c, 3), of the linear functions on tetrahedra, (k, 4); none may be flat."""
+    """The gradients, (k, c, d), of linear functions on simplices, (k, d + 1), none flat."""
     # The rows of these maps are the gradients of the barycentric coordinates.
-    maps = measures.transform(points, corners)[:, :SPACE]
-    rise = columns[corners[:, :SPACE]] - columns[corners[:, SPACE:]]
+    maps = measures.transform(points, corners)[:, :-1]
+    rise = columns[corners[:, :-1]] - columns[corners[:, -1:]]
     found: Floats = np.einsum("kic,kij->kcj", rise, maps)
     return found
 

@@ -689,6 +689,10 @@ def _kind(triangulation: Any) -> str:
         if coordinates == 3 and corners in (3, 4):
             return "surface" if corners == 3 else "tetrahedra"
     name = type(triangulation).__name__
+    if coordinates > 3 and corners == coordinates + 1:
+        raise InputError(
+            f"no format of meshes has simplices in {coordinates}-D: {name}.save writes them"
+        )
     raise InputError(f"cannot write an object of type {name}: pass a triangulation or a mesh")
 
 

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["plot"]
 
+_SPACE = 3
 _DRAWERS: dict[str, Callable[..., Any]] = {
     "triangles": triangles.plot,
     "tetrahedra": tetrahedra.plot,
@@ -142,6 +143,12 @@ def plot(
     """
     drawer = _DRAWERS.get(kind_of(mesh))
     if drawer is None:
+        ndim = getattr(mesh, "ndim", 0)
+        if isinstance(ndim, int) and ndim > _SPACE and hasattr(mesh, "simplices"):
+            raise InputError(
+                f"simplices in {ndim}-D cannot be drawn: draw two or three of the columns of "
+                "the points"
+            )
         name = f"{type(mesh).__module__}.{type(mesh).__name__}"
         raise InputError(f"an object of type {name} cannot be drawn: {hint(mesh)}")
     known = _known(drawer)

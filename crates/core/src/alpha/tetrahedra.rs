@@ -244,7 +244,7 @@ impl Measured<'_> {
 mod tests {
     use super::*;
     use crate::error::Error;
-    use crate::measure::{edges3, faces3};
+    use crate::measure::{edges, faces3};
 
     /// An octahedron, cut into tetrahedra around the segment between its poles.
     const POINTS: [[f64; 3]; 6] = [
@@ -275,7 +275,7 @@ mod tests {
             let found = solid(sites, &simplices, &neighbors, workers, &watch).unwrap();
             let faces = faces3(&simplices, &neighbors, 6, workers, &watch).unwrap();
             assert_eq!(found.faces, faces);
-            assert_eq!(found.edges, edges3(&simplices, 6, workers, &watch).unwrap());
+            assert_eq!(found.edges, edges(&simplices, 6, workers, &watch).unwrap());
             // The segment between the poles, and the sides of the equator.
             assert_eq!(found.of_edges[0], 1.0);
             assert_eq!(found.of_edges[5], 1.25);

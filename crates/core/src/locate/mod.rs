@@ -5,6 +5,7 @@
 //! to the next. These and others, such as `boxes`, serve tetrahedra as well; what differs is behind
 //! the trait `Dimension`, of which `plane` has the 2-D half.
 
+mod around;
 mod barycentric;
 mod batch;
 mod boundary;
@@ -26,6 +27,7 @@ mod tiling;
 mod walk;
 mod walker;
 
+pub use around::first_around;
 pub use barycentric::{barycentric, weights as barycentric_weights};
 pub use batch::{Batch, find};
 pub use boundary::{Boundary, outer_sides};

@@ -1,8 +1,7 @@
 //! 3-D point location: exact, boundary included, for any tiling in exported arrays.
 //!
 //! Points are located by `locate`, which takes from `space` what tetrahedra have of their own:
-//! `walk`, which ends at one of them, `star`, which finds the first of several that contain a point,
-//! and `boundary`, which has the nearest face outside.
+//! `walk`, which ends at one of them, and `boundary`, which has the nearest face outside.
 
 mod barycentric;
 mod boundary;
@@ -12,7 +11,6 @@ mod face;
 mod foot;
 mod nearest;
 mod space;
-mod star;
 mod walk;
 
 pub use barycentric::barycentric;

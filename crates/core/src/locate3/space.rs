@@ -3,12 +3,11 @@
 use delone_predicates::{Point3, Sign, orient3d};
 
 use super::boundary::Boundary;
-use super::star::first_around;
 use super::walk::{sides_of, walk};
 use super::{Located, Locator, Place};
 use crate::arrays::{Side, Tetrahedra};
 use crate::error::Result;
-use crate::locate::{Dimension, First};
+use crate::locate::{self, Dimension, First};
 use crate::points::Extent;
 use crate::watch::Watch;
 
@@ -51,7 +50,7 @@ impl Dimension<3, 4> for Space {
 
     #[inline]
     fn first_around(given: &Tetrahedra, place: Place) -> First<4> {
-        first_around(given, place)
+        locate::first_around(given, place)
     }
 
     /// Outside of the box of all points, or beyond the boundary face through which the last walk

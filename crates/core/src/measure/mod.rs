@@ -20,9 +20,10 @@ mod tetrahedron;
 mod triangle;
 
 pub use affine::{transforms2, transforms3};
+pub use batch::each;
 pub use circumcenter::{circumcenters2, circumcenters3};
 pub use size::{areas, face_areas, face_normals, volumes};
 pub(crate) use skeleton::{Buckets, distinct};
-pub use skeleton::{around, edges2, edges3, faces3};
+pub use skeleton::{around, edges, edges2, faces3};
 pub use tetrahedron::{dihedral_angles, qualities3};
 pub use triangle::{below, is_below, qualities2};

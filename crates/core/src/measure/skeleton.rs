@@ -13,8 +13,6 @@ use crate::memory::{Zero, copied, filled, push, with_room, zeroed};
 use crate::parallel;
 use crate::watch::{Pace, Watch};
 
-/// The pairs of corners of a tetrahedron.
-const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 /// Edges between two checks for interruption.
 const LOT: usize = 1 << 16;
 /// Simplices per task in the first pass.
@@ -47,20 +45,21 @@ pub fn edges2(
     distinct::<true, _, _>(simplices.len(), n, workers, watch, rows_of, row)
 }
 
-/// Every edge of tetrahedra on `n` points once: the smaller vertex first, rows ascending.
-pub fn edges3(
-    simplices: &[[i32; 4]],
+/// Every edge of simplices on `n` points once, in three dimensions or more: the smaller vertex first,
+/// rows ascending.
+pub fn edges<const N: usize>(
+    simplices: &[[i32; N]],
     n: usize,
     workers: usize,
     watch: &Watch,
 ) -> Result<Vec<[i32; 2]>> {
     let rows_of = |t: usize, to: &mut Buckets<u32>| {
         let corners = simplices[t];
-        for [i, j] in EDGES {
-            to.put(
-                corners[i].min(corners[j]),
-                corners[i].max(corners[j]) as u32,
-            )?;
+        for j in 1..N {
+            for i in 0..j {
+                let (a, b) = (corners[i], corners[j]);
+                to.put(a.min(b), a.max(b) as u32)?;
+            }
         }
         Ok(())
     };
@@ -287,7 +286,7 @@ mod tests {
         let neighbors = [[1, -1, -1, -1], [0, -1, -1, -1]];
         for workers in [1, 3] {
             let watch = Watch::idle();
-            let found = edges3(&simplices, 6, workers, &watch).unwrap();
+            let found = edges(&simplices, 6, workers, &watch).unwrap();
             let expected = [
                 [0, 1],
                 [0, 2],
@@ -311,7 +310,7 @@ mod tests {
                 [2, 3, 4],
             ];
             assert_eq!(found, expected);
-            assert!(edges3(&[], 0, workers, &watch).unwrap().is_empty());
+            assert!(edges::<4>(&[], 0, workers, &watch).unwrap().is_empty());
         }
     }
 

@@ -43,8 +43,26 @@ fn word(v: u32) -> u64 {
     x ^ x >> 31
 }
 
+/// Inserts the points of `order` that are not `used`.
+#[inline(always)]
+pub fn insert_all<const D: usize, const V: usize, const P: usize>(
+    mesh: &mut Mesh<D, V, P>,
+    order: &[u32],
+    used: &[bool],
+    pace: &mut Pace,
+) -> Result<()> {
+    let mut room = Room::new();
+    for &p in order {
+        if !used[p as usize] {
+            mesh.insert(p, &mut room, pace)?;
+        }
+    }
+    Ok(())
+}
+
 impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     /// Adds a point that is not a vertex yet.
+    #[inline(always)]
     pub fn insert(&mut self, p: u32, room: &mut Room, pace: &mut Pace) -> Result<()> {
         let start = self.locate(p, pace)?;
         self.open(p, start, room, pace)?;
@@ -52,6 +70,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     }
 
     /// A cell in conflict with a point.
+    #[inline(always)]
     fn locate(&mut self, p: u32, pace: &mut Pace) -> Result<u32> {
         let at = self.sites.scaled[p as usize];
         let mut here = self.last;
@@ -92,6 +111,8 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     /// The same by an exact visibility walk, where rounding or ties stop the descent. It ends, as the
     /// triangulation is regular (H. Edelsbrunner, "An acyclicity theorem for cell complexes in d
     /// dimensions", 1990).
+    #[cold]
+    #[inline(never)]
     fn walk(&mut self, p: u32, start: u32, pace: &mut Pace) -> Result<u32> {
         self.counts.walks += 1;
         let mut here = start;
@@ -120,6 +141,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     }
 
     /// Finds the cells in conflict, which are connected, and the facets around them.
+    #[inline(always)]
     fn open(&mut self, p: u32, start: u32, room: &mut Room, pace: &mut Pace) -> Result<()> {
         room.stamp += 2;
         let (inside, outside) = (room.stamp, room.stamp + 1);
@@ -150,6 +172,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     }
 
     /// Replaces the cells in conflict by cells that join the point to the rim.
+    #[inline(always)]
     fn fill(&mut self, p: u32, room: &mut Room, pace: &mut Pace) -> Result<()> {
         // Each ridge of the rim is in two of its facets, so the table is at most half full.
         let size = (room.rim.len() * D).next_power_of_two().max(16);
@@ -181,6 +204,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     }
 
     /// The cell of a point and a facet of the rim, opposite corner `i` of a cell that goes.
+    #[inline(always)]
     fn star(&mut self, p: u32, old: u32, i: usize, outside: u32) -> Result<u32> {
         let cell = &self.cells[old as usize];
         let mut vertices = [p; V];
@@ -200,6 +224,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     }
 
     /// Joins a new cell to those others that share a ridge of the rim with it.
+    #[inline(always)]
     fn join(&mut self, c: u32, ridges: &mut [Entry], stamp: u32) {
         let v = self.cells[c as usize].vertices;
         let words = v.map(word);

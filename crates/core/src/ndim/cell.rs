@@ -1,9 +1,10 @@
 //! Cells: simplices and ghosts, and the mesh that holds them.
 
-use super::filter::{Matrix, Test, dot, minus};
+use super::filter::{Matrix, Test, minus};
 use super::fine::Fine;
 use super::frame::Frame;
 use super::sites::Sites;
+use crate::arrays::Given;
 use crate::error::{Error, Result};
 use crate::memory::{self, filled, is_plausible, with_room};
 
@@ -98,15 +99,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
         let Some(frame) = Frame::new(&sites, &corners) else {
             return Err(Error::Internal("the first simplex is flat".into()));
         };
-        let mut mesh = Self {
-            sites,
-            cells: Vec::new(),
-            slow: Vec::new(),
-            free_slow: Vec::new(),
-            free: Vec::new(),
-            counts: Counts::default(),
-            last: 0,
-        };
+        let mut mesh = Self::empty(sites);
         let simplex = mesh.make(corners, frame.positive)?;
         for i in 0..V {
             // Ghost i has the corners but i in their order. With the infinite vertex in place i it
@@ -130,7 +123,53 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
         Ok(mesh)
     }
 
+    /// A mesh without cells.
+    fn empty(sites: Sites<D, P>) -> Self {
+        Self {
+            sites,
+            cells: Vec::new(),
+            slow: Vec::new(),
+            free_slow: Vec::new(),
+            free: Vec::new(),
+            counts: Counts::default(),
+            last: 0,
+        }
+    }
+
+    /// A mesh of given simplices, positively oriented and with mutual neighbors, and a ghost at each
+    /// facet of their boundary; ghosts are not neighbors of each other. `rank` has the sites of rows.
+    pub fn given(sites: Sites<D, P>, given: &Given<D, V>, rank: &[u32]) -> Result<Self> {
+        let mut mesh = Self::empty(sites);
+        for v in given.simplices {
+            mesh.make(v.map(|row| rank[row as usize]), true)?;
+        }
+        for (t, beyond) in given.neighbors.iter().enumerate() {
+            for k in 0..V {
+                if let Ok(other) = u32::try_from(beyond[k]) {
+                    mesh.cells[t].neighbors[k] = other;
+                    continue;
+                }
+                let mut vertices = [INFINITE; V];
+                for (j, i) in (0..V).filter(|&i| i != k).enumerate() {
+                    vertices[j] = mesh.cells[t].vertices[i];
+                }
+                let ghost = mesh.make(vertices, true)?;
+                mesh.cells[ghost as usize].neighbors[D] = t as u32;
+                mesh.cells[t].neighbors[k] = ghost;
+            }
+        }
+        for c in 0..mesh.cells.len() {
+            if c < given.simplices.len() {
+                mesh.measure_simplex(c as u32);
+            } else {
+                mesh.measure_ghost(c as u32);
+            }
+        }
+        Ok(mesh)
+    }
+
     /// A cell without neighbors and test.
+    #[inline(always)]
     pub fn make(&mut self, vertices: [u32; V], positive: bool) -> Result<u32> {
         let cell = Cell {
             test: Test::UNKNOWN,
@@ -193,8 +232,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     /// The rounded differences of corners from the first one.
     #[inline(always)]
     pub fn differences(&self, v: &[u32; V]) -> Matrix<D, P> {
-        let o = &self.sites.scaled[v[0] as usize];
-        std::array::from_fn(|i| minus(&self.sites.scaled[v[i + 1] as usize], o))
+        self.sites.differences(v)
     }
 
     /// Prepares the test of a simplex.
@@ -207,6 +245,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     }
 
     /// Prepares the test of a ghost, whose neighbor behind the facet is known.
+    #[inline(always)]
     pub fn measure_ghost(&mut self, c: u32) {
         if self.sites.filtered {
             let mut v = self.cells[c as usize].vertices;
@@ -257,11 +296,5 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
             neighbors.push(n);
         }
         Ok((simplices, neighbors))
-    }
-
-    /// log2 of a bound of the determinant of the differences of corners: Hadamard's inequality.
-    pub fn log_determinant(&self, v: &[u32; V]) -> f64 {
-        let a = self.differences(v);
-        a.iter().map(|row| 0.5 * dot(row, row).log2()).sum()
     }
 }

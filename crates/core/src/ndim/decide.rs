@@ -1,17 +1,15 @@
 //! Whether a point is in conflict with a cell: the stages, and the rule of ties.
 
-use delone_predicates::arithmetic::decode_odd;
-
 use super::cell::Mesh;
 use super::filter::{barycentric, invert, minus};
 use super::fine::Fine;
 use super::frame::Frame;
-use super::residues::{Points, ROWS, is_zero};
+use super::residues::is_zero;
 use crate::error::{Error, Result};
 
 /// Differences of at most this many bits go to integers at once: they are machine integers, and
 /// faster than residues.
-const FEW_BITS: u32 = 24;
+pub const FEW_BITS: u32 = 24;
 
 impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     /// Whether a point is in conflict with a cell.
@@ -78,8 +76,8 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
             // The determinant of the lifted points is that of the corners times the power. It is an
             // integer in units to the power D + 2, and the power is at most twice the bound.
             if bound.is_finite() {
-                let log = self.log_determinant(&v) + (2.0 * bound).log2();
-                let points = self.integers(v.iter().copied().chain([p]));
+                let log = self.sites.log_determinant(&v) + (2.0 * bound).log2();
+                let points = self.sites.integers(v.iter().copied().chain([p]));
                 let degree = D as i64 + 2;
                 if is_zero(&points, true, ceil(log) - degree * self.sites.unit).is_some() {
                     self.counts.zeros += 1;
@@ -124,10 +122,10 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
             // The determinant with the point in place of the corner is that of the corners times the
             // coordinate, which is at most twice the bound.
             if self.sites.bits > FEW_BITS && bound.is_finite() {
-                let log = self.log_determinant(&v) + (2.0 * bound).log2();
+                let log = self.sites.log_determinant(&v) + (2.0 * bound).log2();
                 let mut with = v;
                 with[i] = p;
-                let points = self.integers(with.into_iter());
+                let points = self.sites.integers(with.into_iter());
                 if is_zero(&points, false, ceil(log) - D as i64 * self.sites.unit).is_some() {
                     self.counts.zeros += 1;
                     return Ok(0);
@@ -150,28 +148,6 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
             self.slow[row].frame = Some(frame.ok_or_else(flat)?);
         }
         Ok(row)
-    }
-
-    /// Points as integers for residues.
-    fn integers(&self, points: impl Iterator<Item = u32>) -> Points {
-        let mut rows = [[(0, 0); ROWS - 1]; ROWS + 1];
-        let mut count = 0;
-        for p in points {
-            for k in 0..D {
-                let (x, low) = self.sites.coordinate(p, k);
-                let (odd, exponent) = decode_odd(x);
-                if odd != 0 {
-                    let odd = if x < 0.0 { -(odd as i64) } else { odd as i64 };
-                    rows[count][k] = (odd, (i64::from(exponent) - low) as u32);
-                }
-            }
-            count += 1;
-        }
-        Points {
-            rows,
-            count,
-            dimension: D,
-        }
     }
 }
 

@@ -24,7 +24,7 @@ pub struct Fine<const D: usize> {
 }
 
 /// The components of `p - o`, exactly.
-fn differences<const D: usize, const P: usize>(p: &[f64; P], o: &[f64; P]) -> [Pair; D] {
+pub fn differences<const D: usize, const P: usize>(p: &[f64; P], o: &[f64; P]) -> [Pair; D] {
     std::array::from_fn(|k| Pair::difference(p[k], o[k]))
 }
 
@@ -61,6 +61,16 @@ impl<const D: usize> Fine<D> {
         let squares: f64 = fine.x.iter().map(|x| x.hi * x.hi).sum();
         fine.size = ROUNDED * squares.sqrt();
         fine
+    }
+
+    /// Component `k` of twice the center, from vertex 0.
+    pub fn center(&self, k: usize) -> Pair {
+        self.x[k]
+    }
+
+    /// A bound of the error of twice the center.
+    pub fn error(&self) -> f64 {
+        self.error
     }
 
     /// `b - A x` rounded, and a bound of its true length.

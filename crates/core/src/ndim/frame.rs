@@ -75,6 +75,54 @@ impl Frame {
         Some(Self { numbers, positive })
     }
 
+    /// The determinant, which is positive.
+    pub fn determinant(&self) -> BigInt {
+        match &self.numbers {
+            Numbers::Small(s) => s.determinant.into(),
+            Numbers::Wide(s) => s.determinant.clone(),
+        }
+    }
+
+    /// The determinant times twice component `k` of the center, from the first corner.
+    pub fn lifted(&self, k: usize) -> BigInt {
+        match &self.numbers {
+            Numbers::Small(s) => s.lifted[k].into(),
+            Numbers::Wide(s) => s.lifted[k].clone(),
+        }
+    }
+
+    /// The determinant times entry `k, i` of the inverse of the differences.
+    pub fn adjoint<const D: usize>(&self, k: usize, i: usize) -> BigInt {
+        match &self.numbers {
+            Numbers::Small(s) => s.adjoint[k * D + i].into(),
+            Numbers::Wide(s) => s.adjoint[k * D + i].clone(),
+        }
+    }
+
+    /// The determinant times the barycentric coordinate of corner `i` at `p`, where `o` is the first
+    /// corner.
+    pub fn share<const D: usize, const P: usize>(
+        &self,
+        sites: &Sites<D, P>,
+        o: u32,
+        i: usize,
+        p: u32,
+    ) -> BigInt {
+        let columns = if i == 0 { 0..D } else { i - 1..i };
+        let mut sum = BigInt::ZERO;
+        for k in 0..D {
+            let x = sites.wide(p, o, k);
+            for c in columns.clone() {
+                sum += self.adjoint::<D>(k, c) * &x;
+            }
+        }
+        if i == 0 {
+            self.determinant() - sum
+        } else {
+            sum
+        }
+    }
+
     /// The sign of the power of `p` where `o` is the first corner: negative inside.
     pub fn power<const D: usize, const P: usize>(
         &self,

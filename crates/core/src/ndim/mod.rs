@@ -39,14 +39,23 @@
 mod cavity;
 mod cell;
 mod decide;
+mod dispatch;
 mod filter;
 mod fine;
 mod frame;
+mod location;
+mod measure;
 mod order;
 mod residues;
+mod simplex;
 mod sites;
 #[cfg(test)]
 mod tests;
 mod triangulate;
+mod validate;
+mod walk;
 
+pub use location::{Hyper, Weighed, Within, nearest, within};
+pub use measure::{circumcenters, fault, transforms, volumes};
 pub use triangulate::{Simplices, triangulate};
+pub use validate::{Findings, validate};

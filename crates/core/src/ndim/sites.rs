@@ -6,9 +6,11 @@
 //! scaled coordinates are exact, differences that are not zero are at least 2^-400, and their squares
 //! at least 2^-800: what underflows is far below the floors in `filter`. Otherwise no filter is used.
 
-use delone_predicates::arithmetic::bit_span;
+use delone_predicates::arithmetic::{bit_span, decode_odd};
 use num_bigint::BigInt;
 
+use super::filter::{Matrix, dot, minus};
+use super::residues::{Points, ROWS};
 use crate::error::Result;
 use crate::memory::with_room;
 use crate::wide;
@@ -113,6 +115,46 @@ impl<const D: usize, const P: usize> Sites<D, P> {
     /// A coordinate as it was given, and the exponent of the unit.
     pub fn coordinate(&self, p: u32, k: usize) -> (f64, i64) {
         (self.given[p as usize][k], self.low)
+    }
+
+    /// The coordinates of points, as they were given.
+    pub fn corners<const V: usize>(&self, v: &[u32; V]) -> [[f64; D]; V] {
+        v.map(|p| self.given[p as usize])
+    }
+
+    /// The scaled differences of corners from the first one, rounded.
+    #[inline(always)]
+    pub fn differences<const V: usize>(&self, v: &[u32; V]) -> Matrix<D, P> {
+        let o = &self.scaled[v[0] as usize];
+        std::array::from_fn(|i| minus(&self.scaled[v[i + 1] as usize], o))
+    }
+
+    /// Points as integers for residues.
+    pub fn integers(&self, points: impl Iterator<Item = u32>) -> Points {
+        let mut rows = [[(0, 0); ROWS - 1]; ROWS + 1];
+        let mut count = 0;
+        for p in points {
+            for k in 0..D {
+                let (x, low) = self.coordinate(p, k);
+                let (odd, exponent) = decode_odd(x);
+                if odd != 0 {
+                    let odd = if x < 0.0 { -(odd as i64) } else { odd as i64 };
+                    rows[count][k] = (odd, (i64::from(exponent) - low) as u32);
+                }
+            }
+            count += 1;
+        }
+        Points {
+            rows,
+            count,
+            dimension: D,
+        }
+    }
+
+    /// log2 of a bound of the determinant of the differences of corners: Hadamard's inequality.
+    pub fn log_determinant<const V: usize>(&self, v: &[u32; V]) -> f64 {
+        let a: Matrix<D, P> = self.differences(v);
+        a.iter().map(|row| 0.5 * dot(row, row).log2()).sum()
     }
 }
 

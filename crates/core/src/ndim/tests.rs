@@ -3,6 +3,7 @@
 mod bounds;
 mod brute;
 mod sets;
+mod simplices;
 
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};

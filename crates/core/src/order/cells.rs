@@ -6,7 +6,7 @@
 
 use delone_predicates::lexicographic;
 
-use super::{hilbert, hilbert3};
+use super::{hilbert, hilbert_n, hilbert3};
 use crate::error::Result;
 use crate::points::Extent;
 use crate::watch::{Pace, Watch};
@@ -17,7 +17,8 @@ pub const CROWD: usize = 16;
 /// Items of runs between two checks for interruption.
 const LOT: usize = 1 << 16;
 
-/// Cells of a box: in 2-D 65536 along the longer side, in 3-D 1024 along the longest.
+/// Cells of a box: in 2-D 65536 along the longer side, in 3-D 1024 along the longest, in more
+/// dimensions as many as keys of 32 bits have.
 pub struct Cells<const D: usize> {
     min: [f64; D],
     before: f64,
@@ -25,10 +26,10 @@ pub struct Cells<const D: usize> {
 }
 
 impl<const D: usize> Cells<D> {
-    const BITS: u32 = if D == 2 {
-        hilbert::BITS
-    } else {
-        hilbert3::BITS
+    const BITS: u32 = match D {
+        2 => hilbert::BITS,
+        3 => hilbert3::BITS,
+        _ => 32 / D as u32,
     };
 
     /// The cells of a bounding box.
@@ -59,11 +60,16 @@ impl<const D: usize> Cells<D> {
         let cell = |k: usize| {
             (((p[k] * self.before - self.min[k]) * self.scale) as u32).min((1 << Self::BITS) - 1)
         };
-        if D == 2 {
-            u64::from(hilbert::key(cell(0) as u16, cell(1) as u16)) << 32
-        } else {
-            let key = hilbert3::key([cell(0), cell(1), cell(2)]);
-            u64::from(key) << (64 - 3 * hilbert3::BITS)
+        match D {
+            2 => u64::from(hilbert::key(cell(0) as u16, cell(1) as u16)) << 32,
+            3 => {
+                let key = hilbert3::key([cell(0), cell(1), cell(2)]);
+                u64::from(key) << (64 - 3 * hilbert3::BITS)
+            }
+            _ => {
+                let key = hilbert_n::key::<D>(std::array::from_fn(cell), Self::BITS);
+                key << (64 - D as u32 * Self::BITS)
+            }
         }
     }
 }

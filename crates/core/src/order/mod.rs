@@ -9,6 +9,7 @@ pub mod curve;
 mod distribute;
 mod hilbert;
 mod hilbert3;
+pub mod hilbert_n;
 mod radix;
 mod rounds;
 mod rows;

@@ -1,17 +1,20 @@
-//! The first of the tetrahedra around a face, an edge or a vertex.
+//! The first of the simplices around a facet or a face of fewer dimensions, in three dimensions or more.
 
 use std::collections::HashSet;
 
-use super::Place;
-use crate::arrays::{Side, Tetrahedra};
-use crate::locate::First;
+use super::star::{First, Place};
+use crate::arrays::{Given, Side};
 
-/// The same point in the tetrahedron across a face on which it is.
-fn across(given: &Tetrahedra, place: Place, corner: usize) -> Option<Place> {
+/// The same point in the simplex across a facet on which it is.
+fn across<const D: usize, const N: usize>(
+    given: &Given<D, N>,
+    place: Place<N>,
+    corner: usize,
+) -> Option<Place<N>> {
     let simplex = place.simplex;
     let there = given.beyond(Side { simplex, corner })?;
     let (old, new) = (&given.simplices[simplex], &given.simplices[there.simplex]);
-    // Common faces keep their signs; the point is also on the face opposite the new corner.
+    // Common facets keep their signs; the point is also on the facet opposite the new corner.
     let on = |k: usize| {
         let same = old.iter().position(|&v| v == new[k]);
         same.is_none_or(|j| place.on[j])
@@ -22,10 +25,13 @@ fn across(given: &Tetrahedra, place: Place, corner: usize) -> Option<Place> {
     })
 }
 
-/// The first of the tetrahedra that can be reached from `place`, on whose faces the point is; it is
+/// The first of the simplices that can be reached from `place`, on whose facets the point is; it is
 /// open if one of these is on the boundary. Terminates because each is visited once.
 #[inline(never)]
-pub fn first_around(given: &Tetrahedra, place: Place) -> First<4> {
+pub fn first_around<const D: usize, const N: usize>(
+    given: &Given<D, N>,
+    place: Place<N>,
+) -> First<N> {
     let mut first = First { place, open: false };
     let mut met = Met::default();
     met.is_new(place.simplex);
@@ -34,7 +40,7 @@ pub fn first_around(given: &Tetrahedra, place: Place) -> First<4> {
         if at.simplex < first.place.simplex {
             first.place = at;
         }
-        for corner in (0..4).filter(|&k| at.on[k]) {
+        for corner in (0..N).filter(|&k| at.on[k]) {
             match across(given, at, corner) {
                 None => first.open = true,
                 Some(next) if met.is_new(next.simplex) => left.push(next),
@@ -53,7 +59,7 @@ struct Met {
 }
 
 impl Met {
-    /// A vertex of uniform points has 27 tetrahedra on average.
+    /// In 3-D a vertex of uniform points has 27 tetrahedra on average.
     const FEW: usize = 48;
 
     fn is_new(&mut self, number: usize) -> bool {

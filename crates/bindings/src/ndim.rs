@@ -1,0 +1,140 @@
+//! Triangulations in four to eight dimensions as arrays, and point location in them.
+
+use delone_core::arrays::Arrays;
+use delone_core::locate::find;
+use delone_core::ndim::{self, Findings, Hyper, Weighed};
+use numpy::PyReadonlyArray2;
+use pyo3::prelude::*;
+
+use crate::arrays::{Column, Table, column, columns, in_many, number_rows, numbers, rows, shaped};
+use crate::errors::Outcome;
+use crate::given::checked;
+use crate::interpolate::Points;
+use crate::locator::Tiling;
+use crate::signals::watched;
+use crate::triangulation::{Triangulation, arrays_of};
+
+/// The Delaunay triangulation of points with four to eight coordinates.
+#[pyfunction]
+pub fn triangulate_n(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> Outcome<Triangulation> {
+    in_many!(columns(&points), D, N, P => {
+        let points: &[[f64; D]] = rows(&points, "points")?;
+        let made = watched(py, |watch| ndim::triangulate::<D, N, P>(points, watch))?;
+        let arrays = Arrays {
+            simplices: made.simplices.into_iter().map(|v| v.map(|i| i as i32)).collect(),
+            neighbors: made.neighbors,
+        };
+        arrays_of(py, arrays, &made.duplicates, &[])
+    })
+}
+
+/// Faults of a triangulation in four to eight dimensions; arrays are empty if there are none.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct FaultsN {
+    /// Simplices that are not positively oriented, (k,).
+    pub orientation: Column<i32>,
+    /// Simplices whose row of neighbors is wrong, (k,).
+    pub neighbors: Column<i32>,
+    /// Boundary facets that are not on the hull, (k, d).
+    pub hull: Table<i32>,
+    /// Rows of distinct points that no simplex uses, (k,).
+    pub missing: Column<i32>,
+    /// Rows that are used although an earlier row has the same coordinates, (k,).
+    pub repeats: Column<i32>,
+    /// Pairs of simplices that are not locally Delaunay, (k, 2).
+    pub delaunay: Table<i32>,
+    /// Pairs of cospherical simplices that are not canonical, (k, 2).
+    pub ties: Table<i32>,
+    /// Simplices that cover a point of simplex 0, (k,).
+    pub overlaps: Column<i32>,
+}
+
+/// Returns the faults of a triangulation in four to eight dimensions.
+#[pyfunction]
+pub fn validate_n<'py>(
+    py: Python<'py>,
+    points: PyReadonlyArray2<'py, f64>,
+    simplices: PyReadonlyArray2<'py, i32>,
+    neighbors: PyReadonlyArray2<'py, i32>,
+) -> Outcome<FaultsN> {
+    in_many!(columns(&points), D, N, P => {
+        let given = checked(&points, &simplices, &neighbors)?;
+        let found = watched(py, |watch| ndim::validate::<D, N, P>(given, watch))?;
+        faults(py, found)
+    })
+}
+
+/// What is wrong, as arrays.
+fn faults<const D: usize>(py: Python<'_>, found: Findings<D>) -> Outcome<FaultsN> {
+    Ok(FaultsN {
+        orientation: numbers(py, found.orientation),
+        neighbors: numbers(py, found.neighbors),
+        hull: number_rows(py, &found.hull)?,
+        missing: numbers(py, found.missing),
+        repeats: numbers(py, found.repeats),
+        delaunay: number_rows(py, &found.delaunay)?,
+        ties: number_rows(py, &found.ties)?,
+        overlaps: numbers(py, found.overlaps),
+    })
+}
+
+/// Queries in simplices of one dimension.
+trait Kept: Send + Sync {
+    fn find(&self, xi: &Points<'_>, workers: usize) -> Outcome<Column<i32>>;
+    fn within(&self, xi: &Points<'_>, workers: usize) -> Outcome<(Column<i32>, Table<f64>)>;
+    fn nearest(&self, xi: &Points<'_>, workers: usize) -> Outcome<Column<i32>>;
+}
+
+impl<const D: usize, const N: usize> Kept for Tiling<Hyper<D>, D, N>
+where
+    Hyper<D>: Weighed<D, N>,
+{
+    fn find(&self, xi: &Points<'_>, workers: usize) -> Outcome<Column<i32>> {
+        self.column(xi, workers, find)
+    }
+
+    fn within(&self, xi: &Points<'_>, workers: usize) -> Outcome<(Column<i32>, Table<f64>)> {
+        let py = xi.py();
+        let (found, n) = self.batch(xi, workers, ndim::within)?;
+        let weights = shaped(py, found.weights, [n, N])?;
+        Ok((column(py, found.simplex), weights))
+    }
+
+    fn nearest(&self, xi: &Points<'_>, workers: usize) -> Outcome<Column<i32>> {
+        self.column(xi, workers, ndim::nearest)
+    }
+}
+
+/// A Delaunay triangulation in four to eight dimensions that is kept for many calls.
+#[pyclass(frozen, module = "delone._core")]
+pub struct LocatorN(Box<dyn Kept>);
+
+#[pymethods]
+impl LocatorN {
+    #[new]
+    fn new(
+        points: PyReadonlyArray2<'_, f64>,
+        simplices: PyReadonlyArray2<'_, i32>,
+        neighbors: PyReadonlyArray2<'_, i32>,
+    ) -> Outcome<Self> {
+        in_many!(columns(&points), D, N, P => {
+            let kept = Tiling::<Hyper<D>, D, N>::new(&points, &simplices, &neighbors)?;
+            Ok(Self(Box::new(kept)))
+        })
+    }
+
+    /// For each query, the first simplex that contains it, or -1.
+    fn find(&self, xi: Points<'_>, workers: usize) -> Outcome<Column<i32>> {
+        self.0.find(&xi, workers)
+    }
+
+    /// Simplices with barycentric coordinates.
+    fn within(&self, xi: Points<'_>, workers: usize) -> Outcome<(Column<i32>, Table<f64>)> {
+        self.0.within(&xi, workers)
+    }
+
+    /// The nearest vertex to each query.
+    fn nearest(&self, xi: Points<'_>, workers: usize) -> Outcome<Column<i32>> {
+        self.0.nearest(&xi, workers)
+    }
+}

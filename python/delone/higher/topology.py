@@ -1,0 +1,48 @@
+"""Topology of simplices with any number of corners: the facets of the boundary.
+
+Needs neither coordinates nor predicates. Simplices are positively oriented, and
+``neighbors[t, k]`` is across the facet opposite vertex k, -1 outside.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from delone._types import Indices
+
+__all__ = ["boundary_facets", "neighbors"]
+
+
+def boundary_facets(simplices: Indices, neighbors: Indices) -> Indices:
+    """Return the facets with a simplex on one side only, (h, d), in the order of the simplices.
+
+    A facet with a point on its inner side in front of it is positively oriented, as in 2-D and 3-D.
+    """
+    simplex, corner = np.nonzero(neighbors < 0)
+    count = simplices.shape[1]
+    # The corners but one; two exchanged where that one has an odd number.
+    order = np.array([[k for k in range(count) if k != left] for left in range(count)])
+    order[1::2, -2:] = order[1::2, :-3:-1]
+    found: Indices = np.take_along_axis(simplices[simplex], order[corner], axis=1)
+    return found
+
+
+def neighbors(simplices: Indices) -> Indices:
+    """Return the simplex opposite each vertex, -1 if there is none. O(m log m).
+
+    A facet that more than two simplices have joins none of them.
+    """
+    count, width = simplices.shape
+    left = [[k for k in range(width) if k != corner] for corner in range(width)]
+    facets = np.sort(simplices[:, left].reshape(-1, width - 1), axis=1)
+    order = np.lexsort(facets.T[::-1])
+    same = (facets[order[1:]] == facets[order[:-1]]).all(axis=1)
+    # Runs of two equal facets.
+    pair = same & ~np.append(False, same[:-1]) & ~np.append(same[1:], False)
+    first, second = order[:-1][pair], order[1:][pair]
+    found = np.full(count * width, -1, dtype=np.int32)
+    found[first], found[second] = second // width, first // width
+    return found.reshape(count, width)
