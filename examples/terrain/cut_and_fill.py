@@ -43,6 +43,15 @@ volume = before.volume_to(after)
 print(f"balanced at {middle:.3f} m: cut {volume.cut:.1f}, fill {volume.fill:.1f} cubic meters")
 
 # %%
+# The quantities of each half of the pad, as a table. ``coverage`` would be below 1 where the survey does not reach.
+
+west, east = pad[[0, 3]], pad[[1, 2]]
+middle_line = (west + east) / 2
+halves = [np.vstack((west, middle_line[::-1])), np.vstack((middle_line, east[::-1]))]
+table = before.volumes_to(after, halves).to_pandas({"half": ["west", "east"]})
+print(table[["half", "cut", "fill", "area", "coverage"]].round(2).to_string(index=False))
+
+# %%
 # A pad that is too close to the end of the survey cannot be built: the error says where. A common mistake is to build
 # a design on a clip that is as large as the pad.
 

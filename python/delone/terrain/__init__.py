@@ -11,6 +11,7 @@ from __future__ import annotations
 from delone.terrain.contouring import Bands, Contours
 from delone.terrain.deviations import Deviations
 from delone.terrain.profiles import Profile, Sight
+from delone.terrain.regions import Volumes
 from delone.terrain.simplifying import Simplification
 from delone.terrain.tin import TIN
 from delone.terrain.volumes import Volume
@@ -24,4 +25,5 @@ __all__ = [
     "Sight",
     "Simplification",
     "Volume",
+    "Volumes",
 ]

@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 
     from delone._types import Floats
 
-__all__ = ["Ring", "line_of", "lines_of", "rings_of"]
+__all__ = ["LOOSE", "Ring", "line_of", "lines_of", "rings_by_feature", "rings_of"]
 
 # The polygon of rings that belong to none.
-_LOOSE = 0
+LOOSE = 0
 
 
 class Ring(NamedTuple):
@@ -62,13 +62,68 @@ def _placed(given: Any, name: str, crs: str | None) -> list[Ring]:
 
 def rings_of(given: Any, *, name: str, crs: str | None) -> list[Ring]:
     """Return closed rings: arrays that do not repeat their first point at the end are closed."""
-    rings = []
-    for ring, polygon in _placed(given, name, crs):
-        closed = ring if (ring[0, :2] == ring[-1, :2]).all() else np.vstack((ring, ring[:1]))
-        if len(closed) < 4:
-            raise InputError(f"{name}: a ring needs at least three points, got {len(closed) - 1}")
-        rings.append(Ring(closed, polygon))
-    return rings
+    return [_closed(ring, name) for ring in _placed(given, name, crs)]
+
+
+def _closed(ring: Ring, name: str) -> Ring:
+    points = ring.points
+    if not (points[0, :2] == points[-1, :2]).all():
+        points = np.vstack((points, points[:1]))
+    if len(points) < 4:
+        raise InputError(f"{name}: a ring needs at least three points, got {len(points) - 1}")
+    return ring._replace(points=points)
+
+
+def rings_by_feature(given: Any, *, name: str, crs: str | None) -> list[list[Ring]]:
+    """Return the closed rings of each feature of a layer, none where it has no geometry.
+
+    A feature is a row of a table, a geometry of a sequence or collection of features, or one of
+    several rings given as arrays, which are polygons of their own here.
+    """
+    found: list[list[Ring]] = []
+    for row, feature in enumerate(_features(given)):
+        own = f"{name}, feature {row}"
+        _require_areas(feature, own)
+        rings = [ring for ring in _each(feature, own, count(1)) if len(ring.points)]
+        found.append([_closed(ring, own) for ring in rings])
+    # Together, since each call of a transformation has to be set up.
+    every = [ring.points for rings in found for ring in rings]
+    if every:
+        moved = transformed(given, np.concatenate(every), crs, name=name, to="the surface")
+        parts = iter(np.split(moved, np.cumsum([len(points) for points in every])[:-1]))
+        found = [[ring._replace(points=next(parts)) for ring in rings] for rings in found]
+    return found
+
+
+def _features(given: Any) -> list[Any]:
+    """Return the features of a layer."""
+    if hasattr(given, "geometries") and hasattr(given, "feature_heights"):  # a GeometrySet
+        return list(given.geometries)
+    if hasattr(given, "geometry") and hasattr(given.geometry, "values"):
+        return list(given.geometry.values)
+    if not isinstance(given, dict) and not is_shapely(given):
+        given = getattr(given, "__geo_interface__", given)
+    if isinstance(given, dict):
+        several = given.get("type") == "FeatureCollection"
+        return list(given["features"]) if several else [given]
+    if is_shapely(given) or _is_line(given):
+        return [given]
+    if hasattr(given, "__iter__") and not isinstance(given, str | bytes):
+        return list(given)
+    return [given]
+
+
+def _require_areas(feature: Any, name: str) -> None:
+    """Refuse geometries that are neither polygons nor closed lines."""
+    if not is_shapely(feature) or feature.is_empty:
+        return
+    for part in getattr(feature, "geoms", [feature]):
+        kind = part.geom_type
+        if kind in ("Point", "LineString") and not (kind == "LineString" and part.is_closed):
+            raise InputError(
+                f"{name} is not a polygon but contains a {kind}: select the polygons, or close "
+                "the line"
+            )
 
 
 def line_of(given: Any, *, name: str, crs: str | None) -> Floats:
@@ -94,7 +149,7 @@ def _each(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
     elif isinstance(given, dict) or hasattr(given, "__geo_interface__"):
         yield from _of_mapping(given, name, number)
     elif _is_line(given):
-        yield Ring(_of_array(as_plain_array(given, name), name), _LOOSE)
+        yield Ring(_of_array(as_plain_array(given, name), name), LOOSE)
     elif hasattr(given, "__iter__") and not isinstance(given, str | bytes):
         for item in given:
             yield from _each(item, name, number)
@@ -168,6 +223,6 @@ def _of_geometry(geometry: Any, name: str, number: count[int]) -> Iterator[Ring]
     if kind == "Polygon":
         polygon, lines = next(number), [geometry.exterior, *geometry.interiors]
     else:
-        polygon, lines = _LOOSE, [geometry]
+        polygon, lines = LOOSE, [geometry]
     for line in lines:
         yield Ring(_checked(shapely.get_coordinates(line, include_z=True), name), polygon)

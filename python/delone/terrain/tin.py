@@ -14,6 +14,7 @@ from delone.renames import renamed
 from delone.terrain import building, contouring, profiles, slopes, volumes
 from delone.terrain.detail import Detailed
 from delone.terrain.earthworks import Earthworks
+from delone.terrain.measured import Measured
 from delone.terrain.sources import Sources
 from delone.terrain.surveyed import Surveyed
 
@@ -37,7 +38,7 @@ class _Sheet(NamedTuple):
 
 @made_by("create a TIN with TIN.from_points, from_raster or from_file")
 @renamed(volume="volume_to", gradient="gradients")
-class TIN(Sources, Surveyed, Earthworks, Detailed):
+class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
     """A triangulated irregular network: a surface over triangles, linear in each.
 
     Create one with `from_points`, `from_raster` or `from_file`.
@@ -579,6 +580,10 @@ class TIN(Sources, Surveyed, Earthworks, Detailed):
         -----
         CRSWarning, UserWarning
             One reference system is unknown; there is no area in common.
+
+        See Also
+        --------
+        volumes_to : The same for each polygon of a layer.
 
         Notes
         -----

@@ -20,13 +20,14 @@ from delone.units import require_same_units
 
 if TYPE_CHECKING:
     from delone._types import Floats, Indices
-    from delone.terrain.surface import Surface
+    from delone.terrain.lines import Ring
+    from delone.terrain.surface import Sheet, Surface
 
-__all__ = ["Volume", "volume"]
+__all__ = ["Region", "Volume", "goal_of", "region_of", "volume"]
 
 
-class _Region(NamedTuple):
-    """The triangles of a region, as the core takes surfaces."""
+class Region(NamedTuple):
+    """The triangles of a region or a part of a surface, as the core takes them."""
 
     points: Floats
     simplices: Indices
@@ -92,16 +93,7 @@ class Volume(ReadOnly):
 
 def volume(tin: Surface, other: Any, region: Any) -> Volume:
     """Return the volume between a surface and `other`."""
-    plane, surface = [0.0, 0.0, 0.0], None
-    if hasattr(other, "_sheet"):
-        surface = other._sheet()
-        if tin.crs and other.crs and not same_crs(tin.crs, other.crs):
-            raise InputError(
-                f"the surfaces are in {tin.crs:.60} and in {other.crs:.60}: transform one of them"
-            )
-        require_same_units(tin.units, other.units, what="the surfaces")
-    else:
-        plane = _plane(other)
+    surface, plane = goal_of(tin, other)
     found = _core.volumes2(
         tin._sheet(), surface, plane, _region(region, tin.crs), as_workers(tin.workers)
     )
@@ -127,6 +119,18 @@ def volume(tin: Surface, other: Any, region: Any) -> Volume:
     )
 
 
+def goal_of(tin: Surface, other: Any) -> tuple[Sheet | None, list[float]]:
+    """Return what is to be reached: a surface, or None and a plane."""
+    if not hasattr(other, "_sheet"):
+        return None, _plane(other)
+    if tin.crs and other.crs and not same_crs(tin.crs, other.crs):
+        raise InputError(
+            f"the surfaces are in {tin.crs:.60} and in {other.crs:.60}: transform one of them"
+        )
+    require_same_units(tin.units, other.units, what="the surfaces")
+    return other._sheet(), [0.0, 0.0, 0.0]
+
+
 def _plane(other: Any) -> list[float]:
     """Return a plane by its slopes and its height at the origin."""
     try:
@@ -140,16 +144,20 @@ def _plane(other: Any) -> list[float]:
     return numbers
 
 
-def _region(region: Any, crs: str | None) -> _Region | None:
-    """Return the triangles inside of polygons."""
+def _region(region: Any, crs: str | None) -> Region | None:
     if region is None:
         return None
     rings = rings_of(region, name="region", crs=crs)
     if not rings:
         raise InputError("region has no polygon or ring")
+    return region_of(rings)
+
+
+def region_of(rings: list[Ring]) -> Region:
+    """Return the triangles inside of polygons."""
     mesh, within = inside_of_rings(rings)
     number = np.append(np.where(within, np.cumsum(within) - 1, -1), -1).astype(np.int32)
-    return _Region(
+    return Region(
         mesh.points,
         mesh.simplices[within],
         number[mesh.neighbors[within]],
