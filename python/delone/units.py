@@ -15,10 +15,12 @@ from delone.georeference import caller_level, parsed
 __all__ = [
     "METERS",
     "UnitsWarning",
+    "area_units",
     "as_units",
     "heights_of_crs",
     "lengths_of_crs",
     "require_same_units",
+    "volume_units",
     "warn_of_units",
 ]
 
@@ -105,6 +107,20 @@ def _of_length(meters: float) -> str | None:
         if abs(length - meters) <= _SAME * length:
             return unit
     return None
+
+
+def area_units(crs: str | None) -> str | None:
+    """Return the unit of areas in a reference system, such as m2; None if unknown."""
+    lengths = lengths_of_crs(crs)
+    return None if lengths is None else f"{lengths}2"
+
+
+def volume_units(crs: str | None, heights: str | None) -> str | None:
+    """Return the unit of volumes, such as m3, or "ft m2" for heights in feet over meters."""
+    lengths = lengths_of_crs(crs)
+    if lengths is None or heights is None:
+        return None
+    return f"{lengths}3" if lengths == heights else f"{heights} {lengths}2"
 
 
 def require_same_units(a: str | None, b: str | None, *, what: str) -> None:

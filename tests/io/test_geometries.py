@@ -12,7 +12,13 @@ import pandas as pd
 import pytest
 import shapely
 
-from delone import ConstrainedDelaunay, FileFormatError, MissingExtraError, from_geometry
+from delone import (
+    ConstrainedDelaunay,
+    FileFormatError,
+    InputError,
+    MissingExtraError,
+    from_geometry,
+)
 from delone.io import GeometrySet, read_geometries, read_points, write_mesh
 from delone.io.registry import holds_geometries
 
@@ -36,8 +42,27 @@ def test_all_kinds(tmp_path, suffix):
     assert shapely.equals_exact(found.geometries, SHAPES).all()
     assert found.feature_heights.tolist() == [1.5, 2.5, 3.5]
     assert (found.crs, found.source, len(found)) == ("EPSG:28992", str(file), 3)
-    assert not found.only_points
+    assert not found.only_points and found.attributes == {}
     assert found.areas.tolist() == [SHAPES[0]]
+
+
+@pytest.mark.parametrize("suffix", [".gpkg", ".geojson", ".parquet"])
+def test_further_columns(tmp_path, suffix):
+    file = tmp_path / f"a{suffix}"
+    data = frame(SHAPES, height=[1.5, 2.5, 3.5], name=["a", "b", "c"], number=[7, 8, 9])
+    data.to_parquet(file) if suffix == ".parquet" else data.to_file(file)
+    found = read_geometries(file, attributes="all").attributes
+    assert {name: values.tolist() for name, values in found.items()} == {
+        "height": [1.5, 2.5, 3.5],
+        "name": ["a", "b", "c"],
+        "number": [7, 8, 9],
+    }
+    found = read_geometries(file, columns=["height"], attributes=["name"])
+    assert list(found.attributes) == ["name"] and found.feature_heights.tolist() == [1.5, 2.5, 3.5]
+    with pytest.raises(FileFormatError, match="nothing"):
+        read_geometries(file, attributes=["nothing"])
+    with pytest.raises(InputError, match="'all' or names"):
+        read_geometries(file, attributes="name")
     assert len(found.all_points()) == 5 + 4 + 2 + 1
     assert read_geometries(file).feature_heights is None
     with pytest.raises(FileFormatError, match="feature 0 is Polygon"):

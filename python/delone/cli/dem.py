@@ -29,6 +29,7 @@ from delone.cli.surfaces import (
     Step,
     SurfaceOptions,
     Tolerance,
+    Units,
     Voids,
     figures_of,
     print_figures,
@@ -109,6 +110,7 @@ def dem(
     retriangulate: Retriangulate = False,
     easting_first: EastingFirst = False,
     crs: Crs = None,
+    units: Units = None,
     planar: Planar = False,
     workers: Workers = None,
     as_json: Json = False,
@@ -168,8 +170,9 @@ def _refuse_for_tiles(given: dict[str, Any], what: str) -> None:
             f"'gdaldem {what}' to them",
             Exit.USAGE,
         )
-    names = ("bounds", "breaklines", "soft_breaklines", "boundary", "max_edge", "columns")
-    set_ = [name for name in (*names, "classes", "layer", "workers") if given[name] is not None]
+    lines = ("bounds", "breaklines", "soft_breaklines", "boundary", "max_edge", "columns")
+    names = (*lines, "classes", "layer", "units", "workers")
+    set_ = [name for name in names if given[name] is not None]
     set_ += [name for name in ("duplicates", "crossing") if given[name] != "raise"]
     set_ += [
         name for name in ("tolerance", "retriangulate", "easting_first", "voids") if given[name]

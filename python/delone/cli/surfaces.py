@@ -30,7 +30,7 @@ from delone.io.registry import holds_surface
 from delone.terrain import TIN
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
 __all__ = [
     "Boundary",
@@ -46,6 +46,7 @@ __all__ = [
     "SurfaceOptions",
     "Survey",
     "Tolerance",
+    "Units",
     "Voids",
     "curves_of",
     "figures_of",
@@ -89,6 +90,9 @@ Tolerance = Annotated[
     float,
     typer.Option(help="Heights at one place that differ by at most this are equal."),
 ]
+Units = Annotated[
+    str | None, typer.Option(help="The unit of heights, if the file does not say it: m, ft, us-ft.")
+]
 Retriangulate = Annotated[
     bool,
     typer.Option(
@@ -123,6 +127,7 @@ class SurfaceOptions:
     crossing: str
     tolerance: float
     crs: str | None
+    units: str | None
     planar: bool
     workers: int | None
     quiet: bool
@@ -188,7 +193,7 @@ def surface(
         raise Failure(f"{source}: no column has heights: name it with --columns x,y,z", Exit.USAGE)
     survey = referenced(survey, options.crs, planar=options.planar, quiet=options.quiet)
     say(f"triangulating {len(survey.points):,} points")
-    policies = ("duplicates", "crossing", "tolerance", "workers")
+    policies = ("duplicates", "crossing", "tolerance", "units", "workers")
     lined |= {name: getattr(options, name) for name in policies}
     with watch.stage("triangulate"), noting(quiet=options.quiet):
         if isinstance(survey, PointSet):
@@ -232,20 +237,30 @@ def figures_of(source: Path, tin: TIN, output: list[Path] | None) -> dict[str, A
     }
 
 
-def print_figures(source: Path, figures: dict[str, Any], *, as_json: bool, quiet: bool) -> None:
-    """Print figures as a table, or as JSON."""
+def print_figures(
+    source: Path,
+    figures: dict[str, Any],
+    *,
+    as_json: bool,
+    quiet: bool,
+    of: Mapping[str, str | None] | None = None,
+    more: Sequence[tuple[str, str]] = (),
+) -> None:
+    """Print figures as a table with the units `of` some of them and `more` rows, or as JSON."""
     if as_json:
         print_json(figures)
         return
     if quiet:
         return
     left_out = {"delone", "input", "crs", "units", "stages", "outputs", "peak_memory_bytes"}
+    left_out |= {"volume_units", "area_units"}
     if not figures["outputs"]:
         left_out.add("output_bytes")
     rows = []
     for name, value in figures.items():
-        if name not in left_out and value is not None:
+        if name not in left_out and value is not None and not isinstance(value, list):
             form = {float: ".10g", int: ","}.get(type(value), "")
-            text = f"{value:{form}}"
+            unit = (of or {}).get(name)
+            text = f"{value:{form}}" + (f" {unit}" if unit else "")
             rows.append((name.replace("_", " "), text))
-    print_report(str(source), rows, figures)
+    print_report(str(source), [*rows, *more], figures)

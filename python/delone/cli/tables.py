@@ -18,10 +18,13 @@ _DRIVERS = {".gpkg": "GPKG", ".geojson": "GeoJSON", ".fgb": "FlatGeobuf"}
 TABLE_SUFFIXES = (*_DRIVERS, ".parquet")
 
 
-def ready_table(path: Path, what: str) -> None:
-    """Check that a table of `what` can be written to a file before any work is done."""
+def ready_table(path: Path, what: str, *, also: str = "") -> None:
+    """Check that a table of `what` can be written to a file before any work is done.
+
+    `also` is a suffix that the caller writes.
+    """
     if path.suffix.lower() not in TABLE_SUFFIXES:
-        suffixes = " ".join(TABLE_SUFFIXES)
+        suffixes = " ".join([also] * bool(also) + [*TABLE_SUFFIXES])
         raise Failure(f"{path}: {what} can only be written to {suffixes}", Exit.USAGE)
     require("geopandas", extra="geo", what=f"writing {what}")
     if path.suffix.lower() == ".parquet":

@@ -14,6 +14,14 @@ from delone.atomic import replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
 from delone.cli.options import Chord, Classes, Json, Layer, Quiet, Workers
+from delone.cli.quantities import (
+    ROW_SUFFIXES,
+    read_regions,
+    ready_rows,
+    volume_figures,
+    volume_rows,
+    write_rows,
+)
 from delone.cli.referenced import Crs, Planar, require_known
 from delone.cli.report import Stopwatch
 from delone.cli.show import spinner
@@ -31,6 +39,7 @@ from delone.cli.surfaces import (
     SurfaceOptions,
     Survey,
     Tolerance,
+    Units,
     Voids,
     curves_of,
     figures_of,
@@ -41,12 +50,13 @@ from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
 from delone.extras import require
 from delone.io import read_geometries
 from delone.io.dem import is_raster
+from delone.terrain import Volumes
 from delone.terrain.contouring import MOST
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from delone.terrain import TIN
+    from delone.terrain import TIN, Volume
 
 __all__ = ["contours", "profile", "volume"]
 
@@ -97,6 +107,7 @@ def contours(
     retriangulate: Retriangulate = False,
     easting_first: EastingFirst = False,
     crs: Crs = None,
+    units: Units = None,
     planar: Planar = False,
     workers: Workers = None,
     as_json: Json = False,
@@ -168,6 +179,7 @@ def profile(
     retriangulate: Retriangulate = False,
     easting_first: EastingFirst = False,
     crs: Crs = None,
+    units: Units = None,
     planar: Planar = False,
     workers: Workers = None,
     as_json: Json = False,
@@ -210,6 +222,21 @@ def volume(
     region: Annotated[
         Path | None, typer.Option(help="File of polygons to which the volume is limited.")
     ] = None,
+    regions: Annotated[
+        Path | None, typer.Option(help="File of polygons, for each of which there is a row.")
+    ] = None,
+    regions_layer: Annotated[
+        str | None, typer.Option(help="Layer of the file of --regions, if it has several.")
+    ] = None,
+    output: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="OUTPUT",
+            help="File for the rows of --regions, once or more: " + " ".join(ROW_SUFFIXES),
+        ),
+    ] = None,
     other_layer: Annotated[
         str | None, typer.Option(help="Layer or surface of OTHER, if not that of --layer.")
     ] = None,
@@ -229,6 +256,7 @@ def volume(
     retriangulate: Retriangulate = False,
     easting_first: EastingFirst = False,
     crs: Crs = None,
+    units: Units = None,
     planar: Planar = False,
     workers: Workers = None,
     as_json: Json = False,
@@ -239,28 +267,36 @@ def volume(
     Lines and boundary are those of the first surface.
     """
     options = SurfaceOptions.among(locals())
+    if region is not None and regions is not None:
+        raise Failure("--region is one volume, --regions has a row for each: give one", Exit.USAGE)
+    if regions is None and (output or regions_layer is not None):
+        raise Failure("--output and --regions-layer need --regions", Exit.USAGE)
     require_known(crs)
+    polygons = [path for path in (region, regions) if path is not None]
+    ready_rows(output or [], [source, Path(other), *polygons, *options.inputs()])
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         with reading(quiet=quiet):
             within = None if region is None else read_geometries(region, **curves_of(region, chord))
-        others = [Path(other)] if region is None else [Path(other), region]
-        tin = surface(source, options, watch, say, others=others)
+            lots = None if regions is None else read_regions(regions, regions_layer, options)
+        tin = surface(source, options, watch, say, others=[Path(other), *polygons])
         within_other = replace(options, layer=other_layer or options.layer)
         goal = _goal(other, within_other, watch, say)
         say("computing volumes")
         with watch.stage("volume"), noting(quiet=quiet):
-            found = tin.volume_to(goal, region=within)
-    figures = figures_of(source, tin, []) | {
-        "cut": found.cut,
-        "fill": found.fill,
-        "net": found.net,
-        "cut_area": found.cut_area,
-        "fill_area": found.fill_area,
-        "area": found.area,
-        "stages": watch.rows(tin.npoints),
-    }
-    print_figures(source, figures, as_json=as_json, quiet=quiet)
+            found: Volume | Volumes
+            if lots is None:
+                found = tin.volume_to(goal, region=within)
+            else:
+                found = tin.volumes_to(goal, lots)
+        if isinstance(found, Volumes) and lots is not None:
+            write_rows(found, lots, output or [], watch, quiet=quiet)
+    figures = figures_of(source, tin, output) | volume_figures(found)
+    figures["stages"] = watch.rows(tin.npoints)
+    units_of = dict.fromkeys(("cut", "fill", "net"), found.volume_units)
+    units_of |= dict.fromkeys(("cut_area", "fill_area", "area"), found.area_units)
+    more = volume_rows(found, lots)
+    print_figures(source, figures, as_json=as_json, quiet=quiet, of=units_of, more=more)
 
 
 def _numbers(text: str, option: str) -> list[float]:

@@ -53,10 +53,11 @@ def read_geometries(
     *,
     columns: Sequence[str | int] | None,
     layer: str | None,
+    attributes: Sequence[str] = (),
     chord: float | None = None,
 ) -> GeometrySet:
     """Read the lines of a drawing; see `delone.io.read_geometries`."""
-    _refuse_columns(path, columns, ())
+    _refuse_columns(path, columns, attributes)
     found = read_surface(path, name=layer, order="enz", chord=chord)
     found.warn_left_out()
     return found.as_geometries()

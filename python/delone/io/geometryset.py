@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -73,6 +73,8 @@ class GeometrySet:
         Coordinate reference system, as ``"EPSG:28992"`` or in WKT; None if the file has none.
     source : str, optional
         The file.
+    attributes : dict of str to ndarray, optional
+        Further columns of the file, with a value for each feature.
 
     Examples
     --------
@@ -88,6 +90,7 @@ class GeometrySet:
     feature_heights: Floats | None = None
     crs: str | None = None
     source: str = ""
+    attributes: dict[str, NDArray[Any]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check_system(self.crs, self.source)

@@ -42,10 +42,14 @@ def read_points(
 
 
 def read_geometries(
-    path: Path, *, columns: Sequence[str | int] | None, layer: str | None
+    path: Path,
+    *,
+    columns: Sequence[str | int] | None,
+    layer: str | None,
+    attributes: Sequence[str] = (),
 ) -> GeometrySet:
     """Read the lines of a surface; see `delone.io.read_geometries`."""
-    _refuse_columns(path, columns, ())
+    _refuse_columns(path, columns, attributes)
     found = read_surface(path, name=layer, order="nez")
     found.warn_left_out()
     return found.as_geometries()

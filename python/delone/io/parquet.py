@@ -63,7 +63,12 @@ def holds_geometries(path: Path) -> bool:
 
 
 def read_geometries(
-    path: Path, *, columns: Sequence[str | int] | None, layer: str | None
+    path: Path,
+    *,
+    columns: Sequence[str | int] | None,
+    layer: str | None,
+    attributes: Sequence[str] = (),
+    everything: bool = False,
 ) -> GeometrySet:
     """Read points, lines and areas from GeoParquet; see `delone.io.read_geometries`."""
     if layer is not None:
@@ -71,7 +76,9 @@ def read_geometries(
     if not holds_geometries(path):
         raise FileFormatError(f"{path} is a table without geometries")
     with _corrupt_is_an_error(path):
-        return geometries_of(_frame(path), columns=columns, source=str(path))
+        wanted = None if everything else attributes
+        frame = _frame(path)
+        return geometries_of(frame, columns=columns, source=str(path), attributes=wanted)
 
 
 def look(

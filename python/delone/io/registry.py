@@ -290,13 +290,7 @@ def read_points(
     module = _module(_READERS, suffix, file, "read")
     if classes is not None and suffix not in (".las", ".laz"):
         raise FileFormatError(f"{file}: only LAS and LAZ files have classes")
-    everything = isinstance(attributes, str)
-    if everything and attributes != "all":
-        raise InputError(f"attributes must be 'all' or names of columns, got {attributes!r:.60}")
-    named = () if everything else tuple(attributes)
-    options: dict[str, Any] = {"columns": columns, "attributes": named} | _chord(file, chord)
-    if everything and not module.__name__.endswith(_WITHOUT_ATTRIBUTES):
-        options["everything"] = True
+    options = {"columns": columns} | _chord(file, chord) | _attributes(attributes, module)
     if module.__name__.endswith(".las"):
         options["classes"] = classes
     if module.__name__.endswith((".vector", ".arrays", ".landxml", ".dxf", ".dem")):
@@ -378,6 +372,7 @@ def read_geometries(
     *,
     columns: Sequence[str | int] | None = None,
     layer: str | None = None,
+    attributes: Sequence[str] | str = (),
     chord: float | None = None,
 ) -> GeometrySet:
     """Read points, lines and areas from a file; the suffix determines the format.
@@ -392,6 +387,8 @@ def read_geometries(
         heights are those of the coordinates, if any.
     layer : str, optional
         The layer, for files that have several.
+    attributes : sequence of str or "all", optional
+        Further columns to read, as for `read_points`; LandXML and DXF have none.
     chord : float, optional
         How far chords may be from the curves of a DXF file; see `read_surface`.
 
@@ -403,7 +400,7 @@ def read_geometries(
 
     Raises
     ------
-    FileNotFoundError, FileFormatError, MissingExtraError
+    FileNotFoundError, FileFormatError, MissingExtraError, InputError
         As for `read_points`.
 
     Examples
@@ -422,7 +419,18 @@ def read_geometries(
     modules = {suffix: name for suffix, name in _READERS.items() if name in _GEOMETRIES}
     module = _module(modules, _suffix(file), file, "read geometries from")
     read: Callable[..., GeometrySet] = module.read_geometries
-    return read(file, columns=columns, layer=layer, **_chord(file, chord))
+    options = _chord(file, chord) | _attributes(attributes, module)
+    return read(file, columns=columns, layer=layer, **options)
+
+
+def _attributes(attributes: Sequence[str] | str, module: Any) -> dict[str, Any]:
+    """Return the further columns to read as options of a reader."""
+    if not isinstance(attributes, str):
+        return {"attributes": tuple(attributes)}
+    if attributes != "all":
+        raise InputError(f"attributes must be 'all' or names of columns, got {attributes!r:.60}")
+    without = module.__name__.endswith(_WITHOUT_ATTRIBUTES)
+    return {"attributes": ()} | ({} if without else {"everything": True})
 
 
 def holds_surface(path: str | os.PathLike[str]) -> bool:

@@ -73,11 +73,17 @@ def read_points(
 
 
 def read_geometries(
-    path: Path, *, columns: Sequence[str | int] | None, layer: str | None
+    path: Path,
+    *,
+    columns: Sequence[str | int] | None,
+    layer: str | None,
+    attributes: Sequence[str] = (),
+    everything: bool = False,
 ) -> GeometrySet:
     """Read points, lines and areas; see `delone.io.read_geometries`."""
-    frame = _read(path, columns, (), layer)
-    return geometries_of(frame, columns=columns, source=str(path))
+    wanted = None if everything else attributes
+    frame = _read(path, columns, wanted, layer)
+    return geometries_of(frame, columns=columns, source=str(path), attributes=wanted)
 
 
 def _read(
@@ -139,11 +145,16 @@ def from_frame(
     found = geometries_of(frame, columns=columns, source=source)
     points = found.as_points()
     index = np.repeat(np.arange(len(found)), shapely.get_num_coordinates(found.geometries))
-    if attributes is None:
+    values = _attributes(frame, attributes, source)
+    return replace(points, attributes={name: column[index] for name, column in values.items()})
+
+
+def _attributes(frame: Any, wanted: Sequence[str] | None, source: str) -> dict[str, NDArray[Any]]:
+    """Return columns of a GeoDataFrame, by default all but its geometry."""
+    if wanted is None:
         own = frame.geometry.name
-        attributes = [str(name) for name in frame.columns if name != own]
-    values = {name: _values(frame[_same(frame, name, source)])[index] for name in attributes}
-    return replace(points, attributes=values)
+        wanted = [str(name) for name in frame.columns if name != own]
+    return {name: _values(frame[_same(frame, name, source)]) for name in wanted}
 
 
 def _values(column: Any) -> NDArray[Any]:
@@ -155,8 +166,17 @@ def _values(column: Any) -> NDArray[Any]:
     return np.asarray(texts, dtype=object)
 
 
-def geometries_of(frame: Any, *, columns: Sequence[str | int] | None, source: str) -> GeometrySet:
-    """Extract the geometries of a GeoDataFrame; `columns` has the one column that is z, if any."""
+def geometries_of(
+    frame: Any,
+    *,
+    columns: Sequence[str | int] | None,
+    source: str,
+    attributes: Sequence[str] | None = (),
+) -> GeometrySet:
+    """Extract the geometries of a GeoDataFrame; `columns` has the one column that is z, if any.
+
+    Of attributes None means all.
+    """
     if not hasattr(frame, "geometry") or not len(frame):
         raise FileFormatError(f"{source} contains no points")
     heights = None
@@ -167,6 +187,7 @@ def geometries_of(frame: Any, *, columns: Sequence[str | int] | None, source: st
         feature_heights=heights,
         crs=None if frame.crs is None else str(frame.crs.to_string()),
         source=source,
+        attributes=_attributes(frame, attributes, source),
     )
 
 

@@ -24,6 +24,7 @@ from delone.measures import sizes
 from delone.plane.geometry import total
 from delone.terrain.lines import LOOSE, rings_by_feature
 from delone.terrain.volumes import Region, goal_of, region_of
+from delone.units import area_units, volume_units
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -93,6 +94,16 @@ class Volumes(ReadOnly):
         partial = int(self.partial.sum())
         beside = f"; {partial} not covered entirely" if partial else ""
         return f"<Volumes of {counted(len(self), 'region')}: {text}{beside}>"
+
+    @property
+    def volume_units(self) -> str | None:
+        """The unit of volumes, such as m3, or "ft m2" for heights in feet; None if unknown."""
+        return volume_units(self.crs, self.units)
+
+    @property
+    def area_units(self) -> str | None:
+        """The unit of areas, such as m2; None if the reference system is unknown."""
+        return area_units(self.crs)
 
     @property
     def net(self) -> Floats:

@@ -16,7 +16,7 @@ from delone.immutable import ReadOnly, sealed
 from delone.plane.geometry import total
 from delone.terrain.extent import inside_of_rings
 from delone.terrain.lines import rings_of
-from delone.units import require_same_units
+from delone.units import area_units, require_same_units, volume_units
 
 if TYPE_CHECKING:
     from delone._types import Floats, Indices
@@ -70,6 +70,16 @@ class Volume(ReadOnly):
     of_triangles: Floats
     units: str | None = None
     crs: str | None = None
+
+    @property
+    def volume_units(self) -> str | None:
+        """The unit of volumes, such as m3, or "ft m2" for heights in feet; None if unknown."""
+        return volume_units(self.crs, self.units)
+
+    @property
+    def area_units(self) -> str | None:
+        """The unit of areas, such as m2; None if the reference system is unknown."""
+        return area_units(self.crs)
 
     @property
     def net(self) -> float:
