@@ -238,3 +238,185 @@ def test_seeds_of_voids_remain(tmp_path):
     # A hole that is asked for is one of them, whichever point was given.
     regions = tetrahedralize(*nested(VOIDS["two regions"]), holes=[(4, 4, 4)])
     assert len(regions.holes) == 1 and (np.abs(regions.holes - 4.5) < 1.5).all()
+
+
+LABELS = np.arange(len(FACES)) // 2 - 3
+LABELED = tetrahedralize(POINTS, FACES, face_markers=LABELS, regions=[(0.5, 0.5, 0.5, 0), SEEDS[1]])
+
+
+def named(kinds):
+    """Rows by their group as its name says, of (name, rows) pairs."""
+    return {kind: set(map(tuple, np.sort(rows, axis=1).tolist())) for kind, rows in kinds}
+
+
+def expected_groups(mesh):
+    found = {}
+    for kind, rows, values in (
+        ("region", mesh.simplices, mesh.region),
+        ("marker", mesh.input_faces, mesh.face_markers),
+    ):
+        found |= named((f"{kind} {own}", rows[values == own]) for own in np.unique(values).tolist())
+    return found
+
+
+@pytest.mark.parametrize("mesh", [MESH, LABELED], ids=["above 0", "also below"])
+def test_groups_of_msh_4(mesh, tmp_path):
+    path = tmp_path / "a.msh"
+    delone.io.write_mesh(path, mesh, version="4.1")
+    assert path.read_bytes().split(b"\n")[1] == b"4.1 1 8"
+    found = meshio.read(path)
+    assert np.array_equal(found.points, mesh.points)
+    rows = {}
+    names = {(int(tag), int(n)): name for name, (tag, n) in found.field_data.items()}
+    assert min(tag for tag, _ in names) > 0
+    for block, tags in zip(found.cells, found.cell_data["gmsh:physical"], strict=True):
+        ndim = 3 if block.type == "tetra" else 2
+        for tag in np.unique(tags).tolist():
+            rows.setdefault(names[tag, ndim], []).append(block.data[tags == tag])
+    assert named((name, np.concatenate(own)) for name, own in rows.items()) == expected_groups(mesh)
+    if mesh is MESH:
+        assert all(name.split()[1] == str(tag) for (tag, _), name in names.items())
+
+
+@pytest.mark.parametrize(
+    ("suffix", "options"),
+    [(".msh", {"version": "4.1"}), (".msh", {"version": "2.2"}), (".med", {})],
+    ids=["4.1", "2.2", "med"],
+)
+@pytest.mark.parametrize("mesh", [MESH, LABELED], ids=["above 0", "also below"])
+def test_gmsh_reads_groups(mesh, suffix, options, tmp_path):
+    gmsh = pytest.importorskip("gmsh")
+    path = tmp_path / f"a{suffix}"
+    delone.io.write_mesh(path, mesh, **options)
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.open(str(path))
+        model = gmsh.model
+        tags, places, _ = model.mesh.getNodes()
+        assert np.array_equal(places.reshape(-1, 3)[np.argsort(tags)], mesh.points)
+        found = {}
+        for ndim, tag in model.getPhysicalGroups():
+            rows = [
+                corners.reshape(-1, ndim + 1).astype(int) - 1
+                for entity in model.getEntitiesForPhysicalGroup(ndim, tag)
+                for corners in model.mesh.getElements(ndim, entity)[2]
+            ]
+            found |= named([(model.getPhysicalName(ndim, tag), np.concatenate(rows))])
+    finally:
+        gmsh.finalize()
+    expected = expected_groups(mesh)
+    if options != {"version": "4.1"}:
+        # Without a number there is no group there.
+        expected.pop("marker 0", None)
+    assert found == expected
+
+
+@pytest.mark.parametrize("version", ["2.2", "4.1"])
+@pytest.mark.parametrize("binary", [False, True])
+def test_groups_of_surfaces_are_face_markers(version, binary, tmp_path):
+    """A file of Gmsh, in which some entities are in a group, some in two, and some in none."""
+    gmsh = pytest.importorskip("gmsh")
+    path = tmp_path / "a.msh"
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        # In version 2.2, that would leave out all groups.
+        gmsh.option.setNumber("Mesh.SaveAll", version == "4.1")
+        gmsh.option.setNumber("Mesh.Binary", binary)
+        gmsh.option.setNumber("Mesh.MshFileVersion", float(version))
+        gmsh.model.add("box")
+        for face in range(12):
+            gmsh.model.addDiscreteEntity(2, face + 1)
+            if face == 0:
+                gmsh.model.mesh.addNodes(2, 1, range(1, 9), POINTS[:8].ravel())
+            gmsh.model.mesh.addElementsByType(face + 1, 2, [face + 1], FACES[face] + 1)
+        gmsh.model.addPhysicalGroup(2, [1, 2, 3], 31, "low")
+        gmsh.model.addPhysicalGroup(2, [4, 5], 32, "marker 7")
+        if version == "4.1":
+            gmsh.model.addPhysicalGroup(2, [5, 6], 33)
+        else:
+            gmsh.model.addPhysicalGroup(2, range(6, 13), 33)
+        gmsh.write(str(path))
+    finally:
+        gmsh.finalize()
+    expected = np.array([31, 31, 31, 7, 7, 33] + [0 if version == "4.1" else 33] * 6)
+    found = read_mesh(path)
+    assert keyed(found.simplices, found.markers) == keyed(FACES[:12], expected)
+    mesh = tetrahedralize(path)
+    assert keyed(mesh.input_faces, mesh.face_markers) == keyed(FACES[:12], expected)
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".vtk", ".mesh", ".smesh", ".msh"])
+def test_markers_of_surfaces_come_back(suffix, tmp_path):
+    path = tmp_path / f"a{suffix}"
+    if suffix == ".smesh":
+        delone.io.write_mesh(path, MESH)
+    else:
+        name = {".mesh": "medit:ref", ".msh": "gmsh:physical"}.get(suffix, "marker")
+        cells = [("vertex", [[0], [3]]), ("triangle", FACES[:5]), ("triangle", FACES[5:])]
+        values = {name: [np.array([99, 99]), MARKERS[:5], MARKERS[5:]]}
+        if suffix == ".msh":
+            cells, values[name] = cells[1:], values[name][1:]
+            values["gmsh:geometrical"] = values[name]
+        module = {".msh": meshio.gmsh, ".vtu": meshio.vtu, ".vtk": meshio.vtk}.get(suffix)
+        own = meshio.Mesh(POINTS, cells, cell_data=values)
+        if suffix == ".msh":
+            module.write(path, own, "2.2")
+        elif suffix == ".mesh":
+            meshio.medit.write(
+                path, meshio.Mesh(POINTS, cells[1:], cell_data={name: values[name][1:]})
+            )
+        else:
+            module.write(path, own)
+    found = read_mesh(path)
+    assert keyed(found.simplices, found.markers) == keyed(FACES, MARKERS)
+
+
+def test_markers_of_objects(tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    cells = [("vertex", [[0]]), ("triangle", FACES[:5]), ("triangle", FACES[5:])]
+    values = {"marker": [np.array([9]), MARKERS[:5], MARKERS[5:]]}
+    tags = {"gmsh:physical": values["marker"]}
+    surface = pyvista.PolyData.from_regular_faces(POINTS, FACES)
+    surface.cell_data["marker"] = MARKERS.astype(float)
+    both = pyvista.PolyData(POINTS, faces=surface.faces, lines=[2, 0, 3], verts=[1, 0])
+    both.cell_data["marker"] = np.concatenate(([77, 78], MARKERS))
+    grid = surface.cast_to_unstructured_grid()
+    for given in (
+        meshio.Mesh(POINTS, cells, cell_data=values),
+        meshio.Mesh(POINTS, cells, cell_data=tags),
+        surface,
+        both,
+        grid,
+    ):
+        mesh = tetrahedralize(given)
+        assert keyed(mesh.input_faces, mesh.face_markers) == WALLS
+        assert (tetrahedralize(given, face_markers=MARKERS * 0).face_markers == 0).all()
+    surface.cell_data["marker"] = MARKERS + 0.5
+    with pytest.raises(delone.DtypeError, match="face_markers must be integers"):
+        tetrahedralize(surface)
+
+
+def test_versions_are_those_of_msh(tmp_path):
+    with pytest.raises(delone.FileFormatError, match=r"\.vtu files have no version"):
+        delone.io.write_mesh(tmp_path / "a.vtu", MESH, version="4.1")
+    with pytest.raises(delone.InputError, match=r"version must be one of '2\.2', '4\.1'"):
+        delone.io.write_mesh(tmp_path / "a.msh", MESH, version="3")
+    plain = tetrahedralize(POINTS, FACES)
+    for version in ("2.2", "4.1"):
+        delone.io.write_mesh(tmp_path / "a.msh", plain, version=version)
+        assert (tmp_path / "a.msh").read_bytes().split(b"\n")[1].startswith(version.encode())
+        assert np.array_equal(read_mesh(tmp_path / "a.msh").simplices, plain.simplices)
+
+
+@pytest.mark.parametrize("version", ["2.2", "4.1"])
+def test_heights_and_markers_of_triangles_in_msh(version, tmp_path):
+    path = tmp_path / "a.msh"
+    flat = delone.mesh([(0, 0), (2, 0), (2, 2), (0, 2)], max_area=0.5, segment_markers=[4, 4, 0, 6])
+    values = np.arange(flat.npoints) / 8
+    delone.io.write_mesh(path, flat, z=values, attributes={"u": 2 * values}, version=version)
+    found = delone.io.read_points(path, attributes=["u"])
+    assert np.array_equal(found.points, flat.points) and np.array_equal(found.z, values)
+    assert np.array_equal(found.attributes["u"], 2 * values)
+    assert np.array_equal(np.sort(read_mesh(path).simplices), np.sort(flat.simplices))

@@ -69,6 +69,13 @@ def _tags(parts: Parts) -> dict[str, list[NDArray[Any]]]:
     if parts.segments is None or "marker" not in parts.of_segments:
         return {}
     none = np.zeros(len(parts.simplices), dtype=np.int32)
-    region = np.asarray(parts.of_simplices.get("region", none)).astype(np.int32)
-    tags = [region - region.min(initial=0) + 1, parts.of_segments["marker"].astype(np.int32)]
+    region = np.asarray(parts.of_simplices.get("region", none)).astype(np.int64)
+    if region.min(initial=1) < 1:
+        region += 1 - region.min(initial=1)
+    marker = parts.of_segments["marker"].astype(np.int64)
+    # Negative numbers have no place in Gmsh: they follow the largest one.
+    below = np.unique(marker[marker < 0])
+    numbers = max(0, marker.max(initial=0)) + 1 + np.arange(len(below))
+    marker[marker < 0] = numbers[np.searchsorted(below, marker[marker < 0])]
+    tags = [region.astype(np.int32), marker.astype(np.int32)]
     return {name: [tag.copy() for tag in tags] for name in TAGS}

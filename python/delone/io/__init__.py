@@ -6,10 +6,10 @@ package handles one family of formats and imports the libraries it needs when it
 
 from delone.io.dem import read_raster
 from delone.io.geometryset import GeometrySet
+from delone.io.meshfile import MeshFile
 from delone.io.pointset import PointSet
 from delone.io.raster import raster_suffixes, write_raster
 from delone.io.registry import (
-    MeshFile,
     input_suffixes,
     line_numbers,
     output_suffixes,

@@ -21,8 +21,8 @@ from delone.bounded import archived, read_array, require_claim
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import FileFormatError, InputError
 from delone.io.heights import split_attributes
+from delone.io.meshfile import MeshFile
 from delone.io.pointset import PointSet, choose_columns, find_column
-from delone.io.registry import MeshFile
 from delone.regular import RegularTriangulation
 
 if TYPE_CHECKING:

@@ -1,8 +1,9 @@
 """What meshio may see of an MSH file: the sections that are needed, with every count verified.
 
 meshio sets memory aside for what a count declares, and loops as often, also where the file ends.
-So the other sections (names, entities, periodic links, further views) are left out, and the blocks
-of nodes and elements are followed here first, in the versions 2, 4.0 and 4.1, text and binary.
+So the other sections (periodic links, further views) are left out, and the blocks of nodes and
+elements are followed here first, in the versions 2, 4.0 and 4.1, text and binary. `gmsh_groups`
+reads the names of physical groups, and which entities are in them.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["needed_sections"]
+__all__ = ["Bytes", "Checked", "Words", "needed_sections", "spans"]
 
 # Nodes of an element by Gmsh's number of its type.
 _NODES = {
@@ -47,11 +48,11 @@ def needed_sections(path: Path, attributes: Sequence[str] | None) -> Iterator[Pa
     Values of points are needed if `attributes` has their name, or is None.
     """
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-        spans = _spans(content, path)
-        named = [span for span in spans if span[0] != "Comments"]
+        found = spans(content, path)
+        named = [span for span in found if span[0] != "Comments"]
         if not named or named[0][0] != "MeshFormat":
             raise FileFormatError(f"{path} does not begin with $MeshFormat: it is not a .msh file")
-        checked = _Checked(path, content[named[0][2] : named[0][3]])
+        checked = Checked(path, content[named[0][2] : named[0][3]])
         kept = [(named[0][1], named[0][4])]
         for name, start, body, stop, end in named[1:]:
             wanted = name in ("Nodes", "Elements")
@@ -62,7 +63,7 @@ def needed_sections(path: Path, attributes: Sequence[str] | None) -> Iterator[Pa
                 wanted = attributes is None or named_so in attributes
             if wanted:
                 kept.append((start, end))
-        if len(kept) == len(spans):
+        if len(kept) == len(found):
             yield path
             return
         with tempfile.TemporaryDirectory(prefix="delone-") as folder:
@@ -73,7 +74,7 @@ def needed_sections(path: Path, attributes: Sequence[str] | None) -> Iterator[Pa
             yield copy
 
 
-def _spans(content: mmap.mmap, path: Path) -> list[tuple[str, int, int, int, int]]:
+def spans(content: mmap.mmap, path: Path) -> list[tuple[str, int, int, int, int]]:
     """Return the name of each section, and where it, its body, its last line and the rest begin."""
     found, at = [], 0
     # Each step moves on by a section or ends with an error.
@@ -101,7 +102,7 @@ def _end(content: mmap.mmap, name: str, at: int, path: Path) -> tuple[int, int]:
     raise FileFormatError(f"{path} has no {word:.60} at its end: it is truncated")
 
 
-class _Checked:
+class Checked:
     """The version of a file, and its sections compared with what they declare."""
 
     def __init__(self, path: Path, head: bytes) -> None:
@@ -125,9 +126,9 @@ class _Checked:
             check = self._old_nodes if name == "Nodes" else self._old_elements
             check(body, count, at)
         elif self.binary:
-            self._blocks(name, _Bytes(self, body))
+            self._blocks(name, Bytes(self, body))
         else:
-            self._blocks(name, _Words(self, body))
+            self._blocks(name, Words(self, body))
 
     def short(self, what: str = "declares more than it contains") -> FileFormatError:
         """Return the error of a file that is too short for its counts."""
@@ -166,7 +167,7 @@ class _Checked:
                 raise self.short()
             done += some
 
-    def _blocks(self, name: str, items: _Words | _Bytes) -> None:
+    def _blocks(self, name: str, items: Words | Bytes) -> None:
         """Follow the blocks of nodes or elements of version 4; or the nodes of version 2."""
         if self.version.startswith("2"):
             (count,) = items.counts(1)
@@ -214,10 +215,10 @@ class _Checked:
         return strings[0].decode("utf-8", errors="replace").strip().replace('"', "")
 
 
-class _Words:
+class Words:
     """The numbers of a section of text, in order."""
 
-    def __init__(self, checked: _Checked, body: bytes) -> None:
+    def __init__(self, checked: Checked, body: bytes) -> None:
         self._checked, self.size, self._at = checked, len(body), 0
         self._values = parsed(body, checked.path)
 
@@ -241,6 +242,10 @@ class _Words:
             raise self._checked.short("has negative counts")
         return found
 
+    def reals(self, count: int) -> None:
+        """Pass real numbers."""
+        self._take(count)
+
     def numbered(self, count: int) -> NDArray[np.float64]:
         """Return the numbers of nodes, and pass their coordinates."""
         numbers = self._take(count)
@@ -257,10 +262,10 @@ class _Words:
         self._take(count * width)
 
 
-class _Bytes:
+class Bytes:
     """The numbers of a binary section, in order."""
 
-    def __init__(self, checked: _Checked, body: bytes) -> None:
+    def __init__(self, checked: Checked, body: bytes) -> None:
         self._checked, self.size, self._at, self._body = checked, len(body), 0, body
         self._wide = f"<u{checked.size if checked.version != '4.0' else 8}"
 
@@ -278,6 +283,10 @@ class _Bytes:
     def counts(self, count: int) -> list[int]:
         """Return the next counts."""
         return [int(n) for n in self._take(count, self._wide).tolist()]
+
+    def reals(self, count: int) -> None:
+        """Pass real numbers."""
+        self._take(count, "<f8")
 
     def numbered(self, count: int) -> NDArray[np.generic]:
         """Return the numbers of nodes, and pass their coordinates."""

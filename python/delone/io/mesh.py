@@ -22,14 +22,13 @@ from delone._values import as_values
 from delone.errors import DeloneError, FileFormatError, InputError
 from delone.exchange.meshio import TAGS, to_meshio
 from delone.extras import require
-from delone.io import medit, obj, ply, vtk, vtu
+from delone.io import gmsh_groups, medit, msh, obj, ply, vtk, vtu
 from delone.io.cells import Cells, ReadMesh
 from delone.io.content import content
 from delone.io.facets import facet_triangles
 from delone.io.gmsh import needed_sections
-from delone.io.numbered import as_markers
+from delone.io.meshfile import MeshFile
 from delone.io.pointset import PointSet
-from delone.io.registry import MeshFile
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -77,7 +76,7 @@ def read_points(
 
 def read_mesh(path: Path, *, split: bool = False) -> MeshFile:
     """Read the triangles of a mesh; see `delone.io.read_mesh`. With `split`, also polygons."""
-    mesh = _read(path)
+    mesh = _read(path, marked=True)
     if any(block.type == "tetra" for block in mesh.cells):
         return _tetrahedra(mesh, path)
     points, z = _coordinates(mesh, path)
@@ -155,10 +154,11 @@ def _coordinates(
     return plane, z
 
 
-def _read(path: Path, attributes: Sequence[str] | None = ()) -> ReadMesh:
+def _read(path: Path, attributes: Sequence[str] | None = (), *, marked: bool = False) -> ReadMesh:
     """Return the points and cells of a file, and values of points: all, or those of an MSH file.
 
-    None means all of an MSH file as well.
+    None means all of an MSH file as well. With `marked`, triangles of an MSH file have the numbers
+    of their groups, as those of other files have them in any case.
     """
     suffix = path.suffix.lower()
     if suffix in _OWN:
@@ -186,20 +186,10 @@ def _read(path: Path, attributes: Sequence[str] | None = ()) -> ReadMesh:
             f"{path} is truncated or not a {suffix} file: {reason!s:.100}"
         ) from error
     cells = [Cells(block.type, block.data) for block in mesh.cells]
-    markers = _physical(mesh, path) if suffix == ".msh" else None
+    surface = {block.type for block in cells} & {"triangle", "tetra"} == {"triangle"}
+    groups = marked and suffix == ".msh" and surface
+    markers = gmsh_groups.markers(mesh, path) if groups else None
     return ReadMesh(points=mesh.points, cells=cells, point_data=mesh.point_data, markers=markers)
-
-
-def _physical(mesh: Any, path: Path) -> NDArray[np.int32] | None:
-    """The numbers of the physical groups of triangles, 0 where they are in none."""
-    tags = mesh.cell_data.get(TAGS[0])
-    if tags is None:
-        return None
-    rows = [np.empty((0, 1))]
-    for block, own in zip(mesh.cells, tags, strict=True):
-        if block.type == "triangle":
-            rows.append(np.asarray(own, dtype=np.float64).reshape(-1, 1))
-    return as_markers(np.concatenate(rows), path).ravel()
 
 
 @contextlib.contextmanager
@@ -239,6 +229,7 @@ def write_mesh(
     crs: str | None = None,
     edges: bool = False,
     attributes: Mapping[str, ArrayLike] | None = None,
+    version: str | None = None,
 ) -> None:
     """Write simplices and segments, or edges as lines, with heights as the third coordinate."""
     suffix = path.suffix.lower()
@@ -249,52 +240,64 @@ def write_mesh(
         raise FileFormatError(f"{suffix} files cannot store attributes; use .vtu or .ply")
     made = to_meshio(found.bare() if suffix in _PLAIN else found.whole())
     if suffix == ".msh" and TAGS[0] in made.cell_data:
-        _write_tagged(path, made, found)
+        _write_tagged(path, made, found, version or "2.2")
         return
     for tag in TAGS:
         made.cell_data.pop(tag, None)
     if found.heights is not None and suffix == ".vtu":
         made.point_data.setdefault("z", made.points[:, 2].copy())
-    _write(path, suffix, made)
+    _write(path, suffix, made, version or "4.1")
 
 
-def _write_tagged(path: Path, mesh: Any, found: Content) -> None:
-    """Write triangles and segments to an MSH file, with regions and markers as its tags.
+def _write_tagged(path: Path, mesh: Any, found: Content, version: str) -> None:
+    """Write simplices and segments to an MSH file, with regions and markers as its groups.
 
-    Version 4 needs the CAD entities of points; meshio reads values of mixed cells in neither.
+    meshio reads values of mixed cells in no version.
     """
     if found.of_simplices:
         raise FileFormatError(".msh files of meshes cannot store attributes of triangles; use .vtu")
-    mesh.field_data = _groups(mesh)
+    if version == "4.1":
+        msh.write(path, mesh.points, _groups(mesh), found.of_points)
+        return
+    mesh.field_data = {
+        group.name: np.array([group.number, group.ndim]) for group in _groups(mesh, unmarked=False)
+    }
     mesh.cell_data = {tag: mesh.cell_data[tag] for tag in TAGS}
     mesh.point_data = dict(found.of_points)
     module = importlib.import_module("meshio.gmsh")
     module.write(path, mesh, "2.2", binary=True)
 
 
-def _groups(mesh: Any) -> dict[str, NDArray[np.int64]]:
-    """Return the names of the physical groups, each with its tag and dimension."""
-    found = {}
-    own = {"region": 0, "marker": 1}
-    for name, block in own.items():
-        values = mesh.cell_data.get(name)
-        if values is None:
-            continue
-        ndim = {"line": 1, "triangle": 2, "tetra": 3}[mesh.cells[block].type]
-        pairs = zip(values[block].tolist(), mesh.cell_data[TAGS[0]][block].tolist(), strict=True)
-        for value, tag in sorted(set(pairs)):
-            if tag:
-                found[f"{name} {value}"] = np.array([tag, ndim])
+def _groups(mesh: Any, *, unmarked: bool = True) -> list[msh.Group]:
+    """Return the physical groups of a mesh: cells with the same region or marker.
+
+    Facets without a marker, whose number is 0, are a group with the number after the largest one,
+    or with ``unmarked=False`` none.
+    """
+    found = []
+    for name, block in (("region", 0), ("marker", 1)):
+        values, tags = mesh.cell_data.get(name), mesh.cell_data[TAGS[0]][block]
+        own = np.zeros(len(tags), dtype=np.int64) if values is None else np.asarray(values[block])
+        cells = mesh.cells[block]
+        for value in np.unique(own).tolist():
+            rows = np.flatnonzero(own == value)
+            tag = int(tags[rows[0]])
+            if tag or unmarked:
+                number = tag or int(tags.max()) + 1
+                group = msh.Group(
+                    gmsh_groups.group_name(name, value), number, cells.type, cells.data[rows]
+                )
+                found.append(group)
     return found
 
 
-def _write(path: Path, suffix: str, mesh: Any) -> None:
+def _write(path: Path, suffix: str, mesh: Any, version: str) -> None:
     module = importlib.import_module(f"meshio.{_MODULES[suffix]}")
     with np.errstate(all="ignore"):
         if suffix == ".stl":
             single = mesh.points.astype(np.float32)
             module.write(path, mesh, binary=bool((single == mesh.points).all()))
         elif suffix == ".msh":
-            module.write(path, mesh, "4.1", binary=True)
+            module.write(path, mesh, version, binary=True)
         else:
             module.write(path, mesh)

@@ -13,9 +13,9 @@ from delone._arrays import as_points, as_simplices
 from delone.errors import FileFormatError, InputError
 from delone.io.content import content
 from delone.io.facets import facet_triangles
+from delone.io.meshfile import MeshFile
 from delone.io.numbered import Lines, as_rows
 from delone.io.pointset import PointSet
-from delone.io.registry import MeshFile
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import importlib
 import os
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +14,6 @@ import numpy as np
 
 from delone._arrays import as_choice, as_count, as_flag, as_number, as_plain_array
 from delone.atomic import replacing
-from delone.counting import counted
 from delone.errors import DtypeError, FileFormatError, InputError
 from delone.georeference import as_crs, crs_of
 from delone.io.compressed import SUFFIXES
@@ -28,11 +26,11 @@ if TYPE_CHECKING:
 
     from delone.exchange.parts import HasParts
     from delone.io.geometryset import GeometrySet
+    from delone.io.meshfile import MeshFile
     from delone.io.pointset import PointSet
     from delone.io.surfacefile import SurfaceFile
 
 __all__ = [
-    "MeshFile",
     "holds_geometries",
     "holds_surface",
     "input_suffixes",
@@ -121,50 +119,6 @@ _MESH_READERS = {
     **dict.fromkeys((".poly", *_TETGEN), "tetgen"),
     ".off": "off",
 }
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class MeshFile:
-    """The triangles or tetrahedra of a file, not validated.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Horizontal coordinates; for tetrahedra all three, (n, 3).
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles; (m, 4) for tetrahedra.
-    neighbors : ndarray of int32, of the same shape, optional
-        The simplex opposite each vertex; None if the format does not store them.
-    z : ndarray of float64, shape (n,), optional
-        Heights.
-    source : str, optional
-        The file.
-    markers : ndarray of int32, shape (m,), optional
-        A number for each triangle: in TetGen's formats, the references of MESH, the physical
-        groups of MSH 2, and values of cells of VTK that are called marker.
-    holes : ndarray of float64, shape (k, 3), optional
-        Points in holes, in .poly and .smesh.
-    regions : ndarray of float64, shape (k, 4), optional
-        Points in regions, and their numbers, in .poly and .smesh.
-
-    Examples
-    --------
-    See `read_mesh`.
-    """
-
-    points: NDArray[np.float64]
-    simplices: NDArray[np.int32]
-    neighbors: NDArray[np.int32] | None = None
-    z: NDArray[np.float64] | None = None
-    source: str = ""
-    markers: NDArray[np.int32] | None = None
-    holes: NDArray[np.float64] | None = None
-    regions: NDArray[np.float64] | None = None
-
-    def __repr__(self) -> str:
-        kind = "triangle" if self.simplices.shape[1] == 3 else "tetrahedron"
-        points, simplices = len(self.points), len(self.simplices)
-        return f"<MeshFile of {counted(points, 'point')}: {counted(simplices, kind)}>"
 
 
 def input_suffixes() -> tuple[str, ...]:
@@ -593,6 +547,7 @@ def write_mesh(
     crs: Any = None,
     edges: bool = False,
     attributes: Mapping[str, ArrayLike] | None = None,
+    version: str | None = None,
 ) -> None:
     """Write a triangulation to a file; the suffix determines the format.
 
@@ -620,6 +575,9 @@ def write_mesh(
         Write edges instead of triangles, to VTU, MSH, GeoPackage or GeoJSON; plots show both.
     attributes : mapping of str to array_like, optional
         Values by point (n,) or by simplex (m,), for VTU, MSH, PLY, GeoPackage and GeoJSON.
+    version : {"2.2", "4.1"}, optional
+        Version of an MSH file. By default 2.2 where segments or faces have markers, which more
+        programs read, otherwise 4.1.
 
     Raises
     ------
@@ -678,12 +636,13 @@ def write_mesh(
     given = _plain(attributes, suffix)
     _require_place(path, triangulation, kind, edges=lines)
     write = _writer(path, kind)
+    further = {} if version is None else {"version": _version(version, suffix)}
     system = as_crs(crs)
     warn_if_left_out(path, system, WITH_CRS if flat else _LABELS)
     if system is None and flat:
         system = crs_of(triangulation)
     with replacing(path) as temporary:
-        write(temporary, triangulation, z=z, crs=system, edges=lines, attributes=given)
+        write(temporary, triangulation, z=z, crs=system, edges=lines, attributes=given, **further)
 
 
 def _kind(triangulation: Any) -> str:
@@ -711,6 +670,12 @@ def _require_place(path: str | os.PathLike[str], mesh: Any, kind: str, *, edges:
         raise FileFormatError(f"{path}: .npz files cannot store a {name}; use .vtu")
     if kind == "separate" and edges:
         raise FileFormatError(f"{path}: edges of a {name} are not written; write its triangles")
+
+
+def _version(version: str, suffix: str) -> str:
+    if suffix != ".msh":
+        raise FileFormatError(f"{suffix} files have no version to choose; only .msh files do")
+    return as_choice(version, ("2.2", "4.1"), name="version")
 
 
 def _plain(

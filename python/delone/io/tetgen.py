@@ -17,8 +17,8 @@ from delone.exchange.parts import boundary
 from delone.io.companions import require_companion
 from delone.io.content import content
 from delone.io.facets import facet_triangles
+from delone.io.meshfile import MeshFile
 from delone.io.numbered import Lines, Numbers, as_markers, as_rows, first_number, table
-from delone.io.registry import MeshFile
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

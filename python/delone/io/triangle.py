@@ -19,9 +19,9 @@ from delone.exchange.parts import boundary
 from delone.io import tetgen
 from delone.io.companions import require_companion
 from delone.io.content import content
+from delone.io.meshfile import MeshFile
 from delone.io.numbered import Numbers, as_markers, as_rows, first_number, table
 from delone.io.pointset import PointSet
-from delone.io.registry import MeshFile
 
 if TYPE_CHECKING:
     import os

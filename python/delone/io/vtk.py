@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from delone.errors import FileFormatError
-from delone.io.cells import Cells, ReadMesh
+from delone.io.cells import ReadMesh
 from delone.io.counts import announced
-from delone.io.numbered import as_markers, parsed
-from delone.io.vtu import POLYGON, cells_of
+from delone.io.numbered import parsed
+from delone.io.vtu import POLYGON, cells_of, markers_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -102,30 +102,13 @@ class _Reader:
             cells = cells_of(grid.corners, grid.ends, types, self._path)
         if any(len(each) != len(points) for each in values["POINT_DATA"].values()):
             raise FileFormatError(f"{self._path} has other numbers of points and of values")
+        marker = values["CELL_DATA"].get("marker")
         return ReadMesh(
             points=points,
             cells=cells,
             point_data=values["POINT_DATA"],
-            markers=self._markers(cells, values["CELL_DATA"].get("marker")),
+            markers=None if marker is None else markers_of(cells, marker, self._path),
         )
-
-    def _markers(
-        self, cells: list[Cells], values: NDArray[np.float64] | None
-    ) -> NDArray[np.int32] | None:
-        """Return the values of the triangles, in their order."""
-        if (
-            values is None
-            or values.ndim > 1
-            or len(values) != sum(len(block.data) for block in cells)
-        ):
-            return None
-        start, found = 0, [np.empty((0, 1))]
-        for block in cells:
-            stop = start + len(block.data)
-            if block.type == "triangle":
-                found.append(values[start:stop].reshape(-1, 1))
-            start = stop
-        return as_markers(np.concatenate(found), self._path).ravel()
 
     def _cells(self) -> _List:
         """Read cells in either layout: a count before the corners of each, or offsets first."""

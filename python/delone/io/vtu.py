@@ -1,4 +1,4 @@
-"""VTU: points, cells and values of points, read with the XML parser of Python.
+"""VTU: points, cells, values of points and markers of triangles, read with Python's XML parser.
 
 Arrays are text, or binary inline or appended, raw or in base64, compressed by zlib or LZMA or not.
 What an array declares is compared with the bytes that follow before memory is set aside, and it is
@@ -21,6 +21,7 @@ from delone.bounded import largest
 from delone.errors import FileFormatError
 from delone.io.cells import Cells, ReadMesh, name_of_polygon
 from delone.io.markup import decoded, refuse_document_type
+from delone.io.numbered import as_markers
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["POLYGON", "cells_of", "read"]
+__all__ = ["POLYGON", "cells_of", "markers_of", "read"]
 
 _TYPES = {
     **{"Float32": "f4", "Float64": "f8", "Int8": "i1", "Int16": "i2", "Int32": "i4"},
@@ -75,7 +76,9 @@ def read(path: Path) -> ReadMesh:
         if name in shared
     }
     points = np.concatenate([piece.points for piece in pieces])
-    return ReadMesh(points=points, cells=cells, point_data=values)
+    marked = [piece.markers for piece in pieces if piece.markers is not None]
+    markers = np.concatenate(marked) if len(marked) == len(pieces) else None
+    return ReadMesh(points=points, cells=cells, point_data=values, markers=markers)
 
 
 def _tree(path: Path) -> tuple[Any, bytes | None]:
@@ -119,7 +122,31 @@ def _piece(piece: Any, arrays: _Arrays, path: Path) -> ReadMesh:
     values = {name: found[:, 0] if found.shape[1] == 1 else found for name, found in values.items()}
     if any(len(found) != len(points) for found in values.values()):
         raise FileFormatError(f"{path} is corrupt: the numbers of points and of values differ")
-    return ReadMesh(points=points.astype(np.float64), cells=cells, point_data=values)
+    marker = next(
+        (each for each in piece.findall("CellData/DataArray") if each.get("Name") == "marker"), None
+    )
+    return ReadMesh(
+        points=points.astype(np.float64),
+        cells=cells,
+        point_data=values,
+        markers=None if marker is None else markers_of(cells, arrays.table(marker), path),
+    )
+
+
+def markers_of(cells: list[Cells], values: NDArray[Any], path: Path) -> NDArray[np.int32] | None:
+    """Return the values of triangles, in their order; None for vectors."""
+    count = sum(len(block.data) for block in cells)
+    if values.shape[1:] not in ((), (1,)):
+        return None
+    if len(values) != count:
+        raise FileFormatError(f"{path} is corrupt: it has {count} cells and {len(values)} markers")
+    start, found = 0, [np.empty((0, 1))]
+    for block in cells:
+        stop = start + len(block.data)
+        if block.type == "triangle":
+            found.append(values[start:stop].reshape(-1, 1).astype(np.float64))
+        start = stop
+    return as_markers(np.concatenate(found), path).ravel()
 
 
 def cells_of(

@@ -97,7 +97,9 @@ def tetrahedralize(
         The label is the fourth column (an integer of at least 0), or the row of the seed; it is -1
         for regions without a seed. Without seeds, regions are numbered from 0.
     face_markers : array_like of int, shape (m,), optional
-        A number for each face, inherited by the `face_markers` of the mesh.
+        A number for each face, inherited by the `face_markers` of the mesh. By default those of a
+        file (see `delone.io.MeshFile`), and values of cells of PyVista and meshio that are called
+        ``marker`` or ``gmsh:physical``.
     extra_points : array_like of float, shape (k, 3), optional
         Further vertices strictly inside regions; in the mesh their rows follow `points`.
     max_points : int, optional

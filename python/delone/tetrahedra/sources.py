@@ -23,6 +23,8 @@ _ACCEPTED = (
 
 # Files of TetGen, which asks for no orientation of faces.
 _UNORIENTED = (".smesh", ".poly", ".face")
+# What values of cells are called that are markers of faces.
+_MARKERS = ("marker", "gmsh:physical")
 # VTK's number of the type of a triangle.
 _VTK_TRIANGLE = 5
 
@@ -87,7 +89,14 @@ def _of_meshio(mesh: Any) -> Given:
         raise InputError(f"the mesh has {', '.join(kinds)} cells: a surface of triangles is needed")
     if "triangle" not in mesh.cells_dict:
         raise InputError("the mesh has no triangles")
-    return Given(np.asarray(mesh.points), mesh.cells_dict["triangle"])
+    markers = None
+    for name in _MARKERS:
+        if name in mesh.cell_data:
+            own = zip(mesh.cells, mesh.cell_data[name], strict=True)
+            rows = [values for block, values in own if block.type == "triangle"]
+            markers = _whole(np.concatenate(rows))
+            break
+    return Given(np.asarray(mesh.points), mesh.cells_dict["triangle"], markers)
 
 
 def _of_grid(grid: Any) -> Given:
@@ -98,7 +107,8 @@ def _of_grid(grid: Any) -> Given:
             "the UnstructuredGrid contains cells that are not triangles: pass "
             "grid.extract_surface().triangulate(), its boundary"
         )
-    return Given(np.asarray(grid.points), np.asarray(grid.cells_dict[_VTK_TRIANGLE]))
+    faces = np.asarray(grid.cells_dict[_VTK_TRIANGLE])
+    return Given(np.asarray(grid.points), faces, _values(grid))
 
 
 def _of_simplices(surface: Any) -> Given:
@@ -114,4 +124,19 @@ def _of_pyvista(surface: Any) -> Given:
         raise InputError(
             "the surface contains cells that are not triangles: call its method triangulate() first"
         )
-    return Given(np.asarray(surface.points), flat.reshape(-1, 4)[:, 1:])
+    return Given(np.asarray(surface.points), flat.reshape(-1, 4)[:, 1:], _values(surface))
+
+
+def _values(surface: Any) -> NDArray[Any] | None:
+    """The markers of the triangles of a surface of PyVista, which follow its vertices and lines."""
+    for name in _MARKERS:
+        if name in getattr(surface, "cell_data", ()):
+            before = getattr(surface, "n_verts", 0) + getattr(surface, "n_lines", 0)
+            return _whole(np.asarray(surface.cell_data[name])[before:])
+    return None
+
+
+def _whole(values: NDArray[Any]) -> NDArray[Any]:
+    """Return whole numbers as integers, and others as they are, to be refused."""
+    numbers = values.dtype.kind == "f" and (values == np.floor(values)).all()
+    return values.astype(np.int64) if numbers else values

@@ -1,0 +1,59 @@
+"""What `read_mesh` returns: the triangles or tetrahedra of a file, and what belongs to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from delone.counting import counted
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["MeshFile"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MeshFile:
+    """The triangles or tetrahedra of a file, not validated.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Horizontal coordinates; for tetrahedra all three, (n, 3).
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles; (m, 4) for tetrahedra.
+    neighbors : ndarray of int32, of the same shape, optional
+        The simplex opposite each vertex; None if the format does not store them.
+    z : ndarray of float64, shape (n,), optional
+        Heights.
+    source : str, optional
+        The file.
+    markers : ndarray of int32, shape (m,), optional
+        A number for each triangle: in TetGen's formats, the references of MESH, the physical
+        groups of MSH (the first one of a triangle; a name such as "marker 7" or "region 7" gives
+        7), and values of cells of VTK and VTU that are called marker.
+    holes : ndarray of float64, shape (k, 3), optional
+        Points in holes, in .poly and .smesh.
+    regions : ndarray of float64, shape (k, 4), optional
+        Points in regions, and their numbers, in .poly and .smesh.
+
+    Examples
+    --------
+    See `read_mesh`.
+    """
+
+    points: NDArray[np.float64]
+    simplices: NDArray[np.int32]
+    neighbors: NDArray[np.int32] | None = None
+    z: NDArray[np.float64] | None = None
+    source: str = ""
+    markers: NDArray[np.int32] | None = None
+    holes: NDArray[np.float64] | None = None
+    regions: NDArray[np.float64] | None = None
+
+    def __repr__(self) -> str:
+        kind = "triangle" if self.simplices.shape[1] == 3 else "tetrahedron"
+        points, simplices = len(self.points), len(self.simplices)
+        return f"<MeshFile of {counted(points, 'point')}: {counted(simplices, kind)}>"
