@@ -124,8 +124,14 @@ class Exchanged(Referenced):
         return plot(drawn, ax, **options)
 
     @only(FLAT_OR_SOLID, "meshio has no cells of more dimensions; use `save`")
-    def to_meshio(self) -> Any:
+    def to_meshio(self, *, order: int = 1) -> Any:
         """Convert to a mesh of meshio (extra ``mesh``).
+
+        Parameters
+        ----------
+        order : {1, 2}, optional
+            With 2, elements of second order, with a node in the middle of each edge: nodes are the
+            points and then the `edges`, row by row.
 
         Returns
         -------
@@ -136,6 +142,8 @@ class Exchanged(Referenced):
 
         Raises
         ------
+        InputError
+            `order` is neither 1 nor 2.
         MissingExtraError
             meshio is not installed.
 
@@ -147,11 +155,17 @@ class Exchanged(Referenced):
         """
         from delone.exchange.meshio import to_meshio
 
-        return to_meshio(self._parts())
+        return to_meshio(self._parts(), order=order)
 
     @only(FLAT_OR_SOLID, "PyVista has no cells of more dimensions")
-    def to_pyvista(self) -> Any:
+    def to_pyvista(self, *, order: int = 1) -> Any:
         """Convert to a mesh of PyVista (extra ``pyvista``).
+
+        Parameters
+        ----------
+        order : {1, 2}, optional
+            With 2, elements of second order, with a node in the middle of each edge: nodes are the
+            points and then the `edges`, row by row.
 
         Returns
         -------
@@ -161,6 +175,8 @@ class Exchanged(Referenced):
 
         Raises
         ------
+        InputError
+            `order` is neither 1 nor 2.
         MissingExtraError
             PyVista is not installed.
 
@@ -172,7 +188,7 @@ class Exchanged(Referenced):
         """
         from delone.exchange.pyvista import to_pyvista
 
-        return to_pyvista(self._parts())
+        return to_pyvista(self._parts(), order=order)
 
 
 class Stored(Referenced):

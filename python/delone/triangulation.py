@@ -474,8 +474,14 @@ class Triangulation(Complex):
         return to_matplotlib(self._parts())
 
     @only(FLAT_OR_SOLID, "scikit-fem has no meshes of more dimensions")
-    def to_skfem(self) -> Any:
+    def to_skfem(self, *, order: int = 1) -> Any:
         """Convert to a mesh of scikit-fem (extra ``fem``).
+
+        Parameters
+        ----------
+        order : {1, 2}, optional
+            With 2, elements of second order, with a node in the middle of each edge: nodes are the
+            points and then the `edges`, row by row.
 
         Returns
         -------
@@ -486,6 +492,8 @@ class Triangulation(Complex):
 
         Raises
         ------
+        InputError
+            `order` is neither 1 nor 2.
         MissingExtraError
             scikit-fem is not installed.
 
@@ -500,17 +508,28 @@ class Triangulation(Complex):
         """
         from delone.exchange.skfem import to_skfem
 
-        return to_skfem(self._parts())
+        return to_skfem(self._parts(), order=order)
 
     @only(FLAT_OR_SOLID, "DOLFINx has no meshes of more dimensions")
-    def to_dolfinx_arrays(self) -> dict[str, NDArray[Any]]:
+    def to_dolfinx_arrays(self, *, order: int = 1) -> dict[str, NDArray[Any]]:
         """Convert to the arrays from which DOLFINx makes a mesh.
+
+        Parameters
+        ----------
+        order : {1, 2}, optional
+            With 2, elements of second order, with a node in the middle of each edge: nodes are the
+            points and then the `edges`, row by row.
 
         Returns
         -------
         dict of ndarray
             ``cells`` and ``x`` for ``dolfinx.mesh.create_mesh``; with regions ``cell_tags``, and
             with segments ``facets`` (pairs of points) and ``facet_tags`` (markers).
+
+        Raises
+        ------
+        InputError
+            `order` is neither 1 nor 2.
 
         Examples
         --------
@@ -521,7 +540,7 @@ class Triangulation(Complex):
         """
         from delone.exchange.dolfinx import to_dolfinx_arrays
 
-        return to_dolfinx_arrays(self._parts())
+        return to_dolfinx_arrays(self._parts(), order=order)
 
 
 class HullTiling(Triangulation):

@@ -92,7 +92,7 @@ ABSENCES: dict[tuple[str, str], str] = {
     ("coming_from/tetgen.rst", "``M``, ``O``: none"): "faces are kept exactly; improve optimizes",
     (
         "coming_from/tetgen.rst",
-        "``o2``: not supported",
+        "``m``: not supported",
     ): "tetrahedralize has no min_angle and no max_volume",
     ("coming_from/tetgen.rst", "sizes and angles in 3-D"): "tetrahedralize has no size",
     ("coming_from/tetgen.rst", "boolean operations"): "there is no geometry kernel",

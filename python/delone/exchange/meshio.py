@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.exchange.parts import kind_of, parts_of, with_third
+from delone.exchange.second import as_order, of_order
 from delone.extras import require
 
 if TYPE_CHECKING:
@@ -16,24 +17,32 @@ if TYPE_CHECKING:
 
 __all__ = ["TAGS", "to_meshio"]
 
-_CELLS = {"edges": "line", "triangles": "triangle", "surface": "triangle", "tetrahedra": "tetra"}
-_FACETS = {2: "line", 3: "triangle"}
+# Names of cells by kind and order, and of facets by the kind that they bound.
+_CELLS = {
+    "edges": ("line", "line3"),
+    "triangles": ("triangle", "triangle6"),
+    "surface": ("triangle", "triangle6"),
+    "tetrahedra": ("tetra", "tetra10"),
+}
+_FACETS = {"triangles": "edges", "surface": "edges", "tetrahedra": "triangles"}
 # What programs that read MSH files know parts of a mesh by.
 TAGS = ("gmsh:physical", "gmsh:geometrical")
 
 
-def to_meshio(mesh: Given) -> Any:
+def to_meshio(mesh: Given, *, order: int = 1) -> Any:
     """Return a `meshio.Mesh` in 3-D; segments, or marked faces, are a second block of cells.
 
-    That has the type ``line``, or ``triangle``. Where only simplices have a value, segments have -1
-    (integers) or NaN; where only segments have one, simplices have 0 or NaN. With a ``marker``, it
-    and regions, from 1 on, are tags of Gmsh.
+    That has the type ``line``, or ``triangle``; with ``order=2`` ``line3``, or ``triangle6``. Where
+    only simplices have a value, segments have -1 (integers) or NaN; where only segments have one,
+    simplices have 0 or NaN. With a ``marker``, it and regions, from 1 on, are tags of Gmsh.
     """
     meshio = require("meshio", extra="mesh", what="to_meshio")
     parts = parts_of(mesh)
-    cells = [(_CELLS[kind_of(parts, what="a mesh of meshio")], parts.simplices)]
+    kind = kind_of(parts, what="a mesh of meshio")
+    parts = of_order(parts, as_order(order))
+    cells = [(_CELLS[kind][parts.order - 1], parts.simplices)]
     if parts.segments is not None:
-        cells.append((_FACETS[parts.segments.shape[1]], parts.segments))
+        cells.append((_CELLS[_FACETS[kind]][parts.order - 1], parts.segments))
     return meshio.Mesh(
         with_third(parts.points),
         cells,

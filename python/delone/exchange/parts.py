@@ -40,6 +40,8 @@ _KINDS = {
     (3, 3): "surface",
     (4, 3): "tetrahedra",
 }
+# Of simplices of second order, by the number of nodes.
+_CORNERS = {3: 2, 6: 3, 10: 4}
 # The facet opposite each corner: edges with the triangle to their left, faces seen from outside.
 _FACETS = {3: ((1, 2), (2, 0), (0, 1)), 4: ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))}
 
@@ -55,6 +57,8 @@ class Parts(NamedTuple):
     segments: Indices | None = None
     of_segments: Values = _NONE
     crs: str | None = None
+    # 2 where simplices and segments have a node in the middle of each edge, behind their corners.
+    order: int = 1
 
 
 class HasParts(Protocol):
@@ -111,6 +115,8 @@ def kind_of(parts: Parts, *, what: str, kinds: tuple[str, ...] = ()) -> str:
     `what` is asked for, as the beginning of the error message.
     """
     corners, coordinates = parts.simplices.shape[1], parts.points.shape[1]
+    if parts.order == 2:
+        corners = _CORNERS[corners]
     kind = _KINDS.get((corners, coordinates))
     if kind is None:
         raise InputError(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.exchange.parts import facet_segments, kind_of, parts_of
+from delone.exchange.second import as_order, middles, of_order
 from delone.extras import require
 
 if TYPE_CHECKING:
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
 __all__ = ["to_skfem"]
 
 
-def to_skfem(mesh: Given) -> Any:
-    """Return a `skfem.MeshTri` of triangles in 2-D or a `skfem.MeshTet`.
+def to_skfem(mesh: Given, *, order: int = 1) -> Any:
+    """Return a `skfem.MeshTri` of triangles in 2-D or a `skfem.MeshTet`; of order 2 their second.
 
     Subdomains are ``"region 0"`` and so on where simplices have a ``region``; boundaries are
     segments or marked faces, ``"marker 0"`` and so on where these have a ``marker``, else
@@ -33,12 +34,31 @@ def to_skfem(mesh: Given) -> Any:
         np.ascontiguousarray(parts.points.T),
         np.ascontiguousarray(parts.simplices.T.astype(np.int64)),
     )
+    if as_order(order) == 2:
+        found = _second(skfem, found, parts)
     region = parts.of_simplices.get("region")
     if region is not None:
         found = found.with_subdomains(_groups(region, np.arange(len(region)), "region"))
     if parts.segments is not None:
         found = found.with_boundaries(_boundaries(parts, found.facets))
     return found
+
+
+def _second(skfem: Any, mesh: Any, parts: Parts) -> Any:
+    """Return a mesh of second order with the same nodes as meshio and others get.
+
+    scikit-fem numbers nodes as degrees of freedom: points, then edges, in its own order.
+    """
+    triangles = parts.simplices.shape[1] == 3
+    made = (skfem.MeshTri2 if triangles else skfem.MeshTet2).from_mesh(mesh)
+    edges, _ = middles(parts._replace(segments=None))
+    whole = of_order(parts._replace(of_points={}, segments=None), 2).points
+    rows = _facets(edges.T, np.asarray(mesh.facets if triangles else mesh.edges).T)
+    # Points after the last corner are not among its vertices.
+    corners = parts.points[: mesh.nvertices]
+    places = np.concatenate((corners, whole[len(parts.points) :][rows]))
+    made.doflocs = np.ascontiguousarray(places.T)
+    return made
 
 
 def _boundaries(parts: Parts, facets: NDArray[Any]) -> dict[str, NDArray[np.int64]]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from delone._values import as_values
 from delone.exchange.parts import Parts, parts_of, with_third
+from delone.exchange.second import middles, of_order
 from delone.io.heights import split_attributes
 
 if TYPE_CHECKING:
@@ -27,11 +28,13 @@ class Content(NamedTuple):
     heights: NDArray[np.float64] | None  # (n,), the third coordinate of points in 2-D
     of_points: Mapping[str, NDArray[Any]]  # the values that are given, as of_simplices
     of_simplices: Mapping[str, NDArray[Any]]
+    order: int = 1
+    of_nodes: Mapping[str, NDArray[Any]] = {}  # given values of all nodes of second order
 
     @property
     def given(self) -> bool:
         """Whether there are values that were given."""
-        return bool(self.of_points or self.of_simplices)
+        return bool(self.of_points or self.of_simplices or self.of_nodes)
 
     def whole(self) -> Parts:
         """Return everything, given values in place of own ones with the same name.
@@ -40,10 +43,11 @@ class Content(NamedTuple):
         read no values of simplices from some files with several kinds of cells.
         """
         found = self.own if self.own.of_segments else self.own._replace(segments=None)
-        return self._lifted(found)._replace(
+        found = self._lifted(found)._replace(
             of_points={**found.of_points, **self.of_points},
             of_simplices={**found.of_simplices, **self.of_simplices},
         )
+        return of_order(found, self.order, self.of_nodes)
 
     def bare(self) -> Parts:
         """Return points and simplices with the given values alone."""
@@ -65,8 +69,11 @@ def content(
     z: ArrayLike | None = None,
     edges: bool = False,
     attributes: Mapping[str, ArrayLike] | None = None,
+    order: int = 1,
 ) -> Content:
     """Return what goes into a file; with `edges`, edges in place of simplices.
+
+    With ``order=2``, simplices of second order, and values of all their nodes or of points alone.
 
     These have ``segment``, 1 for parts of one, where the mesh has segments. Where a mesh has points
     of its own for each simplex, heights and values of points are those of their rows.
@@ -76,13 +83,17 @@ def content(
         own = _edges(own, mesh)
     npoints = len(mesh.points)
     given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
-    of_points, of_simplices = split_attributes(given, npoints, len(own.simplices))
+    of_nodes, total = {}, None
+    if order == 2:
+        total = npoints + len(middles(own._replace(segments=None))[0])
+        of_nodes = {name: given.pop(name) for name in list(given) if len(given[name]) == total}
+    of_points, of_simplices = split_attributes(given, npoints, len(own.simplices), total)
     heights = as_values(z, npoints)
     row = own.of_points.get("row")
     if row is not None:
         of_points = {name: values[row] for name, values in of_points.items()}
         heights = None if heights is None else heights[row]
-    return Content(own, heights, of_points, of_simplices)
+    return Content(own, heights, of_points, of_simplices, order, of_nodes)
 
 
 def _edges(parts: Parts, mesh: Any) -> Parts:

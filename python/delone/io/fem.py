@@ -8,6 +8,7 @@ of elements and surfaces in INP.
 from __future__ import annotations
 
 import importlib
+import re
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +21,7 @@ from delone.extras import require
 from delone.io.content import content
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
     from pathlib import Path
 
     from numpy.typing import ArrayLike, NDArray
@@ -39,6 +40,13 @@ _ABAQUS_SIDES = {
     3: ((0, 1), (1, 2), (2, 0)),
     4: ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)),
 }
+# The nodes of tetrahedra in MED files, whose first face is seen from outside, in the order of VTK.
+_MED_ORDERS = {"tetra": (0, 2, 1, 3), "tetra10": (0, 2, 1, 3, 6, 5, 4, 7, 9, 8)}
+# The types of elements that Gmsh writes as well, by those of meshio.
+_ABAQUS_TYPES = {
+    "R3D3": "CPS3", "B31H": "T3D2", "B33H": "T3D3", "C3D10MH": "C3D10"
+}  # fmt: skip
+_ELEMENT = re.compile(r"^(\*ELEMENT, TYPE=)(\w+)$", re.MULTILINE)
 # The numbers that SU2 has for cells, those of VTK.
 _LINE, _TRIANGLE, _TETRAHEDRON = 3, 5, 10
 
@@ -59,6 +67,7 @@ def write_mesh(
     crs: str | None = None,
     edges: bool = False,
     attributes: Mapping[str, ArrayLike] | None = None,
+    order: int = 1,
 ) -> None:
     """Write triangles or tetrahedra, and of a mesh its segments."""
     suffix = path.suffix.lower()
@@ -66,39 +75,76 @@ def write_mesh(
         raise FileFormatError(f"{suffix} files cannot store edges; use .vtu, .msh or .gpkg")
     if attributes and suffix not in _VALUED:
         raise FileFormatError(f"{suffix} files cannot store attributes; use .vtu or .xdmf")
-    found = content(triangulation, z=z, attributes=attributes)
+    found = content(triangulation, z=z, attributes=attributes, order=order)
     if suffix == ".su2":
         if found.heights is not None:
             raise FileFormatError(".su2 files of 2-D meshes cannot store heights; use .vtu")
         path.write_text(_su2(found.own), encoding="utf-8")
         return
     made = to_meshio(found.whole())
-    families = _families(made) if suffix == ".med" else None
-    surfaces = ""
-    if suffix == ".inp":
-        made.cell_sets = _sets(made)
-        surfaces = _surfaces(made)
-    references = _references(made) if suffix == ".mesh" else {}
-    if suffix in (".inp", ".med", ".mesh"):
-        made.point_data, made.cell_data = {}, {}
-    for tag in TAGS:
-        made.cell_data.pop(tag, None)
-    made.cell_data |= references
     module = importlib.import_module(f"meshio.{_MODULES[suffix]}")
-    if suffix == ".xdmf":
-        # Everything in the one file: no second one beside it.
-        module.write(path, made, data_format="XML")
-    elif families is not None:
-        made.cell_data, made.cell_tags = families
-        # HDF5 does not report a full disk as an OSError.
-        buffer = BytesIO()
-        module.write(buffer, made)
-        path.write_bytes(buffer.getvalue())
-    else:
-        module.write(path, made)
-    if surfaces:
-        with path.open("a", encoding="utf-8") as file:
-            file.write(surfaces)
+    _OWN_WRITERS[suffix](path, made, module)
+
+
+def _write_xdmf(path: Path, mesh: Any, module: Any) -> None:
+    _drop(mesh, *TAGS)
+    # Everything in the one file: no second one beside it.
+    module.write(path, mesh, data_format="XML")
+
+
+def _write_vtk(path: Path, mesh: Any, module: Any) -> None:
+    _drop(mesh, *TAGS)
+    # meshio names integers of 32 bits as VTK does not.
+    mesh.cell_data = {name: [_wide(own) for own in each] for name, each in mesh.cell_data.items()}
+    mesh.point_data = {name: _wide(values) for name, values in mesh.point_data.items()}
+    module.write(path, mesh)
+
+
+def _wide(values: NDArray[Any]) -> NDArray[Any]:
+    return values.astype(np.int64) if values.dtype.kind in "iub" else values
+
+
+def _write_medit(path: Path, mesh: Any, module: Any) -> None:
+    mesh.point_data, mesh.cell_data = {}, _references(mesh)
+    module.write(path, mesh)
+
+
+def _write_med(path: Path, mesh: Any, module: Any) -> None:
+    tags, mesh.cell_tags = _families(mesh)
+    mesh.point_data, mesh.cell_data = {}, tags
+    for block in mesh.cells:
+        block.data = block.data[:, _MED_ORDERS.get(block.type, slice(None))]
+    # HDF5 does not report a full disk as an OSError.
+    buffer = BytesIO()
+    module.write(buffer, mesh)
+    path.write_bytes(buffer.getvalue())
+
+
+def _write_inp(path: Path, mesh: Any, module: Any) -> None:
+    mesh.cell_sets, surfaces = _sets(mesh), _surfaces(mesh)
+    mesh.point_data, mesh.cell_data = {}, {}
+    module.write(path, mesh)
+    # meshio writes types of rigid bodies, beams and incompressible solids.
+    text = path.read_text(encoding="utf-8")
+    path.write_text(_ELEMENT.sub(_usual, text) + surfaces, encoding="utf-8")
+
+
+def _usual(line: re.Match[str]) -> str:
+    return line[1] + _ABAQUS_TYPES.get(line[2], line[2])
+
+
+def _drop(mesh: Any, *names: str) -> None:
+    for name in names:
+        mesh.cell_data.pop(name, None)
+
+
+_OWN_WRITERS: dict[str, Callable[[Path, Any, Any], None]] = {
+    ".xdmf": _write_xdmf,
+    ".vtk": _write_vtk,
+    ".mesh": _write_medit,
+    ".med": _write_med,
+    ".inp": _write_inp,
+}
 
 
 def _families(mesh: Any) -> tuple[dict[str, list[NDArray[np.int64]]], dict[int, list[str]]]:
@@ -155,9 +201,10 @@ def _surfaces(mesh: Any) -> str:
     if "marker" not in mesh.cell_data or len(mesh.cells) < 2:
         return ""
     simplices, facets = (np.asarray(block.data) for block in mesh.cells[:2])
-    sides = _ABAQUS_SIDES[simplices.shape[1]]
+    sides = _ABAQUS_SIDES[4 if mesh.cells[0].type.startswith("tetra") else 3]
     corners = np.concatenate([simplices[:, side] for side in sides])
-    both = np.sort(np.concatenate((corners, facets)), axis=1)
+    # Nodes in the middle of edges are behind the corners.
+    both = np.sort(np.concatenate((corners, facets[:, : len(sides[0])])), axis=1)
     # The first row of each facet: np.unique returns first occurrences.
     _, first, place = np.unique(both, axis=0, return_index=True, return_inverse=True)
     number = first[place.reshape(-1)[len(corners) :]]

@@ -15,7 +15,7 @@ __all__ = ["split_attributes"]
 
 
 def split_attributes(
-    attributes: dict[str, NDArray[np.generic]], npoints: int, ncells: int
+    attributes: dict[str, NDArray[np.generic]], npoints: int, ncells: int, nnodes: int | None = None
 ) -> tuple[dict[str, NDArray[np.generic]], dict[str, NDArray[np.generic]]]:
     """Split values into those of points and those of cells, by their number."""
     of_points, of_cells = {}, {}
@@ -27,6 +27,6 @@ def split_attributes(
         else:
             raise ShapeError(
                 f"attribute {name!r:.40} of shape {values.shape} matches neither {npoints} points "
-                f"nor {ncells} cells"
+                f"nor {ncells} cells" + ("" if nnodes is None else f" nor {nnodes} nodes")
             )
     return of_points, of_cells

@@ -77,6 +77,11 @@ def read_points(
 def read_mesh(path: Path, *, split: bool = False) -> MeshFile:
     """Read the triangles of a mesh; see `delone.io.read_mesh`. With `split`, also polygons."""
     mesh = _read(path, marked=True)
+    if second := {block.type for block in mesh.cells} & {"line3", "triangle6", "tetra10"}:
+        raise FileFormatError(
+            f"{path} contains elements of second order ({', '.join(sorted(second))}), which are "
+            "not read; write those of first order"
+        )
     if any(block.type == "tetra" for block in mesh.cells):
         return _tetrahedra(mesh, path)
     points, z = _coordinates(mesh, path)
@@ -229,13 +234,14 @@ def write_mesh(
     crs: str | None = None,
     edges: bool = False,
     attributes: Mapping[str, ArrayLike] | None = None,
+    order: int = 1,
     version: str | None = None,
 ) -> None:
     """Write simplices and segments, or edges as lines, with heights as the third coordinate."""
     suffix = path.suffix.lower()
     if edges and suffix in _PLAIN:
         raise FileFormatError(f"{suffix} files cannot store edges; use .vtu, .msh or .gpkg")
-    found = content(triangulation, z=z, edges=edges, attributes=attributes)
+    found = content(triangulation, z=z, edges=edges, attributes=attributes, order=order)
     if found.given and suffix in (".obj", ".stl"):
         raise FileFormatError(f"{suffix} files cannot store attributes; use .vtu or .ply")
     made = to_meshio(found.bare() if suffix in _PLAIN else found.whole())
@@ -256,14 +262,19 @@ def _write_tagged(path: Path, mesh: Any, found: Content, version: str) -> None:
     """
     if found.of_simplices:
         raise FileFormatError(".msh files of meshes cannot store attributes of triangles; use .vtu")
+    # Points have the markers of their segments; these are groups here.
+    mesh.point_data = {
+        name: values
+        for name, values in mesh.point_data.items()
+        if name in {**found.of_points, **found.of_nodes}
+    }
     if version == "4.1":
-        msh.write(path, mesh.points, _groups(mesh), found.of_points)
+        msh.write(path, mesh.points, _groups(mesh), mesh.point_data)
         return
     mesh.field_data = {
         group.name: np.array([group.number, group.ndim]) for group in _groups(mesh, unmarked=False)
     }
     mesh.cell_data = {tag: mesh.cell_data[tag] for tag in TAGS}
-    mesh.point_data = dict(found.of_points)
     module = importlib.import_module("meshio.gmsh")
     module.write(path, mesh, "2.2", binary=True)
 

@@ -15,6 +15,7 @@ import numpy as np
 from delone._arrays import as_choice, as_count, as_flag, as_number, as_plain_array
 from delone.atomic import replacing
 from delone.errors import DtypeError, FileFormatError, InputError
+from delone.exchange.second import as_order
 from delone.georeference import as_crs, crs_of
 from delone.io.compressed import SUFFIXES
 from delone.io.referencing import warn_if_left_out
@@ -97,6 +98,8 @@ _SURFACES = (
     ".poly",
     *_TETGEN,
 )
+# What holds elements of second order.
+_SECOND_ORDER = (".vtu", ".msh", ".xdmf", ".med", ".inp", ".vtk", ".ele", ".node")
 # What holds triangles that share no points.
 _SEPARATE = (*_MESHES, ".npz", ".xdmf", ".gpkg", ".geojson")
 _HOLDERS: dict[str, tuple[tuple[str, ...], str]] = {
@@ -547,6 +550,7 @@ def write_mesh(
     crs: Any = None,
     edges: bool = False,
     attributes: Mapping[str, ArrayLike] | None = None,
+    order: int = 1,
     version: str | None = None,
 ) -> None:
     """Write a triangulation to a file; the suffix determines the format.
@@ -575,6 +579,10 @@ def write_mesh(
         Write edges instead of triangles, to VTU, MSH, GeoPackage or GeoJSON; plots show both.
     attributes : mapping of str to array_like, optional
         Values by point (n,) or by simplex (m,), for VTU, MSH, PLY, GeoPackage and GeoJSON.
+    order : {1, 2}, optional
+        With 2, elements of second order, for VTU, MSH, XDMF, MED, INP, VTK, ELE and NODE: with a
+        node in the middle of each edge, in the order of ``triangulation.edges`` behind the points.
+        Attributes are those of points, of simplices, or of all nodes.
     version : {"2.2", "4.1"}, optional
         Version of an MSH file. By default 2.2 where segments or faces have markers, which more
         programs read, otherwise 4.1.
@@ -636,7 +644,9 @@ def write_mesh(
     given = _plain(attributes, suffix)
     _require_place(path, triangulation, kind, edges=lines)
     write = _writer(path, kind)
-    further = {} if version is None else {"version": _version(version, suffix)}
+    further: dict[str, Any] = {} if version is None else {"version": _version(version, suffix)}
+    if as_order(order) == 2:
+        further["order"] = _second_order(suffix, edges=lines)
     system = as_crs(crs)
     warn_if_left_out(path, system, WITH_CRS if flat else _LABELS)
     if system is None and flat:
@@ -670,6 +680,15 @@ def _require_place(path: str | os.PathLike[str], mesh: Any, kind: str, *, edges:
         raise FileFormatError(f"{path}: .npz files cannot store a {name}; use .vtu")
     if kind == "separate" and edges:
         raise FileFormatError(f"{path}: edges of a {name} are not written; write its triangles")
+
+
+def _second_order(suffix: str, *, edges: bool) -> int:
+    if edges or suffix not in _SECOND_ORDER:
+        what = "edges" if edges else f"{suffix} files"
+        raise FileFormatError(
+            f"{what} have no second order here: write elements to {', '.join(_SECOND_ORDER)}"
+        )
+    return 2
 
 
 def _version(version: str, suffix: str) -> str:

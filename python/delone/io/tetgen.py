@@ -29,7 +29,10 @@ if TYPE_CHECKING:
     from delone._types import Floats, Indices
     from delone.exchange.parts import HasParts
 
-__all__ = ["is_solid", "read_mesh", "read_nodes", "require_libraries", "write_mesh"]
+__all__ = ["SECOND", "is_solid", "read_mesh", "read_nodes", "require_libraries", "write_mesh"]
+
+# The nodes of an element of second order, by their places in the order of VTK.
+SECOND = (0, 1, 2, 3, 9, 7, 4, 5, 8, 6)
 
 
 def is_solid(path: Path) -> bool:
@@ -195,19 +198,22 @@ def write_mesh(
     crs: str | None = None,
     edges: bool = False,
     attributes: Mapping[str, ArrayLike] | None = None,
+    order: int = 1,
 ) -> None:
     """Write one of the files; triangles are those of the input, or of the boundary."""
     suffix = path.suffix.lower()
     if edges or attributes:
         raise FileFormatError(f"{suffix} files can store neither edges nor attributes; use .vtu")
-    parts = content(triangulation, z=z).whole()
+    parts = content(triangulation, z=z, order=order).whole()
     points = np.zeros((len(parts.points), 3))
     points[:, : parts.points.shape[1]] = parts.points
     if suffix == ".ele":
         region = parts.of_simplices.get("region", np.empty((len(parts.simplices), 0)))
         region = region.reshape(len(parts.simplices), -1)
-        head = f"{len(parts.simplices)} 4 {region.shape[1]}"
-        text = table(head, (parts.simplices, region))
+        width = parts.simplices.shape[1]
+        nodes = parts.simplices if width == 4 else parts.simplices[:, SECOND]
+        head = f"{len(nodes)} {width} {region.shape[1]}"
+        text = table(head, (nodes, region))
     elif suffix == ".node":
         text = table(f"{len(points)} 3 0 0", (points,))
     else:

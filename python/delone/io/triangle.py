@@ -16,6 +16,7 @@ import numpy as np
 from delone._arrays import as_points, as_simplices
 from delone.errors import FileFormatError, InputError
 from delone.exchange.parts import boundary
+from delone.exchange.second import of_order
 from delone.io import tetgen
 from delone.io.companions import require_companion
 from delone.io.content import content
@@ -34,6 +35,9 @@ if TYPE_CHECKING:
     from delone.io.content import Content
 
 __all__ = ["read_mesh", "read_points", "read_triangle", "require_libraries", "write_mesh"]
+
+# The nodes of a triangle of second order, by their places in the order of VTK.
+_SECOND = (0, 1, 2, 4, 5, 3)
 
 
 def read_triangle(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
@@ -106,8 +110,8 @@ def _vertices(numbers: Numbers) -> tuple[dict[str, NDArray[Any]], int]:
 
 def _triangles(numbers: Numbers, first: int, file: Path, n: int) -> dict[str, NDArray[Any]]:
     count, corners, attributes = numbers.head(3)
-    if count and corners != 3:
-        raise FileFormatError(f"{file} contains triangles of {corners} nodes, not three")
+    if count and corners not in (3, 6):
+        raise FileFormatError(f"{file} contains triangles of {corners} nodes, not 3 or 6")
     table = numbers.take(count, 1 + corners + attributes)
     found: dict[str, NDArray[Any]] = {"triangles": as_rows(table[:, 1:4], first, file, n)}
     if attributes:
@@ -186,17 +190,18 @@ def write_mesh(
     crs: str | None = None,
     edges: bool = False,
     attributes: Mapping[str, ArrayLike] | None = None,
+    order: int = 1,
 ) -> None:
     """Write one of the files: points with heights as an attribute, triangles, or segments."""
     if edges or attributes:
         raise FileFormatError(f"{path.suffix} files can store neither edges nor named attributes")
     suffix = path.suffix.lower()
     if triangulation.points.shape[1] == 3:
-        tetgen.write_mesh(path, triangulation)
+        tetgen.write_mesh(path, triangulation, order=order)
         return
-    found = content(triangulation, z=z)
+    found = content(triangulation, z=z, order=order)
     if suffix == ".ele":
-        text = _elements(found.own)
+        text = _elements(of_order(found.own, order))
     else:
         text = _nodes(found)
         if suffix == ".poly":
@@ -209,14 +214,19 @@ def _elements(parts: Parts) -> str:
     count, extra = len(parts.simplices), np.empty((len(parts.simplices), 0))
     if "marker" in parts.of_segments:
         extra = parts.of_simplices["region"][:, None]
-    return table(f"{count} 3 {extra.shape[1]}", (parts.simplices, extra))
+    corners = parts.simplices if parts.order == 1 else parts.simplices[:, _SECOND]
+    return table(f"{count} {corners.shape[1]} {extra.shape[1]}", (corners, extra))
 
 
 def _nodes(found: Content) -> str:
-    points, marker = found.own.points, found.own.of_points.get("marker")
+    own = found.own
+    if found.heights is not None:
+        own = own._replace(of_points={**own.of_points, "height": found.heights})
+    own = of_order(own, found.order)
+    points, marker = own.points, own.of_points.get("marker")
     values: list[NDArray[Any]] = [points]
     if found.heights is not None:
-        values.append(found.heights[:, None])
+        values.append(own.of_points["height"][:, None])
     if marker is not None:
         values.append(marker[:, None])
     flags = f"{int(found.heights is not None)} {int(marker is not None)}"

@@ -78,8 +78,14 @@ class Surveyed(HullTiling):
             crs=self.crs,
         )
 
-    def to_meshio(self) -> Any:
+    def to_meshio(self, *, order: int = 1) -> Any:
         """Convert to a mesh of meshio with heights (extra ``mesh``).
+
+        Parameters
+        ----------
+        order : {1, 2}, optional
+            With 2, elements of second order, with a node in the middle of each edge: nodes are the
+            points and then the `edges`, row by row.
 
         Returns
         -------
@@ -88,6 +94,8 @@ class Surveyed(HullTiling):
 
         Raises
         ------
+        InputError
+            `order` is neither 1 nor 2.
         MissingExtraError
             meshio is not installed.
 
@@ -99,10 +107,16 @@ class Surveyed(HullTiling):
         """
         from delone.exchange.meshio import to_meshio
 
-        return to_meshio(self._parts()._replace(points=self.xyz))
+        return to_meshio(self._parts()._replace(points=self.xyz), order=order)
 
-    def to_pyvista(self) -> Any:
+    def to_pyvista(self, *, order: int = 1) -> Any:
         """Convert to a surface of PyVista with heights (extra ``pyvista``).
+
+        Parameters
+        ----------
+        order : {1, 2}, optional
+            With 2, elements of second order, with a node in the middle of each edge: nodes are the
+            points and then the `edges`, row by row.
 
         Returns
         -------
@@ -111,6 +125,8 @@ class Surveyed(HullTiling):
 
         Raises
         ------
+        InputError
+            `order` is neither 1 nor 2.
         MissingExtraError
             PyVista is not installed.
 
@@ -122,4 +138,4 @@ class Surveyed(HullTiling):
         """
         from delone.exchange.pyvista import to_pyvista
 
-        return to_pyvista(self._parts()._replace(points=self.xyz))
+        return to_pyvista(self._parts()._replace(points=self.xyz), order=order)
