@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import itertools
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,11 +20,21 @@ CUBE = solids.box((0, 0, 0), (4, 4, 4))
 SHELLS = solids.joined(CUBE, solids.box((1, 1, 1), (2, 2, 2)), solids.box((2.5, 1, 1), (3, 3, 3)))
 
 
+LATER = (
+    *("node", "elem", "n_nodes", "n_cells", "trifaces", "triface_markers", "face2tet"),
+    *("edges", "edge_markers", "grid"),
+)
+
+
 def test_result_and_attributes() -> None:
     v, f = solids.schoenhardt()
     tet = tetgen.TetGen(v, f, np.arange(8) + 5)
-    with pytest.raises(delone.InputError, match="call tetrahedralize"):
-        assert tet.node is None
+    for name in LATER:
+        with pytest.raises(tetgen.MeshNotTetrahedralizedError, match="call tetrahedralize"):
+            getattr(tet, name)
+    assert issubclass(tetgen.MeshNotTetrahedralizedError, RuntimeError)
+    assert not tet.is_tetrahedralized
+    assert tet.tetmesh is None
     nodes, elems, attributes, markers = tet.tetrahedralize(quality=False, nobisect=True)
     assert nodes is tet.node
     assert elems is tet.elem
@@ -33,14 +45,15 @@ def test_result_and_attributes() -> None:
     assert np.array_equal(markers, tet.triface_markers)
     assert np.array_equal(f[markers - 5], tet.trifaces)
     assert solids.filled(nodes, elems) == solids.volume(v, f)
+    assert tet.is_tetrahedralized
     assert repr(tet) == "<TetGen of 6 vertices and 8 triangles>"
 
 
 def test_both_sides_of_faces() -> None:
     tet = tetgen.TetGen(*SHELLS)
     tet.tetrahedralize(quality=False, facesout=True)
-    assert len(tet.trifaces) == len(tet.mesh.faces)
-    assert np.array_equal(tet.trifaces[:36], tet.mesh.input_faces)
+    assert len(tet.trifaces) == len(tet.tetmesh.faces)
+    assert np.array_equal(tet.trifaces[:36], tet.tetmesh.input_faces)
     assert len({frozenset(face) for face in tet.trifaces.tolist()}) == len(tet.trifaces)
     for face, pair in zip(tet.trifaces.tolist(), tet.face2tet.tolist(), strict=True):
         of = [t for t, row in enumerate(tet.elem.tolist()) if set(face) <= set(row)]
@@ -51,8 +64,32 @@ def test_both_sides_of_faces() -> None:
 def test_edges() -> None:
     tet = tetgen.TetGen(*CUBE)
     tet.tetrahedralize(switches="pYQ")
-    assert len(tet.edge_markers) == len(tet.edges) == len(tet.mesh.edges)
-    assert tet.edge_markers.sum() == 18
+    assert tet.edges.shape == (18, 2)
+    assert tet.edge_markers.tolist() == [-1] * 18
+    of_faces = {
+        frozenset(pair) for face in CUBE[1].tolist() for pair in itertools.combinations(face, 2)
+    }
+    assert {frozenset(pair) for pair in tet.edges.tolist()} == of_faces
+    for options in ({"switches": "pYe"}, {"quality": False, "edgesout": True, "nobisect": True}):
+        tet.tetrahedralize(**options)
+        assert np.array_equal(tet.edges, tet.tetmesh.edges)
+        inner = [frozenset(pair) not in of_faces for pair in tet.edges.tolist()]
+        assert tet.edge_markers.tolist() == [0 if each else -1 for each in inner]
+
+
+def test_markers_of_faces_that_have_none() -> None:
+    v, f = SHELLS
+    tet = tetgen.TetGen(v, f)
+    assert (tet.tetrahedralize(switches="pY")[3] == -1).all()
+    faces, markers = tet.tetrahedralize(switches="pYf")[3], tet.triface_markers
+    assert np.array_equal(faces, markers)
+    assert (markers[: len(f)] == -1).all()
+    assert len(markers) > len(f)
+    assert (markers[len(f) :] == 0).all()
+    given = np.where(np.arange(len(f)) < 12, 0, np.arange(len(f)))
+    tet = tetgen.TetGen(v, f, given)
+    markers = tet.tetrahedralize(switches="pY")[3]
+    assert np.array_equal(np.sort(markers), np.sort(given))
 
 
 def test_regions_and_holes() -> None:
@@ -91,11 +128,53 @@ def test_sources(tmp_path: Path) -> None:
         assert len(tet.tetrahedralize(quality=False)[0]) == 20
 
 
-def test_grid() -> None:
-    pytest.importorskip("pyvista")
-    tet = tetgen.TetGen(*CUBE)
-    tet.tetrahedralize(quality=False)
-    assert (tet.grid.n_cells, tet.grid.n_points) == (6, 8)
+@pytest.mark.parametrize("order", [1, 2])
+def test_grid_and_files(order: int, tmp_path: Path) -> None:
+    pyvista = pytest.importorskip("pyvista")
+    tet = tetgen.TetGen(*SHELLS)
+    nodes, elems, _, _ = tet.tetrahedralize(quality=False, order=order)
+    grid = tet.grid
+    assert (grid.n_cells, grid.n_points) == (tet.n_cells, tet.n_nodes) == (len(elems), len(nodes))
+    assert grid.compute_cell_sizes()["Volume"].sum() == pytest.approx(64)
+    for name, binary in (("a.vtk", True), ("a.vtk", False), ("a.vtu", True)):
+        tet.write(tmp_path / name, binary=binary)
+        found = pyvista.read(tmp_path / name)
+        assert np.array_equal(found.points, grid.points) or not binary
+        assert np.array_equal(found.cells, grid.cells)
+    with pytest.raises(delone.FileFormatError, match=r"write writes \.vtk and \.vtu"):
+        tet.write(tmp_path / "a.stl")
+    with pytest.raises(FileNotFoundError, match="folder"):
+        tet.write(tmp_path / "missing" / "a.vtk")
+
+
+# The middles of edges as TetGen has them, by corners.
+TETGEN = ((2, 3), (0, 3), (0, 1), (1, 2), (1, 3), (0, 2))
+
+
+@pytest.mark.parametrize("options", [{"quality": False, "order": 2}, {"switches": "po2"}])
+def test_second_order(options: dict[str, Any]) -> None:
+    tet = tetgen.TetGen(*SHELLS)
+    nodes, elems, _, markers = tet.tetrahedralize(**options)
+    plain = tet.tetmesh
+    assert np.array_equal(nodes[: plain.npoints], plain.points)
+    assert len(nodes) == plain.npoints + len(plain.edges) == tet.n_nodes
+    assert np.array_equal(elems[:, :4], plain.simplices)
+    for k, (a, b) in enumerate(TETGEN):
+        assert np.array_equal(nodes[elems[:, 4 + k]], nodes[elems[:, [a, b]]].mean(axis=1))
+    assert tet.trifaces.shape == (len(markers), 3)
+    tet.tetrahedralize(switches="p")
+    assert tet.elem.shape[1] == 4
+
+
+def test_the_surface_that_was_given() -> None:
+    pyvista = pytest.importorskip("pyvista")
+    surface = pyvista.Sphere(theta_resolution=8, phi_resolution=8)
+    for tet in (tetgen.TetGen(surface), tetgen.TetGen(surface.points, surface.regular_faces)):
+        assert isinstance(tet.mesh, pyvista.PolyData)
+        assert np.array_equal(tet.mesh.points, surface.points)
+        assert np.array_equal(tet.mesh.faces, surface.faces)
+        shown = tet.plot(off_screen=True, return_viewer=False, show_edges=True)
+        assert shown is None
 
 
 def test_make_manifold(capsys: pytest.CaptureFixture[str]) -> None:
@@ -109,17 +188,28 @@ def test_make_manifold(capsys: pytest.CaptureFixture[str]) -> None:
     ("options", "words"),
     [
         ({}, "quality=False"),
-        ({"quality": False, "order": 2}, "second order"),
+        ({"order": 1, "mindihedral": 20, "minratio": 1.5}, "bounded quality"),
+        ({"quality": False, "mindihedral": 20}, "mindihedral has an effect with quality=True"),
+        ({"quality": False, "minratio": 1.1}, "minratio has an effect with quality=True"),
+        ({"quality": False, "order": 3}, "order must be 1 or 2"),
         ({"quality": False, "plc": False}, "plc must be True"),
-        ({"quality": False, "bgmesh": object()}, "bgmesh"),
+        ({"quality": False, "bgmesh": object()}, "bgmesh: no sizes"),
+        ({"quality": False, "bgmeshfilename": "a.b"}, "bgmeshfilename is not supported: no sizes"),
+        ({"quality": False, "fixedvolume": True}, "fixedvolume is not supported: tetrahedra of"),
+        ({"quality": False, "maxvolume": 0.1}, "maxvolume is not supported: tetrahedra of"),
         ({"quality": False, "insertaddpoints": True}, "insertaddpoints is not supported"),
+        ({"quality": False, "refine": True}, "refine is not supported"),
+        ({"quality": False, "reversetetori": 1}, "positively oriented"),
+        ({"quality": False, "qualtiy": True}, "no argument qualtiy"),
         ({"switches": "pq1.2"}, "quality=False"),
         ({"switches": "pq1.1/10Y"}, "switch q"),
         ({"switches": "pYa0.1"}, "switch a"),
-        ({"switches": "po2"}, "second order"),
+        ({"switches": "pzq1.4Aa"}, "switch q"),
+        ({"switches": "pm"}, "no sizes are read"),
+        ({"switches": "po3"}, "o1 or o2"),
         ({"switches": "Y"}, "must contain p"),
         ({"switches": "p-"}, "'-'"),
-        ({"switches": "pU"}, "U is not known"),
+        ({"switches": "pH"}, "H is not known"),
     ],
 )
 def test_what_is_not_supported(options: dict[str, Any], words: str) -> None:
@@ -130,9 +220,13 @@ def test_what_is_not_supported(options: dict[str, Any], words: str) -> None:
 def test_what_changes_nothing() -> None:
     tet = tetgen.TetGen(*CUBE)
     elems = tet.tetrahedralize(quality=False)[1]
-    for switches in ("p", "pYMQ", "pO2/7S100", "pzCVAfen", "po1"):
+    for switches in ("p", "pYMQ", "pO2/7S100", "pzCVAfen", "po1", "pT1e-8X", "pY/2Wx100b"):
         assert np.array_equal(tet.tetrahedralize(switches=switches)[1], elems)
-    options = {"verbose": 0, "nomergefacet": False, "steinerleft": -1, "nobisect": True}
+    options = {
+        **{"verbose": 2, "quiet": False, "nomergefacet": True, "steinerleft": -1},
+        **{"zeroindex": True, "neighout": True, "docheck": True, "brio_hilbert": False},
+        **{"epsilon": 1e-6, "opt_scheme": 0, "optmaxdihedral": 165.0, "maxvolume": -1.0},
+    }
     assert np.array_equal(tet.tetrahedralize(quality=False, **options)[1], elems)
 
 
@@ -150,3 +244,78 @@ def test_bad_arguments() -> None:
         tetgen.TetGen(*CUBE).add_hole((1, 2))
     with pytest.raises(delone.InputError, match="max_vol"):
         tetgen.TetGen(*CUBE).add_region(1, (1, 1, 1), 0.5)
+
+
+# Calls of the package without quality, on which both agree in all but the tetrahedra.
+CALLS: list[dict[str, Any]] = [
+    {"switches": "pYQ"},
+    {"switches": "pYQfe"},
+    {"switches": "pYQA"},
+    {"switches": "pYMQe"},
+    {"switches": "pYQo2"},
+    {"quality": False, "nobisect": True},
+    {"quality": False, "nobisect": True, "facesout": True, "edgesout": True},
+    {"quality": False, "nobisect": True, "regionattrib": True},
+    {"quality": False, "nobisect": True, "order": 2},
+]
+
+
+@pytest.mark.parametrize("options", CALLS, ids=str)
+@pytest.mark.parametrize("marked", [False, True])
+def test_the_package_returns_the_same_kinds_of_arrays(options: Any, marked: bool) -> None:
+    package = pytest.importorskip("tetgen")
+    v, f = SHELLS
+    given = (v, f, np.arange(len(f), dtype=np.int32) + 5) if marked else (v, f)
+    both = package.TetGen(*given), tetgen.TetGen(*given)
+    assert both[0].is_tetrahedralized == both[1].is_tetrahedralized is False
+    assert np.array_equal(both[0].mesh.faces, both[1].mesh.faces)
+    for tet in both:
+        with pytest.raises(RuntimeError):
+            _ = tet.node
+        tet.add_region(30, (1.5, 1.5, 1.25))
+    returned = [tet.tetrahedralize(**options) for tet in both]
+    names = ("node", "elem", "attributes", "trifaces", "triface_markers", "edges", "edge_markers")
+    for theirs, ours in [
+        *zip(*returned, strict=True),
+        *((getattr(both[0], name), getattr(both[1], name)) for name in names),
+    ]:
+        assert theirs.dtype == ours.dtype
+        assert theirs.ndim == ours.ndim
+        assert theirs.shape[1:] == ours.shape[1:]
+    theirs, ours = both
+    assert theirs.is_tetrahedralized == ours.is_tetrahedralized is True
+    assert np.array_equal(theirs.node[: len(v)], ours.node[: len(v)])
+    for name in ("attributes", "triface_markers", "edge_markers"):
+        assert set(np.unique(getattr(theirs, name))) == set(np.unique(getattr(ours, name)))
+    faces = [
+        {
+            frozenset(face): marker
+            for face, marker in zip(
+                tet.trifaces.tolist(), tet.triface_markers.tolist(), strict=True
+            )
+            if marker
+        }
+        for tet in both
+    ]
+    assert faces[0] == faces[1]
+    if ours.elem.shape[1] == 10:
+        for tet in both:
+            for k, (a, b) in enumerate(TETGEN):
+                middle = tet.node[tet.elem[:, [a, b]]].mean(axis=1)
+                assert np.array_equal(tet.node[tet.elem[:, 4 + k]], middle)
+    assert set(theirs.grid.celltypes) == set(ours.grid.celltypes)
+    for tet in both:
+        assert tet.grid.compute_cell_sizes()["Volume"].sum() == pytest.approx(64)
+
+
+def test_all_names_of_the_package() -> None:
+    package = pytest.importorskip("tetgen")
+    for name in dir(package.TetGen):
+        assert name.startswith("_") or hasattr(tetgen.TetGen, name), name
+    theirs = inspect.signature(package.TetGen.tetrahedralize).parameters
+    ours = tetgen.TetGen(*CUBE)
+    for name, each in theirs.items():
+        if name != "self":
+            # Its defaults change nothing.
+            options = {"quality": False, name: each.default} | {"quality": False}
+            assert len(ours.tetrahedralize(**options)[1]) == 6

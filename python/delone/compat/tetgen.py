@@ -2,18 +2,24 @@
 
 That package wraps H. Si's program TetGen. Here the names are the same, but delone does the work; no
 code of either is used. Points are added strictly between the triangles only. Triangles in one plane
-may be cut again, but not with TetGen's switch Y. Tetrahedra of bounded quality are not supported.
+may be cut again, but not with TetGen's switch Y. Quality is not supported, and never passed over.
 """
 
 from __future__ import annotations
 
-import re
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone._arrays import as_count, as_flag, as_number, as_plain_array, as_points
-from delone.errors import DtypeError, InputError, ShapeError
+from delone.atomic import replacing
+from delone.compat.tetgen_switches import QUALITY, of_arguments, of_switches
+from delone.errors import DtypeError, FileFormatError, InputError, ShapeError
+from delone.exchange.parts import Parts
+from delone.exchange.pyvista import to_pyvista
+from delone.exchange.second import of_order
+from delone.io.tetgen import SECOND
 from delone.space.locking import cells, sides
 from delone.surface import check_surface
 from delone.surface.check import as_faces
@@ -22,41 +28,20 @@ from delone.tetrahedra.filling import tetrahedralize
 from delone.tetrahedra.sources import given
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    import os
+
+    from numpy.typing import ArrayLike, NDArray
 
     from delone._types import Floats, Indices
 
-__all__ = ["TetGen"]
+__all__ = ["MeshNotTetrahedralizedError", "TetGen"]
 
-_SWITCH = re.compile(r"([a-zA-Z])((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/[\d.]+)*)?")
-# Numbers from zero, silence, checks, files, and what TetGen does to coplanar triangles and to
-# tetrahedra afterwards: they change nothing here, or nothing that is promised.
-_WITHOUT_EFFECT = "zQVCFIJNEgkBMOfenT"
-_QUALITY = (
-    "tetrahedra of bounded quality and size are not supported: pass quality=False, and "
-    "delone.improve removes slivers afterwards"
-)
-_REFUSED = {
-    "q": _QUALITY,
-    "a": _QUALITY,
-    "m": _QUALITY,
-    "o": "elements of second order are not supported: pass order=1",
-    "r": "tetrahedra cannot be reconstructed or refined",
-    "i": "use extra_points of delone.tetrahedralize",
-    "c": "the convex hull is not kept",
-    "D": "segments are not split to make tetrahedra Delaunay",
-    "w": "use delone.RegularTriangulation",
-    "v": "use delone.Voronoi",
-    "d": "use delone.check_surface",
-    "R": "vertices are not removed",
-    "L": "flips have no levels",
-    "K": "the format is written by delone.io.write_mesh",
-    "X": "arithmetic is always exact",
-    "P": "boundary facets are always returned",
-    "l": "there is one algorithm",
-    "s": "there is one algorithm",
-    "b": "there is one order of insertion",
-}
+# The marker of faces and edges of the input that were given none.
+_UNMARKED = -1
+
+
+class MeshNotTetrahedralizedError(InputError, RuntimeError):
+    """There is no result yet: call `TetGen.tetrahedralize` first."""
 
 
 class TetGen:
@@ -72,8 +57,8 @@ class TetGen:
     ----------
     v, f : ndarray
         The vertices and triangles.
-    mesh : TetMesh or None
-        The result as delone's own class, after `tetrahedralize`.
+    tetmesh : TetMesh or None
+        The result as delone's own class, after `tetrahedralize`; it is not one of the package.
 
     Raises
     ------
@@ -92,7 +77,9 @@ class TetGen:
     >>> tet = tetgen.TetGen(v, f)
     >>> nodes, elems, attributes, markers = tet.tetrahedralize(quality=False)
     >>> elems.shape, markers.tolist()
-    ((1, 4), [0, 0, 0, 0])
+    ((1, 4), [-1, -1, -1, -1])
+    >>> tet.tetmesh
+    <TetMesh of 4 points: 1 tetrahedron>
     """
 
     def __init__(self, *args: Any) -> None:
@@ -103,7 +90,7 @@ class TetGen:
         surface, faces, markers = (*args, None, None)[:3]
         found = given(surface, faces, markers, None, None)
         self.v, self.f = as_faces(found.points, found.faces)
-        self.mesh: TetMesh | None = None
+        self.tetmesh: TetMesh | None = None
         self._markers = found.markers
         self._holes: list[Floats] = [] if found.holes is None else list(np.asarray(found.holes))
         self._regions: list[tuple[int, Floats]] = []
@@ -112,6 +99,8 @@ class TetGen:
         self._attributes = np.empty((0, 0))
         self._trifaces = np.empty((0, 3), dtype=np.int32)
         self._triface_markers = np.empty(0, dtype=np.int32)
+        self._every_edge = False
+        self._second = False
 
     def __repr__(self) -> str:
         return f"<TetGen of {len(self.v)} vertices and {len(self.f)} triangles>"
@@ -140,7 +129,7 @@ class TetGen:
         See `TetGen`.
         """
         if as_number(max_vol, name="max_vol") != 0:
-            raise InputError(f"max_vol: {_QUALITY}")
+            raise InputError(f"max_vol: {QUALITY}")
         self._regions.append((as_count(id, name="id"), _place(point_in_region)))
 
     def add_hole(self, point: ArrayLike) -> None:
@@ -199,6 +188,7 @@ class TetGen:
         edgesout: bool = False,
         switches: str = "",
         bgmesh: Any = None,
+        nomergefacet: bool = False,
         **others: Any,
     ) -> tuple[Floats, Indices, Floats, Indices]:
         """Fill the surface with tetrahedra.
@@ -213,7 +203,7 @@ class TetGen:
             Must be False. True, the default of the package ``tetgen``, is refused: quality is not
             supported.
         minratio, mindihedral : float, optional
-            Bounds on quality, without effect if `quality` is False.
+            Must be 2 and 0: they bound quality.
         nobisect : bool, optional
             Whether all triangles are faces of the result. Otherwise, triangles in one plane may be
             cut again, as with ``boundary="surface"`` of `delone.tetrahedralize`; no point is ever
@@ -221,37 +211,44 @@ class TetGen:
         steinerleft : int, optional
             The maximum number of points that exist besides those of the input at any time; -1 for
             no limit of one's own.
-        order : int, optional
-            Must be 1.
+        order : {1, 2}, optional
+            With 2, `node` has the middle of each edge as well, and `elem` has ten nodes, in
+            TetGen's order; those of `grid` are in the order of VTK.
         regionattrib : bool, optional
             Whether to return the label of the region of each tetrahedron.
         facesout : bool, optional
             Whether `trifaces` has all faces of tetrahedra, instead of those of the input.
         edgesout : bool, optional
-            Without effect: `edges` has all edges.
+            Whether `edges` has all edges, instead of those of faces of the input.
         switches : str, optional
-            TetGen's switches, which replace all other arguments: p is necessary; ``Y A S M O Q``
-            and output switches are accepted; q, a and o2 are refused.
+            TetGen's switches, which replace all other arguments: p is necessary; ``Y A S M O o2 f
+            e Q`` and those of output are accepted; q, a and m are refused.
         bgmesh : optional
-            Must be None.
+            Must be None: no sizes are read.
+        nomergefacet : bool, optional
+            As `nobisect`: no triangles are joined.
         **others
-            Further arguments of the package ``tetgen``; any but False, None and 0 is refused.
+            Further arguments of the package ``tetgen``. Those for output, silence and checks, and
+            those that choose between algorithms, have no effect; others must have their defaults.
 
         Returns
         -------
         nodes : ndarray of float64, shape (n, 3)
-            The vertices in their order, then the points added.
-        elems : ndarray of int32, shape (m, 4)
+            The vertices in their order, then the points added; with ``order=2`` then the middle
+            of each edge.
+        elems : ndarray of int32, shape (m, 4) or (m, 10)
             The tetrahedra.
         attributes : ndarray of float64, shape (m, 1) or (0, 0)
             The label of the region of each; regions without a label follow the largest one.
         triface_markers : ndarray of int32, shape (k,)
-            The marker of each triangle in `trifaces`, 0 without one.
+            The marker of each triangle in `trifaces`: -1 if none were given, 0 for further faces.
 
         Raises
         ------
         InputError
-            An argument or switch is not supported.
+            An argument or switch is not supported; the message says why, and what to do.
+        DtypeError
+            An argument is unknown.
         CrossingFacesError, OpenSurfaceError, CrowdedFacesError, BudgetExceededError
             And others, as for `delone.tetrahedralize`.
 
@@ -259,50 +256,83 @@ class TetGen:
         --------
         See `TetGen`.
         """
-        if switches:
-            limit, regionattrib, facesout, nobisect = _switched(switches)
-        else:
-            _refuse_quality(quality, order, bgmesh, others)
-            if not as_flag(plc, name="plc"):
-                raise InputError("plc must be True: delone.Delaunay triangulates points alone")
-            limit = None if steinerleft < 0 else as_count(steinerleft, name="steinerleft")
+        wishes = (
+            of_switches(switches)
+            if switches
+            else of_arguments(
+                plc=plc,
+                quality=quality,
+                minratio=minratio,
+                mindihedral=mindihedral,
+                nobisect=nobisect,
+                steinerleft=steinerleft,
+                order=order,
+                regionattrib=regionattrib,
+                facesout=facesout,
+                edgesout=edgesout,
+                bgmesh=bgmesh,
+                nomergefacet=nomergefacet,
+                others=others,
+            )
+        )
         regions = [(*place, label) for label, place in self._regions]
-        self.mesh = tetrahedralize(
+        self.tetmesh = tetrahedralize(
             self.v,
             self.f,
-            boundary="faces" if as_flag(nobisect, name="nobisect") else "surface",
+            boundary="faces" if wishes.whole else "surface",
             inside="enclosed",
             holes=self._holes or None,
             regions=regions or None,
             face_markers=self._markers,
-            max_points=limit,
+            max_points=wishes.limit,
         )
-        wanted = as_flag(regionattrib, name="regionattrib")
-        labels = _labels(self.mesh, given=bool(regions)) if wanted else np.empty((0, 0))
-        self._attributes = labels
-        self._trifaces, self._triface_markers = _faces(self.mesh, everything=bool(facesout))
+        made = self.tetmesh
+        self._attributes = np.empty((0, 0))
+        if wishes.regions:
+            self._attributes = _labels(made, given=bool(regions))
+        self._every_edge, self._second = wishes.edges, wishes.second
+        unmarked = _UNMARKED if self._markers is None else None
+        self._trifaces, self._triface_markers = _faces(made, wishes.faces, unmarked)
         return self.node, self.elem, self._attributes, self._triface_markers
 
     @property
     def _made(self) -> TetMesh:
-        if self.mesh is None:
-            raise InputError("there is no mesh yet: call tetrahedralize(quality=False)")
-        return self.mesh
+        if self.tetmesh is None:
+            raise MeshNotTetrahedralizedError(
+                "there is no mesh yet: call tetrahedralize(quality=False)"
+            )
+        return self.tetmesh
+
+    @property
+    def is_tetrahedralized(self) -> bool:
+        """Whether `tetrahedralize` has made a mesh."""
+        return self.tetmesh is not None
+
+    @property
+    def mesh(self) -> Any:
+        """The surface that was given, a ``pyvista.PolyData`` (extra ``pyvista``)."""
+        return to_pyvista(Parts(self.v, self.f))
 
     @property
     def node(self) -> Floats:
-        """The vertices, (n, 3)."""
-        return self._made.points
+        """The vertices, (n, 3); with ``order=2`` also the middle of each edge."""
+        made = self._made
+        return self._second_order(made).points if self._second else made.points
 
     @property
     def elem(self) -> Indices:
-        """The tetrahedra, (m, 4)."""
-        return self._made.simplices
+        """The tetrahedra, (m, 4) or (m, 10)."""
+        made = self._made
+        return self._second_order(made).simplices[:, SECOND] if self._second else made.simplices
+
+    @staticmethod
+    def _second_order(made: TetMesh) -> Parts:
+        return of_order(Parts(made.points, made.simplices), 2)
 
     @property
     def n_nodes(self) -> int:
-        """Number of vertices."""
-        return self._made.npoints
+        """Number of rows of `node`."""
+        return len(self.node)
 
     @property
     def n_cells(self) -> int:
@@ -317,35 +347,110 @@ class TetGen:
     @property
     def trifaces(self) -> Indices:
         """The triangles, (k, 3): those of the input, or with ``facesout`` all."""
+        _ = self._made
         return self._trifaces
 
     @property
     def triface_markers(self) -> Indices:
-        """The marker of each of `trifaces`, (k,); 0 for none."""
+        """The marker of each of `trifaces`, (k,): -1 without markers, 0 for further faces."""
+        _ = self._made
         return self._triface_markers
 
     @property
     def face2tet(self) -> Indices:
         """The tetrahedra on both sides of each of `trifaces`, (k, 2); -1 for none."""
-        return _sides(self._made, self._trifaces)
+        return _sides(self._made, self.trifaces)
 
     @property
     def edges(self) -> Indices:
-        """All edges, (e, 2)."""
-        return self._made.edges
+        """The edges of faces of the input, (e, 2), or with ``edgesout`` all."""
+        found = self._made.edges
+        return found if self._every_edge else found[self._of_input(found)]
 
     @property
     def edge_markers(self) -> Indices:
-        """1 for edges of triangles of the input, else 0, (e,)."""
-        faces, edges, n = self._made.input_faces, self.edges, np.int64(self._made.npoints)
+        """-1 for edges of triangles of the input, else 0, (e,)."""
+        return np.where(self._of_input(self.edges), _UNMARKED, 0).astype(np.int32)
+
+    def _of_input(self, edges: Indices) -> NDArray[np.bool_]:
+        """Whether each edge is one of a triangle of the input."""
+        faces, n = self._made.input_faces, np.int64(self._made.npoints)
         pairs = np.sort(faces[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1)
-        on = np.isin(edges[:, 0] * n + edges[:, 1], pairs[:, 0] * n + pairs[:, 1])
-        return on.astype(np.int32)
+        found: NDArray[np.bool_] = np.isin(
+            edges[:, 0] * n + edges[:, 1], pairs[:, 0] * n + pairs[:, 1]
+        )
+        return found
 
     @property
     def grid(self) -> Any:
         """The mesh as a ``pyvista.UnstructuredGrid`` (extra ``pyvista``)."""
-        return self._made.to_pyvista()
+        return self._made.to_pyvista(order=2 if self._second else 1)
+
+    def write(self, filename: str | os.PathLike[str], binary: bool = True) -> None:
+        """Write `grid` to a file of VTK (extra ``pyvista``).
+
+        Parameters
+        ----------
+        filename : str or path-like
+            A file that ends in .vtk or .vtu.
+        binary : bool, optional
+            Whether it is binary, or text.
+
+        Raises
+        ------
+        MeshNotTetrahedralizedError
+            There is no mesh yet.
+        FileFormatError
+            The file has another suffix.
+        FileNotFoundError, OutputError
+            There is no such folder, or the file cannot be written.
+        MissingExtraError
+            PyVista is not installed.
+
+        Examples
+        --------
+        >>> from delone.compat import tetgen
+        >>> v = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+        >>> tet = tetgen.TetGen(v, [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
+        >>> _ = tet.tetrahedralize(quality=False)
+        >>> tet.write("grid.vtu")  # doctest: +SKIP
+        """
+        path = Path(filename)
+        if path.suffix.lower() not in (".vtk", ".vtu"):
+            raise FileFormatError(
+                f"{path}: write writes .vtk and .vtu; delone.io.write_mesh(path, tet.tetmesh) "
+                "writes other formats"
+            )
+        grid = self.grid
+        with replacing(path) as temporary:
+            grid.save(temporary, binary=as_flag(binary, name="binary"))
+
+    def plot(self, **options: Any) -> Any:
+        """Display the surface that was given (extra ``pyvista``).
+
+        Parameters
+        ----------
+        **options
+            Arguments of `pyvista.plot`.
+
+        Returns
+        -------
+        object
+            What PyVista returns.
+
+        Raises
+        ------
+        MissingExtraError
+            PyVista is not installed.
+
+        Examples
+        --------
+        >>> from delone.compat import tetgen
+        >>> v = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+        >>> tet = tetgen.TetGen(v, [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
+        >>> tet.plot(show_edges=True)  # doctest: +SKIP
+        """
+        return self.mesh.plot(**options)
 
 
 def _place(point: ArrayLike) -> Floats:
@@ -354,39 +459,6 @@ def _place(point: ArrayLike) -> Floats:
         raise ShapeError(f"a point must have shape (3,), got {array.shape}")
     found: Floats = as_points(array[None], ndim=3, name="point")[0]
     return found
-
-
-def _refuse_quality(quality: bool, order: int, bgmesh: Any, others: dict[str, Any]) -> None:
-    """Refuse arguments that ask for what is not supported."""
-    if as_flag(quality, name="quality"):
-        raise InputError(_QUALITY)
-    if order != 1:
-        raise InputError(_REFUSED["o"])
-    if bgmesh is not None:
-        raise InputError(f"bgmesh: {_QUALITY}")
-    for name, value in others.items():
-        if value is not None and not (np.isscalar(value) and not value):
-            raise InputError(f"the argument {name} is not supported")
-
-
-def _switched(switches: str) -> tuple[int | None, bool, bool, bool]:
-    """Return the limit on points, whether regions and all faces are wanted, and all are kept."""
-    rest = _SWITCH.sub("", switches)
-    if rest:
-        raise InputError(f"switches has {rest!r:.80}, which is not a switch")
-    limit, known = None, []
-    for letter, number in _SWITCH.findall(switches):
-        known.append(letter)
-        if letter in _REFUSED and not (letter == "o" and number in ("", "1")):
-            raise InputError(f"the switch {letter} is not supported: {_REFUSED[letter]}")
-        if letter == "S":
-            limit = as_count(int(float(number or 0)), name="S")
-        elif letter not in "pYAo" + _WITHOUT_EFFECT:
-            raise InputError(f"the switch {letter} is not known")
-    if "p" not in known:
-        raise InputError("switches must contain p: delone.Delaunay triangulates points alone")
-    # M: facets in one plane are not merged.
-    return limit, "A" in known, "f" in known, "Y" in known or "M" in known
 
 
 def _labels(mesh: TetMesh, *, given: bool) -> Floats:
@@ -401,9 +473,11 @@ def _labels(mesh: TetMesh, *, given: bool) -> Floats:
     return labels[:, None]
 
 
-def _faces(mesh: TetMesh, *, everything: bool) -> tuple[Indices, Indices]:
+def _faces(mesh: TetMesh, everything: bool, unmarked: int | None) -> tuple[Indices, Indices]:
     """Return faces with their markers: those of the input first, then all others."""
     faces, markers = mesh.input_faces, mesh.face_markers
+    if unmarked is not None:
+        markers = np.full_like(markers, unmarked)
     if not everything:
         return faces, markers
     n = np.int64(mesh.npoints)

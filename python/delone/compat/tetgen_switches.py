@@ -1,0 +1,163 @@
+"""The arguments and switches of the package ``tetgen``: what each asks for, and what is refused.
+
+Nothing that would change the result is passed over. What is accepted without an effect asks for
+output, silence or checks, chooses between algorithms with the same result, or bounds errors that
+exact arithmetic does not make.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from delone._arrays import as_count, as_flag
+from delone.errors import DtypeError, InputError
+
+__all__ = ["QUALITY", "Wishes", "of_arguments", "of_switches"]
+
+QUALITY = (
+    "tetrahedra of bounded quality or size are not made: pass quality=False, or leave q and a out "
+    "of the switches. Then delone.improve(tet.tetmesh) removes slivers, and extra_points of "
+    "delone.tetrahedralize are vertices inside"
+)
+_SWITCH = re.compile(r"([a-zA-Z])((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/[\d.]*)*|/[\d./]+)?")
+# Numbers from zero, silence, checks, files, neighbors, unused vertices, the tolerance of coplanar
+# points, and what TetGen does to tetrahedra afterwards: they change nothing that is promised.
+_WITHOUT_EFFECT = "zQVCFIJNEgkBOnTWxbUX"
+_REFUSED = {
+    "q": QUALITY,
+    "a": QUALITY,
+    "m": f"no sizes are read. {QUALITY}",
+    "r": "tetrahedra cannot be reconstructed or refined",
+    "i": "use extra_points of delone.tetrahedralize",
+    "c": "the convex hull is not kept: use delone.Delaunay(points)",
+    "D": "segments are not split to make tetrahedra Delaunay",
+    "w": "use delone.RegularTriangulation",
+    "v": "use delone.Voronoi",
+    "d": "use delone.check_surface",
+    "R": "vertices are not removed",
+    "L": "flips have no levels",
+    "K": "the format is written by delone.io.write_mesh",
+    "P": "boundary facets are always returned",
+    "l": "there is one algorithm",
+    "s": "there is one algorithm",
+}
+# Arguments of the package besides those that have a place in the signature, their defaults, and
+# the switch whose reason holds where another value is refused; "" where any value is accepted.
+_FURTHER: dict[str, tuple[Any, str]] = {
+    **{"psc": (False, "s"), "refine": (False, "r"), "cdt": (False, "D"), "cdtrefine": (7, "")},
+    **{"coarsen": (False, "R"), "weighted": (False, "w"), "flipinsert": (False, "L")},
+    **{"metric": (False, "m"), "varvolume": (False, "a"), "fixedvolume": (False, "a")},
+    **{"insertaddpoints": (False, "i"), "diagnose": (False, "d"), "convex": (False, "c")},
+    **{"voroout": (False, "v"), "maxvolume": (-1.0, "a"), "maxvolume_length": (-1.0, "a")},
+    **{"bgmeshfilename": ("", "m"), "metric_scale": (1.0, "m"), "elem_growth_ratio": (0.0, "r")},
+    **{"reversetetori": (0, "o"), "coarsen_param": (0, ""), "coarsen_percent": (1.0, "")},
+    **dict.fromkeys(
+        (
+            *("brio_hilbert", "nomergevertex", "noexact", "nostaticfilter", "zeroindex"),
+            *("neighout", "meditview", "vtkview", "vtksurfview", "nobound", "nonodewritten"),
+            *("noelewritten", "nofacewritten", "noiterationnum", "nojettison", "docheck"),
+            *("quiet", "nowarning", "verbose", "vertexperblock", "tetrahedraperblock"),
+            *("shellfaceperblock", "supsteiner_level", "addsteiner_algo", "weighted_param"),
+            *("fliplinklevel", "flipstarsize", "fliplinklevelinc", "opt_max_flip_level"),
+            *("opt_scheme", "opt_iterations", "smooth_cirterion", "smooth_maxiter"),
+            *("delmaxfliplevel", "unflip_queue_limit", "no_sort", "hilbert_order"),
+            *("hilbert_limit", "brio_threshold", "brio_ratio", "epsilon"),
+            *("facet_separate_ang_tol", "collinear_ang_tol", "facet_small_ang_tol"),
+            *("opt_max_asp_ratio", "opt_max_edge_ratio", "optmaxdihedral", "smooth_alpha"),
+            "refine_progress_ratio",
+        ),
+        (None, ""),
+    ),
+}
+_REVERSED = "tetrahedra are positively oriented"
+
+
+class Wishes(NamedTuple):
+    """What is asked for."""
+
+    limit: int | None  # points that may be added
+    regions: bool  # labels of regions
+    faces: bool  # all faces, besides those of the input
+    edges: bool  # all edges
+    whole: bool  # all triangles as they are
+    second: bool  # elements of second order
+
+
+def of_arguments(
+    *,
+    plc: Any,
+    quality: Any,
+    minratio: Any,
+    mindihedral: Any,
+    nobisect: Any,
+    steinerleft: Any,
+    order: Any,
+    regionattrib: Any,
+    facesout: Any,
+    edgesout: Any,
+    bgmesh: Any,
+    nomergefacet: Any,
+    others: dict[str, Any],
+) -> Wishes:
+    """Return what arguments ask for, or refuse them."""
+    if as_flag(quality, name="quality"):
+        raise InputError(QUALITY)
+    if minratio != 2.0 or mindihedral != 0.0:
+        name = "minratio" if minratio != 2.0 else "mindihedral"
+        raise InputError(f"{name} has an effect with quality=True alone, and {QUALITY}")
+    if bgmesh is not None:
+        raise InputError(f"bgmesh: no sizes are read. {QUALITY}")
+    for name, value in others.items():
+        _check(name, value)
+    if not as_flag(plc, name="plc"):
+        raise InputError("plc must be True: delone.Delaunay triangulates points alone")
+    if order not in (1, 2):
+        raise InputError(f"order must be 1 or 2, got {order!r:.60}")
+    kept = as_flag(nobisect, name="nobisect") or as_flag(nomergefacet, name="nomergefacet")
+    return Wishes(
+        limit=None if steinerleft < 0 else as_count(steinerleft, name="steinerleft"),
+        regions=as_flag(regionattrib, name="regionattrib"),
+        faces=as_flag(facesout, name="facesout"),
+        edges=as_flag(edgesout, name="edgesout"),
+        whole=kept,
+        second=order == 2,
+    )
+
+
+def _check(name: str, value: Any) -> None:
+    """Refuse an argument that is unknown, or asks for what is not supported."""
+    if name not in _FURTHER:
+        raise DtypeError(f"tetrahedralize has no argument {name}")
+    default, switch = _FURTHER[name]
+    if switch and (np.ndim(value) or value != default):
+        reason = _REVERSED if switch == "o" else _REFUSED[switch]
+        raise InputError(f"the argument {name} is not supported: {reason}")
+
+
+def of_switches(switches: str) -> Wishes:
+    """Return what a string of switches asks for, or refuse it."""
+    rest = _SWITCH.sub("", switches)
+    if rest:
+        raise InputError(f"switches has {rest!r:.80}, which is not a switch")
+    found = dict(_SWITCH.findall(switches))
+    for letter, number in found.items():
+        if letter in _REFUSED:
+            raise InputError(f"the switch {letter} is not supported: {_REFUSED[letter]}")
+        if letter == "o" and number not in ("", "1", "2"):
+            raise InputError(f"the switch o is o1 or o2, not o{number}: {_REVERSED}")
+        if letter not in "pYASMofe" + _WITHOUT_EFFECT:
+            raise InputError(f"the switch {letter} is not known")
+    if "p" not in found:
+        raise InputError("switches must contain p: delone.Delaunay triangulates points alone")
+    return Wishes(
+        limit=as_count(int(float(found["S"] or 0)), name="S") if "S" in found else None,
+        regions="A" in found,
+        faces="f" in found,
+        edges="e" in found,
+        # M: facets in one plane are not merged.
+        whole="Y" in found or "M" in found,
+        second=found.get("o") == "2",
+    )
