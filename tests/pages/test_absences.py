@@ -51,7 +51,7 @@ ABSENCES: dict[tuple[str, str], str] = {
     ("index.rst", "There is no release yet"): "CONTRIBUTING.md says what the first release changes",
     (
         "coming_from/cgal.rst",
-        "bounded quality, of images",
+        "bounded quality, and meshes from images",
     ): "tetrahedralize adds points only where faces need them",
     (
         "coming_from/cgal.rst",
