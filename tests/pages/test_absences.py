@@ -127,7 +127,7 @@ ABSENCES: dict[tuple[str, str], str] = {
     ): "an area needs two coordinates, a volume three",
     (
         "guide/sphere.rst",
-        "none: project to meters",
+        "not available: project to meters",
     ): "delone.sphere has no such functions, and graphs refuse directions",
     ("guide/terrain.rst", "project them first"): "a TIN has slopes and volumes in one unit",
     ("guide/interpolate.rst", ":class:`CloughTocher`: none"): "delone.sphere has no such class",
