@@ -2,8 +2,8 @@
 Mean over an area from unevenly spread stations: Thiessen weights
 =================================================================
 
-Rain gauges are dense near towns, so their plain mean is the mean of the towns. Weighting each gauge by the area of its
-Voronoi cell, clipped to the outline, is the method of Thiessen polygons.
+Rain gauges are dense near towns, so their plain mean is biased toward the towns. Weighting each gauge by the area of
+its Voronoi cell, clipped to the outline, is the method of Thiessen polygons.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -31,7 +31,7 @@ island = {"type": "Polygon", "coordinates": [((outline - south_west) * per_degre
 
 # %%
 # Gauges on land, most of them near the town on the west coast, and a month of rain: more in the south. Areas need an
-# equal-area plane; degrees scaled to kilometers are close enough on an island of 130 km.
+# equal-area plane; degrees scaled to kilometers are accurate enough for an island of 130 km.
 
 random = np.random.default_rng(2)
 near_town = random.normal((13, 79), 7, (60, 2))
@@ -66,7 +66,8 @@ assert abs(weights @ measured - truth) < abs(measured.mean() - truth)
 
 # %%
 # A common mistake is to keep the weights when a gauge fails: the weights of the others no longer add up to 1. Either
-# divide by what is left, or compute the cells of the gauges that work, which gives the area to the neighbors.
+# divide by the sum of the remaining weights, or compute the cells of the working gauges, which gives the area to the
+# neighbors.
 
 failed = measured.copy()
 failed[np.argmax(weights)] = np.nan

@@ -2,8 +2,8 @@
 Regrid station data with xarray, with missing values
 ====================================================
 
-A Dataset of stations becomes a Dataset on a grid: all variables, all days, attributes kept. Days on which a station is
-missing leave a hole around it, or the gap is filled by a triangulation of the other stations.
+A Dataset of stations becomes a Dataset on a grid, with all variables, days and attributes. On days on which a station
+is missing, there is a hole around it, unless a triangulation of the other stations fills the gap.
 
 Install: ``pip install "delone[plot,xarray]"``.
 """
@@ -59,7 +59,7 @@ filled = grid(
 )
 
 # %%
-# A day with its holes, the same day filled, and one place through time.
+# A day with holes, the same day filled, and one location over time.
 
 figure, axes = plt.subplots(1, 3, figsize=(11.4, 3.6), layout="constrained")
 known = stations.temperature[day].notnull()

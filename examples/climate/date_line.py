@@ -48,8 +48,8 @@ print(
 assert np.isnan(planar).sum() > np.isnan(joined).sum()
 
 # %%
-# A common mistake is a mixture of longitudes from -180 to 180 and from 0 to 360: the same stations lie twice on the plane,
-# or queries are outside. A period makes both the same place.
+# A common mistake is to mix longitudes from -180 to 180 with longitudes from 0 to 360: the same stations are then in
+# the plane twice, or queries are outside. With a period, both are the same location.
 
 assert np.allclose(around([(190.0, 5.0)]), around([(-170.0, 5.0)]), rtol=0, atol=1e-9)
 print(

@@ -3,7 +3,7 @@ Stations to a global grid
 =========================
 
 Values of stations all over the Earth are interpolated to a grid of one degree, on the sphere: there is no seam at the
-date line, and no gap at the poles. In the plane of longitudes and latitudes both are edges of the map.
+date line, and no gap at the poles. In the plane of longitudes and latitudes, both are at the edges of the map.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -31,8 +31,9 @@ def temperature(places):
 values = temperature(stations)
 
 # %%
-# A grid has longitudes 0 to 360 where stations have -180 to 180; on the sphere they are the same meridians. All nodes of
-# the first and the last row are the poles, and get one value each.
+# The grid has longitudes from 0 to 360, and the stations from -180 to 180; on the sphere, they are the same
+# meridians. The nodes of the first row are all at one pole, and those of the last row at the other. Each pole gets
+# one value.
 
 lon, lat = np.arange(0, 360.5, 1.0), np.arange(-90, 90.5, 1.0)
 nodes = np.stack(np.meshgrid(lon, lat), axis=-1)
@@ -59,8 +60,8 @@ for name, field in (("plane", plane), ("sphere", found)):
     )
 
 # %%
-# Weights serve any number of fields: here one for each month, with one product. The gradient is towards east and north,
-# per meter with the radius of the Earth.
+# Weights work for any number of fields: here for one per month, with one product. The gradient has components to the
+# east and north, and is per meter if you pass the radius of the Earth.
 
 table = globe.weights_at(nodes)
 months = values[:, None] + 5 * np.sin(np.radians(latitude))[:, None] * np.cos(
@@ -72,7 +73,7 @@ steep = globe.gradient([(20.0, 50.0)], radius=6371.0)
 print("degrees C per km, towards east and north:", steep.round(4).tolist())
 
 # %%
-# From above the North Pole the seam and the gap are plain to see.
+# The seam and the gap are clearly visible from above the North Pole.
 
 panels = [("Plane: error", plane - truth), ("Sphere: error", found - truth)]
 figure = plt.figure(figsize=(8.4, 7.6), layout="constrained")

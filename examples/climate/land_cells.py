@@ -2,8 +2,9 @@
 Mean over land from stations: Voronoi cells clipped to the coast
 ================================================================
 
-Each station stands for the land that is nearest to it. The cells of stations on the globe, clipped to the coast, have the
-areas that are the weights of a mean over land, without a projection and without cutting anything at the date line.
+Each station represents the land that is nearest to it. The Voronoi cells of stations on the globe are clipped to the
+coast, and their areas are the weights of a mean over land. No projection is needed, and nothing is cut at the date
+line.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -40,7 +41,7 @@ print(
 )
 
 # %%
-# A temperature that depends on latitude. The plain mean is that of the crowded middle latitudes.
+# A temperature that depends on latitude. The plain mean is dominated by the dense stations of the middle latitudes.
 
 
 def temperature(latitude):
@@ -56,8 +57,9 @@ print(f"true mean {truth:.1f} C, weighted {weighted:.1f} C, plain {values.mean()
 assert abs(weighted - truth) < 0.2 * abs(values.mean() - truth)
 
 # %%
-# On a sphere both sides of a ring are areas. By default a polygon is the smaller one, however its ring runs: clockwise in
-# shapefiles. ``winding="ccw"`` takes the left side, here all of the Earth but the island, with a warning.
+# On a sphere, a ring has a finite area on both sides. By default, a polygon is the smaller one, whatever the
+# direction of its ring, which is clockwise in shapefiles. ``winding="ccw"`` selects the left side, here all of the
+# Earth except the island, with a warning.
 
 island = [(47, -25), (44, -16), (50, -16)]
 ring = {"type": "Polygon", "coordinates": [island]}
@@ -66,7 +68,7 @@ for winding in ("smaller", "ccw"):
     print(f"winding={winding!r}: {found.cell_areas.sum() / 1e6:.1f} million square km")
 
 # %%
-# Large cells have much weight.
+# Large cells have large weights.
 
 figure, axes = plt.subplots(1, 2, figsize=(9, 4.6), layout="constrained")
 for ax, view in zip(axes, ((5, 30), (-165, 50)), strict=True):

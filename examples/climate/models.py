@@ -2,8 +2,8 @@
 Regrid a model on an unstructured mesh with xarray
 ==================================================
 
-A dataset with a UGRID mesh and sea ice that comes and goes becomes one on cells of 3 degrees, in one call. Missing values
-change from month to month, and need no new weights.
+One call regrids a dataset on a UGRID mesh to cells of 3 degrees. It contains sea ice, so missing values change from
+month to month, but the weights stay the same.
 
 Install: ``pip install "delone[plot,xarray]"``.
 """
@@ -16,8 +16,8 @@ import delone.xarray
 from delone import datasets, sphere
 
 # %%
-# The mesh has the cells of a Voronoi diagram of 2,500 places, as those of MPAS are. This is how a UGRID file describes it:
-# longitudes and latitudes of nodes, and the nodes of each face, padded with -1.
+# Like an MPAS mesh, this mesh consists of the cells of a Voronoi diagram, here of 2,500 sites. This is how a UGRID
+# file describes it: longitudes and latitudes of nodes, and the nodes of each face, padded with -1.
 
 k = np.arange(2500)
 z = 1 - (2 * k + 1) / 2500
@@ -56,7 +56,8 @@ ocean["ice"] = (
 )
 
 # %%
-# "normalized" is the mean over the part of a cell that has ice; cells of which less than half has ice are missing.
+# "normalized" is the mean over the part of a cell that has ice; cells with ice on less than half of their area are
+# missing.
 
 found = ocean.delone.regrid("3x3", method="normalized", skipna=True, min_fraction=0.5)
 print(found.ice.dims, found.ice.dtype, found.ice.attrs)

@@ -2,7 +2,7 @@
 Conservative regridding of HEALPix to longitudes and latitudes
 ==============================================================
 
-A field on the pixels of HEALPix becomes one on cells of 3 degrees. At coasts, where cells are covered partly, totals and
+A field on HEALPix pixels is regridded to cells of 3 degrees. At coasts, where cells are partly covered, totals and
 means differ.
 
 Install: ``pip install "delone[plot]"``.
@@ -42,7 +42,7 @@ print(f"totals: {total:.12f}, {kept:.12f}")
 assert np.isclose(total, kept, rtol=1e-13)
 
 # %%
-# Their quotient is the part of a cell that is sea.
+# Their quotient is the fraction of a cell that is sea.
 
 figure, axes = plt.subplots(3, 1, figsize=(7, 10), layout="constrained", sharex=True)
 edges = np.arange(-180, 181, 3), np.arange(-90, 91, 3)

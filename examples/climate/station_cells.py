@@ -13,7 +13,7 @@ import numpy as np
 from delone import datasets, sphere
 
 # %%
-# Stations are denser on land: of 3000 places, those at sea are kept rarely.
+# Stations are denser on land: of 3000 random positions, few of those at sea are kept.
 
 random = np.random.default_rng(4)
 places = sphere.Delaunay(xyz=random.normal(size=(3000, 3))).lonlat

@@ -20,7 +20,7 @@ weights = NaturalNeighbor(gauges).weights_at(np.stack((x, y), axis=-1))
 print(weights)
 
 # %%
-# The levels of one hour: a tide of 12.42 hours that travels east, spring and neap.
+# The levels of one hour: a tide with a period of 12.42 hours that travels east, with spring and neap tides.
 
 
 def levels(hour):

@@ -2,9 +2,9 @@
 Winds across a pole
 ===================
 
-Winds are given by their components to the east and to the north, and at a pole these directions turn with the
-longitude. Interpolated as two fields of numbers, a wind over the North Pole comes out too weak and in a wrong direction;
-as vectors it does not.
+Winds are given by their components to the east and to the north, and near a pole these directions rotate with
+longitude. If the components are interpolated as two scalar fields, a wind over the North Pole is too weak and has the
+wrong direction. Interpolated as vectors, it is correct.
 
 Install: ``pip install "delone[plot,xarray]"``.
 """
@@ -34,8 +34,8 @@ def wind(lonlat):
 
 
 # %%
-# ``vectors_at`` moves the vector of each station along the great circle to the query before it combines them. A common
-# mistake is to interpolate the components as two fields.
+# ``vectors_at`` moves the vector of each station along the great circle to the query before it combines them. A
+# common mistake is to interpolate the components separately.
 
 made = delone.sphere.Linear(stations, wind(stations))
 for latitude in (0, 60, 80, 88, 89.5):
@@ -45,8 +45,8 @@ for latitude in (0, 60, 80, 88, 89.5):
     assert vectors < 0.1
 
 # %%
-# In a Dataset, the standard names of the CF conventions say which variables are components. Rows of the grid at the
-# pole are one vector, with the components that each meridian sees.
+# In a Dataset, the standard names of the CF conventions identify the components. The grid nodes at the pole are all
+# the same vector, expressed in the directions of each meridian.
 
 dataset = xarray.Dataset(
     {
@@ -63,7 +63,7 @@ plain = dataset.delone.interp(lon, lat, vectors=[])
 assert np.ptp(np.hypot(pole.u, pole.v).values) < 1e-9
 
 # %%
-# From above the pole. Arrows to the east and north become arrows of the map by the longitude.
+# The view from above the pole. The longitude determines how arrows to the east and north are rotated into the map.
 
 figure, axes = plt.subplots(1, 2, figsize=(8.4, 4.3), layout="constrained")
 turn = np.radians(lon)

@@ -3,7 +3,7 @@ Breaklines: keep the crest of a dike sharp
 ==========================================
 
 Scattered heights do not show where a slope breaks. The triangles between them cut corners: the crest of a dike
-becomes a row of teeth. Surveyed lines along the breaks, kept as edges, repair that.
+becomes jagged. Surveyed lines along the breaks, kept as edges, solve this.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -35,7 +35,7 @@ survey = np.random.default_rng(3).uniform((0, 0), (300, 150), (1500, 2))
 
 # %%
 # The four breaklines, two along the crest and two at the feet, have a vertex every 5 m. Their points come after those
-# of the survey, and have heights too.
+# of the survey, and also have heights.
 
 x = np.linspace(0, 300, 61)
 lines = []
@@ -51,8 +51,8 @@ with_lines = delone.interpolate.Linear(mesh, height(points))
 assert mesh.validate()
 
 # %%
-# Points alone do not keep an edge: the points of the breaklines without their segments are better than nothing, but
-# triangles still cross the crest where points of the survey are near.
+# Points alone do not keep an edge. The points of the breaklines without their segments help, but triangles still
+# cross the crest where survey points are close to it.
 
 alone = delone.Delaunay(points)
 edges = {tuple(edge) for edge in np.sort(alone.edges, axis=1).tolist()}
@@ -81,7 +81,7 @@ except delone.DeloneError as error:
     print(f"{type(error).__name__}: {error}")
 
 # %%
-# Hill shading shows the teeth.
+# Hill shading shows the jagged crest.
 
 figure, axes = plt.subplots(2, 1, figsize=(7, 7.4), layout="constrained", sharex=True)
 for ax, (name, surface) in zip(axes, surfaces.items(), strict=True):

@@ -33,8 +33,8 @@ land = {"type": "Polygon", "coordinates": [coast.tolist(), lake]}
 road = {"type": "LineString", "coordinates": [(-3, 2), (5, 1.5), (15, 2.5)]}
 
 # %%
-# :func:`~delone.from_geometry` accepts GeoJSON, shapely and GeoPandas objects. ``boundary="polygons"`` removes what
-# is outside of the coast and inside of the lake. Each seed of ``regions`` names the region that contains it.
+# :func:`~delone.from_geometry` accepts GeoJSON, shapely and GeoPandas objects. ``boundary="polygons"`` removes the
+# triangles outside the coast and inside the lake. Each seed of ``regions`` names the region that contains it.
 
 mesh = from_geometry(
     [land, road], boundary="polygons", regions=[(5, 5, 1), (5, 1, 2)], conforming=True

@@ -2,8 +2,8 @@
 Roads that cross: split at crossings and find the shortest path
 ===============================================================
 
-Lines that somebody drew, without a vertex where they cross, become a network: ``crossing="split"`` adds a vertex at
-each crossing, and the report lists them. SciPy finds the shortest path on the edges.
+Lines that were drawn without vertices at their crossings become a network: ``crossing="split"`` adds a vertex at each
+crossing, and the report lists them. SciPy finds the shortest path along the edges.
 
 Install: ``pip install "delone[plot]" scipy``.
 """
@@ -27,7 +27,7 @@ points = np.vstack((start, end))
 roads = np.column_stack((np.arange(40), np.arange(40, 80)))
 
 # %%
-# Arrays that cross are an error, unless one asks for more. The error lists all crossings, not only the first.
+# By default, segments that cross raise an error, which lists all crossings, not only the first.
 
 try:
     delone.ConstrainedDelaunay(points, roads)
@@ -40,8 +40,8 @@ assert len(crossings) == len(np.unique(crossings[:, :2], axis=0))
 print(f"{len(roads)} roads, {len(mesh.segments)} pieces, {mesh.npoints - len(points)} new vertices")
 
 # %%
-# Each row of ``report.crossings`` has two roads and their common vertex, ``segment_source`` the road of each piece.
-# The pieces are the edges of a graph.
+# Each row of ``report.crossings`` has two roads and their common vertex, and ``segment_source`` has the road of each
+# piece. The pieces are the edges of a graph.
 
 pieces = mesh.segments
 meters = np.linalg.norm(np.subtract(*mesh.points[pieces].swapaxes(0, 1)), axis=1)
@@ -52,7 +52,7 @@ busiest = np.bincount(crossings[:, :2].ravel()).argmax()
 print(f"road {busiest} has {np.sum(road == busiest)} pieces")
 
 # %%
-# The shortest path between the two vertices of the largest connected part that are farthest apart by road.
+# The shortest path between the two vertices of the largest connected component that are farthest apart by road.
 
 _, part = connected_components(graph, directed=False)
 inside = np.flatnonzero(part == np.bincount(part).argmax())
@@ -64,9 +64,9 @@ while path[-1] != inside[row]:
 print(f"{distance[row, goal]:,.0f} m by road over {len(path) - 2} crossings and ends")
 
 # %%
-# A common mistake is a road that ends a little before the one that it should join. A millimeter is enough: there is no
-# crossing, and no path. The distances of ends of roads to the other roads find such places. Bridges are the contrary:
-# their lines cross, but there is no junction; triangulate them apart.
+# A common mistake is a road that ends a little before the one that it should join. A millimeter is enough: there is
+# no crossing, and no path. To find such places, compute the distances from the ends of roads to the other roads.
+# Bridges are the opposite case: their lines cross, but there is no junction; triangulate them separately.
 
 short = [(0, 0), (10, 0), (5, 3), (5, 0.001)], [(0, 1), (2, 3)]
 assert len(delone.ConstrainedDelaunay(*short, crossing="split").segments) == 2

@@ -24,8 +24,8 @@ temperature[40] = temperature[40] * 9 / 5 + 32
 temperature[[90, 7]] = temperature[[7, 90]]
 
 # %%
-# One triangulation is enough for all 150 predictions. Corners of the convex hull have none: without them the hull is
-# smaller, and their place is outside.
+# One triangulation is enough for all 150 predictions. Corners of the convex hull have no prediction: without them,
+# the hull is smaller, and they are outside it.
 
 left_out = cross_validate(kilometers, temperature, "sibson")
 print(left_out)

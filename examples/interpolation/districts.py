@@ -2,8 +2,8 @@
 Transfer inhabitants from districts to hexagons
 ===============================================
 
-Numbers that are known for districts are wanted for a regular grid. Each district gives its inhabitants to the hexagons by the
-shares of its area; none are lost on the way.
+Populations are known for districts but needed on a regular grid. The inhabitants of each district are divided among
+the hexagons in proportion to the shared areas, and none are lost.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -25,7 +25,7 @@ people = rng.poisson(2000, len(sites))
 density = people / districts.cell_areas
 
 # %%
-# Hexagons of 1 km, which reach beyond the town.
+# Hexagons of 1 km, which extend beyond the town.
 
 side = 1 / np.sqrt(3)
 turns = np.radians(np.arange(30, 390, 60))
@@ -37,7 +37,7 @@ overlaps = Overlaps(districts, hexagons)
 print(overlaps, overlaps.report)
 
 # %%
-# "sum" transfers amounts: the total is preserved, up to rounding, as hexagons cover all districts.
+# "sum" transfers amounts: the total is preserved, up to rounding, because the hexagons cover all districts.
 
 arrived = overlaps.transfer({"people": people}, {"people": "sum"})["people"]
 print(f"{people.sum()} inhabitants of districts, {np.nansum(arrived):.6f} in hexagons")

@@ -2,8 +2,8 @@
 Compare interpolation methods: linear, natural neighbor, Clough-Tocher, nearest
 ===============================================================================
 
-Four methods interpolate 200 values of a known function, so their errors can be drawn. Smooth methods win where the
-function is smooth between the sites; no method sees what lies between them.
+Four methods interpolate 200 values of a known function, so their errors can be drawn. Smooth methods are more
+accurate where the function is smooth between the sites; no method recovers features between them.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -40,8 +40,8 @@ for name in names:
     print(f"{name:14} rmse {np.sqrt((error**2).mean()):.4f}   largest {np.abs(error).max():.3f}")
 
 # %%
-# A common mistake is to compare at the sites. All methods return the values there, bit for bit, so the errors are zero
-# for each of them. Compare elsewhere, or leave sites out: :func:`delone.interpolate.cross_validate`.
+# A common mistake is to compare at the sites. All methods reproduce the values there, bit for bit, so their errors
+# are zero. Compare elsewhere, or leave sites out: :func:`delone.interpolate.cross_validate`.
 
 for name in names:
     assert np.array_equal(interpolator(sites, values, name)(sites), values)

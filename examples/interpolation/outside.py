@@ -2,8 +2,8 @@
 Extrapolation, and masks far from the data
 ==========================================
 
-Interpolation ends at the convex hull of the sites, which says little about where the data are good. This example masks
-a raster farther than 25 km from the nearest site, and shows the choices for points outside the hull.
+Interpolation ends at the convex hull of the sites, which says little about where the data are dense. This example
+masks a raster farther than 25 km from the nearest site, and shows the choices for points outside the hull.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -25,8 +25,8 @@ nodes = np.stack((x, y), axis=-1)
 print(f"{len(sites)} sites")
 
 # %%
-# ``max_distance=`` masks in the units of the coordinates, also inside the hull: here in the middle of a ring of sites,
-# which long triangles span. ``distance()`` returns the distances, for a mask of your own or for shading.
+# ``max_distance=`` masks in the units of the coordinates, also inside the hull: here in the middle of a ring of
+# sites, which long triangles span. ``distance()`` returns the distances, for your own masks or for shading.
 
 inside = Linear(sites, salinity)
 plain = inside(nodes)
@@ -34,8 +34,8 @@ masked = inside(nodes, max_distance=25)
 assert np.nanmax(inside.distance(nodes)[np.isfinite(masked)]) <= 25
 
 # %%
-# ``extrapolate=`` is for points outside. A common mistake is to take a trend for data: linear extrapolation leaves the
-# range of the values. With ``extrapolate="raise"`` a program stops instead.
+# ``extrapolate=`` is for points outside. A common mistake is to treat an extrapolated trend as data: linear
+# extrapolation leaves the range of the values. With ``extrapolate="raise"``, a program stops instead.
 
 nearest = Linear(sites, salinity, extrapolate="nearest")(nodes)
 linear = Linear(sites, salinity, extrapolate="linear")(nodes)

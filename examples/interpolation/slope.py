@@ -2,8 +2,8 @@
 Slope and gradient of a field between scattered points
 ======================================================
 
-An interpolant has a gradient everywhere, so no raster has to be differenced. From the depths of a survey this gives
-the slope of the sea floor, in degrees.
+An interpolant has a gradient everywhere, so no finite differences on a raster are needed. Applied to the depths of a
+survey, it gives the slope of the sea floor, in degrees.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -21,8 +21,8 @@ per_degree = 111_195 * np.array((np.cos(np.radians(23.5)), 1))
 meters = (degrees - (249.75, 22.75)) * per_degree
 
 # %%
-# "farin" has continuous derivatives. ``gradients="plane"`` is the steadiest estimate of the gradients where soundings
-# lie along tracks. :meth:`delone.interpolate.Linear.gradient` exists too, with one slope on each triangle.
+# "farin" has continuous derivatives. ``gradients="plane"`` is the most robust estimate of the gradients where
+# soundings lie along tracks. :meth:`delone.interpolate.Linear.gradient` returns one slope per triangle.
 
 smooth = NaturalNeighbor(meters, depth, kind="farin", gradients="plane", duplicates="mean")
 flat = Linear(meters, depth, duplicates="mean")
@@ -45,8 +45,8 @@ for name, values in (("linear", facets), ("farin", surface)):
     )
 
 # %%
-# A common mistake is a slope in meters per degree: with positions in degrees and depths in meters, everything is as
-# steep as a wall.
+# A common mistake is a slope in meters per degree: with positions in degrees and depths in meters, every slope is
+# nearly vertical.
 
 wrong = Linear(degrees, depth, duplicates="mean").gradient(nodes / per_degree + (249.75, 22.75))
 print(f"positions in degrees: median slope {np.nanmedian(slope(wrong)):.1f} degrees")

@@ -2,8 +2,8 @@
 Depths between ship soundings
 =============================
 
-Ships measure depths along their tracks: dense on a track, with wide gaps between tracks. Natural neighbor
-interpolation is smooth between the soundings and exact at each of them, and it needs no parameter.
+Ships measure depths along their tracks: soundings are dense along a track, with wide gaps between tracks. Natural
+neighbor interpolation is smooth between the soundings and exact at each of them, and it needs no parameter.
 
 Install: ``pip install "delone[plot]"``.
 """

@@ -2,7 +2,7 @@
 A lidar survey in tiles
 =======================
 
-A lidar tile is split into smaller tiles and triangulated in a folder, validated, and rasterized. The same lines work
+A lidar tile is split into smaller tiles, triangulated into a folder, validated, and rasterized. The same code works
 for a thousand files, and with a Dask client as ``executor``. The union of the tiles is exactly the triangulation of
 all points.
 

@@ -2,7 +2,7 @@ r"""
 Adaptive refinement: solve, estimate, refine
 ============================================
 
-At a reentrant corner the gradient of a solution is infinite, and smaller triangles everywhere help little. An error
+At a reentrant corner, the gradient of the solution is infinite, and uniformly smaller triangles help little. An error
 indicator marks the triangles that matter; :meth:`~delone.Mesh.refine` splits them and keeps the bound on angles.
 
 Install: ``pip install "delone[fem,plot]"``.
@@ -41,7 +41,7 @@ def solve(mesh):
 
 # %%
 # The indicator of a triangle is the jump of the gradient across its three edges, times their lengths. ``neighbors``
-# has the triangles across the edges; -1, at the boundary, counts nothing.
+# contains the triangles across the edges; -1, at the boundary, contributes nothing.
 
 
 def indicator(mesh, values):
@@ -86,8 +86,8 @@ for name, rounds in (("adaptive", adaptive), ("even", even)):
     )
 
 # %%
-# A common mistake is to pass the triangles that were marked on another mesh. Their numbers mean something else after
-# each refinement, and the number of values no longer fits; compute indicators again.
+# A common mistake is to pass the triangles that were marked on another mesh. Triangle numbers change with each
+# refinement, and the number of values no longer matches; compute the indicators again.
 
 try:
     mesh.refine(indicator(shown, np.zeros(shown.npoints)) > 1)

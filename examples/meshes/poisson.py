@@ -3,8 +3,8 @@ Poisson's equation on an island
 ===============================
 
 The outline of Gotland is meshed at four sizes. On each mesh, linear elements of scikit-fem solve
-:math:`-\\Delta u = f` with *u* given on the coast, for a solution that is known. The error in the mean square must
-fall with the square of the size.
+:math:`-\\Delta u = f` with *u* given on the coast, for a known solution. The root mean square error must
+decrease with the square of the size.
 
 Install: ``pip install "delone[fem,plot]"``.
 """
@@ -69,7 +69,7 @@ def solve(mesh):
 
 
 # %%
-# Four meshes, each half as fine as the next.
+# Four meshes; each halves the size of the previous one.
 
 sizes = (4.0, 2.0, 1.0, 0.5)
 errors = []

@@ -2,8 +2,8 @@
 Regions with two materials and boundary conditions by name
 ==========================================================
 
-Heat flows through a plate of two materials, from a hot pipe to a cold side. The mesh carries the numbers of the
-materials and of the boundaries to scikit-fem, which selects elements and conditions by name.
+Heat flows through a plate of two materials, from a hot pipe to a cold side. The mesh passes the numbers of the
+materials and boundaries to scikit-fem, which selects elements and conditions by name.
 
 Install: ``pip install "delone[fem,plot]"``.
 """
@@ -70,15 +70,15 @@ fixed = np.concatenate((hot, cold))
 temperature = skfem.solve(*skfem.condense(matrix, x=temperature, D=fixed))
 
 # %%
-# What leaves the pipe arrives at the cold side.
+# The heat that leaves the pipe arrives at the cold side.
 
 flow = matrix @ temperature
 print(f"{flow[hot].sum():.1f} W leave the pipe, {-flow[cold].sum():.1f} W arrive")
 assert np.isclose(flow[hot].sum(), -flow[cold].sum())
 
 # %%
-# A common mistake is a seed that misses its region, here because the seed of the hole is not in the pipe. The mesh then
-# fills the pipe, and nothing fails: compare the area with what you expect.
+# A common mistake is a seed that misses its region, here because the seed of the hole is not in the pipe. The mesh
+# then fills the pipe, and no error is raised: compare the area with the expected one.
 
 wrong = delone.mesh((points, segments), holes=[(0.8, 3)], regions=[(0.1, 1, 1)], size=0.15)
 print(f"area {wrong.areas.sum():.3f} instead of {mesh.areas.sum():.3f}")

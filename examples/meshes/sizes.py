@@ -37,7 +37,8 @@ print(f"{uniform.nsimplex:,} triangles of one size, {graded.nsimplex:,} of growi
 print(graded.report)
 
 # %%
-# Points can still move to better positions: smoothing raises the common angles, and the bound of 30 degrees remains.
+# Points can still move to better positions: smoothing increases typical angles, and the bound of 30 degrees still
+# holds.
 
 smooth = graded.smooth(10, "odt")
 for name, mesh in (("refined", graded), ("smoothed", smooth)):
@@ -57,8 +58,8 @@ for _ in range(5):
 print(f"coarser: {uniform.nsimplex:,} to {coarse.nsimplex:,} triangles")
 
 # %%
-# A common mistake is a size in the wrong unit, for example millimeters for a plate in meters. It is refused before any
-# work is done.
+# A common mistake is a size in the wrong unit, for example millimeters for a plate in meters. It raises an error
+# before the mesh is computed.
 
 try:
     delone.mesh([plate, slit], size=lambda points: size(points) / 1000)

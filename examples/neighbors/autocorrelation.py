@@ -16,7 +16,7 @@ from delone.graphs import gabriel, nearest_neighbors
 
 # %%
 # Soundings off Baja California, in kilometers around the middle of the survey. Almost 2,000 rows repeat the position
-# of another one; they are reported, and the graph is on the others.
+# of another one; they are reported, and the graph joins the others.
 
 survey = baja()
 middle = survey.points.mean(axis=0)
@@ -28,8 +28,8 @@ for graph in graphs.values():
 distinct = np.setdiff1d(np.arange(len(points)), graphs["Gabriel"].duplicates[:, 0])
 
 # %%
-# Moran's I compares the depths of neighbors: 1 if they are equal, 0 if they have nothing in common. ``to_csr`` gives
-# the matrix of neighbors.
+# Moran's I compares the depths of neighbors: 1 if they are equal, 0 if they are unrelated. ``to_csr`` returns the
+# matrix of neighbors.
 
 
 def moran(graph, z):
@@ -46,7 +46,7 @@ for name, graph in graphs.items():
     assert abs(moran(graph, shuffled)) < 0.02
 
 # %%
-# Part of the survey: Gabriel edges lead from track to track, nearest neighbors mostly along them.
+# Part of the survey: Gabriel edges connect the tracks; nearest neighbors are mostly along them.
 
 window = np.flatnonzero((np.abs(points - (20, -60)) < 25).all(axis=1))
 figure, axes = plt.subplots(1, 2, figsize=(9, 4.6), layout="constrained", sharey=True)

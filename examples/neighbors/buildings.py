@@ -2,8 +2,8 @@
 Separate buildings in a lidar cloud
 ===================================
 
-Points that can be reached from each other in small steps belong together. The minimum spanning tree has all steps:
-without its long edges, each part is a building.
+Points that can be reached from each other in small steps belong together. The minimum spanning tree contains all
+these steps: after its long edges are removed, each part is a building.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -15,7 +15,7 @@ from delone.datasets import ahn3
 from delone.graphs import minimum_spanning_tree
 
 # %%
-# The points of roofs and walls in 3-D, which the survey has classified (class 6).
+# The points of roofs and walls in 3-D, as classified by the survey (class 6).
 
 survey = ahn3()
 roof = survey.attributes["classification"] == 6

@@ -2,8 +2,8 @@
 Clusters without choosing a distance (HDBSCAN)
 ==============================================
 
-HDBSCAN finds dense groups of points, whatever their density. Here they are buildings in a lidar cloud: roofs are dense,
-walls are not, and no distance between buildings has to be known.
+HDBSCAN finds dense groups of points, whatever their density. Here they are buildings in a lidar cloud: roofs are
+dense, walls are not, and you need not know the distance between buildings.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -15,7 +15,7 @@ from delone.cluster import DBSCAN, HDBSCAN
 from delone.datasets import ahn3
 
 # %%
-# The points that the survey has classified as buildings (class 6), in 3-D. A building has at least 300 of them.
+# The points that the survey classified as buildings (class 6), in 3-D. A building has at least 300 points.
 
 survey = ahn3()
 roof = survey.attributes["classification"] == 6
@@ -28,14 +28,14 @@ print(
 assert len(sizes) == 5
 
 # %%
-# A common mistake is a distance that fits some of the data only. DBSCAN needs one; half a meter is more than most points
-# are apart, but scans leave gaps in roofs and walls, and buildings fall apart.
+# A common mistake is to choose a distance that suits only part of the data. DBSCAN needs one. Half a meter is more
+# than the distance between most neighbors, but scans leave gaps in roofs and walls, so buildings are split.
 
 short = DBSCAN(eps=0.5, min_samples=10).fit(xyz)
 print(f"DBSCAN, 0.5 m: {short.labels_.max() + 1} clusters, {np.mean(short.labels_ < 0):.0%} noise")
 
 # %%
-# Both from above.
+# Both results, seen from above.
 
 figure, axes = plt.subplots(1, 2, figsize=(9, 4.8), layout="constrained")
 shown = {"HDBSCAN, 300 points": model.labels_, "DBSCAN, 0.5 m": short.labels_}

@@ -2,7 +2,8 @@
 Outline the roofs in a lidar cloud
 ==================================
 
-The convex hull of a building covers its yard. An alpha shape has a part for each building, with the shape of its roof.
+The convex hull of a building covers its yard. An alpha shape has one part for each building, in the shape of its
+roof.
 
 Install: ``pip install "delone[plot,geo]"``.
 """
@@ -14,8 +15,8 @@ from delone import AlphaComplex, concave_hull
 from delone.datasets import ahn3
 
 # %%
-# The points of roofs and walls, which the survey has classified (class 6), seen from above. Alpha is a squared radius: here
-# that of circles of 1 m.
+# The points of roofs and walls, as classified by the survey (class 6), seen from above. Alpha is a squared radius:
+# here the radius is 1 m.
 
 survey = ahn3()
 points = survey.points[survey.attributes["classification"] == 6]
@@ -27,8 +28,8 @@ print(f"{len(polygons)} roofs: " + ", ".join(f"{polygon.area:.0f} m²" for polyg
 assert shapely.is_valid(polygons).all()
 
 # %%
-# The largest roof has a concave hull, too: one polygon with all of its points, dug along edges above 2 m. The convex hull
-# is larger.
+# The concave hull of the largest roof is one polygon that contains all of its points, carved through edges longer
+# than 2 m. The convex hull is larger.
 
 largest = max(polygons, key=lambda polygon: polygon.area)
 own = points[shapely.covers(largest, shapely.points(points))]

@@ -2,8 +2,8 @@
 Plotting a large triangulation
 ==============================
 
-A triangulation of 212,550 lidar points in three ways: as a shaded surface, as the density of its points, and a detail
-with single triangles.
+A triangulation of 212,550 lidar points, plotted in three ways: as a shaded surface, as the density of its points, and
+as a detail with individual triangles.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -14,8 +14,8 @@ import numpy as np
 from delone import Delaunay, datasets
 
 # %%
-# Triangles smaller than a few pixels are drawn as an image: with single triangles the edges alone would blacken the
-# plot. ``shade=True`` adds hill shading.
+# Triangles smaller than a few pixels are drawn as an image: otherwise, the edges alone would blacken the plot.
+# ``shade=True`` adds hill shading.
 
 survey = datasets.ahn3()
 mesh = Delaunay(survey.points)
@@ -23,13 +23,12 @@ figure, (left, middle, right) = plt.subplots(1, 3, figsize=(13, 4.4), layout="co
 mesh.plot(left, z=survey.z, hull=False, shade=True, title="Height in m")
 
 # %%
-# Without ``z`` a large plot shows how dense the points are: gaps are water and roofs that swallowed the light.
+# Without ``z``, a large plot shows the density of the points: gaps are water and roofs that absorb the laser light.
 
 mesh.plot(middle, title="Density of the points")
 
 # %%
-# For a detail, triangulate the points in a window that is a little larger than what is shown, so that its border is
-# out of sight.
+# For a detail, triangulate the points in a window slightly larger than the plot, so that its border is not visible.
 
 low = survey.points.min(axis=0) + np.array((62, 30))
 window = ((survey.points > low - 1) & (survey.points < low + 7)).all(axis=1)

@@ -14,7 +14,7 @@ import numpy as np
 from delone import Delaunay
 
 # %%
-# The image: a landscape made of formulas, so that the example needs no file. With one of your own, read it by
+# The image: a landscape made of formulas, so that the example needs no file. To use your own image, read it with
 # ``plt.imread(path)[..., :3]``.
 
 height, width = 240, 360
@@ -28,8 +28,8 @@ for base, swing, waves, color in [*ridges, (215, 8, 0.110, (0.13, 0.15, 0.25))]:
     picture = np.where((y > ridge)[..., None], color, picture)
 
 # %%
-# Detail is where colors change. Points are drawn with a probability that grows with it, and a few anywhere, so that
-# plain areas have triangles, too; the corners of the image close the hull.
+# Detail is where colors change. Points are drawn with a probability that increases with the detail. A few are drawn
+# anywhere, so that plain areas also have triangles. The corners of the image complete the hull.
 
 change = np.hypot(*np.gradient(picture.mean(axis=2)))
 share = (change / change.sum() + 0.25 / change.size).ravel()
@@ -40,8 +40,8 @@ points = np.concatenate((corners, np.column_stack((pixel % width, pixel // width
 mesh = Delaunay(points)
 
 # %%
-# The color of a triangle is the mean of its pixels: :meth:`~delone.Delaunay.find_simplex` says in which triangle each
-# pixel lies. A triangle without any pixel gets the color at its center.
+# The color of a triangle is the mean of its pixels: :meth:`~delone.Delaunay.find_simplex` returns the triangle that
+# contains each pixel. A triangle without any pixel gets the color at its center.
 
 triangle = mesh.find_simplex(np.column_stack((x.ravel(), y.ravel())))
 number = np.bincount(triangle, minlength=mesh.nsimplex)
@@ -66,5 +66,5 @@ plt.show()
 
 # %%
 # A common mistake is to draw faces without edges: white lines remain between them, because the renderer smooths each
-# border on its own. Edges in the color of the face, 0.4 wide, close the gaps. Another one is the direction of y: rows
+# border separately. Edges in the color of the face, 0.4 wide, close the gaps. Another one is the direction of y: rows
 # of an image count from the top, hence the reversed limits.

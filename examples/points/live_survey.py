@@ -2,9 +2,9 @@
 A survey in progress: edit points and breaklines, and undo
 ==========================================================
 
-A survey is triangulated while it is measured: shots come in batches, a kerb is drawn as a breakline, a wrong shot is
-removed with the line that ends there, and all of it is one edit that other readers see at once
-(:class:`~delone.Dynamic`). Heights are kept by handle, so they stay right whatever is inserted and removed.
+A survey is triangulated while it is measured: shots come in batches, a curb is drawn as a breakline, and a wrong shot
+is removed with the line that ends there. Each group of changes is one edit, which other readers see all at once
+(:class:`~delone.Dynamic`). Heights are stored by handle, so they stay correct whatever is inserted and removed.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -30,28 +30,29 @@ heights = ground(shots)
 first = live.arrays(heights)
 
 # %%
-# The crew measures both kerbs of the road, top and bottom. Points and lines are one edit: if anything fails in the
-# block, nothing has changed, and until it ends ``live`` has the old state. Height ``h`` of handle ``h`` is
-# ``heights[h]``; new handles continue the array.
+# The crew measures both curbs of the road, top and bottom. Points and lines are one edit: if anything in the block
+# fails, nothing changes, and until it ends, ``live`` keeps the old state. Height ``h`` of handle ``h`` is
+# ``heights[h]``; new handles extend the array.
 
 along = np.linspace(2, 78, 20)
 with live.edits() as draft:
-    kerbs = []
+    curbs = []
     for offset, drop in ((5.05, 0.0), (4.95, 1.2), (-4.95, 1.2), (-5.05, 0.0)):
         line = np.column_stack((along, 30 + 0.2 * along + offset))
         handles = draft.insert(line)
         draft.insert_segments(np.column_stack((handles[:-1], handles[1:])))
         smooth = 20 + 0.08 * along + 0.5 * np.sin(along / 12) * np.cos(line[:, 1] / 15)
         heights = np.append(heights, smooth - drop)
-        kerbs.append(handles)
+        curbs.append(handles)
 print(f"{len(live)} points, {len(live.segment_handles)} lines, {live.nsimplex} triangles")
 
 # %%
-# One shot was wrong: the lines that end there go with it. A snapshot is kept first, so that the removal can be undone. A common
-# mistake is to index heights with rows of ``points``, which change when points are removed; handles do not change.
+# One shot was wrong: the lines that end there are removed with it. A snapshot is taken first, so that the removal can
+# be undone. A common mistake is to index heights with rows of ``points``, which change when points are removed;
+# handles do not change.
 
 before = live.snapshot()
-wrong = kerbs[0][10]
+wrong = curbs[0][10]
 lines = live.remove([wrong], segments="remove")
 assert len(lines) == 2
 assert wrong not in live
@@ -60,11 +61,11 @@ live.restore(before)
 assert wrong in live
 
 # %%
-# With the kerbs as breaklines, the road has its edges.
+# With the curbs as breaklines, the road has its edges.
 
 last = live.arrays(heights)
 figure, axes = plt.subplots(ncols=2, figsize=(9, 4.4), layout="constrained", sharey=True)
-for ax, state, title in zip(axes, (first, last), ("Shots alone", "With kerbs"), strict=True):
+for ax, state, title in zip(axes, (first, last), ("Shots alone", "With curbs"), strict=True):
     shown = ax.tripcolor(
         *state.points.T, state.simplices, state.values, shading="gouraud", cmap="terrain"
     )

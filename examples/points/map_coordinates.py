@@ -2,9 +2,9 @@
 Map coordinates: points that SciPy loses
 ========================================
 
-A square kilometer in UTM coordinates, rounded to millimeters, triangulated by SciPy and by delone. The
-coordinates are large compared with the distances between the points. SciPy drops some points and says nothing;
-in the result of delone, every distinct point is a vertex. Both results are checked with exact predicates.
+A square kilometer in UTM coordinates, rounded to millimeters, triangulated by SciPy and by delone. The coordinates
+are large compared with the distances between the points. SciPy silently drops some points; in the result of delone,
+every distinct point is a vertex. Both results are checked with exact predicates.
 
 Install: ``pip install "delone[plot]" scipy``.
 """
@@ -41,7 +41,7 @@ for library in (SciPyDelaunay, Delaunay):
 assert len(lost["delone"]) == 0
 
 # %%
-# The lost points lie anywhere: there is no warning, and a result of this size looks complete.
+# The lost points are everywhere. There is no warning, and a result of this size looks complete.
 
 low = points.min(axis=0)
 figure, ax = plt.subplots(figsize=(6, 5.4), layout="constrained")

@@ -3,8 +3,8 @@ Moving particles: update fields from what changes
 =================================================
 
 Nine hundred particles relax under their neighbors' repulsion while a flow stirs them, for a thousand steps. Their
-triangulation follows in place (:class:`~delone.Dynamic`), and the number of neighbors of each particle is updated
-from the triangles that were removed and added, without looking at the others.
+triangulation is updated in place (:class:`~delone.Dynamic`), and the number of neighbors of each particle is updated
+from the triangles that were removed and added, without processing the others.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -23,8 +23,8 @@ np.add.at(around, live.simplices, 1)  # no handle is ever removed, so handles ar
 
 
 # %%
-# Two vortices turn against each other, and particles that are closer than their share of the square push each
-# other away. Neighbors are those of the present triangles.
+# Two vortices rotate in opposite directions, and particles that are closer than their share of the square repel each
+# other. The neighbors are those in the current triangles.
 
 REACH = 1.1 / np.sqrt(len(particles))
 
@@ -57,9 +57,9 @@ for _ in range(1000):
 print(f"{np.mean(replaced):.0f} of {live.nsimplex} triangles change in a step")
 
 # %%
-# The field that followed the changes is that of a count from nothing. A common mistake is to expect *all* triangles
-# whose corners moved in ``changes``: it lists those that join other particles than before. What depends on
-# coordinates, such as areas, changes everywhere that particles move.
+# The field that was updated from the changes equals a new count. A common mistake is to expect that ``changes`` lists
+# *all* triangles whose corners moved: it lists those that join different particles. Values that depend on
+# coordinates, such as areas, change wherever particles move.
 
 fresh = np.zeros(len(particles), dtype=int)
 np.add.at(fresh, live.freeze().simplices, 1)

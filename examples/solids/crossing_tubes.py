@@ -39,7 +39,7 @@ assert alone
 assert alone.volume > 0
 
 # %%
-# A second tube crosses it. The check is falsy, and ``pairs`` has the rows of the faces.
+# A second tube crosses it. The result is falsy, and ``pairs`` contains the rows of the faces.
 
 across = points[:, [1, 0, 2]] * (0.7, 1.0, -0.7) + (0.3, 0.0, 0.4)
 both = np.concatenate((points, across))
@@ -51,7 +51,7 @@ assert check.ncrossing == len(check.pairs)
 assert check.ncomponents == 2
 
 # %%
-# The faces that cross, in red: the curve where a repair has to cut.
+# The faces that cross, in red. They show where a repair must cut.
 
 crossing = np.zeros(len(rows), dtype=bool)
 crossing[check.pairs.ravel()] = True

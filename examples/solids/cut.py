@@ -2,7 +2,7 @@
 A cut through tetrahedra
 ========================
 
-The tetrahedra of points in a box, colored by volume. Half of them are left out, so that the inside is visible.
+The tetrahedra of points in a box, colored by volume. Half of them are omitted, so that the inside is visible.
 
 Install: ``pip install "delone[pyvista]"``.
 """
@@ -15,7 +15,7 @@ solid = delone.Delaunay(points)
 print(f"{solid.nsimplex:,} tetrahedra, volumes up to {solid.volumes.max():.2e}")
 
 # %%
-# ``cut="x"`` leaves out one half. :meth:`~delone.Delaunay.plot` returns a plotter of PyVista.
+# ``cut="x"`` omits one half. :meth:`~delone.Delaunay.plot` returns a PyVista plotter.
 
 plotter = solid.plot(values=solid.volumes, cut="x")
 plotter.show()

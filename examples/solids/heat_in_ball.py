@@ -2,8 +2,8 @@
 Heat in a ball of tetrahedra
 ============================
 
-Points in a ball are triangulated, slivers are removed, and scikit-fem solves Poisson's equation on the tetrahedra. The
-picture shows the ball cut open.
+Points in a ball are triangulated, slivers are removed, and scikit-fem solves Poisson's equation on the tetrahedra.
+The plot shows the ball cut open.
 
 Install: ``pip install "delone[fem,pyvista]"``.
 """
@@ -15,9 +15,9 @@ from skfem.models.poisson import laplace
 import delone
 
 # %%
-# The mesh is the convex hull of the points, and none are added. So the sphere has points as dense as the inside: a
-# spiral on the sphere, and a slightly shaken lattice within. Points of the lattice next to the sphere are left out,
-# because they would make flat tetrahedra that cannot be improved.
+# The mesh fills the convex hull of the points, and no points are added. So the points on the sphere are as dense as
+# those inside: a spiral on the sphere, and a slightly jittered lattice within. Lattice points next to the sphere are
+# left out, because they would make flat tetrahedra that cannot be improved.
 
 SIZE = 0.12
 count = round(4 * np.pi / (0.87 * SIZE**2))
@@ -31,8 +31,9 @@ lattice += np.random.default_rng(0).uniform(-0.2 * SIZE, 0.2 * SIZE, lattice.sha
 inside = lattice[np.linalg.norm(lattice, axis=1) < 1 - 0.6 * SIZE]
 
 # %%
-# A Delaunay triangulation of points has slivers, which are almost flat: a common mistake is to solve on it as it is.
-# :func:`delone.improve` changes tetrahedra and moves interior points until no dihedral angle is below the goal.
+# A Delaunay triangulation of points contains slivers, which are almost flat: a common mistake is to solve on it
+# without improving it. :func:`delone.improve` changes tetrahedra and moves interior points until no dihedral angle is
+# below the target.
 
 plain = delone.Delaunay(np.concatenate((sphere, inside)))
 ball = delone.improve(plain, min_angle=20)
@@ -41,7 +42,7 @@ assert plain.quality().smallest_dihedral.min() < 1
 assert ball.quality().smallest_dihedral.min() >= 20
 
 # %%
-# A source of heat off the center, and zero on the sphere.
+# A heat source off the center; the temperature is zero on the sphere.
 
 
 def source(x):
@@ -60,8 +61,8 @@ assert set(boundary) == set(ball.boundary.ravel())
 assert temperature.min() > -1e-9
 
 # %%
-# Nodes of scikit-fem are rows of ``ball.points``, so the temperatures are values of the mesh. ``cut="x"`` leaves out
-# the half in front.
+# Nodes of scikit-fem are rows of ``ball.points``, so the temperatures are values of the mesh. ``cut="x"`` removes the
+# half in front.
 
 plotter = ball.plot(values=temperature, cut="x", cmap="plasma", below=None, colorbar=False)
 plotter.add_title("Temperature, cut open", font_size=10)

@@ -19,7 +19,7 @@ from skfem.helpers import dot, grad
 import delone
 
 # %%
-# The two files: a square with a disk in it is meshed in 2-D, and the triangles of each become a prism.
+# The two files: a square with a disk in it is meshed in 2-D, and the triangles of each region become a prism.
 
 SIZE, LAYERS = 0.25, 4
 turn = 2 * np.pi * np.arange(28) / 28
@@ -41,7 +41,7 @@ def prism(triangles):
     points = np.concatenate([np.column_stack((flat.points, np.full(n, z))) for z in levels])
     edges = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     a, b = edges[~np.isin(edges @ (n, 1), edges @ (1, n))].T
-    # Both prisms have the same diagonals in their common wall: otherwise faces cross.
+    # Both prisms must have the same diagonals in their common wall; otherwise, faces cross.
     up = a < b
     wall = np.concatenate(
         (
@@ -59,9 +59,9 @@ for name, label in {"block": BLOCK, "plug": PLUG}.items():
     meshio.Mesh(points, [("triangle", faces)]).write(folder / f"{name}.stl", binary=False)
 
 # %%
-# Both surfaces in one: equal points are one vertex, and the common wall is one wall between two regions, which seeds
-# label. A common mistake is to add no points: then nearly all vertices are on the surface, and the solution has no
-# values inside. So a lattice is added. :func:`delone.improve` removes slivers.
+# Both surfaces in one: equal points are one vertex, and the common wall separates two regions, which seeds label. A
+# common mistake is to add no points: then nearly all vertices are on the surface, and the solution has no values
+# inside. So lattice points are added. :func:`delone.improve` removes slivers.
 
 files = [delone.io.read_mesh(folder / f"{name}.stl") for name in ("block", "plug")]
 first, second = (np.column_stack((file.points, file.z)) for file in files)
@@ -95,7 +95,7 @@ sides = vertices[np.abs(mesh.points[vertices, :2]).max(axis=1) == 2]
 temperature = skfem.solve(*skfem.condense(matrix, heat, I=np.setdiff1d(vertices, sides)))
 
 # %%
-# In the plug the temperature falls as in a long cylinder, by :math:`q r^2 / 4 k` from the center to the wall.
+# In the plug, the temperature decreases as in a long cylinder, by :math:`q r^2 / 4 k` from the center to the wall.
 
 radius = np.hypot(*mesh.points[vertices, :2].T)
 wall = temperature[vertices[np.isclose(radius, 1)]].mean()

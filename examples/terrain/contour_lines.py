@@ -14,9 +14,9 @@ from delone.datasets import ahn3
 from delone.terrain import TIN
 
 # %%
-# One point in eight of those that are ground: contour lines of roofs and trees are of no use. The origin is moved to
-# the corner of the tile, so that the axes have short numbers. ``max_edge`` ends the surface at buildings and water,
-# which have no points.
+# Every eighth ground point: contour lines of roofs and trees are not useful. The origin is moved to the corner of the
+# tile, so that the axes have short numbers. ``max_edge`` ends the surface at buildings and water, which have no
+# points.
 
 survey = ahn3()
 ground = np.flatnonzero(survey.attributes["classification"] == 2)[::8]
@@ -25,8 +25,9 @@ measured = TIN.from_points(points, max_edge=6)
 print(measured)
 
 # %%
-# Heights of lidar points scatter by a few centimeters. On flat ground contour lines follow that scatter, a usual
-# mistake. So each height becomes the mean of the point and its neighbors in the triangulation, a few times.
+# Heights of lidar points scatter by a few centimeters. On flat ground, contour lines follow this scatter; plotting
+# them without smoothing is a common mistake. So each height is replaced, a few times, by the mean of the point and
+# its neighbors in the triangulation.
 
 indptr, indices = measured.vertex_neighbor_vertices
 count = np.diff(indptr)
@@ -37,9 +38,9 @@ smooth = TIN.from_points(np.column_stack((measured.points, z)), max_edge=6)
 print(f"mean change {np.abs(z - measured.z).mean():.3f} m")
 
 # %%
-# Contours every 25 cm, each fourth an index contour. ``smooth=2`` cuts corners, but never lets lines cross. The
-# hillshade is ten times too high, so that streets can be seen; it has a value for each triangle. On the left are the
-# lines of the measured heights.
+# Contours every 25 cm; every fourth is an index contour. ``smooth=2`` cuts corners, but never lets lines cross.
+# Heights in the hillshade are exaggerated ten times, so that streets are visible; it has one value per triangle. On
+# the left are the lines of the measured heights.
 
 figure, axes = plt.subplots(1, 2, figsize=(11, 5.4), layout="constrained", sharey=True)
 for ax, tin, title in zip(
@@ -53,7 +54,7 @@ for ax, tin, title in zip(
     ax.set(title=title, xlabel="m", aspect="equal", xlim=(0, 100), ylim=(0, 100))
 
 # %%
-# Labels at the longest line of each index contour. For a map in a GIS, ``contours.to_geopandas().to_file(...)``.
+# Labels are at the longest line of each index contour. For a map in a GIS, ``contours.to_geopandas().to_file(...)``.
 
 lengths = np.diff(contours.starts)
 for level in np.unique(contours.level[contours.index]):

@@ -2,7 +2,7 @@
 Cut and fill of a building pad
 ==============================
 
-A level pad with side slopes beside a road ramp: how much earth has to be removed, and how much added, and where.
+A level pad with side slopes next to a road ramp: how much earth must be removed or added, and where.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -31,7 +31,7 @@ print(after)
 print(volume)
 
 # %%
-# The height of the pad at which cut and fill are equal, by bisection: then earth is moved on the site only.
+# Bisection finds the height of the pad at which cut and fill are equal: then earth is moved only on the site.
 
 low, high = 1.0, 2.5
 for _ in range(8):
@@ -52,8 +52,8 @@ table = before.volumes_to(after, halves).to_pandas({"half": ["west", "east"]})
 print(table[["half", "cut", "fill", "area", "coverage"]].round(2).to_string(index=False))
 
 # %%
-# A pad that is too close to the end of the survey cannot be built: the error says where. A common mistake is to build
-# a design on a clip that is as large as the pad.
+# A pad too close to the edge of the survey cannot be built: the error says where. A common mistake is to build a
+# design on a clip that is as large as the pad.
 
 try:
     before.embank(pad + np.array([12, 0]), 8.0, slope=1 / 3)
@@ -61,8 +61,7 @@ except delone.OutsideError as error:
     print(error)
 
 # %%
-# The map of what is to be done: the change of height in each triangle of the ground, the pad, and contours of the
-# design.
+# The work to be done: the change of height in each triangle of the ground, the pad, and contours of the design.
 
 figure, ax = plt.subplots(figsize=(7.5, 6), layout="constrained")
 change = volume.mean_height

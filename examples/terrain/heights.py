@@ -2,7 +2,8 @@
 Heights between lidar points
 ============================
 
-A raster of half a meter over a lidar tile: each node gets the height of the triangle that contains it.
+A raster with a resolution of half a meter over a lidar tile: each node gets the height of the triangle at its
+position.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -19,8 +20,8 @@ mesh = Delaunay(survey.points)
 print(mesh)
 
 # %%
-# :class:`~delone.interpolate.Linear` takes a triangulation and one value for each point. Outside of the hull, it
-# returns NaN.
+# :class:`~delone.interpolate.Linear` takes a triangulation and one value for each point. Outside the hull, it returns
+# NaN.
 
 low, high = mesh.min_bound, mesh.max_bound
 x, y = np.meshgrid(np.arange(low[0], high[0], 0.5), np.arange(low[1], high[1], 0.5))

@@ -2,8 +2,8 @@
 Fewer triangles with a bound on the error
 =========================================
 
-The ground of a lidar survey with a fraction of its triangles, no point of it farther than 5 cm from the surface, and coarser
-levels of detail from the same run.
+The ground of a lidar survey is reduced to a fraction of its triangles. No point is farther than 5 cm from the
+surface, and the same run gives coarser levels of detail.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -20,8 +20,8 @@ points = np.column_stack((survey.points - survey.points.min(axis=0), survey.z))[
 tin = TIN.from_points(points, max_edge=6, duplicates="min")
 
 # %%
-# One run inserts points into a coarse surface, always the one that is farthest from it. Each prefix of that order is a level
-# of detail; its error is rounded upwards, so that it holds for all points.
+# One run inserts points into a coarse surface, always the point that is farthest from it. Each prefix of that order
+# is a level of detail; its error is rounded upwards, so that it holds for all points.
 
 levels = tin.simplification(max_error=0.05)
 print(levels)
@@ -30,14 +30,14 @@ for error in (0.4, 0.2, 0.1, 0.05):
     print(f"{error:.2f} m: {level.nsimplex:6d} of {tin.nsimplex} triangles")
 
 # %%
-# The proof of a level shares nothing with the insertion: it compares each point with the surface by exact arithmetic. A
+# The check of a level is independent of the insertion: it compares each point with the surface in exact arithmetic. A
 # common mistake is to measure the error at the vertices of the coarse surface, where it is always 0.
 
 proof = levels.validate(max_error=0.1)
 print(proof, f"the farthest point is {np.nanmax(proof.distances):.4f} m off")
 
 # %%
-# Three levels, and the error over the number of triangles.
+# Three levels, and the error as a function of the number of triangles.
 
 figure, axes = plt.subplots(2, 2, figsize=(8, 7.5), layout="constrained")
 for ax, error in zip(axes.flat, (0.4, 0.2, 0.1), strict=False):

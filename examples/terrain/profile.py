@@ -2,7 +2,7 @@
 Profile along a line
 ====================
 
-Heights along a line over lidar points: from one street over a canal to another one, and across a road ramp.
+Heights along a line over lidar points: from one street across a canal to another street, and across a road ramp.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -45,8 +45,8 @@ ax.set_aspect(10)
 ax.legend(loc="upper left")
 
 # %%
-# Whether one place is visible from another: the line of sight from eyes at 1.7 m. The obstruction is the first
-# corner of the profile above it.
+# The line of sight tests whether one point is visible from another, here from an eye height of 1.7 m. The obstruction
+# is the first vertex of the profile above the line.
 
 sight = tin.line_of_sight(line[0], line[2], height=1.7)
 x, y, z = sight.obstruction

@@ -2,8 +2,9 @@
 Coordination numbers in a simulation box
 ========================================
 
-Particles of a simulation have periodic boundaries: what leaves on the right enters on the left. The neighbors of a
-particle are those in the periodic Delaunay triangulation. In a flat crystal each particle has six; others are defects.
+Particles of a simulation have periodic boundaries: a particle that leaves on the right enters on the left. The
+neighbors of a particle are those in the periodic Delaunay triangulation. In a flat crystal each particle has six;
+others are defects.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -14,7 +15,7 @@ import numpy as np
 from delone import Delaunay, PeriodicDelaunay, Voronoi
 
 # %%
-# A hexagonal crystal that fits into its box, warmed up, without one in fifty of its particles.
+# A hexagonal crystal that fits into its box, with thermal noise, and with one in fifty particles missing.
 
 columns, rows = 32, 36
 box = np.array((columns, rows * np.sqrt(3) / 2))
@@ -25,8 +26,8 @@ kept = random.random(len(lattice)) > 0.02
 particles = (lattice[kept] + random.normal(0, 0.09, (kept.sum(), 2))) % box
 
 # %%
-# Each edge counts for both of its ends. With two periods there are exactly three edges per particle, so that the mean
-# is six.
+# Each edge counts for both of its ends. With two periods, there are exactly three edges per particle, so the mean is
+# six.
 
 mesh = PeriodicDelaunay(particles, periods=box)
 coordination = np.bincount(mesh.edges.ravel(), minlength=len(particles))

@@ -16,7 +16,7 @@ from matplotlib.patches import Circle
 from delone import Voronoi
 
 # %%
-# Disks of random sizes, placed one after the other where they overlap none, the largest first.
+# Disks of random sizes, placed one after another without overlaps, the largest first.
 
 random = np.random.default_rng(3)
 radii = np.sort(random.lognormal(np.log(0.018), 0.5, 330).clip(0.008, 0.09))[::-1]
@@ -69,8 +69,8 @@ for ax, diagram, title in zip(axes, (plain, power), ("Voronoi", "Power diagram")
 plt.show()
 
 # %%
-# A common mistake is to pass radii instead of squared radii. Weights have the square of the unit of the points; where
-# they are too large, small disks lose their cells: they are *hidden*.
+# A common mistake is to pass radii instead of squared radii. Weights are in squared units of the points. If they are
+# too large, small disks lose their cells: they are *hidden*.
 
 mistaken = Voronoi(centers, weights=radii, clip=box)
 print(f"with radii as weights, {len(mistaken.hidden)} of {len(radii)} disks have no cell")

@@ -3,7 +3,7 @@ Even out points: Lloyd relaxation and stippling
 ===============================================
 
 Lloyd's method moves each point to the centroid of its Voronoi cell, again and again. Random points become evenly
-spaced; with a density they become a picture made of dots, or sampling sites that are denser where it matters.
+spaced. With a density, they form a picture made of dots, or sampling sites that are denser in important areas.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -29,7 +29,7 @@ for name, diagram in (("before", before), ("after", after)):
     print(f"spread {areas.std() / areas.mean():.2f}")
 
 # %%
-# The cells on the same color scale: the evener the areas, the paler.
+# The cells on the same color scale: the more even the areas, the paler the colors.
 
 figure, axes = plt.subplots(1, 2, figsize=(9, 4.6), layout="constrained")
 for ax, diagram, title in zip(axes, (before, after), ("Random", "30 steps"), strict=True):
@@ -40,8 +40,8 @@ for ax, diagram, title in zip(axes, (before, after), ("Random", "30 steps"), str
 plt.show()
 
 # %%
-# Stippling: with a density, sites gather where it is large. Here it is the darkness of a shaded ball. ``density`` takes
-# an array of positions of shape (n, 2) and returns a number for each.
+# Stippling: with a density, sites concentrate where it is high. Here it is the darkness of a shaded ball. ``density``
+# takes an array of positions of shape (n, 2) and returns a number for each.
 
 
 def darkness(positions):
@@ -62,6 +62,6 @@ ax.set(title=f"Stippling: {len(dots):,} dots", aspect="equal", xticks=[], yticks
 plt.show()
 
 # %%
-# The number of dots per area follows the square root of the density, hence the square. A common mistake is to begin with
-# sites that are spread evenly: each step moves a site by less than its cell, and after twenty steps dark places are still
-# too bright. So draw the first sites from the density.
+# The number of dots per area is proportional to the square root of the density, so the density is squared. A common
+# mistake is to start with evenly spread sites: each step moves a site by less than the size of its cell, and after
+# twenty steps, dark areas are still too bright. So draw the first sites from the density.

@@ -2,8 +2,8 @@
 Cell areas and neighbor counts of a tissue
 ==========================================
 
-Microscopes show where the nuclei of a tissue are, often not the membranes. Voronoi cells around the nuclei, clipped to
-the outline of the tissue, approximate the cells: their areas, shapes and numbers of neighbors.
+Microscopes show the nuclei of a tissue, but often not the membranes. Voronoi cells around the nuclei, clipped to the
+outline of the tissue, approximate the cells: their areas, shapes and numbers of neighbors.
 
 Install: ``pip install "delone[plot,geo]"``.
 """
@@ -15,7 +15,7 @@ import shapely
 from delone import Voronoi, lloyd
 
 # %%
-# Nuclei keep their distance: random points that are evened out a little, in an outline in micrometers.
+# Nuclei are not too close to each other: slightly relaxed random points, in an outline in micrometers.
 
 angle = np.linspace(0, 2 * np.pi, 200, endpoint=False)
 radius = 100 * (1 + 0.12 * np.cos(3 * angle) + 0.05 * np.sin(5 * angle))
@@ -27,8 +27,8 @@ cells = Voronoi(nuclei, clip=outline)
 assert np.isclose(cells.cell_areas.sum(), outline.area)
 
 # %%
-# Neighbors are those that share an edge within the outline, in compressed rows. Cells at the outline have lost
-# neighbors to the cut, so statistics leave them out.
+# Neighbors are cells that share an edge within the outline, stored in compressed rows. Cells at the outline have lost
+# neighbors by clipping, so the statistics omit them.
 
 indptr, indices, lengths = cells.neighbors
 count = np.diff(indptr)
@@ -55,8 +55,8 @@ right.set(title="Lewis' law", xlabel="number of neighbors", ylabel="area in ÂµmÂ
 plt.show()
 
 # %%
-# A common mistake is to forget the outline. Cells at the border then reach far out of the tissue or have no end, and
-# their areas, infinite or not, spoil every mean.
+# A common mistake is to forget the outline. Cells at the border then extend far beyond the tissue or are unbounded,
+# and their areas distort every mean.
 
 whole_plane = Voronoi(nuclei).cell_areas
 print(f"without an outline: {np.count_nonzero(np.isinf(whole_plane))} infinite areas, ", end="")

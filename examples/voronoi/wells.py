@@ -2,8 +2,8 @@
 The area around each well
 =========================
 
-The Voronoi cell of a well is the land that lies closer to it than to any other well. Cells are clipped to the outline
-of a region, and their areas add up to its area.
+The Voronoi cell of a well is the land that is closer to it than to any other well. Cells are clipped to the outline
+of a region, and their areas add up to the area of the region.
 
 Install: ``pip install "delone[plot]"``.
 """
