@@ -1,6 +1,6 @@
 """Entries of the index on the page "How do I ...?" lead to the section of the question.
 
-Sphinx lets them lead to a target of its own inside of it, for which the search has no title.
+Sphinx lets them lead to a target of its own inside it, for which the search has no title.
 """
 
 from __future__ import annotations

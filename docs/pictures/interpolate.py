@@ -49,7 +49,7 @@ def six_methods() -> None:
 
 
 def beyond() -> None:
-    """The same sites, and the values outside of their hull."""
+    """The same sites, and the values outside their hull."""
     points = 0.25 + 0.5 * datasets.uniform(40, seed=6)
     values = points[:, 0] + np.sin(6 * points[:, 1])
     _, axes = plt.subplots(1, 3, figsize=(9, 3.2), layout="constrained")

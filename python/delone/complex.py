@@ -159,7 +159,7 @@ class Exchanged(Referenced):
 
     @only(FLAT_OR_SOLID, "PyVista has no cells of more dimensions")
     def to_pyvista(self, *, order: int = 1) -> Any:
-        """Convert to a mesh of PyVista (extra ``pyvista``).
+        """Convert to a PyVista mesh (extra ``pyvista``).
 
         Parameters
         ----------

@@ -427,7 +427,7 @@ class CrowdedFacesError(InputError):
 
 
 class DanglingFacesError(InputError):
-    """Faces end inside of a solid, and the mesh cannot be made to contain them.
+    """Faces end inside a solid, and the mesh cannot be made to contain them.
 
     Parameters
     ----------
@@ -522,7 +522,7 @@ class OutsideError(InputError):
 
     def __init__(
         self,
-        message: str = "outside of the surface",
+        message: str = "outside the surface",
         *,
         place: tuple[float, float] | None = None,
     ) -> None:

@@ -303,7 +303,7 @@ def message_of_degrees(what: str, by: str) -> str:
 
 
 def caller_level() -> int:
-    """Return the stack level of the first caller outside of the package, for ``warnings.warn``."""
+    """Return the stack level of the first caller outside the package, for ``warnings.warn``."""
     level, frame = 2, sys._getframe(2)
     while frame.f_back is not None and str(frame.f_globals.get("__name__")).startswith("delone."):
         level, frame = level + 1, frame.f_back

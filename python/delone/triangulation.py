@@ -475,7 +475,7 @@ class Triangulation(Complex):
 
     @only(FLAT_OR_SOLID, "scikit-fem has no meshes of more dimensions")
     def to_skfem(self, *, order: int = 1) -> Any:
-        """Convert to a mesh of scikit-fem (extra ``fem``).
+        """Convert to a scikit-fem mesh (extra ``fem``).
 
         Parameters
         ----------

@@ -143,6 +143,8 @@ PATTERNS = (
     r"no \w+ any ?more",
     r"(?:geometries|polygons|pipelines|tables) of (?:shapely|geopandas|scikit-learn)",
     r"one \w+ after the other",
+    r"(?:mesh|meshes|graphs?|plotters?|datasets?|accessors?|axes) of (?:xarray|PyVista|NetworkX"
+    r"|matplotlib|scikit-fem|trimesh|libpysal)",
 )
 AFTER_THERE = re.compile(r"\bthere\W*$", re.IGNORECASE)
 BRITISH = (
@@ -207,6 +209,28 @@ def rust(text: str) -> str:
     return TITLE.sub("title", comments) + "\n\n" + code
 
 
+def python(text: str) -> str:
+    """The text of a Python file, with each comment of several lines in one line.
+
+    Parameters
+    ----------
+    text : str
+        The contents of a file.
+
+    Returns
+    -------
+    str
+        Lines as before, but for the marks between the lines of a comment.
+    """
+    lines: list[str] = []
+    for line in text.splitlines():
+        if line.lstrip().startswith("# ") and lines and lines[-1].lstrip().startswith("#"):
+            lines[-1] += line.lstrip()[1:]
+        else:
+            lines.append(line)
+    return "\n".join(lines)
+
+
 def faults(text: str) -> list[str]:
     """The phrases and British spellings in the prose of a text, in their order."""
     pattern = "|".join([*map(re.escape, PHRASES), *PATTERNS, *BRITISH])
@@ -232,7 +256,8 @@ def converted() -> list[Path]:
 @pytest.mark.parametrize("path", converted(), ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_the_text_is_plain_american_english(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
-    found = faults(rust(text) if path.suffix == ".rs" else text)
+    read = {".rs": rust, ".py": python}.get(path.suffix)
+    found = faults(read(text) if read else text)
     better = {
         phrase: write
         for phrase in found
@@ -276,6 +301,10 @@ def test_each_phrase_is_in_the_table() -> None:
         ),
         ("Clusters have other numbers than in scikit-learn.", ["have other numbers than"]),
         ("The side is no edge any more.", ["is no edge", "no edge any more"][:1]),
+        (
+            "A graph of NetworkX, the axes of matplotlib.",
+            ["graph of NetworkX", "axes of matplotlib"],
+        ),
         ("Normalised, optimised and vectorised.", ["Normalised", "optimised", "vectorised"]),
     ],
 )
@@ -312,3 +341,15 @@ def test_what_is_right_passes(text: str) -> None:
 )
 def test_faults_in_rust(text: str, found: list[str]) -> None:
     assert faults(rust(text)) == found
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("# Contours follow it, a usual\n# mistake.", ["usual mistake"]),
+        ("    # A chain hangs\n    # on it.\n    on = it", ["hangs on"]),
+        ("# It is there\n\n# in space", []),
+    ],
+)
+def test_faults_in_comments_of_python(text: str, found: list[str]) -> None:
+    assert faults(python(text)) == found

@@ -78,7 +78,7 @@ def lifting() -> None:
 
 
 def ghosts() -> None:
-    """Ghost triangles outside of the hull, and those in whose half-planes a new point lies."""
+    """Ghost triangles outside the hull, and those in whose half-planes a new point lies."""
     points = spread(14, 3)
     new = np.array([1.22, 0.28])
     before, after = Delaunay(points), Delaunay(np.vstack((points, new)))

@@ -273,7 +273,7 @@ class ConstrainedDelaunay(Segmented):
         -------
         ndarray of int32, shape (k,)
             Rows of `segments`, in the order of their crossings from a to b, including those in
-            holes and outside of the outline.
+            holes and outside the outline.
 
         Raises
         ------

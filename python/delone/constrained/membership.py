@@ -30,7 +30,7 @@ def containing(mesh: Segmented, polygons: Indices) -> Rows:
 
 
 def inside(mesh: Segmented, polygons: Indices) -> Bools:
-    """Return which triangles of the hull are inside of some polygon.
+    """Return which triangles of the hull are inside some polygon.
 
     `polygons` has the polygon of each row of segments, -1 for rows that are sides of none. The
     sides of each polygon must be closed rings; even-odd rule.

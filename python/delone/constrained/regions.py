@@ -39,7 +39,7 @@ class Tiling(NamedTuple):
 
 
 def outside(tiling: Tiling, component: Indices) -> Bools:
-    """Return which components can be reached from outside of the hull without crossing segments."""
+    """Return which components can be reached from outside the hull without crossing segments."""
     found = np.zeros(int(component.max(initial=-1)) + 1, dtype=bool)
     open_to = ((tiling.neighbors < 0) & ~tiling.constrained).any(axis=1)
     found[component[open_to]] = True

@@ -194,7 +194,7 @@ class Segmented(PointTriangulation):
     def segments(self) -> Indices:
         """The subsegments, (q, 2), in the order of the first row that covers them, and along it.
 
-        Each once, in the direction of that row, including those in holes and outside of the
+        Each once, in the direction of that row, including those in holes and outside the
         outline.
         """
         return self._made.segments

@@ -385,7 +385,7 @@ class Dynamic(Measured):
         Raises
         ------
         EditConflictError
-            This triangulation was edited outside of the draft meanwhile; that stays, and the
+            This triangulation was edited outside the draft meanwhile; that stays, and the
             draft is dropped.
 
         Notes
@@ -408,7 +408,7 @@ class Dynamic(Measured):
         yield draft
         if draft._live.edits and not self._take(draft, known):
             raise EditConflictError(
-                "the triangulation was edited outside of the draft meanwhile: the draft is "
+                "the triangulation was edited outside the draft meanwhile: the draft is "
                 "dropped, and its edits have to be made again"
             )
 

@@ -48,7 +48,7 @@ def to_csr(links: Links) -> Any:
 
 def to_networkx(links: Links, points: Floats) -> Any:
     """Return a `networkx.Graph`, or a `DiGraph` if edges have a direction."""
-    networkx = require("networkx", extra="graph", what="a graph of NetworkX")
+    networkx = require("networkx", extra="graph", what="a NetworkX graph")
     graph = networkx.DiGraph() if links.directed else networkx.Graph()
     graph.add_nodes_from((i, {"pos": tuple(p)}) for i, p in enumerate(points.tolist()))
     # Algorithms of NetworkX read the attribute weight by default, and count edges without it.

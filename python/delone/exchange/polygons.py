@@ -1,4 +1,4 @@
-"""Polygons, such as Voronoi cells in 2-D, as meshes of PyVista and meshio in the plane z = 0.
+"""Polygons, such as Voronoi cells in 2-D, as PyVista and meshio meshes in the plane z = 0.
 
 Their corners, (c, 2), are given one polygon after another; `starts`, (k + 1,), tells where those
 of each begin, and the end. Each polygon has points of its own, and a value, (k,), of each name.

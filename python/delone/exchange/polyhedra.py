@@ -1,4 +1,4 @@
-"""Polyhedra, such as Voronoi cells in 3-D, as meshes of PyVista and meshio.
+"""Polyhedra, such as Voronoi cells in 3-D, as PyVista and meshio meshes.
 
 Each of the k polyhedra has points of its own in the mesh, and a value, (k,), of each name.
 """

@@ -1,4 +1,4 @@
-"""Meshes of scikit-fem."""
+"""scikit-fem meshes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def to_skfem(mesh: Given, *, order: int = 1) -> Any:
     skfem = require("skfem", extra="fem", what="to_skfem")
     parts = parts_of(mesh)
     kinds = ("triangles", "tetrahedra")
-    kind = kind_of(parts, what="a mesh of scikit-fem", kinds=kinds)
+    kind = kind_of(parts, what="a scikit-fem mesh", kinds=kinds)
     make = skfem.MeshTri if kind == "triangles" else skfem.MeshTet
     found = make(
         np.ascontiguousarray(parts.points.T),

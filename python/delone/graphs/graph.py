@@ -422,7 +422,7 @@ class Graph(Stored, Exchanged):
         return to_csr(self._links(weights))
 
     def to_networkx(self) -> Any:
-        """Convert to a graph of NetworkX (extra ``graph``).
+        """Convert to a NetworkX graph (extra ``graph``).
 
         Returns
         -------

@@ -189,7 +189,7 @@ class SurfaceFile:
     def require_order(self, order: str) -> None:
         """Refuse northing and easting that are swapped, if the reference system makes it evident.
 
-        That is, if all points are outside of the area of use, and would be inside if swapped.
+        That is, if all points are outside the area of use, and would be inside if swapped.
         Without pyproj nothing is evident. `order` is the one in which they were read.
         """
         bounds = _area(self.crs)
@@ -200,7 +200,7 @@ class SurfaceFile:
             other = "'enz'" if order == "nez" else "'nez'"
             raise FileFormatError(
                 f"{self.source}: easting and northing are swapped: ({x[0]:.10g}, {y[0]:.10g}) is "
-                f"outside of the area of {self.crs!s:.60}, ({y[0]:.10g}, {x[0]:.10g}) inside. "
+                f"outside the area of {self.crs!s:.60}, ({y[0]:.10g}, {x[0]:.10g}) inside. "
                 f"Read it with order={other} (--easting-first for 'enz')"
             )
 

@@ -234,7 +234,7 @@ def _nodes(found: Content) -> str:
 
 
 def _poly(parts: Parts) -> str:
-    """Segments and seeds of holes, none: what is outside of triangles is not told."""
+    """Segments and seeds of holes, none: what is outside triangles is not told."""
     pairs = boundary(parts.simplices) if parts.segments is None else parts.segments
     markers = parts.of_segments.get("marker", np.zeros(len(pairs), dtype=np.int32))
     return table(f"{len(pairs)} 1", (pairs, markers[:, None])) + "0\n"

@@ -125,7 +125,7 @@ def _path(rings: list[Floats]) -> Any:
 def plot_cells3(
     diagram: Cells3, ax: Any = None, *, off_screen: bool | None = None, **options: Any
 ) -> Any:
-    """Draw the bounded cells of a 3-D Voronoi diagram, slightly shrunk, on a plotter of PyVista.
+    """Draw the bounded cells of a 3-D Voronoi diagram, slightly shrunk, on a PyVista plotter.
 
     If no cell is bounded, the sites are drawn.
     """

@@ -70,7 +70,7 @@ def point_density(mesh: Triangles, pixels: int) -> Raster:
 
 
 def facet_values(mesh: Triangles, values: NDArray[np.integer] | Floats, pixels: int) -> Raster:
-    """Return the values of the triangles, (m,), at the centers of pixels; NaN outside of them."""
+    """Return the values of the triangles, (m,), at the centers of pixels; NaN outside them."""
     frame = _frame(mesh, pixels)
     triangle = mesh.find_simplex(_all_centers(frame))
     found = np.full(triangle.shape, np.nan)

@@ -122,7 +122,7 @@ def _chosen(mesh: Simplices, values: ArrayLike | None, shown: NDArray[np.bool_])
 
 
 def _grid(pyvista: Any, mesh: Simplices, shown: NDArray[np.bool_]) -> Any:
-    """Return the simplices shown as a mesh of PyVista."""
+    """Return the simplices shown as a PyVista mesh."""
     points, simplices = np.array(mesh.points), mesh.simplices[shown]
     if simplices.shape[1] == 4:
         return pyvista.UnstructuredGrid({_VTK_TETRA: simplices}, points)
@@ -130,7 +130,7 @@ def _grid(pyvista: Any, mesh: Simplices, shown: NDArray[np.bool_]) -> Any:
 
 
 def _add_values(grid: Any, name: str | None, values: Floats | None) -> None:
-    """Add values of points or of simplices to a mesh of PyVista."""
+    """Add values of points or of simplices to a PyVista mesh."""
     if values is not None:
         data = grid.point_data if len(values) == grid.n_points else grid.cell_data
         data[name] = values

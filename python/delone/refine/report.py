@@ -173,7 +173,7 @@ def reported(
         cause[inside], corner[inside] = _NEEDLE, -1
         near = np.zeros(len(points), dtype=bool)
         near[simplices[needle >= 0]] = True
-        # From one bad triangle to the next; few are outside of needles.
+        # From one bad triangle to the next; few are outside needles.
         while (more := (cause >= _FIXED) & near[simplices[rows]].any(axis=1)).any():
             cause[more] = _NEEDLE
             near[simplices[rows[more]]] = True

@@ -103,7 +103,7 @@ def rebuilt(
 def _astray(
     mesh: MeshState, simplices: Indices, labels: Indices, row: Indices, kept: NDArray[np.intp]
 ) -> NDArray[np.intp]:
-    """Return the free points that are vertices of a triangle outside of their region."""
+    """Return the free points that are vertices of a triangle outside their region."""
     own = np.full(len(kept), -2, dtype=np.int32)
     inner = mesh._inner
     first = mesh.vertex_to_simplex

@@ -111,7 +111,7 @@ class Clipped:
 
     # The triangulation of ridges and sides.
     mesh: ConstrainedDelaunay
-    # (m,): the row of the site whose cell a triangle is part of; -1 outside of the region.
+    # (m,): the row of the site whose cell a triangle is part of; -1 outside the region.
     cell: Indices
 
     def areas(self, npoints: int) -> Floats:

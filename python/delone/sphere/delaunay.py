@@ -325,14 +325,14 @@ class Delaunay(OnGlobe):
         xi : array_like, shape (..., 2) or (..., 3)
             Longitudes and latitudes, in the unit of the constructor, or vectors of any length.
         tolerance : float, optional
-            Directions outside of a hull, at most this angle from its boundary, are in the triangle
+            Directions outside a hull, at most this angle from its boundary, are in the triangle
             there; in the unit of the constructor.
 
         Returns
         -------
         ndarray of int32, shape (...)
             The triangle of each, boundaries included; on an edge or a vertex the triangle with the
-            smallest number. -1 outside of a hull, and for NaN and vectors of length zero.
+            smallest number. -1 outside a hull, and for NaN and vectors of length zero.
 
         Raises
         ------

@@ -32,7 +32,7 @@ class Grid(GridCells):
 
     Make one with a class method:
 
-    - `from_dataset`: the grid of a model in a dataset of xarray, by its convention
+    - `from_dataset`: the grid of a model in an xarray dataset, by its convention
     - `from_lonlat`: between meridians and parallels, by bounds
     - `from_curvilinear`: quadrilaterals, by two-dimensional arrays of corners
     - `from_mesh`: any polygons, by their corners

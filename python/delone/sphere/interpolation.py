@@ -412,7 +412,7 @@ class _Continuous(_Interpolator):
         -------
         ndarray of float64 or complex128
             The shape of the queries, without their last axis, then that of one value, then 2: the
-            derivatives towards east and north. NaN outside of a hull. At a pole, directions are
+            derivatives to the east and north. NaN outside a hull. At a pole, directions are
             those of the meridian of longitude 0.
 
         Raises
@@ -493,9 +493,9 @@ class Linear(_Continuous):
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. Optional if each call passes its own values.
     extrapolate : {"nan", "nearest", "raise"}, optional
-        Behavior outside of a hull: NaN; the value at the nearest point of the hull; an error.
+        Behavior outside a hull: NaN; the value at the nearest point of the hull; an error.
     tolerance : float, optional
-        Queries outside of a hull, at most this angle from its boundary, get the value at the
+        Queries outside a hull, at most this angle from its boundary, get the value at the
         nearest point of it; in the unit of `degrees`, decided exactly. Gradients there are NaN.
     duplicates : {"raise", "mean", "first", "last", "min", "max"}, optional
         The value of sites that have the same direction but different values.
@@ -532,7 +532,7 @@ class Linear(_Continuous):
 
     Triangles are found exactly. Weights are rounded, from rounded unit vectors: across a triangle
     whose height is below about 1e-15 they are arbitrary, but not negative. Each query costs its
-    point location; outside of a hull, ``extrapolate="nearest"`` compares all edges of the boundary.
+    point location; outside a hull, ``extrapolate="nearest"`` compares all edges of the boundary.
 
     See Also
     --------
@@ -639,7 +639,7 @@ class Nearest(_Interpolator):
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. Optional if each call passes its own values.
     extrapolate : {"nearest", "nan", "raise"}, optional
-        Behavior outside of a hull: the value of the nearest site, as inside; NaN; an error.
+        Behavior outside a hull: the value of the nearest site, as inside; NaN; an error.
     tolerance, duplicates, nan, degrees, workers
         As in `Linear`.
 

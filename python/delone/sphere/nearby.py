@@ -1,4 +1,4 @@
-"""Directions outside of a hull that are no farther from its boundary than an angle, exactly.
+"""Directions outside a hull that are no farther from its boundary than an angle, exactly.
 
 Rounded chords decide where they differ from the angle by more than their errors. Elsewhere squares
 of cosines, which are fractions of integers, are compared with that of the angle to 60 digits.

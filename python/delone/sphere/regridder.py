@@ -1,4 +1,4 @@
-"""The class Regridder: datasets and arrays of xarray from one grid on the sphere to another."""
+"""The class Regridder: xarray datasets and arrays from one grid on the sphere to another."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _REFERRING = ("mesh", "location", "grid_mapping", "coordinates", "cell_measures"
 
 
 class Regridder(Immutable):
-    """Regrids datasets and arrays of xarray (extra ``xarray``).
+    """Regrids xarray datasets and arrays (extra ``xarray``).
 
     Parameters
     ----------

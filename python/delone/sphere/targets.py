@@ -49,7 +49,7 @@ def side_of(given: Any, choices: Choices, name: str) -> Side:
         return Side(given, dims if name == "target" else None, coords, others, {}, frozenset())
     if not hasattr(given, "dims") and not hasattr(given, "face_node_connectivity"):
         raise DtypeError(
-            f"{name} must be a sphere.Grid, a dataset of xarray, or the name of a grid, got "
+            f"{name} must be a sphere.Grid, an xarray dataset, or the name of a grid, got "
             f"{type(given).__name__}"
         )
     cells = read_cells(given, choices)

@@ -115,7 +115,7 @@ class Weights(AreaWeights):
         source_mask, target_mask : array_like of bool, optional
             True, or 1, for cells that take part.
         extrapolate : {"nan", "nearest"}, optional
-            What target cells get that are outside of the centers.
+            What target cells get that are outside the centers.
         power : float, optional
             Of "inverse_distance".
         workers : int, optional

@@ -651,7 +651,7 @@ class Voronoi(Stored):
         return beside(self.polygons(), data, own)
 
     def to_pyvista(self) -> Any:
-        """Convert the bounded or clipped cells to a mesh of PyVista (extra ``pyvista``).
+        """Convert the bounded or clipped cells to a PyVista mesh (extra ``pyvista``).
 
         Returns
         -------

@@ -168,7 +168,7 @@ class _Cone:
             self._of.setdefault(i, set()).add(number)
 
     def cut(self, number: int, row: Row) -> None:
-        """Cut off what lies outside of a half-space."""
+        """Cut off what lies outside a half-space."""
         near = self._near[: len(self._rays)] @ _unit(row)
         within = near < -_CERTAIN
         beyond: list[int] = np.flatnonzero(near > _CERTAIN).tolist()

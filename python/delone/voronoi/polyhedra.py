@@ -140,7 +140,7 @@ def _hull(points: Floats) -> Polyhedron:
     own = np.maximum.reduceat(
         (np.repeat(normal, lengths, axis=0) * points[used[corners]]).sum(axis=1), starts[:-1]
     )
-    # No corner may be outside of a plane by its rounding.
+    # No corner may be outside a plane by its rounding.
     offset = _farthest(normal, points[used], own)
     return Polyhedron(
         points=points[used],

@@ -1,4 +1,4 @@
-"""Grids of models in datasets of xarray: which convention a dataset follows, and its cells.
+"""Grids of models in xarray datasets: which convention a dataset follows, and its cells.
 
 Each file reads a family of conventions; `reading` recognizes them. Nothing is guessed: units,
 first numbers and fill values are those that a dataset states or that its convention fixes.

@@ -76,7 +76,7 @@ _LAST = (
 
 
 def read_cells(given: Any, choices: Choices) -> Cells:
-    """Return the cells of a dataset of xarray, or of a grid of uxarray."""
+    """Return the cells of an xarray dataset, or of a grid of uxarray."""
     grid = getattr(given, "uxgrid", given)
     if hasattr(grid, "face_node_connectivity") and hasattr(grid, "node_lon"):
         return meshes.read_uxarray(grid, choices)
