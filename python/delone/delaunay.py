@@ -114,7 +114,7 @@ class Delaunay(PointTriangulation):
     MemoryError
         There is not enough memory.
     KeyboardInterrupt
-        Ctrl-C was pressed. Nothing is left behind.
+        Ctrl-C was pressed. No partial result remains.
 
     Warns
     -----
@@ -127,8 +127,8 @@ class Delaunay(PointTriangulation):
     vertex, including those in the middle of a side of the convex hull; of rows with the same
     coordinates (-0.0 and 0.0 are the same) the first is the vertex. If more than three points lie
     on one empty circle, their polygon is fanned from its lexicographically smallest vertex, so a
-    set of points has one triangulation, independent of the order of its rows. In more dimensions,
-    points on one sphere are decided by the same perturbation, and no simplex is flat: a grid, even
+    set of points has one triangulation, independent of the order of its rows. In more dimensions, the
+    same perturbation decides ties between points on one sphere, and no simplex is flat: a grid, even
     with uneven steps, gets the d! simplices of Kuhn's triangulation in each cell.
 
     The number of simplices grows fast with the number of dimensions: uniform points have 2
@@ -139,10 +139,10 @@ class Delaunay(PointTriangulation):
     attributes cannot be set, and ``copy.copy`` and ``copy.deepcopy`` return the object itself.
     Attributes that are not listed above are computed on first use and kept.
 
-    Time is O(n log n) with a small constant, most of it linear. ``"auto"`` picks cavity insertion
-    along a Hilbert curve, in blocks of a k-d tree that are merged: on scattered points it was the
-    fastest method measured. Blocks of lattices use divide and conquer, which is faster there, and
-    so do blocks whose triangles are so thin that insertion exceeds its budget of work, as on two
+    Time is O(n log n) with a small constant; most of the work is linear. ``"auto"`` selects cavity
+    insertion along a Hilbert curve, in blocks of a k-d tree that are merged: on scattered points it
+    was the fastest method measured. Blocks of lattices use divide and conquer, which is faster for
+    them. So do blocks whose triangles are so thin that insertion exceeds its work budget, as on two
     lines that nearly coincide.
 
     ========================  =========================================  =======================

@@ -127,7 +127,7 @@ class ConstrainedDelaunay(Segmented):
     To make the triangulation conforming, subsegments are split in half, or near corners at powers
     of two, so that segments that meet at sharp angles stop encroaching upon each other (J. Ruppert,
     "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", 1995). Subsegments
-    between adjacent doubles cannot be split and stay as they are.
+    between adjacent doubles cannot be split and remain unchanged.
 
     Two segments that meet at an input point do not count as crossing: both pass through it. Rows of
     `points` that are vertices only of removed triangles belong to no triangle. A seed that lies on
@@ -239,8 +239,8 @@ class ConstrainedDelaunay(Segmented):
         -------
         ndarray of int32, shape (k,)
             The triangles that have more than one point of the line, in order from a to b. Parts in
-            holes and outside are skipped. Where the line runs along an edge, the triangle to the
-            left of it, or the only one there is; a line of zero length is located as a point.
+            holes and outside are skipped. Where the line runs along an edge, it is the triangle to
+            the left, or the only one. A line of zero length is located as a point.
 
         Raises
         ------

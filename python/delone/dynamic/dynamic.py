@@ -35,14 +35,14 @@ __all__ = ["Dynamic"]
 
 
 class Dynamic(Measured):
-    """A 2-D or 3-D Delaunay triangulation whose points are inserted, removed and moved.
+    """A 2-D or 3-D Delaunay triangulation with points that can be inserted, removed and moved.
 
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or triangulation, optional
-        Finite coordinates, as for `Delaunay`, or a triangulation, whose points are taken. By
-        default none. Their handles are 0 to n - 1. Of a `ConstrainedDelaunay` the segments are
-        taken as well.
+        Finite coordinates, as for `Delaunay`, or a triangulation, whose points are used; by default
+        none. Their handles are 0 to n - 1. The segments of a `ConstrainedDelaunay` are used as
+        well.
     segments : array_like of int, shape (s, 2), optional
         2-D only: edges that the triangulation must contain, as pairs of rows of `points`. Their
         handles are 0 to s - 1.
@@ -52,8 +52,8 @@ class Dynamic(Measured):
     ndim : int, optional
         The number of coordinates, 2 or 3; by default that of `points`, and 2 without points.
     workers : int, optional
-        Maximum number of threads where the points are triangulated at once; by default one per
-        core. The result does not depend on it.
+        Maximum number of threads when all points are triangulated at once; by default one per core.
+        The result does not depend on it.
     planar : bool, optional
         Treat longitudes and latitudes as coordinates of a plane, without a warning, here and in
         `insert`.
@@ -65,7 +65,7 @@ class Dynamic(Measured):
     CrossingSegmentsError, BudgetExceededError, InputError
         As for `ConstrainedDelaunay`.
     LimitError
-        There are more than 2**28 points, 2**27 in 3-D, or 2**32 - 2 handles have been given.
+        There are more than 2**28 points, 2**27 in 3-D, or 2**32 - 2 handles have been assigned.
     MemoryError
         There is not enough memory.
 
@@ -81,37 +81,37 @@ class Dynamic(Measured):
 
     Notes
     -----
-    After each edit the simplices are those of a new `Delaunay` of the same points, exactly: ties
-    are broken by coordinates, so a set of points has one triangulation, whatever edits led to it.
+    After each edit, the simplices are exactly those of a new `Delaunay` of the same points: ties
+    are broken by coordinates, so a set of points has one triangulation, whatever the edits were.
 
-    A *handle* is an int64 that names a point for as long as it is there, wherever it moves; it is
-    never used again, not even after `restore`. Rows of `points` are in ascending order of handles,
-    so rows change when points are removed, and handles do not. Each point has its own handle: of
-    points with the same coordinates, the one with the smallest handle is the vertex, and another
-    one takes its place when it goes (`duplicates`).
+    A *handle* is an int64 that identifies a point as long as the point exists, even when it moves.
+    A handle is never reused, not even after `restore`. Rows of `points` are in ascending order of
+    handles, so rows change when points are removed, but handles do not. Each point has its own
+    handle: of points with the same coordinates, the one with the smallest handle is the vertex, and
+    another one replaces it when it is removed (`duplicates`).
 
-    Points that all lie on one line, or in 3-D in one plane, have no simplex; they stay, and
-    simplices come back with the point that makes it possible.
+    Points that all lie on one line or, in 3-D, in one plane have no simplices. The points are kept,
+    and simplices appear with the first point that is not on that line or plane.
 
-    With segments the simplices are those of a new `ConstrainedDelaunay` of the same points and
-    segments. A segment joins two handles and moves with its ends; a point that is an end cannot be
-    removed. Where segments cross, with ``crossing="split"``, the crossing is a vertex with a handle
-    of its own, which goes with the segments; an edit of one of them takes time for those that it
-    crosses, and those that cross these (`insert_segments`).
+    With segments, the simplices are those of a new `ConstrainedDelaunay` of the same points and
+    segments. A segment joins two handles and moves with its endpoints; a point that is an endpoint
+    cannot be removed. With ``crossing="split"``, the crossing of two segments is a vertex with its
+    own handle, which is removed with the segments. The time of an edit of a crossing segment
+    depends on the segments that are connected to it by crossings (`insert_segments`).
 
-    An edit is all or nothing: on any error, Ctrl-C and refused memory included, nothing has
-    changed. A Ctrl-C that comes when the edit is complete, and only its result is lost, leaves it
-    complete: ``len`` tells, and the handles of points inserted are the last of `handles`. Edits
-    from several threads take turns.
+    An edit is atomic: after any error, including Ctrl-C and a failed allocation, nothing has
+    changed. If Ctrl-C arrives after the edit is complete, only its return value is lost: check
+    ``len``; the handles of the inserted points are the last of `handles`. Edits from several
+    threads run one after another.
 
-    An insertion takes a walk from the last edit, or from a tree of starting points, and time in
-    proportion to the simplices that it replaces (A. Bowyer; D. F. Watson, both 1981). A removal
-    fills the star of the point with m simplices of its k neighbors in O(k m), or triangulates all
-    points again where that is cheaper. A point that moves within its star stays in place: in 2-D
-    flips (C. L. Lawson, 1977) restore the triangulation, in 3-D only if none is needed. Batches
-    are sorted along a space-filling curve, and large ones triangulate all points again. Arrays
-    such as `simplices` are made on first use after an edit, in linear time. Each handle takes
-    12 bytes, also after its point is removed.
+    An insertion walks from the last edit, or from a tree of starting points; its time is
+    proportional to the number of simplices that it replaces (A. Bowyer; D. F. Watson, both 1981). A
+    removal fills the star of the point with m simplices of its k neighbors in O(k m), or
+    triangulates all points again if that is faster. A point that moves within its star keeps its
+    place in the mesh: in 2-D, flips (C. L. Lawson, 1977) restore the triangulation; in 3-D, this is
+    done only if no flip is needed. Batches are sorted along a space-filling curve, and large ones
+    triangulate all points again. Arrays such as `simplices` are built on first use after an edit,
+    in linear time. Each handle takes 12 bytes, even after its point is removed.
 
     Examples
     --------
@@ -233,7 +233,7 @@ class Dynamic(Measured):
         Parameters
         ----------
         points : array_like, shape (k, d)
-            Finite coordinates. A point that is there already becomes a duplicate.
+            Finite coordinates. A point at an existing position becomes a duplicate.
 
         Returns
         -------
@@ -279,8 +279,8 @@ class Dynamic(Measured):
         handles : array_like of int, shape (k,)
             Their handles, each once.
         segments : {"raise", "remove"}, optional
-            Whether a point that is an end of segments is an error, or its segments are removed as
-            well.
+            Whether removing an endpoint of segments raises an error, or also removes these
+            segments.
 
         Returns
         -------
@@ -291,7 +291,7 @@ class Dynamic(Measured):
         Raises
         ------
         HandleError
-            A handle is not there, is named twice, is an end of segments and these are not to be
+            A handle does not exist, occurs twice, is an endpoint of segments that are not to be
             removed, or is a crossing of segments; nothing has changed.
         DtypeError
             `handles` are not integers.
@@ -300,8 +300,8 @@ class Dynamic(Measured):
 
         Notes
         -----
-        Points and their segments are removed in one edit, in time for what it changes, as in
-        `remove_segments`: segments that crossed them are inserted again.
+        Points and their segments are removed in one edit. As in `remove_segments`, its time depends
+        on the size of the change: segments that crossed them are inserted again.
 
         Examples
         --------
@@ -326,19 +326,19 @@ class Dynamic(Measured):
         return np.empty(0, dtype=np.int64) if also else None
 
     def move(self, handles: ArrayLike, points: ArrayLike) -> None:
-        """Move points, all at once, with their segments.
+        """Move points and their segments, all at once.
 
         Parameters
         ----------
         handles : array_like of int, shape (k,)
             Their handles, each once.
         points : array_like, shape (k, d)
-            Where they move. Points that meet others become duplicates.
+            The new positions. Points that coincide with others become duplicates.
 
         Raises
         ------
         HandleError
-            A handle is not there, is named twice, or is a crossing of segments; nothing has
+            A handle does not exist, occurs twice, or is a crossing of segments; nothing has
             changed.
         CrossingSegmentsError
             Segments would cross, and `crossing` is ``"raise"``; nothing has changed.
@@ -378,21 +378,21 @@ class Dynamic(Measured):
         Yields
         ------
         Dynamic
-            A draft: a triangulation of its own in the present state. Its edits become those of
-            this triangulation when the block ends. If the block raises an exception, Ctrl-C
-            included, nothing has changed.
+            A draft: a separate triangulation in the current state. When the block ends, its edits
+            are applied to this triangulation. If the block raises an exception, including Ctrl-C,
+            nothing has changed.
 
         Raises
         ------
         EditConflictError
-            This triangulation was edited outside the draft meanwhile; that stays, and the
-            draft is dropped.
+            This triangulation was edited outside the draft in the meantime; that edit is kept, and
+            the draft is discarded.
 
         Notes
         -----
-        Until the block ends, the old state is that of all other readers. The draft shares its
-        memory with this triangulation except for what it changes. Handles are given as if it were
-        this one; those given in a draft that is dropped are given again.
+        Until the block ends, all other readers see the old state. The draft shares the memory of
+        this triangulation except for its changes. Handles are assigned as in this triangulation;
+        those of a discarded draft are assigned again.
 
         Examples
         --------
@@ -426,7 +426,7 @@ class Dynamic(Measured):
         return self._edited(_restore, self._live, draft._live.state(), known)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the present state to an .npz file, atomically.
+        """Write the current state to an .npz file, atomically.
 
         Parameters
         ----------
@@ -436,8 +436,7 @@ class Dynamic(Measured):
         Raises
         ------
         OSError
-            The file cannot be written, or is not a regular file; a file that exists stays as it
-            is.
+            The file cannot be written, or is not a regular file; an existing file is not changed.
         TypeError
             `path` is not a path. File objects are refused.
 
@@ -447,8 +446,8 @@ class Dynamic(Measured):
 
         Notes
         -----
-        The file holds points, segments and their handles, from which `load` triangulates again.
-        Snapshots are not part of it; they can be pickled.
+        The file contains points, segments and their handles, from which `load` triangulates again.
+        It does not contain snapshots, which can be pickled.
 
         Examples
         --------
@@ -475,13 +474,13 @@ class Dynamic(Measured):
         path : str or path-like
             The file.
         max_handles : int, optional
-            How many handles of points, or of segments, may have been given. By default 10,000,000,
-            or 64 for each point or segment if that is more.
+            The maximum number of handles of points, or of segments, ever assigned. By default
+            10,000,000, or 64 for each point or segment if that is more.
 
         Returns
         -------
         Dynamic
-            The same state: the next handles are those that would have been given. `workers` is
+            A triangulation in the same state, which assigns the same handles next. `workers` is
             None.
 
         Raises
@@ -509,7 +508,7 @@ class Dynamic(Measured):
             raise archive.refusal(path, error) from error
 
     def snapshot(self) -> Snapshot:
-        """Return the present state, to be restored later.
+        """Return the current state, to be restored later.
 
         Returns
         -------
@@ -518,8 +517,8 @@ class Dynamic(Measured):
 
         Notes
         -----
-        Time and memory are those of what has changed since the last snapshot; the first one copies
-        everything.
+        Time and memory are proportional to the changes since the last snapshot; the first one
+        copies everything.
 
         Examples
         --------
@@ -543,18 +542,18 @@ class Dynamic(Measured):
         Parameters
         ----------
         snapshot : Snapshot
-            A state of this triangulation, or of another one, whose points and handles this one
-            takes over.
+            A state of this triangulation, or of another one, whose points and handles replace those
+            of this one.
 
         Raises
         ------
         DtypeError
-            `snapshot` is not a `Snapshot`, or one of another number of coordinates.
+            `snapshot` is not a `Snapshot`, or has a different number of coordinates.
 
         Notes
         -----
-        Handles given since the snapshot are gone, and are not given again. Time is that of what
-        has changed in between.
+        Handles assigned since the snapshot no longer exist, and are not assigned again. Time is
+        proportional to the changes in between.
 
         Examples
         --------
@@ -570,11 +569,11 @@ class Dynamic(Measured):
         Returns
         -------
         Changes
-            Simplices as handles. In the first call all are new.
+            Simplices as handles. In the first call, all are new.
 
         Notes
         -----
-        Time is that of what has changed, except in the first call.
+        Time is proportional to the changes, except in the first call.
 
         Examples
         --------
@@ -589,14 +588,14 @@ class Dynamic(Measured):
         return Changes(gone, new)
 
     def freeze(self) -> Delaunay | ConstrainedDelaunay:
-        """Return the present triangulation as an object that never changes.
+        """Return the current triangulation as an immutable object.
 
         Returns
         -------
         Delaunay or ConstrainedDelaunay
             Equal to ``Delaunay(live.points)`` up to the order of the simplices, in linear time.
-            With segments a `ConstrainedDelaunay` of the points and segments, whose rows are in the
-            order of handles, with crossings at the end; it is triangulated again.
+            With segments, a new `ConstrainedDelaunay` of the points and segments, whose rows are in
+            the order of handles, with crossings at the end.
 
         Raises
         ------
@@ -638,8 +637,8 @@ class Dynamic(Measured):
 
         Notes
         -----
-        What is drawn is `freeze`, so it takes linear time, and with segments that of a new
-        `ConstrainedDelaunay`.
+        The result of `freeze` is drawn, so this takes linear time, and with segments the time of a
+        new `ConstrainedDelaunay`.
 
         Examples
         --------
@@ -670,7 +669,7 @@ class Dynamic(Measured):
         Returns
         -------
         ValidationReport
-            That of the present arrays: a `ValidationReport`, in 3-D a `SpaceReport`, and with
+            The report on the current arrays: a `ValidationReport`, in 3-D a `SpaceReport`, and with
             segments a `DynamicReport`, which also compares the edges of segments and the crossings
             with those of a new `ConstrainedDelaunay`.
 

@@ -73,7 +73,7 @@ class Mesh(MeshState):
         max_points: int | None = None,
         progress: Callable[[int, float], object] | None = None,
     ) -> Mesh:
-        """Return a finer mesh, in marked triangles or everywhere.
+        """Return a mesh that is finer in marked triangles or everywhere.
 
         Parameters
         ----------
@@ -138,8 +138,8 @@ class Mesh(MeshState):
         -------
         Mesh
             A mesh without some of the points of these triangles. Input points, points on segments,
-            and points that the bound on angles requires remain. If no point can be removed, the
-            mesh itself.
+            and points that the bound on angles requires remain. If no point can be removed, this
+            mesh is returned.
 
         Raises
         ------
@@ -177,7 +177,7 @@ class Mesh(MeshState):
         -------
         Mesh
             The mesh with moved points. Input points, points on segments, and vertices of triangles
-            below the bound stay.
+            below the bound do not move.
 
         Raises
         ------
@@ -187,8 +187,8 @@ class Mesh(MeshState):
         Notes
         -----
         All points move at once, and edges are flipped until the mesh is Delaunay again. Where a
-        triangle would turn over, or an angle fall below the bound, points move part of the way.
-        Bounds on areas are not enforced.
+        triangle would be inverted, or an angle would fall below the bound, points move only part of
+        the way. Bounds on areas are not enforced.
 
         Examples
         --------
@@ -228,7 +228,7 @@ class Mesh(MeshState):
         return self.quality().plot(ax, bound=float(self._bound[0]))
 
     def validate(self) -> MeshValidation:
-        """Prove that the triangles fit each other and are Delaunay, or list the faults.
+        """Prove that the triangles form a valid Delaunay mesh, or list the faults.
 
         Returns
         -------

@@ -48,23 +48,23 @@ class Voronoi(Stored):
         The sites, finite, in any unit. They are copied, and results are exact for the given
         doubles.
     clip : "box", sequence of floats, geometry or polyhedron, optional
-        Where cells end: ``"box"`` is the bounding box of the sites. Sites may lie outside.
+        The region to which cells are clipped: ``"box"`` is the bounding box of the sites. Sites may
+        lie outside it.
 
-        In 2-D a box ``(xmin, ymin, xmax, ymax)``; or a polygon or multipolygon of shapely, with or
-        without holes, also as a GeoJSON-like mapping; a ring of coordinates (k, 2), or several, by
-        the even-odd rule; or the union of the polygons in a table or
-        series of geopandas.
+        In 2-D: a box ``(xmin, ymin, xmax, ymax)``; a shapely polygon or multipolygon, with or
+        without holes, or a GeoJSON-like mapping; one or more rings of coordinates (k, 2), by the
+        even-odd rule; or a GeoDataFrame or GeoSeries, for the union of its polygons.
 
-        In 3-D a convex region: a box ``((xmin, ymin, zmin), (xmax, ymax, zmax))`` of shape (2, 3);
-        half-spaces of shape (k, 4), each ``(a, b, c, d)`` for ``a x + b y + c z + d <= 0``, whose
-        intersection is bounded; or points of shape (k, 3), or an object with points and simplices
-        such as a `ConvexHull`, for their convex hull.
+        In 3-D, a convex region: a box ``((xmin, ymin, zmin), (xmax, ymax, zmax))`` of shape (2, 3);
+        half-spaces of shape (k, 4) with a bounded intersection, each ``(a, b, c, d)`` for ``a x + b
+        y + c z + d <= 0``; or, for their convex hull, points of shape (k, 3) or an object with
+        points and simplices such as a `ConvexHull`.
     fix : bool, optional
         Whether to repair an invalid geometry (as ``shapely.make_valid`` does) instead of rejecting
         it. A polyhedron is never invalid.
     weights : array_like, shape (n,), optional
-        Weights of the sites, in the square of the unit of the points. The diagram is then the power
-        diagram, in which a location x belongs to the site p with the smallest ``|x - p|**2 - w``.
+        Weights of the sites, in squared units of the points. The diagram is then the power diagram,
+        in which a location x belongs to the site p with the smallest ``|x - p|**2 - w``.
     periods : tuple of two floats or None, optional
         2-D only. ``(Lx, Ly)``: the sites repeat at these distances in x and in y, as for
         `PeriodicDelaunay`; None for a direction without a period. With two periods, `clip` must
@@ -86,14 +86,14 @@ class Voronoi(Stored):
     ridge_points : ndarray of int32, shape (r, 2)
         The two sites of each ridge, an edge or face between two cells.
     ridge_vertices : list of list of int
-        The vertices of each ridge; -1, which comes first, if it is unbounded. In 3-D they are
+        The vertices of each ridge. If the ridge is unbounded, the first is -1. In 3-D they are
         counter-clockwise as seen from the second site.
     regions : list of list of int
         The vertices of each cell, with -1 if it is unbounded: in 2-D counter-clockwise, in 3-D
         ascending.
     point_region : ndarray of int32, shape (n,)
-        The cell of each point, as an index of `regions`. Points with the same coordinates share
-        their cell. -1 for a site that has no cell because of its weight.
+        The cell of each point, as an index into `regions`. Points with the same coordinates share a
+        cell. -1 for a site that has no cell because of its weight.
     furthest_site : bool
         False.
     npoints, ndim : int
@@ -102,9 +102,9 @@ class Voronoi(Stored):
     Raises
     ------
     DegenerateInputError
-        There is no point. Or 3-D points lie in one plane, or there are fewer than four; the error
-        is that of `Delaunay` or `RegularTriangulation`: ``error.plane`` has the triangulation of
-        the plane, and its ``circumcenters`` are the vertices of the diagram there.
+        There are no points. Or 3-D points lie in one plane, or there are fewer than four; the error
+        is then that of `Delaunay` or `RegularTriangulation`: ``error.plane`` is the triangulation
+        of the plane, and its ``circumcenters`` are the vertices of the diagram in this plane.
     NonFiniteError
         A coordinate or weight is NaN or infinite; ``error.rows`` has the rows.
     ShapeError, DtypeError
@@ -122,7 +122,7 @@ class Voronoi(Stored):
     -----
     ThinCellWarning
         When measures or polygons are computed: cells are only a few units in the last place wide,
-        so that their areas or volumes are lost to rounding; ``warning.rows`` has their rows.
+        so rounding makes their areas or volumes meaningless; ``warning.rows`` has their rows.
 
     Notes
     -----
@@ -132,34 +132,34 @@ class Voronoi(Stored):
     4 units in the last place of the true one (:doc:`/mathematics/voronoi`). A vertex beyond the
     range of doubles is not listed; ridges that lead to it have -1 in its place.
 
-    Names and meanings are those of ``scipy.spatial.Voronoi``. In 2-D, input that SciPy rejects is
-    accepted: the cell of a single site is the whole plane, two have half-planes, and sites on one
-    line have strips between two half-planes.
+    Names and meanings are those of ``scipy.spatial.Voronoi``. In 2-D, some input that SciPy rejects
+    is accepted: the cell of a single site is the whole plane, the cells of two sites are
+    half-planes, and those of sites on one line are strips between two half-planes.
 
     With weights a cell need not contain its site, and a site may have no cell: it is *hidden*.
     Edges lie on radical axes instead of bisectors.
 
     With two periods all cells are bounded, and their areas sum to that of one period; with one,
-    cells at the border of the strip are unbounded. Each cell lies around its site: all translates
-    of vertices that a cell or ridge has are listed, and `ridge_offsets` says across which border of
+    cells at the border of the strip are unbounded. Each cell surrounds its site: all translates of
+    vertices that a cell or ridge needs are listed, and `ridge_offsets` says across which border of
     the period a neighbor lies.
 
     With a `clip`, measures, centroids, neighbors and cells are those of the clipped cells; the
     attributes listed above remain those of the whole diagram. In a 2-D box the exact signed areas
     of the rings of `cell` sum to that of the box without any rounding. `polygons` has these rings
     where they are valid. Rounded corners make a ring invalid only if the cell is a few units in the
-    last place wide: it is in `thin_cells` then, unless its area is below the range of doubles.
+    last place wide; it is then in `thin_cells`, unless its area is below the range of doubles.
 
-    In 3-D, cells whose vertices all lie inside the clip stay as they are; the others are the
-    polyhedron, cut by the planes of their neighbors one after the other. An area or a volume beyond
-    the range of doubles is infinite; below it, the smallest double. Clipped corners are accurate to
-    about 1e-13 of the largest coordinate, also between sites that are close together, because exact
-    arithmetic computes them where planes meet at a flat angle. Which corners there are is decided
-    on rounded numbers: that may lose or add faces as small as roundings, and wrong ones between
-    sites that differ by a few units in the last place. A cell has the same corner twice if its
-    surface would not be closed otherwise. Half-spaces are compared exactly, whatever their
-    exponents, and the corners of their intersection are rounded once: O(k^2) expected time for k of
-    them, about half a second for 300.
+    In 3-D, cells whose vertices all lie inside the clip are not changed. Each of the other cells is
+    the clip polyhedron, cut by the planes of the neighbors one after another. An area or volume
+    above the range of doubles is infinite; below the range, it is the smallest double. Clipped
+    corners are accurate to about 1e-13 of the largest coordinate, also between sites that are close
+    together, because exact arithmetic computes them where planes meet at a flat angle. The decision
+    which corners exist uses rounded numbers: faces as small as rounding errors may be lost or
+    added, and faces between sites that differ by a few units in the last place may be wrong. A cell
+    contains the same corner twice if its surface would not be closed otherwise. Half-spaces are
+    compared exactly, whatever their exponents, and the corners of their intersection are rounded
+    once. This takes O(k^2) expected time for k half-spaces, about half a second for 300.
 
     Arrays are read-only and attributes cannot be set; attributes that are not listed above are
     computed on first use and kept. Time is that of the triangulation and O(n) for the rest;
@@ -345,7 +345,7 @@ class Voronoi(Stored):
     def ridge_offsets(self) -> Indices:
         """The periods by which the second site of each ridge is translated, (r, 2); 2-D only.
 
-        Relative to the first site, next to which the vertices of the ridge are. 0 without periods.
+        Relative to the first site, where the vertices of the ridge are. 0 without periods.
         """
         cells: Any = self._cells
         return sealed(cells.ridge_offsets())
@@ -391,9 +391,10 @@ class Voronoi(Stored):
     def rays(self) -> Rays:
         """The unbounded ridges, with their origins and directions.
 
-        In 2-D a ridge that lies entirely beyond the range of doubles has no ray. If only its ends
-        do, it has two from one origin, like a line. In 3-D an unbounded ridge has two rows: in the
-        first its boundary comes in from infinity, in the second it goes out.
+        In 2-D, a ridge that lies entirely beyond the range of doubles has no ray. If only its ends
+        lie beyond it, the ridge has two rays from one origin, like a line. In 3-D, an unbounded
+        ridge has two rows: in the first, its boundary comes from infinity; in the second, it goes
+        to infinity.
         """
         ridge, origin, direction = self._cells.rays()
         return Rays(sealed(ridge), sealed(origin), sealed(direction))
@@ -431,8 +432,8 @@ class Voronoi(Stored):
     def cell_areas(self) -> Floats:
         """Areas of the clipped cells, in 3-D of their surfaces, (n,), in the square of the unit.
 
-        Infinite for an unbounded cell, 0 if nothing is left and for hidden sites. Rows with the
-        same coordinates share one cell, and each has its area.
+        Infinite for an unbounded cell, 0 for an empty cell and for hidden sites. Rows with the same
+        coordinates share one cell, and each has its area.
         """
         return self._by_row(self._left.areas)
 
@@ -442,7 +443,7 @@ class Voronoi(Stored):
     def cell_perimeters(self) -> Floats:
         """Perimeters of the clipped cells, (n,), including those of holes; 2-D only.
 
-        Infinite for an unbounded cell, 0 if nothing is left and for hidden sites.
+        Infinite for an unbounded cell, 0 for an empty cell and for hidden sites.
         """
         return self._by_row(self._left.perimeters)
 
@@ -452,7 +453,7 @@ class Voronoi(Stored):
     def cell_volumes(self) -> Floats:
         """Volumes of the clipped cells, (n,), in the cube of the unit of the points; 3-D only.
 
-        Infinite for an unbounded cell, 0 if nothing is left and for hidden sites.
+        Infinite for an unbounded cell, 0 for an empty cell and for hidden sites.
         """
         return self._by_row(self._left.volumes)
 
@@ -474,7 +475,7 @@ class Voronoi(Stored):
     def neighbors(self) -> Neighbors:
         """Sites whose cells share an edge or face, with its length or area, as compressed rows.
 
-        In a clip only clipped edges and faces count. A duplicate has no neighbors: those of its
+        With a clip, only clipped edges and faces count. A duplicate has no neighbors: those of its
         cell belong to the first row.
         """
         sizes = self._left.ridge_sizes()
@@ -550,8 +551,8 @@ class Voronoi(Stored):
 
         Notes
         -----
-        Exact: distances are compared by predicates, in the triangulation from vertex to vertex. If
-        all sites lie on one line, they are searched along it.
+        Exact: a walk from vertex to vertex of the triangulation compares distances by predicates.
+        If all sites lie on one line, they are searched along it.
 
         Examples
         --------
@@ -568,7 +569,7 @@ class Voronoi(Stored):
         return found
 
     def validate(self) -> ValidationReport:
-        """Prove that the triangulation whose dual this is is correct.
+        """Prove that the underlying triangulation is correct.
 
         Returns
         -------
@@ -728,8 +729,8 @@ class Voronoi(Stored):
 
         Notes
         -----
-        Without a clip, a 2-D diagram is drawn in the bounding box of the sites, enlarged by a
-        tenth. In 3-D, bounded and clipped cells are drawn, or the sites if there are none.
+        Without a clip, a 2-D diagram is drawn in the bounding box of the sites, enlarged by 10 %.
+        In 3-D, bounded and clipped cells are drawn, or the sites if there are none.
 
         Examples
         --------
