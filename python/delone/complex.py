@@ -228,7 +228,7 @@ class Stored(Referenced):
             The file cannot be written, or is not a regular file; a file that exists stays as it
             is.
         TypeError
-            `path` is not a path. File objects are refused.
+            `path` is not a path. File objects are not accepted.
 
         See Also
         --------
@@ -277,7 +277,7 @@ class Stored(Referenced):
         OSError
             The file cannot be read, or is not a regular file.
         TypeError
-            `path` is not a path. File objects are refused.
+            `path` is not a path. File objects are not accepted.
 
         Notes
         -----

@@ -120,11 +120,11 @@ class ConvexHull(Complex):
     MemoryError
         There is not enough memory.
     KeyboardInterrupt
-        Ctrl-C was pressed. Nothing is left behind.
+        Ctrl-C was pressed. No partial result remains.
 
     See Also
     --------
-    Delaunay.convex_hull : The boundary of a triangulation, all points on it being vertices.
+    Delaunay.convex_hull : The boundary of a triangulation, in which all points on it are vertices.
 
     Notes
     -----
@@ -134,10 +134,10 @@ class ConvexHull(Complex):
     coordinates. A set of points therefore has one hull, with one order of its arrays, independent
     of the order of its rows; it is the boundary of ``Delaunay(points[hull.vertices])``.
 
-    In 2-D O(n log n) time (A. M. Andrew, 1979), in 3-D O(n log n) expected (K. L. Clarkson and
-    P. W. Shor, 1989); points far inside cost only a few comparisons. Names, dtypes and
-    meanings are those of ``scipy.spatial.ConvexHull``. All arrays are read-only; attributes that
-    are not listed above are computed on first use and kept.
+    Time is O(n log n) in 2-D (A. M. Andrew, 1979) and O(n log n) expected in 3-D (K. L. Clarkson
+    and P. W. Shor, 1989); points far inside need only a few comparisons. Names, dtypes and meanings
+    are those of ``scipy.spatial.ConvexHull``. All arrays are read-only; attributes that are not
+    listed above are computed on first use and kept.
 
     Examples
     --------
@@ -196,7 +196,7 @@ class ConvexHull(Complex):
 
         Notes
         -----
-        Exact; it takes as long as locating all points.
+        Exact; takes as long as locating all points.
 
         Examples
         --------
@@ -348,7 +348,7 @@ class ConvexHull(Complex):
 
     @only(2, "`facets` are the polygons of a hull in 3-D")
     def polygon(self) -> Any:
-        """Return the hull as one polygon of shapely (extra ``geo``); 2-D only.
+        """Return the hull as one shapely polygon (extra ``geo``); 2-D only.
 
         Returns
         -------
@@ -376,7 +376,7 @@ class ConvexHull(Complex):
         Parameters
         ----------
         data : DataFrame or mapping, optional
-            Columns to include, with one row. The geometry of a GeoDataFrame is replaced, its
+            Columns to include, with one row. The geometry of a GeoDataFrame is replaced; its
             reference system and index are kept.
         crs : optional
             Reference system of the coordinates, anything that geopandas takes; by default that of

@@ -71,7 +71,7 @@ class RegularTriangulation(PointTriangulation):
     MemoryError
         There is not enough memory.
     KeyboardInterrupt
-        Ctrl-C was pressed. Nothing is left behind.
+        Ctrl-C was pressed. No partial result remains.
 
     Notes
     -----

@@ -417,7 +417,7 @@ class Triangulation(Complex):
         ----------
         data : DataFrame or mapping, optional
             Columns to include, with one row for each triangle. The geometry of a GeoDataFrame is
-            replaced, its reference system and index are kept.
+            replaced; its reference system and index are kept.
         crs : optional
             Reference system of the coordinates, anything that geopandas takes; by default that of
             the geometries that were triangulated, if any.

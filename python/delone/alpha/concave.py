@@ -31,20 +31,20 @@ def concave_hull(
     workers: int | None = None,
     planar: bool = False,
 ) -> ConcaveHull:
-    """Return a concave hull: a polygon that has all points inside or on its boundary.
+    """Return a concave hull: a polygon with all points inside it or on its boundary.
 
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or Delaunay
-        Finite coordinates in any unit. A `Delaunay` triangulation is used as it is.
+        Finite coordinates in any unit. A `Delaunay` triangulation is used directly.
     max_edge : float, optional
         Edges of the boundary that are longer are removed as far as possible, in the unit of the
         points; 0 or more, infinity included. Either this or `ratio` must be given.
     ratio : float, optional
-        From 0 to 1: the same limit, as far between the lengths of the shortest and the longest edge
-        of the triangulation. 1 keeps the convex hull. As in ``shapely.concave_hull``.
+        From 0 to 1: the same limit, interpolated between the lengths of the shortest and the
+        longest edge of the triangulation, as in ``shapely.concave_hull``. 1 keeps the convex hull.
     holes : bool, optional
-        Whether to dig holes inside, too; 2-D only.
+        Whether to carve holes inside as well; 2-D only.
     workers : int, optional
         Maximum number of threads; by default one per core. The result does not depend on it.
     planar : bool, optional
@@ -69,18 +69,19 @@ def concave_hull(
 
     Notes
     -----
-    In 2-D, the longest edge of the boundary is taken again and again. If it is longer than the
-    limit and the corner opposite in its triangle is inside, the triangle is removed. If the corner
-    is on the boundary already, the edge stays: so the hull is one simple polygon, whatever the
-    limit, and edges that are longer may remain. With `holes`, a triangle with a longer edge and no
-    corner on the boundary begins a hole, the one with the longest edge first, which is dug in the
-    same way; holes touch neither each other nor the outline.
+    In 2-D, boundary edges are processed from the longest down. If an edge is longer than the limit
+    and the opposite corner of its triangle is inside, the triangle is removed. If that corner is
+    already on the boundary, the edge remains. So the hull is one simple polygon, whatever the
+    limit, and some longer edges may remain. With `holes`, a triangle with a longer edge and no
+    corner on the boundary starts a hole, the one with the longest edge first, which is carved in
+    the same way; holes touch neither each other nor the outline.
 
-    In 3-D, a tetrahedron is removed across a face with a longer edge unless it is the last one of a
-    point. What remains need not be a manifold: see ``ConcaveHull.is_manifold``.
+    In 3-D, a tetrahedron behind a face with a longer edge is removed, unless it is the last one of
+    a point. The remaining tetrahedra need not form a manifold: see ``ConcaveHull.is_manifold``.
 
-    Lengths are compared exactly, equal ones by the coordinates of their ends, so the result does
-    not depend on the order of the rows. The limit of a ratio is a rounded number. O(n log n) time.
+    Lengths are compared exactly, and equal lengths by the coordinates of their ends, so the result
+    does not depend on the order of the rows. The limit that a ratio gives is rounded. O(n log n)
+    time.
 
     References
     ----------

@@ -39,10 +39,10 @@ class AlphaComplex(Stored):
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
         Finite coordinates in any unit. A `Delaunay`, a `RegularTriangulation` or a
-        `PeriodicDelaunay` is used as it is, with its weights and periods.
+        `PeriodicDelaunay` is used directly, with its weights and periods.
     weights : array_like, shape (n,), optional
-        Finite weights in the square of the unit of the points: squared radii of balls around them,
-        as for `RegularTriangulation`. Of that, the weights are used.
+        Finite weights in squared units of the points: squared radii of balls around them, as for
+        `RegularTriangulation`. If `points` is one, its weights are used.
     periodic : tuple of two floats or None, optional
         The periods in x and y of 2-D points, as for `PeriodicDelaunay`.
     workers : int, optional
@@ -64,7 +64,7 @@ class AlphaComplex(Stored):
     MemoryError
         There is not enough memory.
     KeyboardInterrupt
-        Ctrl-C was pressed. Nothing is left behind.
+        Ctrl-C was pressed. No partial result remains.
 
     See Also
     --------
@@ -78,14 +78,14 @@ class AlphaComplex(Stored):
     weights w, the ball is orthogonal to those around the vertices; a vertex has the value ``-w``,
     or more if a neighbor covers it, and hidden points have no simplex.
 
-    A simplex whose smallest ball has no adjacent point inside (a test that is exact) has the
-    squared radius of that ball as its value; any other has the least value of its cofaces. Each
+    A simplex whose smallest ball has no adjacent point inside (an exact test) has the squared
+    radius of that ball as its value; any other simplex has the smallest value of its cofaces. Each
     value is the double nearest to the exact one. Rounding is monotone, so no face has a larger
-    value than a coface, and nothing has to be repaired afterwards.
+    value than a coface, and no repair is needed.
 
-    Points that span less than their dimension have a complex, too: coplanar 3-D points triangles
-    and edges, points on one line a path, a single point a vertex, and no points nothing. Rows
-    that repeat another one are not vertices. O(n log n) time in 2-D.
+    Degenerate points also have a complex: coplanar 3-D points have triangles and edges, points on
+    one line a path, a single point a vertex, and no points an empty complex. Rows that repeat
+    another row are not vertices. O(n log n) time in 2-D.
 
     References
     ----------
@@ -201,7 +201,7 @@ class AlphaComplex(Stored):
 
     @property
     def npoints(self) -> int:
-        """Number of points, those that are not vertices included."""
+        """Number of points, including those that are not vertices."""
         return len(self._points)
 
     @property
@@ -256,8 +256,8 @@ class AlphaComplex(Stored):
         Returns
         -------
         ndarray of float64, shape (m,)
-            Squared radii, in the square of the unit of the points; negative ones are possible with
-            weights. Infinite where one exceeds the range of doubles.
+            Squared radii, in squared units of the points; with weights, they may be negative.
+            Infinite where a value exceeds the range of doubles.
 
         Raises
         ------
@@ -277,9 +277,9 @@ class AlphaComplex(Stored):
     def order(self) -> Indices:
         """The order of the filtration, (s, 2): the dimension and the number of each simplex.
 
-        Ascending values; of equal ones, the lower dimension first, then the vertices in
-        lexicographic order of their sorted coordinates. So every face comes before its cofaces,
-        and the order does not depend on that of the rows.
+        Simplices are ordered by value, then by dimension, then by the sorted coordinates of their
+        vertices. So every face comes before its cofaces, and the order does not depend on that of
+        the rows.
         """
         rank = np.empty(self.npoints, dtype=np.int64)
         rank[np.lexsort(self._points.T[::-1])] = np.arange(self.npoints)
@@ -335,13 +335,13 @@ class AlphaComplex(Stored):
         return AlphaShape._made(self._points, self._valued, limit, self._workers)._refer(self)
 
     def optimal(self, components: int = 1, *, holes: bool = False) -> float:
-        """Return the smallest alpha whose shape is in few parts and has all points.
+        """Return the smallest alpha whose shape contains all points in few parts.
 
         Parameters
         ----------
         components : int, optional
-            The most parts that triangles (in 3-D tetrahedra) may form; those with an edge (a face)
-            in common are in one part.
+            The maximum number of parts; triangles (in 3-D, tetrahedra) with a common edge (face)
+            are in one part.
         holes : bool, optional
             Whether the shape may have holes, in 3-D voids.
 
@@ -358,8 +358,8 @@ class AlphaComplex(Stored):
 
         Notes
         -----
-        By disjoint sets: of triangles in the order of their values, and, for holes, of the others
-        in the opposite order, together with the outside.
+        Uses disjoint sets: of triangles in the order of their values and, for holes, of the other
+        triangles and the outside in the opposite order.
 
         Examples
         --------
@@ -408,7 +408,7 @@ class AlphaComplex(Stored):
         return parts, gaps.astype(np.int32)
 
     def to_gudhi(self) -> Any:
-        """Convert to a tree of simplices of GUDHI, for its persistent homology.
+        """Convert to a GUDHI simplex tree, for persistent homology.
 
         Returns
         -------

@@ -125,7 +125,7 @@ class Kept(Exchanged):
         ----------
         data : DataFrame or mapping, optional
             Columns to include, with one row for each polygon. The geometry of a GeoDataFrame is
-            replaced, its reference system and index are kept.
+            replaced; its reference system and index are kept.
         crs : optional
             Reference system of the coordinates, anything that geopandas takes; by default that of
             the points, if they declared one.
@@ -269,8 +269,8 @@ class AlphaShape(Kept):
     Notes
     -----
     A shape may have edges and points that belong to no triangle. `simplices_of` and the numbers of
-    components and holes have these; `simplices`, `boundary`, `polygons` and the measures have the
-    triangles (in 3-D the tetrahedra) only.
+    components and holes include them; `simplices`, `boundary`, `polygons` and the measures include
+    the triangles (in 3-D, the tetrahedra) only.
 
     Examples
     --------
@@ -349,7 +349,7 @@ class AlphaShape(Kept):
 
     @property
     def euler_characteristic(self) -> int:
-        """Vertices less edges plus triangles (less tetrahedra)."""
+        """Vertices minus edges plus triangles (minus tetrahedra)."""
         return sum(-size if k % 2 else size for k, size in enumerate(self._sizes))
 
     @property
@@ -364,7 +364,7 @@ class AlphaShape(Kept):
     @property
     @kept
     def betti(self) -> tuple[int, ...]:
-        """Numbers of components, of loops and, in 3-D, of voids; on a torus of closed surfaces."""
+        """Numbers of components, of loops and, in 3-D, of voids; on a torus, of closed surfaces."""
         parts, euler = self.ncomponents, self.euler_characteristic
         if self.ndim == 2:
             if self._valued.periodic is None:
@@ -465,7 +465,7 @@ class ConcaveHull(Kept):
         return found
 
     def polygon(self) -> Any:
-        """Return the hull as one polygon of shapely (extra ``geo``); 2-D only.
+        """Return the hull as one shapely polygon (extra ``geo``); 2-D only.
 
         Returns
         -------

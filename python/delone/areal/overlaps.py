@@ -34,10 +34,10 @@ class Overlaps(SharedAreas, Stored):
     Parameters
     ----------
     source, target : GeoDataFrame, GeoSeries, sequence of geometries, triangulation or Voronoi
-        Where values are, and where they are wanted: polygons and multipolygons of shapely (extra
-        ``geo``), GeoJSON, a list of rings of shape (k, 2); triangles of a 2-D triangulation; or
-        the cells of a 2-D `Voronoi` with a clip. A cell per geometry; missing and empty geometries
-        are cells without area.
+        The layers with known and with wanted values: shapely polygons and multipolygons (extra
+        ``geo``), GeoJSON, or a list of rings of shape (k, 2); the triangles of a 2-D triangulation;
+        or the cells of a 2-D `Voronoi` with a clip. Each geometry is a cell; missing and empty
+        geometries are cells without area.
     workers : int, optional
         Maximum number of threads; by default one per core. The result does not depend on it.
 
@@ -48,7 +48,7 @@ class Overlaps(SharedAreas, Stored):
     indices : ndarray of int32, shape (k,)
         Source cells, ascending in each row.
     areas : ndarray of float64, shape (k,)
-        Areas of the shared parts, in the square of the unit of coordinates.
+        Areas of the shared parts, in squared units of the coordinates.
     source_areas, target_areas : ndarray of float64
         Areas of the cells.
     source_turned, target_turned : ndarray of int64
@@ -69,7 +69,7 @@ class Overlaps(SharedAreas, Stored):
     Warns
     -----
     CRSWarning
-        Only one of the layers has a reference system: both are taken as the same.
+        Only one of the layers has a reference system: both are assumed to have it.
 
     See Also
     --------
@@ -77,15 +77,15 @@ class Overlaps(SharedAreas, Stored):
 
     Notes
     -----
-    Which cells share area is decided by exact orientation tests, with an infinitesimal move of the
-    target in place of ties, so that common corners and sides are like any other place. An area is a
-    sum over corners and crossings (Franklin, 1990) in double-double arithmetic relative to the
-    smaller cell: it is right to its last bits also for small cells far from the origin. No polygon
-    is clipped. Parts below 1e-24 of the square of the smaller cell's extent cannot be told from
-    cells that only touch, and are not pairs.
+    Exact orientation tests decide which cells share area. An infinitesimal move of the target
+    breaks ties, so common corners and sides need no special treatment. An area is a sum over
+    corners and crossings (Franklin, 1990) in double-double arithmetic relative to the smaller cell:
+    it is accurate to its last bits, even for small cells far from the origin. No polygon is
+    clipped. Parts below 1e-24 of the squared extent of the smaller cell cannot be distinguished
+    from cells that only touch, and are not pairs.
 
-    Time is O(n log n + k) for cells with few corners. For pairs of polygons with many corners, the
-    corners of one near the box of the other count.
+    Time is O(n log n + k) for cells with few corners. For pairs of polygons with many corners, it
+    depends on the corners of one polygon near the box of the other.
 
     References
     ----------
@@ -179,27 +179,26 @@ class Overlaps(SharedAreas, Stored):
         source_mask: ArrayLike | None = None,
         target_mask: ArrayLike | None = None,
     ) -> AreaWeights:
-        """Return what each source cell contributes to each target cell.
+        """Return the contribution of each source cell to each target cell.
 
         Parameters
         ----------
         method : {"conservative", "normalized", "sum", "majority"}, optional
             How values are combined:
 
-            - "conservative": integrals over the target cell, divided by its area. The sum of values
-              times areas is that of the source. A partly covered cell gets proportionally
-              less.
-            - "normalized": means over the covered part. A constant remains one.
+            - "conservative": integrals over the target cell, divided by its area. This preserves
+              the sum of values times areas. A partly covered cell gets proportionally less.
+            - "normalized": means over the covered part. A constant stays constant.
             - "sum": amounts, such as numbers of inhabitants: each source cell gives its value to
               target cells by the share of its area.
             - "majority": categories: the value that covers most of the target cell.
         source_mask, target_mask : array_like of bool, optional
-            True, or 1, for cells that take part. By default all do.
+            True, or 1, for the cells to use; by default all.
 
         Returns
         -------
         AreaWeights
-            They hold no cells. Masked target cells have no entries.
+            The weights, without the cells. Masked target cells have no entries.
 
         Raises
         ------
@@ -238,19 +237,19 @@ class Overlaps(SharedAreas, Stored):
         data : DataFrame, GeoDataFrame or mapping
             Columns with a value for each source cell.
         methods : mapping
-            For each column that is wanted, "sum", "normalized", "conservative" or "majority", as
-            for `to_weights`. Columns of text are transferred by "majority" alone.
+            For each column to transfer, "sum", "normalized", "conservative" or "majority", as for
+            `to_weights`. Text columns can be transferred by "majority" only.
         skipna : bool, optional
-            Whether NaN and None are missing values, whose cells take no part. By default NaN
+            Whether NaN and None are missing values, whose cells are ignored. By default NaN
             propagates to all target cells that share area with it; for "majority" it is a category.
         min_fraction : float, optional
-            Target cells of which a smaller fraction has values are missing.
+            Target cells with values on a smaller fraction of their area are missing.
 
         Returns
         -------
         dict
-            An array for each column, with a value for each target cell: NaN, or None in columns of
-            text, where nothing is known. ``targets.assign(**result)`` adds them to a table.
+            An array for each column, with a value for each target cell: NaN, or None in text
+            columns, where no value is known. ``targets.assign(**result)`` adds them to a table.
 
         Raises
         ------

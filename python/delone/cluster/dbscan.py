@@ -25,12 +25,12 @@ class DBSCAN(Clusterer):
     Parameters
     ----------
     eps : float, optional
-        From 0 on, used as the double that it is: points at this distance are neighbors. With 0,
-        these are only rows with the same coordinates; it may be infinite.
+        At least 0, used exactly as given: points at this distance are neighbors. With 0, only rows
+        with the same coordinates are neighbors. It may be infinite.
     min_samples : int, optional
         At least 1: a core point has this many rows within `eps`, itself included.
     metric : {"euclidean", "l2"}, optional
-        Other metrics are refused.
+        Other metrics raise an error.
     workers : int, optional
         Maximum number of threads; by default one per core. The result does not depend on it.
     planar : bool, optional
@@ -53,13 +53,13 @@ class DBSCAN(Clusterer):
     M. Ester, H.-P. Kriegel, J. Sander and X. Xu, "A density-based algorithm for discovering
     clusters in large spatial databases with noise" (1996). Core points within `eps` of each other
     are in one cluster. Another point within `eps` of core points belongs to the cluster of the
-    nearest one, of several to that with the lexicographically smallest coordinates; scikit-learn
-    assigns it to the cluster that reaches it first. All squared distances are compared exactly. So
-    the clusters do not depend on the order of the rows, and scaling points and `eps` by a power of
-    two leaves them unchanged.
+    nearest one; of equally near ones, to that with the lexicographically smallest coordinates.
+    scikit-learn assigns it to the cluster that reaches it first. All squared distances are compared
+    exactly. So the clusters do not depend on the order of the rows, and scaling points and `eps` by
+    a power of two leaves them unchanged.
 
     Rows with the same coordinates count separately. With `min_samples` above n, all points are
-    noise. Points on one line or in one plane need nothing special.
+    noise. Points on one line or in one plane are not special cases.
 
     Points are counted, and core points joined, in a tree of boxes: about O(n log n) time for
     scattered points and a small `min_samples`, whatever `eps` is; memory is O(n).
@@ -98,7 +98,7 @@ class DBSCAN(Clusterer):
         X : array_like, shape (n, 2) or (n, 3)
             Finite coordinates.
         y : optional
-            Without effect.
+            Ignored.
 
         Returns
         -------

@@ -109,7 +109,7 @@ class Clusterer:
         X : array_like, shape (n, 2) or (n, 3)
             Finite coordinates.
         y : optional
-            Without effect.
+            Ignored.
         **options
             As for `fit`.
 

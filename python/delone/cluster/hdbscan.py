@@ -26,16 +26,16 @@ class HDBSCAN(Clusterer):
     Parameters
     ----------
     min_cluster_size : int, optional
-        At least 2: the smallest number of rows that is a cluster.
+        At least 2: the smallest number of rows that form a cluster.
     min_samples : int, optional
-        At least 1: the core distance of a row is that of its `min_samples`-th nearest row, the row
-        itself included, as in scikit-learn. By default `min_cluster_size`.
+        At least 1: the core distance of a row is the distance to its `min_samples`-th nearest row,
+        the row itself included, as in scikit-learn. By default `min_cluster_size`.
     cluster_selection_epsilon : float, optional
         Clusters that split from each other at a smaller distance are not split.
     max_cluster_size : int, optional
         With ``"eom"``, larger clusters are not selected.
     metric : {"euclidean", "l2"}, optional
-        Other metrics are refused.
+        Other metrics raise an error.
     cluster_selection_method : {"eom", "leaf"}, optional
         ``"eom"`` selects the clusters with the largest sum of stabilities (excess of mass),
         ``"leaf"`` those that are not split.
@@ -65,23 +65,23 @@ class HDBSCAN(Clusterer):
     R. J. G. B. Campello, D. Moulavi and J. Sander, "Density-based clustering based on hierarchical
     density estimates" (2013). The mutual reachability of two points is the largest of their
     distance and both core distances. All of these are compared exactly. Edges of equal weight are
-    removed together, as in the paper: a cluster may split into more than two, and no choice between
-    ties is made. So the clusters do not depend on the order of the rows, and scaling by a power of
-    two leaves them unchanged. Only stabilities are sums of doubles.
+    removed together, as in the paper: a cluster may split into more than two parts, and ties need
+    no choice. So the clusters do not depend on the order of the rows, and scaling by a power of two
+    leaves them unchanged. Only stabilities are sums of doubles.
 
-    Where no weights are equal, the clusters are those of scikit-learn, up to the numbers. With
-    `min_samples` above 2 some always are: a core distance is the weight of several edges. There,
-    scikit-learn splits in an order that depends on the rows. Its alpha is always 1. Rows with the
-    same coordinates count separately.
+    If no weights are equal, the clusters are those of scikit-learn, up to their numbering. With
+    `min_samples` above 2, some weights are always equal, because a core distance is the weight of
+    several edges; scikit-learn then splits in an order that depends on the rows. The alpha of
+    scikit-learn is always 1 here. Rows with the same coordinates count separately.
 
     The minimum spanning tree of all pairs is found by Boruvka's algorithm in a tree of boxes; it is
     not part of the Delaunay graph if `min_samples` exceeds 2. About O(n log n) time for scattered
-    points, and O(n) memory. Time is quadratic where some squared distances exceed the range of
-    doubles beside others.
+    points, and O(n) memory. Time is quadratic if only some squared distances exceed the range of
+    doubles.
 
-    With `min_samples` above n, no row has a core distance, and all are noise. A single point is
-    noise; so are points that all coincide, unless `allow_single_cluster` is set. Points on one line
-    or in one plane need nothing special.
+    With `min_samples` above n, no row has a core distance, and all rows are noise. A single point
+    is noise; so are points that all coincide, unless `allow_single_cluster` is set. Points on one
+    line or in one plane are not special cases.
 
     Examples
     --------
@@ -128,7 +128,7 @@ class HDBSCAN(Clusterer):
         X : array_like, shape (n, 2) or (n, 3)
             Finite coordinates.
         y : optional
-            Without effect.
+            Ignored.
 
         Returns
         -------
@@ -176,13 +176,13 @@ class HDBSCAN(Clusterer):
         return self
 
     def to_hdbscan(self) -> NDArray[np.void]:
-        """Return the condensed tree with splits into two, as the package hdbscan expects.
+        """Return the condensed tree with binary splits, as the package hdbscan expects.
 
         Returns
         -------
         ndarray, shape (m,)
-            The fields of `condensed_tree_`. Where a cluster splits into more than two at once, all
-            but one of these are in a further cluster without rows of its own, which splits at the
+            The fields of `condensed_tree_`. Where a cluster splits into more than two parts, all
+            but one of these are in an additional cluster without its own rows, which splits at the
             same lambda. ``hdbscan.plots.CondensedTree(model.to_hdbscan())`` plots it.
 
         Raises
@@ -192,8 +192,8 @@ class HDBSCAN(Clusterer):
 
         Notes
         -----
-        Clusters are numbered differently from `condensed_tree_` if there are such splits. Which of
-        the clusters is split off first has no meaning. O(m log m) time.
+        Clusters are numbered differently from `condensed_tree_` if there are such splits. The order
+        in which the parts are split off has no meaning. O(m log m) time.
 
         Examples
         --------

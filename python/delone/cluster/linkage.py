@@ -116,8 +116,8 @@ class SingleLinkage(Immutable):
         Notes
         -----
         `height` is compared exactly with the lengths of the tree. With `n_clusters`, the last
-        merges are undone; among merges at the same distance these are those of the larger
-        coordinates. O(n) time after `linkage`.
+        merges are undone; of merges at the same distance, those with the larger coordinates are
+        undone first. O(n) time after `linkage`.
 
         Examples
         --------
@@ -157,13 +157,13 @@ class SingleLinkage(Immutable):
 def single_linkage(
     points: Points, *, workers: int | None = None, planar: bool = False
 ) -> SingleLinkage:
-    """Cluster points by single linkage: the two nearest clusters are merged, again and again.
+    """Cluster points by single linkage: repeatedly merge the two nearest clusters.
 
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Finite coordinates in any unit. A `Delaunay` is used as it is; of any other triangulation or
-        hull, the points are.
+        Finite coordinates in any unit. A `Delaunay` is used directly; of any other triangulation or
+        hull, only the points are used.
     workers : int, optional
         Maximum number of threads; by default one per core. The result does not depend on it.
     planar : bool, optional
@@ -191,9 +191,9 @@ def single_linkage(
     -----
     The merges are the edges of the minimum spanning tree in the order of their lengths, which are
     compared exactly (J. C. Gower and G. J. S. Ross, "Minimum spanning trees and single linkage
-    cluster analysis", 1969). The tree is inside the Delaunay graph: O(n log n) time and O(n) memory
-    in 2-D; in 3-D, that of the triangulation. All pairs of points, as in
-    ``scipy.cluster.hierarchy.linkage``, are never computed.
+    cluster analysis", 1969). The tree is a subgraph of the Delaunay graph: this takes O(n log n)
+    time and O(n) memory in 2-D, and in 3-D those of the triangulation. Unlike in
+    ``scipy.cluster.hierarchy.linkage``, the distances of all pairs are never computed.
 
     Rows with the same coordinates are merged first, at distance zero. No points, or a single one,
     have no merges; points on one line or in one plane need nothing special.

@@ -51,9 +51,9 @@ def from_geometry(
     Parameters
     ----------
     geometries : geometry or iterable of geometries
-        Shapely geometries, geopandas tables and series, a `delone.io.GeometrySet`, objects with
+        Shapely geometries, GeoDataFrames and GeoSeries, a `delone.io.GeometrySet`, objects with
         ``__geo_interface__``, mappings of that form (GeoJSON), and iterables of these, in any
-        mixture. Each row of a table and each feature of a collection is a geometry.
+        combination. Each row of a table and each feature of a collection is a geometry.
     holes, regions, conforming, max_points, method, workers : optional
         As for `ConstrainedDelaunay`.
     boundary : {"hull", "outline", "polygons"}, optional
@@ -63,7 +63,7 @@ def from_geometry(
         As for `ConstrainedDelaunay`, but by default crossings are split, because borders in real
         data do cross.
     crs : str, int or pyproj.CRS, optional
-        The coordinate reference system, by default that of the geometries if they have one. It is
+        The coordinate reference system; by default that of the geometries, if they have one. It is
         stored in ``mesh.crs`` and passed on by ``mesh.to_geopandas()``. Coordinates are not
         transformed.
     planar : bool, optional
@@ -211,7 +211,7 @@ class PolygonTriangles(NamedTuple):
         ----------
         data : DataFrame or mapping, optional
             Columns to include, with one row for each triangle. The geometry of a GeoDataFrame is
-            replaced, its reference system and index are kept.
+            replaced; its reference system and index are kept.
         crs : optional
             Coordinate reference system, anything that geopandas accepts.
 

@@ -438,7 +438,7 @@ class Dynamic(Measured):
         OSError
             The file cannot be written, or is not a regular file; an existing file is not changed.
         TypeError
-            `path` is not a path. File objects are refused.
+            `path` is not a path. File objects are not accepted.
 
         See Also
         --------
@@ -491,7 +491,7 @@ class Dynamic(Measured):
         OSError
             The file cannot be read, or is not a regular file.
         TypeError
-            `path` is not a path. File objects are refused.
+            `path` is not a path. File objects are not accepted.
 
         Examples
         --------

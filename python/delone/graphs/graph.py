@@ -44,7 +44,7 @@ class Graph(Stored, Exchanged):
     directed : bool, optional
         Whether an edge leads from its first to its second row.
     kind : str, optional
-        A name for the graph, which is shown only.
+        A name for the graph, for display only.
 
     Attributes
     ----------
@@ -76,8 +76,8 @@ class Graph(Stored, Exchanged):
     one has the edges, the others are in `duplicates`. `components` counts them with their vertex,
     and `with_duplicates` joins them.
 
-    Nothing is repaired: a graph may be disconnected, and ``repr`` says in how many components it
-    is. All arrays are read-only; attributes that are not listed above are computed on first use and
+    Nothing is repaired: a graph may be disconnected, and ``repr`` shows the number of components.
+    All arrays are read-only; attributes that are not listed above are computed on first use and
     kept.
 
     Examples
@@ -260,14 +260,14 @@ class Graph(Stored, Exchanged):
         max_length : float, optional
             The largest length that remains, in the unit of the points.
         percentile : float, optional
-            Above 0, up to 100: edges remain that are not longer than this share of the edges, in
-            percent (the length at this rank; the smallest one that is not less).
+            Above 0, up to 100: the percentile of the lengths up to which edges remain (the smallest
+            length at or above this rank).
 
         Returns
         -------
         Graph
-            The same points, and the edges that are not longer. Points may become isolated; none is
-            removed.
+            The same points, and the edges that are not longer. Points may become isolated; no
+            points are removed.
 
         Raises
         ------
@@ -389,13 +389,13 @@ class Graph(Stored, Exchanged):
         return self._with(clique(self._edges, self.duplicate_of))
 
     def to_csr(self, *, weights: str = "length") -> Any:
-        """Convert to a sparse matrix of SciPy (extra ``graph``).
+        """Convert to a SciPy sparse matrix (extra ``graph``).
 
         Parameters
         ----------
         weights : {"length", "binary"}, optional
-            The entries: lengths of edges, or ones. An edge of length zero is an entry 0 that is
-            stored.
+            The entries: lengths of edges, or ones. An edge of length zero is stored as an explicit
+            0.
 
         Returns
         -------
@@ -428,8 +428,8 @@ class Graph(Stored, Exchanged):
         -------
         networkx.Graph or networkx.DiGraph
             Nodes are the rows from 0 on, duplicates included, with their coordinates as attribute
-            ``pos``; edges have their ``length``, also as ``weight``, which the algorithms of
-            NetworkX take by default.
+            ``pos``; edges have their ``length``, also as ``weight``, the default of most NetworkX
+            algorithms.
 
         Raises
         ------
@@ -447,12 +447,12 @@ class Graph(Stored, Exchanged):
         return to_networkx(self._links("length"), self._points)
 
     def to_libpysal(self, *, coincident: str = "raise", weights: str = "binary") -> Any:
-        """Convert to spatial weights of libpysal (extra ``graph``).
+        """Convert to libpysal spatial weights (extra ``graph``).
 
         Parameters
         ----------
         coincident : {"raise", "clique", "drop"}, optional
-            What to do with rows that repeat the coordinates of others: ``"raise"`` refuses them;
+            What to do with rows that repeat the coordinates of others: ``"raise"`` raises an error;
             ``"clique"`` joins them as in `with_duplicates`; ``"drop"`` leaves them out, and the
             identifiers of the others are still their rows.
         weights : {"binary", "length"}, optional
@@ -501,9 +501,9 @@ class Graph(Stored, Exchanged):
         ----------
         data : DataFrame or mapping, optional
             Columns to include, with one row for each edge. The geometry of a GeoDataFrame is
-            replaced, its reference system and index are kept.
+            replaced; its reference system and index are kept.
         crs : optional
-            Reference system of the coordinates, anything that geopandas takes.
+            Reference system of the coordinates, in any form that geopandas accepts.
 
         Returns
         -------

@@ -69,8 +69,8 @@ def nearest_neighbors(
 
     By branch and bound in a tree of boxes along a Hilbert curve (N. Roussopoulos, S. Kelley and F.
     Vincent, "Nearest neighbor queries", 1995): about O(n (log n + k)) time for scattered points,
-    less than for the triangulation and a search in it. It is quadratic where some squared distances
-    exceed the range of doubles beside others.
+    less than for the triangulation and a search in it. It is quadratic if only some squared
+    distances exceed the range of doubles.
 
     Examples
     --------
@@ -116,7 +116,7 @@ def sphere_of_influence(
     Returns
     -------
     Graph
-        Its edges. Two points are neighbors; a single point has no edges.
+        Its edges. Two points alone are neighbors; a single point has no edges.
 
     Raises
     ------
@@ -129,8 +129,8 @@ def sphere_of_influence(
 
     Notes
     -----
-    Around each point is the sphere through its nearest neighbor. Two points a and b, with radii r
-    and s, are neighbors if ``|a - b| <= r + s``; with ``"open"``, ``<`` (G. T. Toussaint, "A
+    Each point has a sphere around it, through its nearest neighbor. Two points a and b, with radii
+    r and s, are neighbors if ``|a - b| <= r + s``; with ``"open"``, ``<`` (G. T. Toussaint, "A
     graph-theoretical primal sketch", 1988). Sums of roots are compared exactly. It is not part of
     the Delaunay graph, and it may be disconnected: see `Graph.components`.
 

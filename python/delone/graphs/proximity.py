@@ -28,8 +28,8 @@ def delaunay_graph(points: Points, *, workers: int | None = None, planar: bool =
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Finite coordinates in any unit. A `Delaunay` is used as it is; of any other triangulation or
-        hull, the points are.
+        Finite coordinates in any unit. A `Delaunay` is used directly; of any other triangulation or
+        hull, only the points are used.
     workers : int, optional
         Maximum number of threads; by default one per core. The result does not depend on it.
     planar : bool, optional
@@ -93,7 +93,7 @@ def gabriel(
     Returns
     -------
     Graph
-        Its edges. Points on one line are joined to a path; a single point has no edges.
+        Its edges. Points on one line are joined into a path; a single point has no edges.
 
     Raises
     ------
@@ -102,16 +102,16 @@ def gabriel(
 
     Notes
     -----
-    Two points a and b are neighbors if no other point sees them under a right or obtuse angle: for
-    no point p is ``(a - p) @ (b - p) <= 0`` (K. R. Gabriel and R. R. Sokal, "A new statistical
+    Two points a and b are neighbors if no other point sees them at a right or obtuse angle: for no
+    point p is ``(a - p) @ (b - p) <= 0`` (K. R. Gabriel and R. R. Sokal, "A new statistical
     approach to geographic variation analysis", 1969); with ``"open"``, ``< 0``. The sign is exact.
 
     The closed graph is part of the Delaunay triangulation and contains the relative neighborhood
-    graph; whether an edge belongs to it is decided by the Delaunay neighbors of one end, in 2-D by
-    the opposite corners of its triangles (see :doc:`/mathematics/graphs`). The open graph has more
-    edges where points are cocircular: all of a grid and both diagonals of each of its squares,
-    whichever of them the triangulation has. Those that are not Delaunay edges are searched from the
-    corners of cocircular simplices.
+    graph; the Delaunay neighbors of one end decide whether an edge belongs to it, in 2-D the
+    opposite corners of its triangles (see :doc:`/mathematics/graphs`). The open graph has more
+    edges where points are cocircular: on a grid, all sides and both diagonals of each square,
+    whichever of them the triangulation contains. Those that are not Delaunay edges are searched
+    from the corners of cocircular simplices.
 
     Coincident rows are one vertex, the first; the others have no edges and are in
     ``Graph.duplicates``. O(n log n) time in 2-D, in 3-D linear in the Delaunay edges after the
@@ -144,7 +144,8 @@ def relative_neighborhood(
     Returns
     -------
     Graph
-        Its edges; connected. Points on one line are joined to a path; a single point has no edges.
+        Its edges; connected. Points on one line are joined into a path; a single point has no
+        edges.
 
     Raises
     ------
@@ -160,8 +161,8 @@ def relative_neighborhood(
 
     The graph contains the minimum spanning tree and is part of the closed Gabriel and, in 2-D, of
     the Urquhart graph. A point in the lune need not be a Delaunay neighbor of either end. So after
-    the neighbors, all points are searched in a tree of boxes, of which only those that do not meet
-    both balls are skipped. O(n log n) time in 2-D for points of bounded density.
+    the neighbors, all points are searched in a tree of boxes; only boxes that do not meet both
+    balls are skipped. O(n log n) time in 2-D for points of bounded density.
 
     Coincident rows are one vertex, the first; the others have no edges and are in
     ``Graph.duplicates``.
@@ -191,7 +192,8 @@ def urquhart(points: Points, *, workers: int | None = None, planar: bool = False
     Returns
     -------
     Graph
-        Its edges; connected. Points on one line are joined to a path; a single point has no edges.
+        Its edges; connected. Points on one line are joined into a path; a single point has no
+        edges.
 
     Raises
     ------
@@ -201,10 +203,10 @@ def urquhart(points: Points, *, workers: int | None = None, planar: bool = False
     Notes
     -----
     From each Delaunay triangle, the edge that is strictly longer than both others is removed (R. B.
-    Urquhart, in "Electronics Letters" 16, 1980). If two edges are
-    the longest, both remain: so the relative neighborhood graph is always part of this graph.
-    Lengths are compared exactly. With cocircular points, the triangles are those of the canonical
-    triangulation. O(n log n) time, of which the triangulation takes most.
+    Urquhart, in "Electronics Letters" 16, 1980). If two edges are equally long and the longest,
+    both remain. So the relative neighborhood graph is always part of this graph. Lengths are
+    compared exactly. With cocircular points, the triangles are those of the canonical
+    triangulation. O(n log n) time, most of it for the triangulation.
 
     Coincident rows are one vertex, the first; the others have no edges and are in
     ``Graph.duplicates``.
@@ -241,20 +243,20 @@ def beta_skeleton(
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
         As for `delaunay_graph`.
     beta : float
-        From 1 to 2, used as the double that it is: the larger, the fewer edges.
+        From 1 to 2, used exactly as given: the larger, the fewer edges.
     kind : {"lune", "circle"}, optional
         The region that must be empty. ``"lune"``: the intersection of two balls with a radius of
         beta / 2 times the length, through one end each and with centers on the line of the edge.
         ``"circle"``, 2-D only: the union of the two disks of this radius through both ends.
     boundary : {"closed", "open"}, optional
-        Whether a point on the outline of the region removes the edge (``"closed"``) or not.
+        Whether a point on the boundary of the region removes the edge (``"closed"``) or not.
     workers, planar : optional
         As for `delaunay_graph`.
 
     Returns
     -------
     Graph
-        Its edges. Points on one line are joined to a path; a single point has no edges.
+        Its edges. Points on one line are joined into a path; a single point has no edges.
 
     Raises
     ------
@@ -266,12 +268,12 @@ def beta_skeleton(
     -----
     D. G. Kirkpatrick and J. D. Radke, "A framework for computational morphology", 1985. With beta =
     1 both kinds are the `gabriel` graph of the same boundary. With beta = 2 the open lune is that
-    of the `relative_neighborhood` graph. Lunes keep the spanning tree, so that graph is connected;
-    circles do not, for beta above 1: `Graph.components` counts the parts.
+    of the `relative_neighborhood` graph. With lunes, the graph contains the spanning tree, so it is
+    connected. With circles and beta above 1, it may not be: `Graph.components` numbers the parts.
 
-    Signs are those of integer expressions, also for any double beta. Circles are decided by the
-    neighbors of an edge, lunes by a search in a tree of boxes, as for `relative_neighborhood`.
-    O(n log n) time in 2-D for points of bounded density.
+    All signs are computed with integers, for any double beta. The neighbors of an edge decide
+    circles; a search in a tree of boxes decides lunes, as for `relative_neighborhood`. O(n log n)
+    time in 2-D for points of bounded density.
 
     Coincident rows are one vertex, the first; the others have no edges and are in
     ``Graph.duplicates``.

@@ -22,8 +22,8 @@ def minimum_spanning_tree(
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Finite coordinates in any unit. A `Delaunay` is used as it is; of any other triangulation or
-        hull, the points are.
+        Finite coordinates in any unit. A `Delaunay` is used directly; of any other triangulation or
+        hull, only the points are used.
     workers : int, optional
         Maximum number of threads; by default one per core. The result does not depend on it.
     planar : bool, optional
@@ -32,7 +32,7 @@ def minimum_spanning_tree(
     Returns
     -------
     Graph
-        A tree: one edge less than there are distinct points.
+        A tree, with one edge fewer than there are distinct points.
 
     Raises
     ------

@@ -83,7 +83,7 @@ class Interpolator:
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Sites. A triangulation of delone is used as it is, if the method allows it; a periodic one
+        Sites. A triangulation of delone is used directly if the method allows it; a periodic one
         makes the interpolant periodic.
     values : array_like, shape (n,) or (n, ...), optional
         Values at the sites.

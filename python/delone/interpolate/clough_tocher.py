@@ -43,7 +43,7 @@ class CloughTocher(Smooth):
         its neighbors and their neighbors, with nearer ones weighted more, unless the quadric
         oscillates. ``"plane"``: the plane that best fits the neighbors. A quadric oscillates if it
         changes with the values more than three times as much as the plane does, as between the
-        tracks of soundings; the plane then takes its place.
+        tracks of soundings; the plane is then used instead.
     tol : float, optional
         Change at which the global estimation stops, relative to the gradient, or to the range of
         the values divided by the longer side of the bounding box of the sites if that is larger.
@@ -52,7 +52,7 @@ class CloughTocher(Smooth):
         Maximum number of sweeps; if it is reached, a `GradientWarning` is issued.
     extrapolate : {"nan", "nearest", "linear", "raise"}, optional
         Behavior outside the hull: NaN; the value at the nearest point of the hull; linear
-        extrapolation from there with the gradients of its sites; an error.
+        extrapolation from that point with the gradients of its sites; an error.
     tolerance : float, optional
         Queries outside at most this far from the hull are inside; as in `Linear`.
     duplicates, nan : str, optional

@@ -48,7 +48,7 @@ _GLOBAL_REACH = 12
 
 @dataclass(frozen=True, eq=False)
 class CrossValidation:
-    """Predictions of each value from the others.
+    """Predictions of each value from the other values.
 
     Parameters
     ----------
@@ -181,8 +181,8 @@ def cross_validate(
     duplicates : str, optional
         As in `Linear`. Points that coincide are left out together.
     nan : {"raise", "drop"}, optional
-        Whether sites without a finite value raise an error or are removed first, each field on its
-        own.
+        Whether sites without a finite value raise an error or are removed first, separately for
+        each field.
     progress : callable, optional
         Called from time to time with the fraction of the work that is done, from 0 to 1.
     workers : int, optional

@@ -82,7 +82,7 @@ class Grid:
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
-        """Left, right, bottom and top of the outermost cells, in the order of imshow."""
+        """Left, right, bottom and top of the outermost cells, in the order of ``imshow``."""
         return *outer(self.x), *outer(self.y)
 
     def to_xarray(self, *, name: str | None = None, crs: str | None = None) -> Any:
@@ -233,7 +233,8 @@ def grid(
 
     Notes
     -----
-    A box that is not a whole number of cells wide is extended to the right and to the top.
+    If the size of the box is not a multiple of the cell size, the box is extended to the right and
+    to the top.
 
     Examples
     --------

@@ -71,8 +71,8 @@ class Weights:
     query_shape : tuple of int
         Shape of the queries, without their last axis.
     sites : Interpolator
-        The interpolator that made the table. Without `slopes`, a pickled table has its policies
-        only, not its triangulation.
+        The interpolator that made the table. Without `slopes`, a pickled table contains only its
+        policies, not its triangulation.
 
     Examples
     --------

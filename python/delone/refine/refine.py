@@ -79,10 +79,10 @@ def mesh(
         lengths; ``(triangulation, values)`` with a length for each of its points, linear in
         between; or an xarray DataArray with dimensions y and x, linear between cells.
     max_points : int, optional
-        Maximum number of added points; by default 5,000,000. Sizes that need more raise an error
+        Maximum number of added points; by default 5,000,000. Sizes that require more raise an error
         before refinement starts. If angles need more, refinement stops at the limit, and the report
-        of the mesh says so. Needles between lines that nearly touch may take 1/64 of it in total;
-        needles that need more are left as they are, and the report lists them.
+        of the mesh says so. Needles between lines that nearly touch may use 1/64 of it in total;
+        needles that need more are not refined, and the report lists them.
     conforming : bool, optional
         Segments are edges of the mesh or chains of edges. This is always the case; the only valid
         value is True.
@@ -139,13 +139,13 @@ def mesh(
     -----
     Delaunay refinement (J. Ruppert 1995) with the diametral lenses of L. P. Chew (1993),
     off-centers (A. Üngör 2004), splits at powers of two around sharp corners, and the rule of
-    Miller, Pav and Walkington (2005) for triangles there. It terminates in practice
-    for angles up to 33 degrees (close relatives provably up to 20.7 and 26.6 degrees, see the
-    mathematics page), unless `max_points` stops it earlier. A needle between lines,
-    such as a triangle of height h over a side of length 1, takes about 0.5 / h points at 25 degrees
-    and 0.1 / h at 5, unless its sides happen to be split alike, as two sides of equal length are:
-    then one point may be enough. Needles are refined last. Refinement takes about a microsecond per
-    triangle, and memory is linear.
+    Miller, Pav and Walkington (2005) for triangles there. It terminates in practice for angles up
+    to 33 degrees (close relatives provably up to 20.7 and 26.6 degrees, see the mathematics page),
+    unless `max_points` stops it earlier. A needle between lines, such as a triangle of height h
+    over a side of length 1, takes about 0.5 / h points at 25 degrees and 0.1 / h at 5, unless its
+    sides happen to be split in the same way, as sides of equal length are: then one point may be
+    enough. Needles are refined last. Refinement takes about a microsecond per triangle, and memory
+    is linear.
 
     Next to fixed segments no bound holds, and with sizes, angles there may become far smaller than
     those of the input: points are added as close to the segment as the size requires, but the

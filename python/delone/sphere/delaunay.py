@@ -86,7 +86,7 @@ class Delaunay(OnGlobe):
     MemoryError
         There is not enough memory.
     KeyboardInterrupt
-        Ctrl-C was pressed. Nothing is left behind.
+        Ctrl-C was pressed. No partial result remains.
 
     Warns
     -----

@@ -155,7 +155,7 @@ class Overlaps(SharedAreas, Stored):
         source_mask: ArrayLike | None = None,
         target_mask: ArrayLike | None = None,
     ) -> Weights:
-        """Return what each source cell contributes to each target cell.
+        """Return the contribution of each source cell to each target cell.
 
         Parameters
         ----------

@@ -125,9 +125,9 @@ def lloyd(
         Stop when no site is farther than this from the centroid of its cell, in the unit of the
         points.
     density : callable, optional
-        Takes locations, (k, 2), and returns a number for each, (k,), not negative and not all 0:
-        sites will be denser where it is larger. It may be called for locations outside an outline
-        that is not convex, but within its bounding box. By default it is 1 everywhere.
+        Takes positions, (k, 2), and returns a nonnegative number for each, (k,), not all 0: sites
+        are denser where it is larger. It may be called for positions outside a nonconvex outline,
+        but within its bounding box. By default, it is 1 everywhere.
     method : {"lloyd", "l-bfgs"}, optional
         How to compute steps: move each site to its centroid, or use a quasi-Newton method, which
         needs fewer steps to converge.
@@ -156,12 +156,12 @@ def lloyd(
     -----
     The energy decreases with each step, and sites converge to positions where each is the centroid
     of its cell: usually a local minimum. Convergence of Lloyd's method is linear and slows down
-    with the number of sites. L-BFGS converges in several times fewer steps, usually to another
-    minimum that is slightly lower; if it finds no descent it makes a step of Lloyd's method.
+    with the number of sites. L-BFGS converges in several times fewer steps, usually to a different,
+    slightly lower minimum; if it finds no descent direction, it makes a step of Lloyd's method.
 
-    Integrals are exact up to rounding without `density`; with it they use its values at seven
-    locations in each triangle between a cell's centroid and an edge. A site whose cell is empty
-    does not move, and sites with the same coordinates stay together.
+    Integrals are exact up to rounding without `density`; with it, they use its values at seven
+    positions in each triangle between the centroid of a cell and an edge. A site whose cell is
+    empty does not move, and sites with the same coordinates stay together.
 
     Examples
     --------
