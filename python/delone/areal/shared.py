@@ -37,11 +37,11 @@ class OverlapReport(ReadOnly):
     npairs : int
         Number of pairs of cells that share area.
     source_outside, target_outside : ndarray of int64
-        Cells that share nothing, without empty ones.
+        Cells that share nothing, except empty ones.
     source_partly, target_partly : ndarray of int64
         Cells of which a part is not covered.
     source_repeatedly, target_repeatedly : ndarray of int64
-        Cells that are covered more than once, as cells of the other grid overlap.
+        Cells that are covered more than once, because cells of the other grid overlap.
     source_empty, target_empty : ndarray of int64
         Cells without area, which share nothing.
 

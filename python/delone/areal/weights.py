@@ -30,7 +30,7 @@ _LOT = 1 << 22
 
 
 class AreaWeights(Paired):
-    """What each source cell contributes to each target cell.
+    """The contribution of each source cell to each target cell.
 
     Made by `Overlaps.to_weights`.
 

@@ -36,9 +36,9 @@ class Linear(Interpolator):
     Parameters
     ----------
     points : array_like, shape (n, d), or a triangulation
-        Sites with two to eight coordinates; with up to 64 if they are a grid. A triangulation of
-        delone is used as it is: constrained and regular ones and, in 3-D, a `TetMesh` as well; its
-        own boundary takes the place of the hull. A periodic one,
+        Sites with two to eight coordinates, or with up to 64 if they are a grid. A triangulation of
+        delone is used directly, including constrained and regular ones and, in 3-D, a `TetMesh`;
+        its own boundary replaces the hull. A periodic one,
         ``PeriodicDelaunay(points, (360, None))``, makes the interpolant periodic as well.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. Optional if each call passes its own values.
@@ -46,16 +46,16 @@ class Linear(Interpolator):
         ``"mesh"`` triangulates the points. ``"grid"`` requires all points of a rectilinear grid, in
         any order and with even or uneven steps, and needs no triangulation: time and memory follow
         the number of points, whatever their number of coordinates. The values are the same up to
-        rounding. ``"auto"`` takes grids so from 4-D on, and triangulates everything else.
+        rounding. ``"auto"`` does this with grids from 4-D on, and triangulates everything else.
     extrapolate : {"nan", "nearest", "linear", "raise"}, optional
         Behavior outside the hull: NaN; the value at the nearest point of the hull; linear
-        extrapolation from there, with the gradients of the planes that best fit its sites and their
-        neighbors; an error. From 4-D on, NaN or an error.
+        extrapolation from that point, with the gradients of the planes that best fit its sites and
+        their neighbors; an error. From 4-D on, NaN or an error.
     tolerance : float, optional
         Queries outside at most this far from the hull, in the unit of the points, are inside: they
         have the value at the nearest point of the hull. By default 0. Half of the points on a side
-        that is not parallel to an axis are outside by a rounding. The distance is compared exactly.
-        Only in 2-D and 3-D.
+        that is not parallel to an axis are outside by a rounding error. The distance is compared
+        exactly. Only in 2-D and 3-D.
     duplicates : {"raise", "mean", "first", "last", "min", "max"}, optional
         The value of points that coincide but have different values.
     nan : {"raise", "drop", "propagate"}, optional
@@ -85,12 +85,12 @@ class Linear(Interpolator):
     Notes
     -----
     At a site the value is reproduced exactly, bit for bit; linear functions are reproduced up to
-    rounding. Inside the hull, including its boundary, the result is NaN only if a value is. Each
-    query costs its point location: O(1) in the order of a space-filling curve, into which the core
-    sorts the queries.
+    rounding. Inside the hull, including its boundary, the result is NaN only if a value is. The
+    time of a query is that of its point location: O(1), because the core sorts queries along a
+    space-filling curve.
 
-    On a periodic triangulation, queries are moved into one period, and the sites are copied as far
-    as they matter: at least twice on each side. In a periodic direction there is no outside.
+    On a periodic triangulation, queries are moved into one period, and the sites are copied as
+    often as needed, at least twice on each side. In a periodic direction, there is no outside.
 
     See Also
     --------

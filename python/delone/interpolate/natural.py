@@ -37,7 +37,7 @@ _WITH_GRADIENTS = ("sibson1", "farin")
 
 
 class NaturalNeighbor(Smooth):
-    """Interpolation from natural neighbors, C1 except at the sites, or everywhere.
+    """Natural neighbor interpolation, C1 everywhere or except at the sites.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class NaturalNeighbor(Smooth):
         As in `CloughTocher`.
     extrapolate : {"nan", "nearest", "linear", "raise"}, optional
         Behavior outside the hull: NaN; the value at the nearest point of the hull; linear
-        extrapolation from there, as in `Linear` or with the gradients of the kind; an error.
+        extrapolation from that point, as in `Linear` or with the gradients of the kind; an error.
     tolerance : float, optional
         Queries outside at most this far from the hull are inside; as in `Linear`.
     duplicates, nan : str, optional

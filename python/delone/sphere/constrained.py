@@ -91,8 +91,8 @@ class ConstrainedDelaunay(Delaunay):
     BudgetExceededError
         More than `max_points` vertices would have to be added.
     DirectionError
-        The ends of an arc are opposite directions, so that no arc is the shorter one;
-        ``error.rows`` has the first such rows of `segments`. Or as for `Delaunay`.
+        The ends of an arc are opposite directions, so neither arc is shorter; ``error.rows`` has
+        the first such rows of `segments`. Or as for `Delaunay`.
     InputError
         A segment refers to a row that does not exist; the message names the rows.
     DegenerateInputError, NonFiniteError, ShapeError, DtypeError, MemoryError, KeyboardInterrupt
@@ -108,17 +108,18 @@ class ConstrainedDelaunay(Delaunay):
     Each edge that is not part of an arc is locally Delaunay: no direction that is visible from its
     triangles, without crossing an arc, lies inside their circles. Ties are broken as in `Delaunay`,
     so a set of directions and arcs has one triangulation, whatever the order and the lengths of the
-    rows. An arc that passes exactly through a direction is split there; predicates are exact, so
-    one that misses it by the least amount is not.
+    rows. An arc that passes exactly through a direction is split there. Predicates are exact, so an
+    arc that misses it by any amount is not.
 
-    A crossing is split at the exact intersection of both arcs, of which each coordinate is rounded
-    once. The parts bend there by the rounding error; those that cross others for that reason are
-    split again. This is done in Python, for the few crossings of real borders.
+    Arcs that cross are split at their exact intersection, each coordinate of which is rounded once.
+    The parts bend there by the rounding error; parts that cross others for that reason are split
+    again. This is done in Python, because real borders have few crossings.
 
-    Arcs are inserted into the Delaunay triangulation by the code of the plane (M. V. Anglada, "An
-    improved incremental algorithm for constructing restricted Delaunay triangulations", 1997): most
-    sides of a coast are edges already, and an arc that crosses k edges takes about k log k steps.
-    `nearest` uses a second triangulation, without arcs, which is computed on first use.
+    Arcs are inserted into the Delaunay triangulation by the same code as in the plane (M. V.
+    Anglada, "An improved incremental algorithm for constructing restricted Delaunay
+    triangulations", 1997): most sides of a coast are edges already, and an arc that crosses k edges
+    takes about k log k steps. `nearest` uses a second triangulation, without arcs, which is
+    computed on first use.
 
     See Also
     --------
@@ -305,7 +306,7 @@ class ConstrainedDelaunay(Delaunay):
 
     @property
     def segment_forward(self) -> Bools:
-        """For each index of `segment_source`, whether the row runs as the subsegment does."""
+        """For each index of `segment_source`, whether the row runs along the subsegment."""
         return self._made.forward
 
     @property
@@ -349,8 +350,8 @@ class ConstrainedDelaunay(Delaunay):
     def polygon_of_simplex(self) -> Indices:
         """The first polygon that contains each triangle, (m,), as the number of its geometry.
 
-        -1 if there is none: the sea, where polygons are land; and in triangulations of arrays. See
-        `from_geometry` for what is inside.
+        -1 if there is none, such as the sea if polygons are land, and in triangulations of arrays.
+        See `from_geometry` for the rule.
         """
         component = self._component
         given = self._given

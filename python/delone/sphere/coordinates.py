@@ -31,7 +31,7 @@ _TURNS = 3
 
 
 class LongitudeWarning(UserWarning):
-    """Longitudes span more than one turn: those from 0 to 360 seem to be mixed with others.
+    """Longitudes span more than 360 degrees: those from 0 to 360 seem to be mixed with others.
 
     Examples
     --------

@@ -35,7 +35,7 @@ _STORED = ("Delaunay", "ConstrainedDelaunay")
 
 
 class Delaunay(OnGlobe):
-    """The Delaunay triangulation of directions: of geographic points, or vectors.
+    """The Delaunay triangulation of directions: of geographic points or vectors.
 
     Parameters
     ----------
@@ -43,8 +43,8 @@ class Delaunay(OnGlobe):
         Longitudes and latitudes, in degrees unless `degrees` is false. Longitudes may be from -180
         to 180, from 0 to 360, or anything up to three turns.
     xyz : array_like, shape (n, 3), optional
-        Vectors from the center of the sphere. Their lengths do not matter: a vector means its
-        direction, exactly. Give either this or `lonlat`.
+        Vectors from the center of the sphere. Their lengths do not matter: a vector represents
+        exactly its direction. Give either this or `lonlat`.
     degrees : bool, optional
         Whether `lonlat`, and longitudes and latitudes of queries, are in degrees (the default) or
         in radians.
@@ -91,23 +91,23 @@ class Delaunay(OnGlobe):
     Warns
     -----
     LongitudeWarning
-        Longitudes span more than one turn: two conventions seem to be mixed. Both mean the same
-        directions here.
+        Longitudes span more than 360 degrees: two conventions seem to be mixed. The directions are
+        the same in both.
 
     Notes
     -----
     The triangles are those whose circle on the sphere contains no other direction: the facets of
     the convex hull of the directions that the center sees from inside. If all points are in one
-    hemisphere, facets of the hull that face the other way would span the void beyond; they are not
-    triangles. Each distinct direction is a vertex, at any spacing.
+    hemisphere, facets of the hull that face the other way would span the empty part of the sphere;
+    they are not triangles. Each distinct direction is a vertex, at any spacing.
 
     Predicates are exact for the given vectors, square roots included; rounded unit vectors would
     not be on the sphere. If more than three directions are on one empty circle, their polygon is a
-    fan from its smallest vertex in an order of directions, so that a set of directions has one
+    fan from its smallest vertex in an order of directions, so a set of directions has one
     triangulation, independent of the order and the lengths of its rows. Longitudes and latitudes
     become vectors by sines and cosines that are the same on all platforms: degrees are reduced
-    exactly, points of one meridian are on one great circle exactly, poles and the date line are
-    what they are. Other grid points of one parallel tie only where they mirror each other.
+    exactly, points of one meridian are exactly on one great circle, and poles and the date line are
+    exact. Other grid points of one parallel tie only if they are mirror images of each other.
 
     Insertion along a space-filling curve (Bowyer; Watson, both 1981): O(n log n) on scattered
     points, O(n²) at worst. All arrays are read-only; areas, circumcenters and edges are computed on
@@ -299,7 +299,8 @@ class Delaunay(OnGlobe):
     def areas(self) -> Floats:
         """The areas of the triangles on the unit sphere (steradians), (m,), also of slivers.
 
-        The whole sphere has 4 pi. Multiply by the square of a radius: of the Earth 6371.0088 km.
+        The whole sphere has 4 pi. Multiply by the square of the radius, which is 6371.0088 km for
+        the Earth.
         """
         found = _core.sphere_areas(self._vectors, self._simplices, as_workers(self._workers))
         return sealed(found)
@@ -325,8 +326,8 @@ class Delaunay(OnGlobe):
         xi : array_like, shape (..., 2) or (..., 3)
             Longitudes and latitudes, in the unit of the constructor, or vectors of any length.
         tolerance : float, optional
-            Directions outside a hull, at most this angle from its boundary, are in the triangle
-            there; in the unit of the constructor.
+            Directions outside a hull, at most this angle from its boundary, are in the nearest
+            triangle; in the unit of the constructor.
 
         Returns
         -------
@@ -345,9 +346,9 @@ class Delaunay(OnGlobe):
 
         Notes
         -----
-        Exact. Directions are taken along a space-filling curve, each starting from the triangle of
-        the previous one; the answers do not depend on each other. Those outside are compared with
-        all edges of the boundary if there is a `tolerance`, which is exact as well.
+        Exact. Directions are located along a space-filling curve, each starting from the triangle
+        of the previous one; the results do not depend on the order. With a `tolerance`, which is
+        also exact, directions outside are compared with all edges of the boundary.
 
         Examples
         --------
@@ -388,8 +389,8 @@ class Delaunay(OnGlobe):
         Returns
         -------
         ndarray of int32, shape (...)
-            The vertex with the smallest angle from each; of several the smallest row. -1 for NaN
-            and vectors of length zero.
+            The vertex at the smallest angle from each; of several, the smallest row. -1 for NaN and
+            vectors of length zero.
 
         Raises
         ------
@@ -425,8 +426,9 @@ class Delaunay(OnGlobe):
         Notes
         -----
         Exact for the given vectors, square roots included. Signs that rounded determinants do not
-        prove, as of points a meter apart or exact ties, are computed by integers in Python: some
-        20 microseconds each, a minute for a million triangles a centimeter wide.
+        prove, such as those of points a meter apart or exact ties, are computed with integers in
+        Python. This takes some 20 microseconds each, or a minute for a million triangles a
+        centimeter wide.
 
         Examples
         --------
@@ -440,7 +442,7 @@ class Delaunay(OnGlobe):
         return validate(self._vectors, self.points, *arrays)
 
     def to_meshio(self) -> Any:
-        """Convert to a mesh of meshio (extra ``mesh``), with x, y, z on the unit sphere.
+        """Convert to a meshio mesh (extra ``mesh``), with x, y, z on the unit sphere.
 
         Returns
         -------
@@ -464,7 +466,7 @@ class Delaunay(OnGlobe):
         return to_meshio(self._parts())
 
     def to_pyvista(self) -> Any:
-        """Convert to a surface of PyVista (extra ``pyvista``) on the unit sphere.
+        """Convert to a PyVista surface (extra ``pyvista``) on the unit sphere.
 
         Returns
         -------

@@ -39,19 +39,20 @@ def from_geometry(
     Parameters
     ----------
     geometries : geometry or iterable of geometries
-        As for `delone.from_geometry`: shapely geometries, GeoDataFrames, mappings in the
-        form of GeoJSON, or iterables of these. Each row of a table and each feature of a collection
-        is a geometry. Longitudes come first. Other reference systems than geographic ones are
-        transformed (extra ``geo``); without one, coordinates are taken as longitudes and latitudes.
+        As for `delone.from_geometry`: shapely geometries, GeoDataFrames, mappings in the form of
+        GeoJSON, or iterables of these. Each row of a table and each feature of a collection is a
+        geometry. Longitudes come first. Projected coordinates are transformed (extra ``geo``);
+        without a reference system, coordinates are treated as longitudes and latitudes.
     winding : {"smaller", "ccw", "cw"}, optional
-        Which side of its outer rings is inside a polygon: whichever makes the area of a geometry
-        the smaller part of the sphere (the default), however rings run; the left one, as outer
-        rings in GeoJSON (RFC 7946) run counter-clockwise; or the right one, as in shapefiles. Most
-        sides of its outer rings decide, and those of a hemisphere by default as with "ccw".
+        Which side of its outer rings is inside a polygon: the side that makes the geometry the
+        smaller part of the sphere, whatever the direction of its rings (the default); the left one,
+        because outer rings in GeoJSON (RFC 7946) run counter-clockwise; or the right one, as in
+        shapefiles. The majority of the sides of its outer rings decides. A hemisphere is by default
+        on the left, as with "ccw".
     sides : {"arc", "parallel"}, optional
-        What joins two places: the arc of a great circle (the default, with a warning where one is
-        longer than 30 degrees and no meridian), or a straight line of a map of longitudes and
-        latitudes, such as a parallel, in pieces of at most one degree.
+        The line between two points: the arc of a great circle (the default, with a warning if one
+        is longer than 30 degrees and not on a meridian), or a straight line on a map of longitudes
+        and latitudes, such as a parallel, in pieces of at most one degree.
     crossing : {"split", "raise"}, optional
         As for `ConstrainedDelaunay`, but by default crossings are split, because borders in real
         data do cross.
@@ -66,16 +67,17 @@ def from_geometry(
     -------
     ConstrainedDelaunay
         The triangulation. Its directions are the distinct coordinates in order of appearance, then
-        crossings; its segments are the lines and the sides of all rings. ``geometry_of_segment``
-        has the geometry of each, and ``polygon`` the first geometry that contains each triangle, -1
-        at sea.
+        crossings; its segments are the lines and the sides of all rings. ``geometry_of_segment`` is
+        the geometry of each, and ``polygon_of_simplex`` the first geometry that contains each
+        triangle, -1 at sea.
 
     Raises
     ------
     InputError
-        An item is not a geometry, is the whole sphere, or has a side that is a whole turn along a
-        parallel, which has no arc. Reading ``polygon`` raises it, too, if as many sides of the
-        outer rings of a geometry run in one direction as in the other, and that decides.
+        An item is not a geometry, is the whole sphere, or has a side that goes once around along a
+        parallel, which has no arc. Reading ``polygon_of_simplex`` also raises it, if the outer
+        rings of a geometry have as many sides in one direction as in the other, and the direction
+        matters.
     CrossingSegmentsError, BudgetExceededError, DirectionError, DegenerateInputError
         As for `ConstrainedDelaunay`.
     NonFiniteError
@@ -86,17 +88,16 @@ def from_geometry(
     LongitudeWarning
         Longitudes span more than one turn.
     PolygonWarning
-        A side is longer than 30 degrees; or, when ``polygon`` is read, a geometry covers more than
-        half of the sphere.
+        A side is longer than 30 degrees; or, when ``polygon_of_simplex`` is read, a geometry covers
+        more than half of the sphere.
 
     Notes
     -----
-    Sides of rings are arcs of great circles, not straight lines of a map, unless ``sides`` says so.
-    A ring may surround a pole or cross the date line.
-    Sides that a geometry has twice separate nothing, such as the cut along the date line from a
-    polygon's coast to the pole. By the even-odd rule a point is inside if rings of a geometry
-    separate it from outside an odd number of times, so the direction of inner rings does not
-    matter.
+    Sides of rings are arcs of great circles, unless ``sides`` selects straight lines on a map. A
+    ring may surround a pole or cross the date line. Sides that occur twice in a geometry separate
+    nothing, such as the cut along the date line from the coast of a polygon to the pole. By the
+    even-odd rule, a point is inside if the rings of a geometry separate it from the outside an odd
+    number of times, so the direction of inner rings does not matter.
 
     Examples
     --------

@@ -51,22 +51,22 @@ class Grid(GridCells):
     areas : ndarray of float64, shape (ncells,)
         Areas in steradians.
     edges : {"parallel", "arc"}
-        What sides are: meridians and parallels, or arcs of great circles.
+        The kind of sides: meridians and parallels, or arcs of great circles.
     mask : ndarray of bool, shape (ncells,), or None
-        Which cells take part, where a dataset says so: for `Overlaps.to_weights`.
+        The cells to use, if a dataset specifies them: for `Overlaps.to_weights`.
     bounds : pair of ndarray of float64, or None
         Edges between columns and between rows, in degrees, of cells between meridians and parallels
         in rows and columns.
     report : GridReport
-        What was done to corners, with counts and rows.
+        The changes to corners, with counts and rows.
 
     Notes
     -----
-    Polygons may be concave, have holes and several parts, repeat corners, have corners in the
-    sides of others, run clockwise, and lie at or around a pole. Each must be within a hemisphere.
-    The start, the direction and repetitions of a ring, and the order of bounds, change no bit of
-    what is computed. Areas are right to a few units in their last place, for cells of
-    centimeters, too.
+    Polygons may be concave, have holes and several parts, repeat corners, have corners on the sides
+    of others, run clockwise, and lie at or around a pole. Each must be within a hemisphere. The
+    start, direction and repeated corners of a ring, and the order of bounds, do not change a single
+    bit of the results. Areas are accurate to a few units in their last place, even for cells of
+    centimeters.
 
     See Also
     --------
@@ -109,30 +109,30 @@ class Grid(GridCells):
         Parameters
         ----------
         ds : xarray.Dataset, xarray.DataArray or uxarray.Grid
-            With longitudes, latitudes and bounds of the CF conventions, or a mesh of UGRID, SCRIP,
-            ESMF, MPAS, ICON, FESOM, Exodus, OASIS, GEOS-CS or HEALPix. Of uxarray also what has
-            ``uxgrid``.
+            With longitudes, latitudes and bounds of the CF conventions, or a mesh in the convention
+            of UGRID, SCRIP, ESMF, MPAS, ICON, FESOM, Exodus, OASIS, GEOS-CS or HEALPix. Of uxarray,
+            also objects with ``uxgrid``.
         name : str, optional
-            Which of several grids: a mesh of UGRID, a grid of OASIS, or a variable with values.
+            Selects one of several grids: a UGRID mesh, an OASIS grid, or a variable with values.
         coords : pair of str, optional
             Names of the longitude and the latitude of centers, where there are several.
         edges : {"parallel", "arc"}, optional
-            What sides are. By default "parallel" for CF rows and columns, and "arc" else. SCRIP
-            grids can have "parallel", too.
+            The kind of sides. By default "parallel" for CF rows and columns, and otherwise "arc".
+            SCRIP grids can also have "parallel".
         degrees : bool, optional
-            Whether angles without an attribute ``units`` are in degrees. By default they are
-            refused, unless the convention fixes their unit.
+            Whether angles without an attribute ``units`` are in degrees. By default they raise an
+            error, unless the convention fixes their unit.
         infer_bounds : bool, optional
-            Whether cells without bounds get some, halfway between centers; see Notes.
+            Whether to infer missing bounds, halfway between centers; see Notes.
         merge : float, optional
-            Corners nearer than this, in radians, become one. 0 for none.
+            Corners closer than this, in radians, are merged; 0 merges none.
         workers : int, optional
             Maximum number of threads; by default one per core.
 
         Returns
         -------
         Grid
-            Its shape is that of fields. `mask` is the one of the dataset.
+            The grid. Its shape is that of fields, and `mask` is that of the dataset.
 
         Raises
         ------
@@ -143,14 +143,15 @@ class Grid(GridCells):
 
         Notes
         -----
-        Numbers of nodes start where the dataset or its convention says. Padding after the corners
-        of a cell is ignored; cells without corners are empty.
+        Node numbers start where the dataset or its convention says. Padding after the corners of a
+        cell is ignored; cells without corners are empty.
 
-        Bounds are inferred by one rule. In one dimension they are halfway between neighbors, the
-        outer ones as far from their center as the inner ones; latitudes beyond a pole are the pole.
-        In two dimensions corners are in the middle of four centers, and outer ones mirror them.
+        Bounds are inferred as follows. In one dimension, they are halfway between neighbors, and
+        the outer bounds are as far from their center as the inner ones; latitudes beyond a pole
+        become the pole. In two dimensions, corners are in the middle of four centers, and the outer
+        ones are mirrored.
 
-        Bounds of neighboring columns or rows that differ by a rounding of their dtype become one.
+        Bounds of neighboring columns or rows that differ by rounding in their dtype are merged.
 
         Examples
         --------
@@ -200,7 +201,7 @@ class Grid(GridCells):
         lon, lat : array_like, shape (n + 1,) or (n, 2)
             Bounds of columns and rows: the edges between them, or both bounds of each, as in files
             with CF conventions. In either direction; neighbors must share their bound. Latitudes
-            beyond a pole by rounding mean the pole.
+            that are beyond a pole by rounding become the pole.
         degrees : bool, optional
             Whether bounds are in degrees (the default) or in radians.
         workers : int, optional
@@ -214,7 +215,7 @@ class Grid(GridCells):
         Raises
         ------
         InputError
-            Bounds are not monotonic, leave gaps, or span more than one turn.
+            Bounds are not monotonic, leave gaps, or span more than 360 degrees.
         ShapeError, DtypeError, NonFiniteError
             A bound is not a number, or an array has another shape.
 
@@ -254,8 +255,9 @@ class Grid(GridCells):
         n : int
             Number of parallels between a pole and the equator: 80 for N80.
         points : "octahedral" or sequence of int, optional
-            Cells in each row from north to south, of a reduced grid; "octahedral" has 20 in the
-            row at a pole and 4 more in each row towards the equator. By default 4 n in all rows.
+            For a reduced grid, the number of cells in each row from north to south; "octahedral"
+            has 20 in the row at a pole and 4 more in each row toward the equator. By default 4 n in
+            all rows.
         workers : int, optional
             Maximum number of threads; by default one per core.
 
@@ -271,9 +273,9 @@ class Grid(GridCells):
 
         Notes
         -----
-        Rows are centered at the roots of the Legendre polynomial of degree 2 n. Their bounds are
-        such that their areas are proportional to the weights of Gauss's quadrature. Columns are
-        centered at multiples of 360 degrees over their number.
+        Rows are centered at the roots of the Legendre polynomial of degree 2 n. Their bounds make
+        their areas proportional to the weights of Gaussian quadrature. Columns are centered at
+        multiples of 360 degrees over their number.
 
         Examples
         --------
@@ -307,8 +309,8 @@ class Grid(GridCells):
             Longitudes and latitudes of corners: those between the cells, or the k corners of each,
             in order around it, as bounds in files with CF conventions.
         merge : float, optional
-            Corners nearer than this, in radians, become one: files repeat corners with other last
-            bits. 0 for none.
+            Corners closer than this, in radians, are merged, because files repeat corners with
+            different last bits; 0 merges none.
         degrees : bool, optional
             Whether corners are in degrees (the default) or in radians.
         workers : int, optional
@@ -322,8 +324,8 @@ class Grid(GridCells):
         Raises
         ------
         DirectionError
-            A cell has opposite ends of a side, sides that cross or are repeated, or no hemisphere
-            that contains it; ``error.rows`` has the first.
+            A cell has a side with opposite ends, has sides that cross or are repeated, or is not
+            within a hemisphere; ``error.rows`` has the first such cells.
         ShapeError, DtypeError, NonFiniteError
             Arrays have other shapes, or a corner is not a number.
 
@@ -379,7 +381,7 @@ class Grid(GridCells):
 
         Examples
         --------
-        The cells of triangles, by rows of an array of places:
+        The cells of triangles, from rows of an array of positions:
 
         >>> import numpy as np
         >>> from delone import sphere
@@ -405,7 +407,7 @@ class Grid(GridCells):
         Parameters
         ----------
         geometries : geometry, iterable of geometries, GeoSeries or GeoDataFrame
-            Polygons and multipolygons of shapely, one cell each; None and empty ones are empty
+            Shapely polygons and multipolygons, one cell each; None and empty geometries are empty
             cells. Geographic reference systems only.
         merge, degrees, workers
             As for `from_curvilinear`.
@@ -413,8 +415,8 @@ class Grid(GridCells):
         Returns
         -------
         Grid
-            Sides are arcs of great circles. A ring is a hole where shapely says so, however it
-            runs.
+            Sides are arcs of great circles. Shapely determines which rings are holes, whatever
+            their direction.
 
         Raises
         ------
@@ -427,8 +429,8 @@ class Grid(GridCells):
 
         Notes
         -----
-        Polygons that are cut at 180 degrees fit together there. A polygon around a pole that is
-        completed along the edge of the map, with corners at latitude 90, is one around the pole.
+        Polygons that are cut at 180 degrees fit together there. A polygon that is completed along
+        the edge of the map, with corners at latitude 90, is treated as a polygon around the pole.
 
         Examples
         --------
@@ -461,7 +463,7 @@ class Grid(GridCells):
         Raises
         ------
         InputError
-            The diagram is clipped: make the grid of `Voronoi.to_geopandas`.
+            The diagram is clipped: make the grid from `Voronoi.to_geopandas`.
         DirectionError
             A cell is larger than a hemisphere, as those of few sites are.
 
@@ -495,8 +497,8 @@ class Grid(GridCells):
         Returns
         -------
         Grid
-            Quadrilaterals. The sides of pixels are not arcs of great circles; here they are, so
-            that areas differ a little from each other.
+            Quadrilaterals. The true sides of pixels are not arcs of great circles; here they are,
+            so their areas differ slightly from each other.
 
         Raises
         ------

@@ -270,7 +270,7 @@ class GridCells(Stored):
         crs : any, optional
             Coordinate reference system of longitudes and latitudes, by default EPSG:4326.
         step : float, optional
-            Degrees between the corners that show arcs of great circles, at most.
+            Maximum distance, in degrees, between the corners that represent arcs of great circles.
 
         Returns
         -------

@@ -16,23 +16,23 @@ __all__ = ["GridFaults", "GridReport"]
 
 @dataclass(frozen=True, repr=False, eq=False)
 class GridReport(ReadOnly):
-    """What was done to the corners of a grid, and which cells are special.
+    """The changes to the corners of a grid, and its special cells.
 
     Attributes
     ----------
     merged : int
-        Corners that were moved to an earlier corner within `merge`, and bounds to those of a
-        neighbor; of meshes, nodes.
+        The number of corners that were moved to an earlier corner within `merge`, and of bounds
+        that were moved to those of a neighbor; for meshes, of nodes.
     repeated : int
         Corners that repeat the one before in their cell, and are ignored.
     turned : ndarray of int64
-        Cells whose corners are clockwise, and are taken in the other direction.
+        Cells with clockwise corners, whose direction is reversed.
     empty : ndarray of int64
         Cells with fewer than three distinct corners, or without area; they share nothing.
     concave : ndarray of int64
         Cells that are concave or have several rings, or have more than 64 corners.
     masked : ndarray of int64
-        Cells that do not take part, as a dataset says.
+        Cells that the dataset excludes.
 
     Examples
     --------

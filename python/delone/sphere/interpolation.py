@@ -526,9 +526,9 @@ class Linear(_Continuous):
     -----
     The weight of a corner is proportional to the determinant of the query and the other two
     corners: the barycentric weights of the point where the ray to the query meets the plane of the
-    corners. They are continuous, the date line and the poles included. At a site the value is
-    reproduced exactly, bit for bit; constants are reproduced up to rounding, and smooth functions
-    up to the square of the length of the edges.
+    corners. They are continuous, including at the date line and the poles. At a site, the value is
+    reproduced exactly, bit for bit. Constants are reproduced up to rounding, and smooth functions
+    with an error proportional to the square of the edge length.
 
     Triangles are found exactly. Weights are rounded, from rounded unit vectors: across a triangle
     whose height is below about 1e-15 they are arbitrary, but not negative. Each query costs its
@@ -553,7 +553,7 @@ class Linear(_Continuous):
 
 
 class NaturalNeighbor(_Continuous):
-    """Interpolation from natural neighbors on the sphere.
+    """Natural neighbor interpolation on the sphere.
 
     Parameters
     ----------
@@ -575,13 +575,13 @@ class NaturalNeighbor(_Continuous):
     Notes
     -----
     The neighbors are the corners of all triangles whose circle contains the query, exactly. Their
-    weights are those of the plane, in the projection from the center to the tangent plane of the
-    query, where great circles are lines: of the area or the wall that the Voronoi cell of the query
-    takes from that of the neighbor. They are nonnegative and sum to 1, and the weighted mean of the
-    sites has the direction of the query, as with `Linear`; the boundary of a hull is linear. So
-    there is no date line and no pole, and no projection of the data to choose. Sites are
-    reproduced exactly. Where more than nine digits are lost by rounding, as between sites that
-    almost coincide, the weights are those of `Linear`.
+    weights are those of the plane after projection from the center to the tangent plane at the
+    query, where great circles are lines. They depend on the area or the wall that the Voronoi cell
+    of the query takes from that of the neighbor. They are nonnegative and sum to 1, and the
+    weighted mean of the sites has the direction of the query, as with `Linear`; the boundary of a
+    hull is linear. So the date line and the poles are not special, and you need not choose a
+    projection. Values at sites are reproduced exactly. Where rounding loses more than nine digits,
+    as between sites that almost coincide, the weights are those of `Linear`.
 
     Each query takes time linear in the number of its neighbors, about six.
 

@@ -27,7 +27,7 @@ class Overlaps(SharedAreas, Stored):
     Parameters
     ----------
     source, target : Grid
-        Where fields are, and where they are wanted.
+        The grids of the given and of the wanted fields.
     workers : int, optional
         Maximum number of threads; by default one per core. The result does not depend on it.
 
@@ -53,12 +53,12 @@ class Overlaps(SharedAreas, Stored):
 
     Notes
     -----
-    Which cells share area is decided by exact signs, with infinitesimal moves in place of ties, so
-    that common corners and sides, corners in sides and poles are like any other place. Each area
-    is right to a few units in its last place and 1e-30 steradians; smaller parts cannot be told
-    from cells that only touch, and are not pairs. So the sums over rows and columns are the areas
-    of the cells wherever the other grid covers them. No polygon is clipped: an area is a sum over
-    corners and crossings (Franklin, 1990), of which each term is an exact choice.
+    Exact signs decide which cells share area. Infinitesimal moves break ties, so common corners and
+    sides, corners on sides, and poles need no special treatment. Each area is accurate to a few
+    units in its last place and 1e-30 steradians; smaller parts cannot be distinguished from cells
+    that only touch, and are not pairs. So the sums over rows and columns are the areas of the cells
+    wherever the other grid covers them. No polygon is clipped: an area is a sum over corners and
+    crossings (Franklin, 1990), whose terms are selected exactly.
 
     A part between a parallel and its chord is integrated with an error of 1e-16 of the cube of its
     width in radians.
@@ -162,21 +162,21 @@ class Overlaps(SharedAreas, Stored):
         method : {"conservative", "normalized", "sum", "majority"}, optional
             How values are combined:
 
-            - "conservative": integrals over the target cell, divided by its area ("destarea"). The
-              sum of values times areas is that of the source. A cell of which a part is not covered
-              has as much less.
-            - "normalized": means over the covered part ("fracarea"). A constant remains one.
+            - "conservative": integrals over the target cell, divided by its area ("destarea"). This
+              preserves the sum of values times areas. A partly covered cell gets proportionally
+              less.
+            - "normalized": means over the covered part ("fracarea"). A constant stays constant.
             - "sum": amounts, such as numbers of inhabitants: each source cell gives its value to
               target cells by the share of its area.
             - "majority": categories: the value that covers most of the target cell.
         source_mask, target_mask : array_like of bool, optional
-            True, or 1, for cells that take part, as in files; the shape of fields or of cells. By
-            default all do.
+            True, or 1, for the cells to use, as in files; in the shape of fields or of cells. By
+            default all.
 
         Returns
         -------
         Weights
-            They hold no grid. Masked target cells have no entries.
+            The weights, without the grids. Masked target cells have no entries.
 
         Raises
         ------
@@ -187,7 +187,8 @@ class Overlaps(SharedAreas, Stored):
 
         Notes
         -----
-        Fluxes and densities want "conservative", states such as temperatures "normalized".
+        Use "conservative" for fluxes and densities, and "normalized" for states such as
+        temperatures.
 
         Examples
         --------

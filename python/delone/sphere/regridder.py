@@ -190,7 +190,7 @@ class Regridder(Immutable):
 
     @property
     def weights(self) -> Weights:
-        """What each source cell contributes to each target cell."""
+        """The contribution of each source cell to each target cell."""
         return self._weights
 
     @property

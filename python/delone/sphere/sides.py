@@ -53,7 +53,7 @@ class Origin(NamedTuple):
 
 
 class PolygonWarning(UserWarning):
-    """A polygon on the sphere may mean something else than its author thought.
+    """A polygon on the sphere may differ from what its author intended.
 
     Examples
     --------

@@ -49,24 +49,24 @@ class Voronoi(OnGlobe):
     lonlat : array_like, shape (n, 2), optional
         Longitudes and latitudes of the sites, in degrees unless `degrees` is false.
     xyz : array_like, shape (n, 3), optional
-        Vectors from the center of the sphere. Their lengths do not matter: a vector means its
-        direction, exactly. Give either this or `lonlat`.
+        Vectors from the center of the sphere. Their lengths do not matter: a vector represents
+        exactly its direction. Give either this or `lonlat`.
     radius : float, optional
         Radius of the sphere, for areas and lengths; by default 1, so that areas are steradians. The
         mean radius of the Earth is 6371.0088 km.
     clip : geometry or iterable of geometries, optional
-        Where cells end: polygons in longitudes and latitudes, in the unit of `degrees`, with or
-        without holes, as for `from_geometry`. Their sides are arcs of great circles; they may cross
-        the date line and surround a pole. The region is their union. Other reference systems than
-        geographic ones are transformed (extra ``geo``).
+        The region to which cells are clipped: polygons in longitudes and latitudes, in the unit of
+        `degrees`, with or without holes, as for `from_geometry`. Their sides are arcs of great
+        circles; they may cross the date line and surround a pole. The region is their union.
+        Projected coordinates are transformed (extra ``geo``).
     winding : {"smaller", "ccw", "cw"}, optional
-        Which side of its outer rings is inside a polygon of `clip`: whichever makes a geometry the
-        smaller part of the sphere (the default), the left one, as in GeoJSON (RFC 7946), or the
-        right one, as in shapefiles. A hemisphere is by default to the left.
+        Which side of its outer rings is inside a polygon of `clip`: the side that makes a geometry
+        the smaller part of the sphere (the default), the left one, as in GeoJSON (RFC 7946), or the
+        right one, as in shapefiles. A hemisphere is by default on the left.
     sides : {"arc", "parallel"}, optional
-        What joins two places of `clip`: arcs of great circles (the default, with a warning for long
-        ones), or straight lines of a map, such as parallels; see `from_geometry`. A rectangle of
-        all longitudes and latitudes is the whole sphere.
+        The lines between the corners of `clip`: arcs of great circles (the default, with a warning
+        for long ones), or straight lines on a map, such as parallels; see `from_geometry`. A
+        rectangle of all longitudes and latitudes is the whole sphere.
     degrees : bool, optional
         Whether `lonlat`, `clip`, and longitudes and latitudes of queries, are in degrees (the
         default) or in radians.
@@ -88,8 +88,8 @@ class Voronoi(OnGlobe):
     regions : list of list of int
         The vertices of each cell, counter-clockwise seen from outside.
     point_region : ndarray of int32, shape (n,)
-        The cell of each site, as an index of `regions`. Sites in one direction share their cell;
-        without such duplicates it is the row itself.
+        The cell of each site, as an index into `regions`. Sites with the same direction share a
+        cell; without such duplicates, it is the row itself.
 
     Raises
     ------
@@ -107,7 +107,7 @@ class Voronoi(OnGlobe):
     Warns
     -----
     LongitudeWarning
-        Longitudes span more than one turn: two conventions seem to be mixed.
+        Longitudes span more than 360 degrees: two conventions seem to be mixed.
     PolygonWarning
         A side of `clip` is longer than 30 degrees, or a polygon covers more than half the sphere.
 
@@ -117,26 +117,26 @@ class Voronoi(OnGlobe):
     of sites on one circle share one vertex, and no ridge has length zero. Only coordinates of
     vertices and measures are rounded. If all sites lie in one hemisphere, the facets of the hull
     that face away from the center, which are not triangles of the triangulation, are vertices on
-    the other side, more than a quarter of a turn from their sites. They are found by random
-    insertion into the boundary of the triangulation (Chew, 1990) in expected linear time.
+    the other side, more than 90 degrees from their sites. They are found by random insertion into
+    the boundary of the triangulation (Chew, 1990) in expected linear time.
 
-    Three sites, and any number on one circle, have lunes as cells: all ridges lead from one vertex
-    to the opposite one. Two sites have a hemisphere each, with two ridges that are half of its rim;
-    the cell of one site is the whole sphere, without a vertex. `triangulation` is None for these,
-    and on a great circle.
+    Three sites, and any number of sites on one circle, have lunes as cells: all ridges lead from
+    one vertex to the opposite one. Two sites have one hemisphere each, with two ridges, each half
+    of its boundary; the cell of one site is the whole sphere, without vertices. `triangulation` is
+    None for one or two sites, and for sites on a great circle.
 
     The area of a cell is the sum of the triangles between its site and its ridges, each from a
-    formula in which nothing cancels, so that the areas of slivers, and of cells of sites that are a
-    nanometer apart on the Earth, have relative errors of about 1e-11, too. They sum to the whole
-    sphere. Lunes are measured from rounded unit vectors.
+    formula without cancellation. So even the areas of slivers, and of cells of sites that are a
+    nanometer apart on the Earth, have relative errors of about 1e-11. They sum to the whole sphere.
+    Lunes are measured from rounded unit vectors.
 
     With a `clip`, areas, neighbors and `polygons` are those of the clipped cells; the attributes
     listed above remain those of the whole diagram. Ridges, between their rounded vertices, and the
     sides of the region are arcs of one `ConstrainedDelaunay` with split crossings. These take some
-    20 microseconds each, beside two triangulations of all arcs. A side may pass through a vertex or
-    run along a ridge: parts of cells that are narrower than 2e-15 (13 nanometers on the Earth) are
-    attributed to roundings, and join the next cell. The areas of the clipped cells sum to that of
-    the region.
+    20 microseconds each, in addition to two triangulations of all arcs. A side may pass through a
+    vertex or run along a ridge: parts of cells that are narrower than 2e-15 (13 nanometers on the
+    Earth) are attributed to rounding, and join the adjacent cell. The areas of the clipped cells
+    sum to that of the region.
 
     See Also
     --------
@@ -165,7 +165,7 @@ class Voronoi(OnGlobe):
     >>> len(diagram.regions[0]), abs(diagram.vertices_lonlat[diagram.regions[0]]).round(4)[0]
     (4, array([135.    ,  35.2644]))
 
-    Clipped to the northern half:
+    Clipped to the northern hemisphere:
 
     >>> equator = {"type": "Polygon", "coordinates": [[(0, 0), (90, 0), (180, 0), (270, 0)]]}
     >>> (sphere.Voronoi(lonlat=sites, clip=equator).cell_areas / 3.141592653589793).round(9)
@@ -392,8 +392,8 @@ class Voronoi(OnGlobe):
     def ridge_points(self) -> Indices:
         """The two sites of each ridge, (r, 2).
 
-        The first lies to the left of the way from the first of its `ridge_vertices` to the second,
-        seen from outside.
+        The first lies to the left of the direction from the first of its `ridge_vertices` to the
+        second, seen from outside.
         """
         return sealed(self._cells.sites)
 
@@ -454,8 +454,8 @@ class Voronoi(OnGlobe):
     def cell_areas(self) -> Floats:
         """The areas of the clipped cells, (n,), in steradians times the square of the radius.
 
-        Rows with the same direction share one cell, and each has its area; 0 if nothing is left.
-        Without a clip those of the cells sum to 4 pi times the square of the radius.
+        Rows with the same direction share one cell, and each has its area; 0 for an empty cell.
+        Without a clip, the areas of the cells sum to 4 pi times the square of the radius.
         """
         if self._left is not None:
             found = self._left.areas(self.npoints)
@@ -493,7 +493,7 @@ class Voronoi(OnGlobe):
             degrees, with arcs of great circles between them, not closed. The part is to the left of
             its rings: outer rings are counter-clockwise seen from outside, and holes clockwise. If
             there are several, the ring with the smallest area to its left, the outer one, is first.
-            A cell of which nothing is left has no part.
+            An empty cell has no parts.
 
         Notes
         -----
@@ -524,7 +524,7 @@ class Voronoi(OnGlobe):
         return [found[row] for row in self.duplicate_of.tolist()]
 
     def to_geopandas(self, data: Any = None, *, crs: Any = None, step: float = 1.0) -> Any:
-        """Convert the clipped cells to a table of geopandas (extra ``geo``).
+        """Convert the clipped cells to a GeoDataFrame (extra ``geo``).
 
         Parameters
         ----------
@@ -534,15 +534,15 @@ class Voronoi(OnGlobe):
         crs : any, optional
             Coordinate reference system of longitudes and latitudes, by default EPSG:4326.
         step : float, optional
-            Degrees between the corners that show arcs of great circles, at most.
+            Maximum distance, in degrees, between the corners that represent arcs of great circles.
 
         Returns
         -------
         GeoDataFrame
             One row for each site, with the index of `data`: polygons or multipolygons in degrees,
             cut at 180 degrees and completed along the edge of the map if they contain a pole, as
-            RFC 7946 recommends. A cell of which nothing is left is an empty polygon; sites with the
-            same direction have the same cell.
+            RFC 7946 recommends. An empty cell is an empty polygon; sites with the same direction
+            have the same cell.
 
         Raises
         ------
@@ -553,8 +553,8 @@ class Voronoi(OnGlobe):
 
         Notes
         -----
-        Whether an arc goes east or west, and whether a cell contains a pole, is decided exactly.
-        Coordinates are rounded.
+        Exact predicates decide whether an arc goes east or west, and whether a cell contains a
+        pole. Coordinates are rounded.
 
         Examples
         --------
@@ -635,7 +635,7 @@ class Voronoi(OnGlobe):
         return self._nearest(queries.reshape(-1, 3)).reshape(queries.shape[:-1])
 
     def validate(self) -> SphereReport:
-        """Prove that the triangulation whose dual this is is correct.
+        """Prove that the underlying triangulation is correct.
 
         Returns
         -------

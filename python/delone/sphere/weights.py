@@ -23,7 +23,7 @@ __all__ = ["Weights"]
 
 
 class Weights(AreaWeights):
-    """What each source cell contributes to each target cell.
+    """The contribution of each source cell to each target cell.
 
     Made by `Overlaps.to_weights`, by `between` for interpolation between centers, or by
     `from_netcdf` from a map file of another program.
@@ -32,7 +32,7 @@ class Weights(AreaWeights):
     ----------
     method : str
         "conservative", "normalized", "sum" or "majority", as for `Overlaps.to_weights`; a method of
-        `between`; "other" if a file does not say.
+        `between`; "other" if a file does not name one.
     indptr : ndarray of int64, shape (ntarget + 1,)
         Where the entries of each target cell start, and their number: compressed rows (CSR).
     indices : ndarray of int32, shape (k,)
@@ -51,7 +51,7 @@ class Weights(AreaWeights):
 
     Notes
     -----
-    Weights hold arrays and no grid, so that their pickles are small.
+    Weights contain arrays and no grids, so their pickles are small.
 
     See Also
     --------
@@ -98,13 +98,13 @@ class Weights(AreaWeights):
         Parameters
         ----------
         source, target : Grid
-            Where fields are, and where they are wanted.
+            The grids of the given and of the wanted fields.
         method : {"linear", "bilinear", "sibson", "laplace", "nearest", "binned", \
 "inverse_distance"}, optional
             How values at centers are combined:
 
             - "linear": in the triangles between centers
-            - "bilinear": between centers in rows and columns; towards a pole, to the mean of the
+            - "bilinear": between centers in rows and columns; toward a pole, to the mean of the
               last row
             - "sibson", "laplace": natural neighbors
             - "nearest": the value of the nearest center
@@ -113,9 +113,9 @@ class Weights(AreaWeights):
             - "inverse_distance": the nearest center and its neighbors in the Delaunay
               triangulation, weighted by distances to the power of minus `power`
         source_mask, target_mask : array_like of bool, optional
-            True, or 1, for cells that take part.
+            True, or 1, for the cells to use.
         extrapolate : {"nan", "nearest"}, optional
-            What target cells get that are outside the centers.
+            The values of target cells outside the centers.
         power : float, optional
             Of "inverse_distance".
         workers : int, optional
@@ -192,7 +192,7 @@ class Weights(AreaWeights):
         layout : {"esmf", "scrip"}, optional
             Names of dimensions and variables: those of ESMF, or of SCRIP and CDO.
         source, target : Grid, optional
-            The grids, whose centers and corners are written, too. NCO and CDO need them.
+            The grids, whose centers and corners are also written. NCO and CDO need them.
         format : {"NETCDF4", "NETCDF3_64BIT_DATA"}, optional
             NetCDF-4, or CDF-5.
 
