@@ -215,7 +215,7 @@ class DegenerateInputError(InputError):
 
 
 class DirectionError(InputError):
-    """Some rows mean no direction: zero vectors, latitudes beyond a pole, longitudes of many turns.
+    """Rows are not directions: zero vectors, latitudes beyond a pole, longitudes of many turns.
 
     Parameters
     ----------
@@ -260,7 +260,7 @@ class DirectionError(InputError):
 
 
 class CrossingSegmentsError(InputError):
-    """Segments cross, and crossings were requested to be errors.
+    """Segments cross, and crossings are not allowed.
 
     Parameters
     ----------
@@ -397,7 +397,7 @@ class OpenSurfaceError(InputError):
 
 
 class CrowdedFacesError(InputError):
-    """Faces of a surface are so close that no double lies where a point is needed between them.
+    """Faces of a surface are so close that no double lies between them where a point is needed.
 
     Parameters
     ----------
@@ -499,12 +499,12 @@ class OutsideError(InputError):
     message : str
         The message.
     place : tuple of float, optional
-        A place where it does.
+        A position where it does.
 
     Attributes
     ----------
     place : tuple of float, or None
-        A place where it does.
+        A position where it does.
 
     Examples
     --------
@@ -542,7 +542,7 @@ class BudgetExceededError(DeloneError, RuntimeError):
     found : int, optional
         The number found when the computation stopped; there may be more.
     segments : iterable of int, optional
-        The rows of up to five segments that need the most of them, in descending order.
+        The rows of up to five segments that need the most vertices, in descending order.
     place : tuple of float, optional
         Location: the point where the first two of these segments meet, or else where the last
         vertex would have been added.
@@ -554,7 +554,7 @@ class BudgetExceededError(DeloneError, RuntimeError):
     found : int
         The number found when the computation stopped; there may be more.
     segments : tuple of int
-        The rows of up to five segments that need the most of them; empty if unknown.
+        The rows of up to five segments that need the most vertices; empty if unknown.
     place : tuple of float, or None
         Location: the point where the first two of these segments meet, or else where the last
         vertex would have been added.
@@ -643,7 +643,7 @@ class LimitError(InputError):
 
 
 class InternalError(DeloneError, RuntimeError):
-    """An internal check failed: a bug in delone, never the caller's fault.
+    """An internal check failed: this is a bug in delone, not an error of the caller.
 
     The message ends with a request to report it.
 
@@ -673,7 +673,7 @@ class InternalError(DeloneError, RuntimeError):
 
 
 class EditConflictError(DeloneError, RuntimeError):
-    """Another thread has edited a `Dynamic` while several edits were made as one.
+    """Another thread edited a `Dynamic` during a transaction of several edits.
 
     Parameters
     ----------
@@ -690,7 +690,7 @@ class EditConflictError(DeloneError, RuntimeError):
 
 
 class HandleError(DeloneError, KeyError):
-    """Handles name no points of a `Dynamic`, or one of them twice; also a KeyError.
+    """Handles do not identify points of a `Dynamic`, or occur twice; also a KeyError.
 
     Parameters
     ----------
@@ -702,7 +702,7 @@ class HandleError(DeloneError, KeyError):
     Attributes
     ----------
     handles : ndarray of int64
-        The handles that are gone or never were, or those that are named twice.
+        The handles that do not exist or occur twice.
 
     Examples
     --------
@@ -749,7 +749,7 @@ class FileFormatError(DeloneError, ValueError):
 class OutputError(DeloneError, OSError):
     """A file cannot be written: a full disk, a quota, a limit, or another failure.
 
-    Also an OSError, with its attributes. Nothing is left of the new file, and an existing file is
+    Also an OSError, with its attributes. No part of the new file remains, and an existing file is
     unchanged.
 
     Attributes

@@ -37,28 +37,28 @@ _DOUBT = 2.0**-30
 @renamed(nearest="closest")
 @dataclass(frozen=True, eq=False)
 class Location:
-    """Where points lie.
+    """The location of points: simplices and weights.
 
     Parameters
     ----------
     simplex : ndarray of int32, shape (...)
-        The simplex that holds the point inside or on its boundary, the first one where there are
-        several; -1 outside.
+        The simplex that contains the point, inside it or on its boundary; the first one if there
+        are several; -1 outside.
     barycentric : ndarray of float64, shape (..., d + 1)
-        Weights of the corners of that simplex: none below 0, of sum 1 up to rounding, exactly 1 at
-        a corner. NaN outside.
+        Weights of the corners of that simplex: nonnegative, with the sum 1 up to rounding, and
+        exactly 1 at a corner. NaN outside.
     closest : ndarray of float64, shape (..., d)
         The point itself inside; outside, the nearest point of the boundary, rounded. NaN where the
         query is not finite, and outside in more than three dimensions.
     beside : ndarray of int32, shape (...)
-        Outside, the simplex at that point of the boundary; else -1.
+        Outside, the simplex at that point of the boundary; otherwise -1.
     facet : ndarray of int32, shape (..., d)
         Outside, the corners of the facet of the boundary with that point, the nearest by exact
         distances: an edge with the triangle to its left, or a face, counter-clockwise seen from
         outside; else -1.
     weights : ndarray of float64, shape (..., d)
-        Outside, the weights of these corners in that point: none below 0, of sum 1 up to rounding;
-        else NaN.
+        Outside, the weights of these corners at that point: nonnegative, with the sum 1 up to
+        rounding; otherwise NaN.
 
     Examples
     --------
@@ -81,7 +81,7 @@ class Location:
     weights: Floats
 
     def at(self, rows: NDArray[np.integer]) -> Self:
-        """Return some of the places.
+        """Return the locations of some rows.
 
         Parameters
         ----------
@@ -91,7 +91,7 @@ class Location:
         Returns
         -------
         Location
-            The places of these rows.
+            The locations of these rows.
         """
         return type(self)(*(getattr(self, each.name)[rows] for each in fields(self)))
 

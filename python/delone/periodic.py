@@ -50,8 +50,8 @@ class PeriodicDelaunay(Complex):
         ``(Lx, Ly)``: the distances after which the points repeat in x and in y. None for a
         direction without a period.
     weights : array_like, shape (n,), optional
-        Weights, in the square of the unit of the points, as for `RegularTriangulation`. All copies
-        of a point have its weight.
+        Weights, in squared units of the points, as for `RegularTriangulation`. All copies of a
+        point have its weight.
     workers : int, optional
         Maximum number of threads; by default one per core. The result does not depend on it.
 
@@ -75,7 +75,8 @@ class PeriodicDelaunay(Complex):
     Raises
     ------
     InputError
-        There is no period, one is not positive and finite, or points lie a period or more apart.
+        There is no period, a period is not positive and finite, or points are a period or more
+        apart.
     DegenerateInputError
         There is no triangle: there are no points, or there is one period and all points lie on one
         line along it.
@@ -88,12 +89,12 @@ class PeriodicDelaunay(Complex):
     -----
     Exact, like `Delaunay`: a copy is the exact sum of a coordinate and a period, which in general
     is not a double, and nothing is rounded before a decision. Ties are broken in the same way, so
-    that the set of triangles is unique, and the same in all periods. With two periods there are 2 n
+    the set of triangles is unique and the same in all periods. With two periods there are 2 n
     triangles and 3 n edges for n distinct points (with weights, for n that are not hidden).
 
-    The points are triangulated without copies first; triangles whose circumcircles stay clear of
-    all copies are final. Only the points at other triangles are triangulated with all their copies
-    one period away, which are sufficient for any points. O(n log n) on typical inputs.
+    First, the points are triangulated without copies; triangles whose circumcircles contain no
+    copies are final. Only the points of the other triangles are triangulated with all their copies
+    one period away, which are always sufficient. O(n log n) on typical inputs.
 
     References
     ----------
@@ -155,7 +156,7 @@ class PeriodicDelaunay(Complex):
 
     @property
     def weights(self) -> Floats | None:
-        """The weights, (n,); None without."""
+        """The weights, (n,); None without weights."""
         return self._weights if len(self._weights) else None
 
     @property
@@ -256,7 +257,8 @@ class PeriodicDelaunay(Complex):
             Truthy if there are no faults: triangles are counter-clockwise and cover the plane, or
             the strip, exactly once, neighbors and partners are mutual and fit the offsets, each
             edge is locally Delaunay (with weights, locally regular), ties are broken canonically,
-            and each distinct point is a vertex or, with weights, above the triangle that holds it.
+            and each distinct point is a vertex or, with weights, above the triangle that contains
+            it.
 
         Notes
         -----

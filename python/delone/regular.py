@@ -38,8 +38,8 @@ class RegularTriangulation(PointTriangulation):
     points : array_like, shape (n, 2) or (n, 3)
         Finite coordinates; results are exact for the given doubles.
     weights : array_like, shape (n,)
-        Finite weights, in the square of the unit of the points: the squares of radii, if points
-        represent circles or spheres. Adding a constant to all of them changes nothing.
+        Finite weights, in squared units of the points: squared radii, if points represent circles
+        or spheres. Adding a constant to all weights does not change the result.
     workers : int, optional
         Maximum number of threads; by default one per core. The result does not depend on it.
     planar : bool, optional
@@ -75,15 +75,15 @@ class RegularTriangulation(PointTriangulation):
 
     Notes
     -----
-    The simplices are the lower side of the convex hull of the points lifted to
-    ``x**2 + y**2 - w``, in 3-D to ``x**2 + y**2 + z**2 - w``. A point whose lift lies above it is
-    *hidden*: nowhere is its power the least, so it is not a vertex. With equal weights this is
-    the Delaunay triangulation.
+    The simplices are the lower side of the convex hull of the points lifted to ``x**2 + y**2 - w``,
+    in 3-D to ``x**2 + y**2 + z**2 - w``. A point whose lift lies above it is *hidden*: its power is
+    not the smallest anywhere, so it is not a vertex. With equal weights this is the Delaunay
+    triangulation.
 
-    The result is exact and unique: ties are broken as in `delone.Delaunay`, so that a point whose
-    lift lies on the hull without being a corner of it is hidden. Of points with the same
-    coordinates the one with the greatest weight counts, and the others are hidden; of equal weights
-    the first row is the vertex, and the others are its duplicates.
+    The result is exact and unique: ties are broken as in `delone.Delaunay`, so a point whose lift
+    lies on the hull but is not a corner of it is hidden. Of points with the same coordinates, the
+    one with the greatest weight is used, and the others are hidden; of equal weights, the first row
+    is the vertex, and the others are its duplicates.
 
     The method is cavity insertion along a Hilbert curve (Bowyer; Watson, both 1981), in
     O(n log n) on typical inputs.
@@ -153,7 +153,7 @@ class RegularTriangulation(PointTriangulation):
             Truthy if there are no faults: simplices are positively oriented and tile the exact
             hull, neighbors are mutual, each edge or face is locally regular, ties are broken
             canonically, each vertex is the first of the heaviest rows with its coordinates,
-            duplicates are listed, and each hidden point is above the simplex that holds it.
+            duplicates are listed, and each hidden point is above the simplex that contains it.
 
         Notes
         -----

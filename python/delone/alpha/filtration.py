@@ -185,12 +185,12 @@ class AlphaComplex(Stored):
 
     @property
     def weights(self) -> Floats | None:
-        """The weights, (n,); None without."""
+        """The weights, (n,); None without weights."""
         return self._weights
 
     @property
     def periods(self) -> tuple[float | None, float | None] | None:
-        """The periods in x and y; None without."""
+        """The periods in x and y; None without periods."""
         mesh = self._valued.periodic
         return None if mesh is None else mesh.periods
 

@@ -249,8 +249,8 @@ def triangulate_polygon(polygon: Any, *, rule: str = "even-odd") -> PolygonTrian
         a shapely Polygon or MultiPolygon, an object with ``__geo_interface__``, or a mapping of
         that form.
     rule : {"even-odd", "nonzero"}, optional
-        What is inside where rings cross or are nested: points with an odd winding number, or points
-        with a nonzero winding number, summed over the rings.
+        The inside, if rings cross or are nested: points with an odd winding number, or points with
+        a nonzero winding number, summed over the rings.
 
     Returns
     -------
@@ -271,7 +271,7 @@ def triangulate_polygon(polygon: Any, *, rule: str = "even-odd") -> PolygonTrian
     are those of the constrained Delaunay triangulation, exact and canonical.
 
     Rings of geometries are first oriented, outer rings counter-clockwise and holes clockwise,
-    because the orientation of rings in geometries has no meaning; arrays are used as they are.
+    because the orientation of rings in geometries has no meaning; arrays are not reoriented.
 
     Examples
     --------

@@ -57,7 +57,7 @@ def triangulate(
     output : path
         A new folder, or that of an interrupted run.
     tile_points : int, optional
-        Points in a tile, on average, from 3 to 2^27. A worker needs some 200 bytes for each.
+        Points in a tile, on average, from 3 to 2^27. A worker needs about 200 bytes for each point.
     executor : {"serial", "processes"} or dask.distributed.Client, optional
         The executor of the tasks: this process, with all cores; one process per core, which ends
         with this one; or a Dask cluster whose machines can access the output folder.
@@ -104,12 +104,12 @@ def triangulate(
     BusyError
         Another run is using this output.
     DeloneError
-        The scheduler or too many workers were lost. Finished work is kept.
+        The scheduler, or too many workers, were lost. Finished work is kept.
 
     Warns
     -----
     GeographicWarning
-        The reference system has longitudes and latitudes. The warning comes when the run has
+        The reference system has longitudes and latitudes. The warning is issued when the run has
         finished and the range of the coordinates is known.
 
     Notes
@@ -118,13 +118,13 @@ def triangulate(
     strips around it and the corners of the hull, and keeps each triangle whose closed circumdisk,
     rounded outward, contains no unknown area. For the other triangles it queries the tiles that
     their disks meet. These return points in conflict, found exactly, which are inserted into the
-    open part of the tile until no triangle is open. As ties are broken by coordinates, all tiles
-    agree, and the union is the triangulation that `delone.Delaunay` computes, triangle for
+    open part of the tile until no triangle is open. Because ties are broken by coordinates, all
+    tiles agree, and the union is the triangulation that `delone.Delaunay` computes, triangle for
     triangle. The proof is in the documentation, under mathematics.
 
     Memory is that of one tile per worker, whatever the number of points, plus the corners of the
-    hull, which every tile receives. On disk, a run needs about 120 bytes per point, of which half
-    remain. The folder contains ``manifest.json``, which is written last,
+    hull, which every tile receives. On disk, a run needs about 120 bytes per point; half of this
+    remains. The folder contains ``manifest.json``, which is written last,
     ``vertices/tile=*.parquet`` and ``triangles/tile=*.parquet``.
 
     Examples

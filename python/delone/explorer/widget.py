@@ -58,9 +58,9 @@ def explore(
     anywidget.AnyWidget
         The widget. ``widget.selected`` is a dictionary with the row of the triangle and the row of
         the point that were picked, -1 for none, and the coordinates x and y; after a point has
-        moved, triangles have other rows, and none is selected. ``widget.mesh`` is the object that
-        is shown, with the moved points; ``widget.layers`` the state of the layers, which can be
-        set. ``widget.move(row, x, y)`` moves a point as the mouse does.
+        moved, the rows of triangles change, and no triangle is selected. ``widget.mesh`` is the
+        object that is shown, with the moved points; ``widget.layers`` the state of the layers,
+        which can be set. ``widget.move(row, x, y)`` moves a point as the mouse does.
 
     Raises
     ------
@@ -75,15 +75,16 @@ def explore(
 
     See Also
     --------
-    delone.plot.plot : Plots that do not move.
+    delone.plot.plot : Static plots.
 
     Notes
     -----
     Arrays are sent to the notebook as binary buffers, some 150 bytes per point. Moving a point
     triangulates all points again, with the same options, in this process: some 40 ms for 10,000
-    points. If the point cannot be there, since segments would cross for example, the message is
-    shown and the object stays as it is. Points of a `Mesh`, and points that a triangulation has
-    added to the given ones, cannot be moved. The widget looks; what it shows is rounded to pixels.
+    points. If a point cannot be moved there, for example because segments would cross, the error
+    message is shown and the object does not change. Points of a `Mesh`, and points that a
+    triangulation has added to the given ones, cannot be moved. The widget is for viewing; its
+    display is rounded to pixels.
 
     Examples
     --------

@@ -79,7 +79,7 @@ def read_raster(
     step : int, optional
         Read every `step`-th row and column, starting with the first.
     max_points : int, optional
-        Maximum number of cells to read, those without a height included.
+        Maximum number of cells to read, including those without a height.
 
     Returns
     -------
@@ -93,8 +93,8 @@ def read_raster(
         There is no such file.
     FileFormatError
         The file is truncated, not what its suffix says, has no georeference, no such band, complex
-        values or no cell with a height; it has more than `max_points` cells, of which the message
-        says with which `step` they would be few enough.
+        values or no cell with a height; or it has more than `max_points` cells, and the message
+        gives a `step` that is large enough.
     MissingExtraError
         rasterio is not installed (extra ``raster``).
 
@@ -105,9 +105,9 @@ def read_raster(
 
     Notes
     -----
-    Rotated and sheared rasters have rotated points. The memory is that of the points and of one
-    row of blocks. No file beside it is read, except the .prj of an ASCII grid, for its reference
-    system: world files (.tfw) are ignored.
+    Rotated and sheared rasters give rotated and sheared points. Memory is that of the points and of
+    one row of blocks. No other file is read except the .prj file of an ASCII grid, for its
+    reference system: world files (.tfw) are ignored.
 
     Examples
     --------

@@ -70,7 +70,7 @@ class GeometrySet:
         The height of each feature, from a column; None if the heights are those of the coordinates,
         if any.
     crs : str, optional
-        Coordinate reference system, as ``"EPSG:28992"`` or in WKT; None if the file has none.
+        Coordinate reference system, such as ``"EPSG:28992"``, or in WKT; None if the file has none.
     source : str, optional
         The file.
     attributes : dict of str to ndarray, optional

@@ -58,9 +58,9 @@ class PointSet:
     z : ndarray of float64, shape (n,), optional
         Heights; None if the file has none.
     attributes : mapping of str to ndarray, optional
-        Further values of each point, those that were requested.
+        Further values of each point, as requested.
     crs : str, optional
-        Coordinate reference system, as ``"EPSG:28992"`` or in WKT; None if the file has none.
+        Coordinate reference system, such as ``"EPSG:28992"``, or in WKT; None if the file has none.
     source : str, optional
         The file.
     columns : tuple of str, optional

@@ -192,10 +192,10 @@ def read_points(
         the band of a raster.
     attributes : sequence of str or "all", optional
         Further columns to read. "all" means all that are not coordinates: those of text files are
-        numbers where each field is one, else words, and a name that repeats gets the number of its
-        column; LandXML, DXF and OFF have none.
+        numbers if every field is one, otherwise strings; the number of the column is appended to
+        repeated names; LandXML, DXF and OFF have none.
     chord : float, optional
-        How far chords may be from the curves of a DXF file; see `read_surface`.
+        The maximum distance of chords from the curves of a DXF file; see `read_surface`.
 
     Returns
     -------
@@ -347,7 +347,7 @@ def read_geometries(
     attributes : sequence of str or "all", optional
         Further columns to read, as for `read_points`; LandXML and DXF have none.
     chord : float, optional
-        How far chords may be from the curves of a DXF file; see `read_surface`.
+        The maximum distance of chords from the curves of a DXF file; see `read_surface`.
 
     Returns
     -------
@@ -412,8 +412,8 @@ def read_surface(
         The name of the surface, for LandXML files that have several; for DXF the layers to read,
         separated by commas, by default all.
     order : {"nez", "enz"}, optional
-        Whether a LandXML file has northings first, as the standard says and by default, or, against
-        it, eastings.
+        Whether northings come first in a LandXML file, as in the standard (the default), or
+        eastings.
     chord : float, optional
         Curves of a DXF file (arcs, circles, ellipses, splines, bulges of polylines) become chords
         that are at most this far from the curve, in its units; by default a thousandth of the
@@ -422,8 +422,8 @@ def read_surface(
     Returns
     -------
     SurfaceFile
-        What the file has, and in `left_out` the counts of what is not read.
-        `delone.terrain.TIN.from_file` makes a surface of it.
+        The contents of the file, and in `left_out` the counts of what was not read.
+        `delone.terrain.TIN.from_file` makes a surface from it.
 
     Raises
     ------
@@ -442,10 +442,10 @@ def read_surface(
     -----
     Invisible faces (``i="1"``) are left out, and the neighbors of faces are ignored. Faces that
     repeat others or a corner are left out and counted; faces with four corners, as in grids, become
-    two triangles. Of walls, the lower line is read. Boundaries of the types void, hole, hide and
+    two triangles. For walls, the lower line is read. Boundaries of the types void, hole, hide and
     inner are holes, island is an island in a hole; all others are boundaries. Contours are soft
-    breaklines. Of DXF, the model space is read: 3DFACE, MESH, POINT, LINE, LWPOLYLINE, POLYLINE
-    (also polyface and polygon meshes) and curves, those in blocks as well. Layers that are off or
+    breaklines. For DXF, the model space is read: 3DFACE, MESH, POINT, LINE, LWPOLYLINE, POLYLINE
+    (including polyface and polygon meshes) and curves, also in blocks. Layers that are off or
     frozen are left out unless `layer` names them; so are texts, hatches, solids and references to
     other drawings.
 
@@ -610,14 +610,16 @@ def write_mesh(
     Vertex numbers in the file are the rows of ``triangulation.points``; duplicates remain as points
     that no triangle uses. Coordinates are written as doubles, or with all their digits.
 
-    Of a `ConstrainedDelaunay` the triangles that are kept are written. VTU, MSH, XDMF, GeoPackage
-    and GeoJSON have their `region`, and `polygon` if there are some, as attributes; edges have 1 in
-    ``segment`` where they are part of one, else 0. An npz file holds the whole object.
+    For a `ConstrainedDelaunay`, the triangles that are kept are written. VTU, MSH, XDMF, GeoPackage
+    and GeoJSON contain their `region` and, if there are polygons, ``polygon`` as attributes;
+    ``segment`` of an edge is 1 if it is part of a segment, otherwise 0. An npz file contains the
+    whole object.
 
-    Of a `PeriodicDelaunay` each triangle has three points of its own in the file, with ``row``, the
-    row of ``triangulation.points`` that each is a copy of; `z` and attributes are those of rows.
+    For a `PeriodicDelaunay`, each triangle has its own three points in the file, with ``row``, the
+    row of ``triangulation.points`` that each point is a copy of; `z` and attributes are by row.
 
-    LandXML needs heights. Of a TIN, it has breaklines and outlines, units and reference system.
+    LandXML needs heights. For a TIN, it also contains breaklines, outlines, units and the reference
+    system.
 
     Examples
     --------

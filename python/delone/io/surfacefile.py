@@ -30,7 +30,7 @@ _SHOWN = 12
 
 
 class LeftOutWarning(UserWarning):
-    """A file contains something that has not been read; the message counts it by its kind."""
+    """A file contains items that were not read; the message counts them by kind."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -52,17 +52,17 @@ class SurfaceFile:
     lengths : str, optional
         The unit of x and y.
     crs : str, optional
-        Coordinate reference system, as ``"EPSG:28992"`` or in WKT; None if the file has none.
+        Coordinate reference system, such as ``"EPSG:28992"``, or in WKT; None if the file has none.
     name : str, optional
         The name of the surface.
     source : str, optional
         The file.
     left_out : mapping of str to int, optional
-        What the file has and this object has not, by its kind: ``{"TEXT": 12, "hidden": 3}``.
+        Counts of what was not read from the file, by kind: ``{"TEXT": 12, "hidden": 3}``.
     curves : int, optional
-        How many curves have become chords.
+        The number of curves that were replaced by chords.
     quads : int, optional
-        How many faces with four corners have become two triangles, on both sides of the diagonal
+        The number of faces with four corners that were split into two triangles, at the diagonal
         between the first and the third corner.
 
     Examples
@@ -104,7 +104,7 @@ class SurfaceFile:
         return ", ".join(shown) + (", ..." if len(self.left_out) > _SHOWN else "")
 
     def warn_left_out(self) -> None:
-        """Warn of what the file has and this object has not.
+        """Warn about what was not read from the file.
 
         Warns
         -----
@@ -156,7 +156,7 @@ class SurfaceFile:
         Parameters
         ----------
         points : bool, optional
-            Whether the points come first, each as a geometry of its own.
+            Whether the points come first, each as a separate geometry.
 
         Returns
         -------
@@ -187,7 +187,7 @@ class SurfaceFile:
         return GeometrySet(geometries=geometries, crs=self.crs, source=self.source)
 
     def require_order(self, order: str) -> None:
-        """Refuse northing and easting that are swapped, if the reference system makes it evident.
+        """Reject swapped northings and eastings, if the reference system makes this evident.
 
         That is, if all points are outside the area of use, and would be inside if swapped.
         Without pyproj nothing is evident. `order` is the one in which they were read.

@@ -78,8 +78,8 @@ def plot(
 
     See Also
     --------
-    save_picture : Draw a 2-D triangulation into a file.
-    draw, image : Draw in 3-D into a file or an array.
+    save_picture : Draw a 2-D triangulation to a file.
+    draw, image : Draw in 3-D to a file or an array.
 
     Notes
     -----
@@ -97,17 +97,17 @@ def plot(
     - ``title``
 
     If triangles are smaller than 14 pixels on average, an image is drawn: the surface of z, or
-    without z the density of points. The color scale spans the values without the lowest and the
-    highest hundredth, which have the colors of its ends. Constrained triangulations without z have
-    their regions in colors, such that regions on both sides of a segment differ; triangles without
-    a label are gray, holes stay white.
+    without z the density of points. The color scale spans the values from the 1st to the 99th
+    percentile; values beyond have the colors of its ends. In constrained triangulations without z,
+    regions are colored so that those on both sides of a segment differ; triangles without a label
+    are gray, and holes are white.
 
     3-D triangulations, meshes and convex hulls:
 
     - ``values``, array_like of shape (n,) or (m,): color by a number for each point or simplex
     - ``cmap``, ``colorbar``: the colors of values, the color bar
-    - ``cut``, ``"x"``, ``"y"`` or ``"z"``: leave out the farther half along this axis
-    - ``shrink``, up to 1: share of the size at which each simplex is drawn
+    - ``cut``, ``"x"``, ``"y"`` or ``"z"``: omit the farther half along this axis
+    - ``shrink``, up to 1: the fraction of its size at which each simplex is drawn
     - ``below``: draw only the tetrahedra whose smallest dihedral angle is below this many degrees,
       within the translucent surface
     - ``points``: the points
@@ -117,8 +117,8 @@ def plot(
     the latter also have ``box``, the outline of a period.
 
     2-D Voronoi diagrams: ``values``, array_like of shape (n,), ``cmap``, ``colorbar``; ``points``,
-    the sites, by default up to 2000; ``linewidth``. Without a clip they are drawn in the bounding
-    box of the sites, enlarged by a tenth. 3-D Voronoi diagrams: ``off_screen``, and the options of
+    the sites, by default up to 2000; ``linewidth``. Without a clip, they are drawn in the bounding
+    box of the sites, enlarged by 10 %. 3-D Voronoi diagrams: ``off_screen``, and the options of
     ``pyvista.Plotter.add_mesh``; bounded cells are drawn, or the sites if there are none.
 
     Graphs: ``values``, array_like of shape (m,): color edges by numbers such as ``graph.lengths``;

@@ -28,7 +28,7 @@ _FORMATS = (".png", ".jpeg", ".jpg", ".bmp", ".tif", ".tiff")
 
 
 def draw(path: str | os.PathLike[str], mesh: Simplices | Cells3, **options: Any) -> None:
-    """Draw a 3-D plot into a file, without a window.
+    """Draw a 3-D plot to a file, without a window.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def draw(path: str | os.PathLike[str], mesh: Simplices | Cells3, **options: Any)
     Raises
     ------
     InputError
-        As for `plot`, and for anything in 2-D; or the suffix is that of another format.
+        As for `plot`; the object is 2-D; or the suffix is that of another format.
     MissingExtraError
         PyVista is not installed.
 
@@ -69,7 +69,7 @@ def draw(path: str | os.PathLike[str], mesh: Simplices | Cells3, **options: Any)
 
 
 def image(mesh: Simplices | Cells3, **options: Any) -> NDArray[np.uint8]:
-    """Draw a 3-D plot into an array, without a window.
+    """Draw a 3-D plot to an array, without a window.
 
     Parameters
     ----------
@@ -81,12 +81,12 @@ def image(mesh: Simplices | Cells3, **options: Any) -> NDArray[np.uint8]:
     Returns
     -------
     ndarray of uint8, shape (height, width, 3)
-        Red, green and blue, for ``imshow`` of matplotlib and the like.
+        Red, green and blue, for matplotlib's ``imshow``, for example.
 
     Raises
     ------
     InputError
-        As for `plot`, and for anything in 2-D.
+        As for `plot`, or the object is 2-D.
     MissingExtraError
         PyVista is not installed.
 

@@ -34,7 +34,7 @@ def save_picture(
     dpi: int = 160,
     **options: Any,
 ) -> None:
-    """Draw a 2-D triangulation into a PNG or SVG file, atomically.
+    """Draw a 2-D triangulation to a PNG or SVG file, atomically.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def save_picture(
     MissingExtraError
         matplotlib is not installed.
     InputError
-        As for `plot`, or no format that matplotlib writes has the suffix of the file.
+        As for `plot`, or matplotlib does not write files with this suffix.
     OSError
         The file cannot be written.
 

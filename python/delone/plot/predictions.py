@@ -19,7 +19,7 @@ _DOT, _LINE = "#2f6f9f", "#b3372f"
 def draw_predictions(
     values: Floats, predicted: Floats, *, ax: Any = None, title: str | None = None
 ) -> Any:
-    """Draw predictions over the values, with the line of equality.
+    """Plot predictions against values, with the line of equality.
 
     Parameters
     ----------

@@ -190,7 +190,7 @@ class Cells2(Protocol):
 
     @property
     def periods(self) -> tuple[float | None, float | None] | None:
-        """The periods in x and y; None without."""
+        """The periods in x and y; None without periods."""
 
     @property
     def duplicate_of(self) -> Indices:

@@ -50,9 +50,9 @@ def plot_raster(
         Add light and shadow, for terrain. The colors then differ from those of the color bar, so
         by default this is done only with ``colorbar=False``.
     cmap : str or matplotlib Colormap, optional
-        Colors; by default those of land, or of water if nothing lies above zero.
+        Colors; by default those of land, or of water if no value is above zero.
     colorbar : bool, optional
-        Add the scale of the mapped.
+        Add the color scale.
     label : str, optional
         Name of the values.
     title : str, optional

@@ -76,12 +76,13 @@ def check_surface(
     components and regions refer to the surface after this subdivision, in which faces that repeat
     others count once for what they enclose. If faces cross, they refer to the faces as given.
 
-    Around each edge of more than two faces, these are sorted by angle. Faces with the same region
-    on both sides are found as those whose front and back are connected around edges; if there are
-    others, the surface encloses a region. The number of regions follows from Alexander duality.
+    Around each edge with more than two faces, the faces are sorted by angle. A face has the same
+    region on both sides if its front and back are connected around edges; if there are other faces,
+    the surface encloses a region. The number of regions follows from Alexander duality.
 
-    The time is linear, up to a logarithm, for faces whose bounding boxes meet few others; around a
-    vertex with k faces, it is k^2. A tree of boxes along a Hilbert curve finds the pairs [1]_.
+    The time is linear, up to a logarithmic factor, if the bounding boxes of faces meet few others;
+    around a vertex with k faces, it is k^2. A tree of boxes along a Hilbert curve finds the pairs
+    [1]_.
 
     References
     ----------

@@ -53,14 +53,15 @@ def resolve_touches(
 
     See Also
     --------
-    check_surface : Find what touches and crosses.
+    check_surface : Find faces that touch or cross.
 
     Notes
     -----
     Each face becomes the constrained Delaunay triangulation of the vertices on it, projected along
     an axis, with the edges of others on it as segments. All decisions are exact. The set of
     triangles does not depend on the order of points and faces. T-junctions are closed, faces with
-    collinear corners disappear, and where faces overlap in one plane, one triangle remains of each.
+    collinear corners disappear, and where faces overlap in one plane, only one copy of each
+    triangle remains.
 
     Examples
     --------

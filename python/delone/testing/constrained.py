@@ -196,9 +196,9 @@ def assert_constrained_delaunay(
     The checks include those of `assert_delaunay`: indices, orientation, edges, vertices, hull,
     count, area and neighbors. In addition, each subsegment is listed once, is an edge, and is
     flagged on both sides, and no other edge is flagged; the subsegments of each given row form a
-    chain from end to end without turning back, all on its line; and every inner edge that is not a
-    subsegment is locally Delaunay. With `split`, all vertices of a row are near it instead. If the
-    triangles tile the hull, no two subsegments cross.
+    chain from end to end without reversing direction, all on its line; and every inner edge that is
+    not a subsegment is locally Delaunay. With `split`, all vertices of a row are near it instead.
+    If the triangles tile the hull, no two subsegments cross.
 
     O(n log n) exact operations for n points and subsegments. Chew (1989).
 

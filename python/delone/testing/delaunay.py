@@ -61,8 +61,8 @@ def assert_delaunay(
     inner face is locally Delaunay, and canonical if five points share a sphere; for up to 64
     points, also no sphere contains a point.
 
-    O(n log n) exact operations; 10,000 points take well below a second. The local test suffices by
-    a theorem of Delaunay, B. (1934), "Sur la sphère vide".
+    O(n log n) exact operations; 10,000 points take well under a second. The local test is
+    sufficient by a theorem of B. Delaunay (1934), "Sur la sphère vide".
 
     Examples
     --------

@@ -51,7 +51,7 @@ def same_triangles(a: ArrayLike, b: ArrayLike) -> bool:
     Returns
     -------
     bool
-        Also False if one of them contains a triangle more often than the other.
+        Also False if a triangle occurs more often in one of them than in the other.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def same_tetrahedra(a: ArrayLike, b: ArrayLike) -> bool:
     Returns
     -------
     bool
-        Also False if one of them contains a tetrahedron more often than the other.
+        Also False if a tetrahedron occurs more often in one of them than in the other.
 
     Raises
     ------

@@ -260,7 +260,7 @@ class Voronoi(Stored):
 
     @property
     def weights(self) -> Floats | None:
-        """The weights, (n,); None without."""
+        """The weights, (n,); None without weights."""
         return self._cells.weights
 
     @property
@@ -289,7 +289,7 @@ class Voronoi(Stored):
 
     @property
     def periods(self) -> tuple[float | None, float | None] | None:
-        """The periods in x and y; None without."""
+        """The periods in x and y; None without periods."""
         return self._cells.periods
 
     @property

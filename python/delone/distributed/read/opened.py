@@ -79,8 +79,8 @@ class TiledDelaunay(TileFolder):
     Notes
     -----
     Triangles are numbered tile by tile: those of tile 0 come first, then those of tile 1, and so
-    on. One tile at a time is in memory, unless a method says otherwise. Methods that read tiles
-    raise `FileFormatError` if files are missing or truncated.
+    on. Unless a method says otherwise, only one tile at a time is in memory. Methods that read
+    tiles raise `FileFormatError` if files are missing or truncated.
 
     Examples
     --------
@@ -138,7 +138,7 @@ class TiledDelaunay(TileFolder):
                     yield number, rows
 
     def find_simplex(self, xi: ArrayLike) -> Rows:
-        """Find the triangles that contain points, reading only the tiles that may.
+        """Find the triangles that contain points, reading only tiles that may contain them.
 
         Parameters
         ----------

@@ -42,11 +42,11 @@ class Tile:
     number : int
         The number of the tile.
     points : ndarray of float64, shape (n, 2)
-        Its vertices: own points, then points of other tiles.
+        Its vertices: its own points, then points of other tiles.
     ids : ndarray of int64, shape (n,)
         Their rows in the source.
     owned : ndarray of bool, shape (n,)
-        Whether each is an own point.
+        Whether the tile owns each point.
     simplices : ndarray of int32, shape (m, 3)
         Its triangles as rows of `points`, counter-clockwise.
     attributes : dict of str to ndarray
