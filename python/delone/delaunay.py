@@ -127,9 +127,9 @@ class Delaunay(PointTriangulation):
     vertex, including those in the middle of a side of the convex hull; of rows with the same
     coordinates (-0.0 and 0.0 are the same) the first is the vertex. If more than three points lie
     on one empty circle, their polygon is fanned from its lexicographically smallest vertex, so a
-    set of points has one triangulation, independent of the order of its rows. In more dimensions, the
-    same perturbation decides ties between points on one sphere, and no simplex is flat: a grid, even
-    with uneven steps, gets the d! simplices of Kuhn's triangulation in each cell.
+    set of points has one triangulation, independent of the order of its rows. In more dimensions,
+    the same perturbation decides ties between points on one sphere, and no simplex is flat: a grid,
+    even with uneven steps, gets the d! simplices of Kuhn's triangulation in each cell.
 
     The number of simplices grows fast with the number of dimensions: uniform points have 2
     triangles each, 6.8 tetrahedra, and about 30, 150 and 600 simplices in 4-D, 5-D and 6-D, and

@@ -29,13 +29,14 @@ pub fn walk<const D: usize, const N: usize, const P: usize>(
                 corner = k;
             }
         }
-        // A comparison that NaN fails.
-        if !(l[corner] < -bound) {
-            let signs = if l[corner] > bound {
-                [Sign::Positive; N]
-            } else {
-                simplex::sides::<D, N, P>(&corners, q)
-            };
+        // Comparisons that NaN fails.
+        if l[corner] > bound {
+            let on = [Sign::Positive; N];
+            return Located::Inside(Place::of(simplex, on));
+        }
+        let certain = l[corner] < -bound;
+        if !certain {
+            let signs = simplex::sides::<D, N, P>(&corners, q);
             match signs.iter().position(|&side| side == Sign::Negative) {
                 None => return Located::Inside(Place::of(simplex, signs)),
                 Some(k) => corner = k,

@@ -2,8 +2,6 @@
 //!
 //! J. Skilling, "Programming the Hilbert curve" (2004).
 
-#![expect(clippy::needless_range_loop, reason = "axes have numbers")]
-
 /// The place of a cell along the curve.
 pub fn key<const D: usize>(mut x: [u32; D], bits: u32) -> u64 {
     // Undo the reflections and exchanges of axes from the coarsest level down.
