@@ -31,6 +31,7 @@ __all__ = [
     "FaultsN",
     "FlippedTriangulation",
     "Hull3",
+    "HullN",
     "ImprovedMesh",
     "ImprovementCounts",
     "JudgedTriangles",
@@ -107,6 +108,7 @@ __all__ = [
     "graph_components",
     "hull2",
     "hull3",
+    "hull_n",
     "improve3",
     "incircle",
     "influence",
@@ -125,6 +127,7 @@ __all__ = [
     "of_triangles2",
     "orient2d",
     "orient3d",
+    "orientations_n",
     "periodic2",
     "periodic_centers2",
     "pieces2",
@@ -780,6 +783,26 @@ class Hull3:
     @property
     def duplicates(self) -> NDArray[np.int32]:
         """Rows that repeat earlier rows, and the first of these, (d, 2)."""
+
+@final
+class HullN:
+    """The convex hull of points with four to eight coordinates."""
+
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the facets, positively oriented behind a point inside, (m, d)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The facet opposite each vertex, (m, d)."""
+    @property
+    def facet_of(self) -> NDArray[np.int32]:
+        """The plane of each facet, numbered, (m,)."""
+    @property
+    def inside(self) -> NDArray[np.int32]:
+        """For each facet, the row of a point that is not on its plane, (m,)."""
+    @property
+    def duplicates(self) -> NDArray[np.int32]:
+        """Rows that repeat earlier rows, and the first of these, (k, 2)."""
 
 @final
 class ImprovedMesh:
@@ -1962,6 +1985,9 @@ def hull2(points: NDArray[np.float64]) -> tuple[NDArray[np.int32], NDArray[np.in
 def hull3(points: NDArray[np.float64]) -> Hull3 | None:
     """The hull of 3-D points; None if they span no volume."""
 
+def hull_n(points: NDArray[np.float64]) -> HullN:
+    """The convex hull of points with four to eight coordinates."""
+
 def improve3(
     points: NDArray[np.float64],
     simplices: NDArray[np.int32],
@@ -2086,6 +2112,11 @@ def orient3d(
     a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64], d: NDArray[np.float64]
 ) -> NDArray[np.int8]:
     """Orientation signs of the tetrahedra a, b, c, d."""
+
+def orientations_n(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.int32]:
+    """The orientations of simplices in four to eight dimensions: 1, 0 or -1, exactly."""
 
 def periodic2(
     points: NDArray[np.float64],

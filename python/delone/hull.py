@@ -1,9 +1,9 @@
-"""The class ConvexHull: a 2-D or 3-D convex hull as immutable arrays."""
+"""The class ConvexHull: a convex hull in 2 to 8 dimensions as immutable arrays."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
@@ -16,6 +16,9 @@ from delone.delaunay import Delaunay
 from delone.dimension import only
 from delone.errors import InternalError
 from delone.extras import require
+from delone.higher import hull as higher
+from delone.higher.dimension import MOST
+from delone.higher.hull import hull_arrays
 from delone.immutable import kept, own_copy, sealed
 from delone.plane import geometry as plane
 from delone.plane.topology import vertex_to_simplex
@@ -23,11 +26,11 @@ from delone.space import geometry as space
 from delone.validation import ValidationReport, no_pairs, no_rows
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._types import Bools, Floats, Indices, Rows
     from delone.exchange.parts import Parts
 
 __all__ = ["ConvexHull"]
@@ -79,13 +82,13 @@ class HullReport(ValidationReport):
 
 
 class ConvexHull(Complex):
-    """The convex hull of 2-D or 3-D points.
+    """The convex hull of points with two to eight coordinates.
 
     Parameters
     ----------
-    points : array_like, shape (n, 2) or (n, 3)
-        Finite coordinates, in any unit: floats of up to 64 bits, integers up to 2**53. They are
-        copied, and results are exact for them.
+    points : array_like, shape (n, d)
+        Finite coordinates, two to eight of each point, in any unit: floats of up to 64 bits,
+        integers up to 2**53. They are copied, and results are exact for them.
     workers : int, optional
         Maximum number of threads for measures; by default one per core. The hull itself uses one
         thread.
@@ -97,15 +100,17 @@ class ConvexHull(Complex):
     simplices : ndarray of int32, shape (h, d)
         Edges or triangles, as rows of `points`: with the hull to the left of edges, triangles
         counter-clockwise as seen from outside. In 3-D each begins with its lexicographically
-        smallest point; in 2-D they follow each other counter-clockwise.
+        smallest point; in 2-D they follow each other counter-clockwise. In more dimensions
+        simplices of d corners, which are positively oriented behind a point inside.
     neighbors : ndarray of int32, shape (h, d)
         ``neighbors[i, k]`` is the simplex that shares all vertices of simplex i but vertex k.
     vertices : ndarray of int32, shape (v,)
         The extreme points: in 2-D counter-clockwise, starting with the lexicographically smallest;
-        in 3-D ascending.
+        otherwise ascending.
     facets : tuple of ndarray of int32
         The sides of the hull: in 2-D its edges, in 3-D polygons of their extreme points,
-        counter-clockwise as seen from outside, starting with the lexicographically smallest.
+        counter-clockwise as seen from outside, starting with the lexicographically smallest; in
+        more dimensions their extreme points, ascending.
     facet_of : ndarray of int32, shape (h,)
         The facet of each simplex.
 
@@ -116,7 +121,7 @@ class ConvexHull(Complex):
     NonFiniteError
         A coordinate is NaN or infinite.
     ShapeError, DtypeError
-        `points` is not a real array of shape (n, 2) or (n, 3).
+        `points` is not a real array of shape (n, d), with d from 2 to 8.
     MemoryError
         There is not enough memory.
     KeyboardInterrupt
@@ -130,7 +135,7 @@ class ConvexHull(Complex):
     -----
     The result is exact. A vertex is an extreme point, so points in the middle of an edge or a facet
     are not vertices; of rows with the same coordinates the first is the vertex. A facet with more
-    than three vertices is triangulated by the Delaunay rule in its plane, with ties broken by
+    than d vertices is triangulated by the Delaunay rule in its plane, with ties broken by
     coordinates. A set of points therefore has one hull, with one order of its arrays, independent
     of the order of its rows; it is the boundary of ``Delaunay(points[hull.vertices])``.
 
@@ -171,11 +176,11 @@ class ConvexHull(Complex):
     _vertices: Indices
 
     def __init__(self, points: ArrayLike, *, workers: int | None = None) -> None:
-        own = own_copy(points, ndim=None)
+        own = own_copy(points, ndim=None, most=MOST)
         require_finite(own)
         if workers is not None:
             as_workers(workers)
-        arrays = _in_plane(own) if own.shape[1] == 2 else _in_space(own)
+        arrays = _ARRAYS_OF.get(own.shape[1], hull_arrays)(own)
         if arrays is None:
             Delaunay(own)  # which says what the points span instead
             error = InternalError("the hull of points that span a simplex is flat")
@@ -212,26 +217,35 @@ class ConvexHull(Complex):
         others = self._simplices[beside]
         apart = (others[:, :, None] != self._simplices[row][:, None, :]).all(axis=2)
         apex = others[np.arange(len(others)), apart.argmax(axis=1)]
-        corners = [self._points[self._simplices[row, j]] for j in range(self.ndim)]
-        orient: Any = predicates.orient2d if self.ndim == 2 else predicates.orient3d
-        signs = orient(*corners, self._points[apex])
-        inner = 1 if self.ndim == 2 else -1
+        signs, inner = self._sides(row, apex)
         same = self._facet_of[row] == self._facet_of[beside]
         wrong = (signs != np.where(same, 0, inner)) | (apart.sum(axis=1) != 1)
-        tiling = Delaunay(self._points[self._vertices], workers=self._workers)
         return HullReport(
             neighbors=np.flatnonzero(~mutual.all(axis=1)),
             concave=np.column_stack((row[wrong], beside[wrong])),
-            outside=np.flatnonzero(tiling.find_simplex(self._points) < 0),
+            outside=np.flatnonzero(~self.contains(self._points)),
             vertices=np.setxor1d(self._vertices, self._polygons),
             facets=self._wrong_facets(),
         )
+
+    def _sides(self, row: Rows, apex: Indices) -> tuple[NDArray[np.integer], int]:
+        """Return the signs of points in front of simplices, exactly, and the sign of the inside."""
+        if self.ndim > 3:
+            cones = np.column_stack((apex, self._simplices[row])).astype(np.int32)
+            return _core.orientations_n(self._points, cones, as_workers(self._workers)), 1
+        corners = [self._points[self._simplices[row, j]] for j in range(self.ndim)]
+        orient: Any = predicates.orient2d if self.ndim == 2 else predicates.orient3d
+        return orient(*corners, self._points[apex]), 1 if self.ndim == 2 else -1
 
     def _wrong_facets(self) -> NDArray[np.int64]:
         """Return the facets whose sides are not those of their simplices against other facets."""
         tail, size = self._polygons, np.diff(self._starts)
         facet = np.repeat(np.arange(len(size)), size)
-        if self.ndim == 2:
+        if self.ndim > 3:
+            listed = np.column_stack((facet, tail))
+            pairs = (np.repeat(self._facet_of, self.ndim), self._simplices.reshape(-1))
+            own = np.unique(np.column_stack(pairs), axis=0)
+        elif self.ndim == 2:
             own = np.column_stack((self._facet_of, self._simplices))
             listed = np.column_stack((facet[::2], tail.reshape(-1, 2)))
         else:
@@ -282,6 +296,10 @@ class ConvexHull(Complex):
     @kept
     def edges(self) -> Indices:
         """Every edge of `simplices` once, (k, 2): the smaller vertex first, rows ascending."""
+        if self.ndim > 3:
+            pairs = combinations(range(self.ndim), 2)
+            ends = [self._simplices[:, pair] for pair in pairs]
+            return sealed(np.unique(np.sort(np.concatenate(ends), axis=1), axis=0))
         if self.ndim == 3:
             topology = self._simplices, self._neighbors, self.npoints, as_workers(self._workers)
             return sealed(_core.edges(*topology))
@@ -307,6 +325,8 @@ class ConvexHull(Complex):
         corners = self._simplices[first]
         if self.ndim == 2:
             normals = plane.edge_normals(self._points, corners)
+        elif self.ndim > 3:
+            normals = higher.normals(self._points, corners, self._vertices)
         else:
             normals = space.face_normals(self._points, corners, self._workers)
         with np.errstate(all="ignore"):
@@ -331,6 +351,10 @@ class ConvexHull(Complex):
             fan = np.column_stack((np.full(self.nsimplex, base), self._simplices))
             fan = fan[(self._simplices != base).all(axis=1)]
             return plane.total(measures.sizes(self._points, fan, self._workers))
+        if self.ndim > 3:
+            fan = np.column_stack((np.full(self.nsimplex, base, np.int32), self._simplices))
+            above = _core.orientations_n(self._points, fan, as_workers(self._workers)) > 0
+            return plane.total(measures.sizes(self._points, fan[above], self._workers))
         a, b, c = self._simplices.T
         cones = np.column_stack((a, c, b, np.full(self.nsimplex, base)))
         above = predicates.orient3d(*(self._points[cones[:, k]] for k in range(4))) > 0
@@ -344,7 +368,47 @@ class ConvexHull(Complex):
             with np.errstate(over="ignore"):
                 along = np.subtract(*self._points[self._simplices.T])
                 return plane.total(np.hypot(*along.T))
+        if self.ndim > 3:
+            surface = self._points, self._simplices, self._vertices, self._workers
+            return plane.total(higher.areas(*surface))
         return plane.total(space.face_areas(self._points, self._simplices, self._workers))
+
+    def contains(self, xi: ArrayLike) -> Bools:
+        """Return which points are in the hull, boundary included.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., d)
+            Points. NaN and infinity are outside.
+
+        Returns
+        -------
+        ndarray of bool, shape (...)
+            Whether each is inside or on the boundary, exactly.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            `xi` is not a real array of shape (..., d).
+
+        Notes
+        -----
+        By the triangulation of the vertices, which the first call makes and keeps.
+
+        Examples
+        --------
+        >>> from delone import ConvexHull
+        >>> ConvexHull([(0, 0), (2, 0), (0, 2)]).contains([(1, 1), (1.5, 1)]).tolist()
+        [True, False]
+        """
+        found: Bools = self._tiling.find_simplex(xi) >= 0
+        return found
+
+    @property
+    @kept
+    def _tiling(self) -> Delaunay:
+        """The triangulation of the vertices."""
+        return Delaunay(self._points[self._vertices], workers=self._workers, planar=True)
 
     @only(2, "`facets` are the polygons of a hull in 3-D")
     def polygon(self) -> Any:
@@ -414,7 +478,7 @@ class ConvexHull(Complex):
 
     def _described(self) -> str:
         vertices = f"{len(self._vertices)} vertices"
-        if self.ndim == 3:
+        if self.ndim > 2:
             vertices += f", {len(self._starts) - 1} facets"
         return f"{counted(self.npoints, 'point')}: {vertices}"
 
@@ -453,3 +517,10 @@ def _in_space(points: Floats) -> dict[str, NDArray[Any]] | None:
         "starts": found.starts,
         "duplicates": found.duplicates,
     }
+
+
+# By the number of coordinates; the others are those of `delone.higher`.
+_ARRAYS_OF: dict[int, Callable[[Floats], dict[str, NDArray[Any]] | None]] = {
+    2: _in_plane,
+    3: _in_space,
+}

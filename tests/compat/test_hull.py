@@ -61,7 +61,8 @@ def test_what_is_refused() -> None:
     line = [(0, 0), (1, 1), (2, 2)]
     for wrong, error in (
         (line, QhullError),
-        (np.zeros((6, 4)), DimensionError),
+        (np.zeros((6, 9)), DimensionError),
+        (np.zeros((6, 4)), QhullError),
         ([(0, 0), (1, 0), (0, np.nan)], ValueError),
         ([(0, 0), (1, 0), (0, np.inf)], QhullError),
         (np.zeros((0, 2)), ValueError),

@@ -284,7 +284,7 @@ def test_what_is_refused() -> None:
     with pytest.raises(NonFiniteError):
         ConvexHull([(0, 0), (1, 0), (0, np.inf)])
     with pytest.raises(ShapeError):
-        ConvexHull(np.zeros((5, 4)))
+        ConvexHull(np.zeros((15, 9)))
     for points in (np.zeros((0, 3)), np.zeros((0, 2)), [(1, 1)], [(1, 1, 1)]):
         with pytest.raises(DegenerateInputError):
             ConvexHull(points)

@@ -105,7 +105,9 @@ mod _core {
         qualities, sizes, transforms,
     };
     #[pymodule_export]
-    use super::ndim::{FaultsN, LocatorN, triangulate_n, validate_n};
+    use super::ndim::{
+        FaultsN, HullN, LocatorN, hull_n, orientations_n, triangulate_n, validate_n,
+    };
     #[pymodule_export]
     use super::overlap::{CellGrid, CheckedCells, PlaneCells, SharedCells};
     #[pymodule_export]

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, columns, in_many, number_rows, numbers, rows, shaped};
 use crate::errors::Outcome;
-use crate::given::checked;
+use crate::given::{checked, simplices_of};
 use crate::interpolate::Points;
 use crate::locator::Tiling;
 use crate::signals::watched;
@@ -75,6 +75,55 @@ fn faults<const D: usize>(py: Python<'_>, found: Findings<D>) -> Outcome<FaultsN
         delaunay: number_rows(py, &found.delaunay)?,
         ties: number_rows(py, &found.ties)?,
         overlaps: numbers(py, found.overlaps),
+    })
+}
+
+/// The convex hull of points with four to eight coordinates.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct HullN {
+    /// Vertices of the facets, positively oriented behind a point inside, (m, d).
+    pub simplices: Table<i32>,
+    /// The facet opposite each vertex, (m, d).
+    pub neighbors: Table<i32>,
+    /// The plane of each facet, numbered, (m,).
+    pub facet_of: Column<i32>,
+    /// For each facet, the row of a point that is not on its plane, (m,).
+    pub inside: Column<i32>,
+    /// Rows that repeat earlier rows, and the first of these, (k, 2).
+    pub duplicates: Table<i32>,
+}
+
+/// The convex hull of points with four to eight coordinates.
+#[pyfunction]
+pub fn hull_n(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> Outcome<HullN> {
+    in_many!(columns(&points), D, N, P => {
+        let points: &[[f64; D]] = rows(&points, "points")?;
+        let found = watched(py, |watch| ndim::hull::<D, N, P>(points, watch))?;
+        Ok(HullN {
+            simplices: number_rows(py, &found.simplices)?,
+            neighbors: number_rows(py, &found.neighbors)?,
+            facet_of: numbers(py, found.plane),
+            inside: numbers(py, found.inside),
+            duplicates: number_rows(py, &found.duplicates)?,
+        })
+    })
+}
+
+/// The orientations of simplices in four to eight dimensions: 1, 0 or -1, exactly.
+#[pyfunction]
+pub fn orientations_n(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> Outcome<Column<i32>> {
+    in_many!(columns(&points), D, N, P => {
+        let points: &[[f64; D]] = rows(&points, "points")?;
+        let simplices = simplices_of(&simplices, points.len())?;
+        let found = watched(py, |watch| {
+            ndim::orientations::<D, N, P>(points, simplices, workers, watch)
+        })?;
+        Ok(column(py, found))
     })
 }
 

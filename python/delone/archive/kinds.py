@@ -250,7 +250,7 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
         _input("AlphaComplex", 2, weights=_WEIGHTS, periods=_PERIODS),
         _input("AlphaComplex", 3, weights=_WEIGHTS),
     ),
-    "ConvexHull": tuple(_input("ConvexHull", ndim) for ndim in (2, 3)),
+    "ConvexHull": tuple(_input("ConvexHull", ndim) for ndim in (2, 3, *HIGHER)),
     "TIN": (_TIN,),
     "sphere.Delaunay": (
         Kind(

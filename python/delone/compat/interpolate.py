@@ -26,6 +26,7 @@ from delone.compat.qhull import DimensionError, QhullError, as_low_points, unbox
 from delone.compat.scipy_delaunay import Delaunay
 from delone.errors import DegenerateInputError, InputError, ShapeError
 from delone.extras import require
+from delone.higher.dimension import MOST
 from delone.interpolate import CloughTocher, Linear
 from delone.interpolate.values import as_field
 
@@ -86,7 +87,7 @@ class _Triangulated:
         else:
             self.points = _coordinates(points)
         self._scale = _Scale(self.points, rescale)
-        if self.points.shape[1] == _SPACE:
+        if self.points.shape[1] >= _SPACE:
             self._mesh: delaunay.Delaunay = self._in_space()
         else:
             own = self.tri if isinstance(self.tri, Delaunay) else None
@@ -102,7 +103,7 @@ class _Triangulated:
         self.fill_value = (complex if self.is_complex else float)(fill_value)
 
     def _in_space(self) -> delaunay.Delaunay:
-        """The triangulation of 3-D points, stored as `tri` unless one was given."""
+        """The triangulation of points in 3-D or more, stored as `tri` unless one was given."""
         if isinstance(self.tri, delaunay.Delaunay):
             return self.tri
         try:
@@ -511,9 +512,9 @@ def _coordinates(points: Any) -> Floats:
     shape = np.shape(points)
     if len(shape) == 1 or (len(shape) == 2 and shape[1] == 1):
         raise DimensionError(
-            "delone interpolates in 2-D and 3-D; in 1-D use griddata or scipy.interpolate"
+            "delone interpolates in 2 to 8 dimensions; in 1-D use griddata or scipy.interpolate"
         )
-    return as_low_points(_real_points(points), _SPACE)
+    return as_low_points(_real_points(points), MOST)
 
 
 def _real_points(points: ArrayLike) -> NDArray[Any]:

@@ -63,6 +63,8 @@ class Incremental:
 
     # Its name in messages.
     _what: str = DELAUNAY
+    # The most coordinates of points.
+    _most: int = 3
 
     # Only for triangulations and diagrams.
     furthest_site: bool
@@ -76,7 +78,8 @@ class Incremental:
         self._options = read_options(options, incremental=self._open, what=self._what)
         if self._options.furthest:
             self.furthest_site = True
-        self._set(as_low_points(points, 2 if getattr(self, "furthest_site", False) else 3))
+        most = 2 if getattr(self, "furthest_site", False) else self._most
+        self._set(as_low_points(points, most))
 
     def _set(self, points: Floats) -> None:
         """Compute the results for the points; nothing changes if that fails."""
@@ -128,7 +131,8 @@ class Incremental:
         """
         if not self._open:
             raise RuntimeError("points can only be added with incremental=True, and before close()")
-        more, ndim = as_low_points(points, 3), self._points.shape[1]
+        ndim = self._points.shape[1]
+        more = as_low_points(points, self._most, like=ndim)
         if more.shape[1] != ndim:
             raise ShapeError(f"points must have {ndim} coordinates, got shape {more.shape}")
         self._append(more)
@@ -194,28 +198,34 @@ def triangulate(points: Floats, furthest: bool, what: str = DELAUNAY) -> delauna
     return delaunay.Delaunay._from_arrays(arrays, {}, None)
 
 
-def as_low_points(points: ArrayLike, most: int) -> Floats:
-    """Convert as SciPy does if that is exact; errors have SciPy's types. At most `most` axes."""
+def as_low_points(points: ArrayLike, most: int, *, like: int | None = None) -> Floats:
+    """Convert as SciPy does if that is exact; errors have SciPy's types. At most `most` axes.
+
+    A few points are `like` others with so many coordinates.
+    """
     ndim = 2 if most == 2 else None
     if is_masked(points):
-        return as_points(points, ndim=ndim)  # which names it in its error
+        return as_points(points, ndim=ndim, most=most)  # which names it in its error
     try:
         array = np.asarray(points)
     except ValueError:
-        return as_points(points, ndim=ndim)
+        return as_points(points, ndim=ndim, most=most)
     if array.ndim != 2:
         raise ShapeError(f"points must have two dimensions (npoints, ndim), got {array.shape}")
     if array.shape[1] < 2:
         raise ShapeError(f"points must have at least two coordinates, got shape {array.shape}")
     if array.shape[1] > most:
-        where = "in 2-D" if most == 2 else "in 2-D and 3-D"
+        named = {2: "in 2-D", 3: "in 2-D and 3-D"}
+        where = named.get(most, f"in up to {most} dimensions")
         raise DimensionError(
             f"this function of delone.compat.scipy is only available {where}; for "
             f"{array.shape[1]} coordinates use scipy.spatial"
         )
     if array.dtype.kind in "bO":
         return unboxed(array)
-    return as_points(points, ndim=ndim)
+    if array.shape[1] == like:
+        ndim = like
+    return as_points(points, ndim=ndim, most=most)
 
 
 def unboxed(array: NDArray[Any], name: str = "points") -> Floats:

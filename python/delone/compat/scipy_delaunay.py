@@ -11,8 +11,10 @@ import numpy as np
 from delone import delaunay
 from delone._arrays import as_number
 from delone.compat.qhull import Incremental, as_queries, told_as_qhull_does, triangulate
+from delone.dimension import FLAT_OR_SOLID
 from delone.dynamic import Dynamic
 from delone.errors import DtypeError
+from delone.higher.dimension import MOST
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -32,8 +34,8 @@ class Delaunay(Incremental):
 
     Parameters
     ----------
-    points : array_like, shape (npoints, 2) or (npoints, 3)
-        Coordinates.
+    points : array_like, shape (npoints, ndim)
+        Two to eight coordinates of each point.
     furthest_site : bool, optional
         Whether to compute the furthest-site triangulation: that of the extreme points, whose
         circles contain all points. Only available in 2-D.
@@ -50,7 +52,7 @@ class Delaunay(Incremental):
     points : ndarray of float64, shape (npoints, ndim)
         Coordinates; the given array itself if it has this dtype and layout, as in SciPy.
     simplices : ndarray of int32, shape (nsimplex, ndim + 1)
-        Triangles, counter-clockwise, or tetrahedra, positively oriented.
+        Triangles, counter-clockwise, or simplices of more dimensions, positively oriented.
     neighbors : ndarray of int32, shape (nsimplex, ndim + 1)
         The simplex opposite each vertex, -1 outside.
     equations : ndarray of float64, shape (nsimplex, ndim + 2)
@@ -62,7 +64,7 @@ class Delaunay(Incremental):
     vertex_to_simplex : ndarray of int32, shape (npoints,)
         A triangle of each point, -1 if there is none.
     convex_hull : ndarray of int32, shape (nfaces, ndim)
-        Edges or triangles of the convex hull.
+        Facets of the convex hull.
     coplanar : ndarray of int32, shape (ncoplanar, 3)
         Each duplicate, a triangle of its vertex, and its vertex.
     vertex_neighbor_vertices : tuple of two ndarrays of int32
@@ -85,7 +87,7 @@ class Delaunay(Incremental):
         A coordinate is NaN, the array has a wrong shape or dtype, or an option requires other
         triangles.
     DimensionError
-        The points have more than three coordinates, or more than two if `furthest_site` is set.
+        The points have more than eight coordinates, or more than two if `furthest_site` is set.
         (A NotImplementedError and a ValueError.)
 
     Notes
@@ -104,6 +106,7 @@ class Delaunay(Incremental):
     [0.25, 0.25, 0.5]
     """
 
+    _most = MOST
     # The mesh into which points are inserted, once there are some.
     _live: Dynamic | None
 
@@ -122,7 +125,7 @@ class Delaunay(Incremental):
         self._take(triangulate(points, self.furthest_site), points)
 
     def _append(self, more: Floats) -> None:
-        if self.furthest_site:
+        if self.furthest_site or self.ndim not in FLAT_OR_SOLID:
             return super()._append(more)
         live = self._live if self._live is not None else Dynamic(self._mesh)
         with told_as_qhull_does(np.concatenate((self._points, more)), self._what):

@@ -12,7 +12,7 @@ Signatures, attributes, dtypes, errors and the mutability of arrays are SciPy's.
 * `coplanar`, with option ``Qc``, lists the rows that repeat a vertex.
 * ``QGn`` is exact: a facet is visible from point n if the point is strictly beyond its plane.
 * In 3-D the boundary is oriented: triangles are counter-clockwise seen from outside.
-* Points in more than three dimensions are rejected.
+* Points in more than eight dimensions are rejected.
 * `add_points` recomputes the hull.
 """
 
@@ -24,10 +24,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone import hull, predicates
+from delone import _core, hull, predicates
+from delone._arrays import as_workers
 from delone.compat.qhull import Incremental, QhullError, told_as_qhull_does
 from delone.compat.qhull_options import HULL
 from delone.errors import InputError
+from delone.higher.dimension import MOST
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -100,6 +102,7 @@ class ConvexHull(Incremental):
     """
 
     _what = HULL
+    _most = MOST
 
     def __init__(
         self,
@@ -159,7 +162,11 @@ class ConvexHull(Incremental):
             return None
         row, visible = self._viewer
         a, b = (self._points[self.simplices[:, k]] for k in (0, 1))
-        if self.ndim == 2:
+        if self.ndim > 3:
+            apex = np.full((self.nsimplex, 1), row, dtype=np.int32)
+            cones = np.hstack((apex, self.simplices))
+            beyond = _core.orientations_n(self._points, cones, as_workers(None)) < 0
+        elif self.ndim == 2:
             beyond = predicates.orient2d(a, b, self._points[row]) < 0
         else:
             c = self._points[self.simplices[:, 2]]

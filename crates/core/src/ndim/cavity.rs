@@ -14,9 +14,11 @@ type Entry = (u64, u32, u32);
 
 /// Room for insertions, kept between them.
 pub struct Room {
-    hole: Vec<u32>,
+    /// The cells that the last insertion has removed.
+    pub hole: Vec<u32>,
     rim: Vec<Side>,
-    ghosts: Vec<u32>,
+    /// The ghosts that it has made.
+    pub ghosts: Vec<u32>,
     ridges: Vec<Entry>,
     stamp: u32,
 }
@@ -142,7 +144,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
 
     /// Finds the cells in conflict, which are connected, and the facets around them.
     #[inline(always)]
-    fn open(&mut self, p: u32, start: u32, room: &mut Room, pace: &mut Pace) -> Result<()> {
+    pub fn open(&mut self, p: u32, start: u32, room: &mut Room, pace: &mut Pace) -> Result<()> {
         room.stamp += 2;
         let (inside, outside) = (room.stamp, room.stamp + 1);
         room.hole.clear();
@@ -173,7 +175,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
 
     /// Replaces the cells in conflict by cells that join the point to the rim.
     #[inline(always)]
-    fn fill(&mut self, p: u32, room: &mut Room, pace: &mut Pace) -> Result<()> {
+    pub fn fill(&mut self, p: u32, room: &mut Room, pace: &mut Pace) -> Result<()> {
         // Each ridge of the rim is in two of its facets, so the table is at most half full.
         let size = (room.rim.len() * D).next_power_of_two().max(16);
         if room.ridges.len() < size {
@@ -185,6 +187,10 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
         for &(old, i, outside) in &rim {
             pace.spend(1)?;
             let c = self.star(p, old, i, outside)?;
+            if self.hull.is_some() {
+                // There is nothing behind a facet; it stands for that itself.
+                self.cells[c as usize].neighbors[D] = c;
+            }
             if self.cells[c as usize].is_ghost() {
                 memory::push(&mut room.ghosts, c)?;
             } else {

@@ -77,6 +77,18 @@ pub struct Mesh<const D: usize, const V: usize, const P: usize> {
     pub counts: Counts,
     /// The cell made last, where walks start.
     pub last: u32,
+    /// What ghosts are measured by if there are no simplices.
+    pub hull: Option<Inside>,
+}
+
+/// What a convex hull has in place of the simplices behind its facets.
+pub struct Inside {
+    /// Sites that are not all on one plane: none of them is outside of a facet.
+    pub sites: Vec<u32>,
+    /// For each facet, one of them that is not on its plane.
+    pub far: Vec<u32>,
+    /// Whether points on the plane of a facet are decided by its sphere.
+    pub is_delaunay: bool,
 }
 
 impl<const D: usize, const V: usize> Cell<D, V> {
@@ -102,18 +114,8 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
         let mut mesh = Self::empty(sites);
         let simplex = mesh.make(corners, frame.positive)?;
         for i in 0..V {
-            // Ghost i has the corners but i in their order. With the infinite vertex in place i it
-            // would have the other orientation than the simplex; moving that to the end takes D - i
-            // exchanges.
-            let mut vertices = [INFINITE; V];
-            let mut neighbors = [simplex; V];
-            for (j, k) in (0..V).filter(|&k| k != i).enumerate() {
-                vertices[j] = corners[k];
-                neighbors[j] = k as u32 + 1;
-            }
-            let positive = frame.positive ^ (D - i).is_multiple_of(2);
-            let ghost = mesh.make(vertices, positive)?;
-            mesh.cells[ghost as usize].neighbors = neighbors;
+            let ghost = mesh.outside(&corners, i, frame.positive, 1)?;
+            mesh.cells[ghost as usize].neighbors[D] = simplex;
             mesh.cells[simplex as usize].neighbors[i] = ghost;
         }
         mesh.measure_simplex(simplex);
@@ -121,6 +123,55 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
             mesh.measure_ghost(ghost);
         }
         Ok(mesh)
+    }
+
+    /// The facets of a simplex, without it.
+    pub fn facets(sites: Sites<D, P>, corners: [u32; V], inside: Inside) -> Result<Self> {
+        let Some(frame) = Frame::new(&sites, &corners) else {
+            return Err(Error::Internal("the first simplex is flat".into()));
+        };
+        let mut mesh = Self::empty(sites);
+        mesh.hull = Some(inside);
+        for i in 0..V {
+            let facet = mesh.outside(&corners, i, frame.positive, 0)?;
+            mesh.cells[facet as usize].neighbors[D] = facet;
+        }
+        for facet in 0..V as u32 {
+            mesh.measure_ghost(facet);
+        }
+        Ok(mesh)
+    }
+
+    /// Ghost i of a simplex, opposite corner i, whose neighbor opposite the infinite vertex is not set;
+    /// the number of ghost 0 is `first`.
+    fn outside(&mut self, corners: &[u32; V], i: usize, positive: bool, first: u32) -> Result<u32> {
+        // It has the corners but i in their order. With the infinite vertex in place i it would have the
+        // other orientation than the simplex; moving that to the end takes D - i exchanges.
+        let mut vertices = [INFINITE; V];
+        let mut neighbors = [INFINITE; V];
+        for (j, k) in (0..V).filter(|&k| k != i).enumerate() {
+            vertices[j] = corners[k];
+            neighbors[j] = first + k as u32;
+        }
+        let ghost = self.make(vertices, positive ^ (D - i).is_multiple_of(2))?;
+        self.cells[ghost as usize].neighbors = neighbors;
+        Ok(ghost)
+    }
+
+    /// The cells that are in use.
+    pub fn alive(&self) -> Result<Vec<u32>> {
+        let mut used = filled(self.cells.len(), true)?;
+        for &c in &self.free {
+            used[c as usize] = false;
+        }
+        let mut found = with_room(self.cells.len() - self.free.len())?;
+        found.extend(
+            (0u32..)
+                .zip(&used)
+                .filter(|(_, used)| **used)
+                .map(|(c, _)| c),
+        );
+        Ok(found)
     }
 
     /// A mesh without cells.
@@ -133,6 +184,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
             free: Vec::new(),
             counts: Counts::default(),
             last: 0,
+            hull: None,
         }
     }
 
@@ -247,13 +299,48 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     /// Prepares the test of a ghost, whose neighbor behind the facet is known.
     #[inline(always)]
     pub fn measure_ghost(&mut self, c: u32) {
-        if self.sites.filtered {
+        if self.hull.is_some() {
+            self.measure_facet(c);
+        } else if self.sites.filtered {
             let mut v = self.cells[c as usize].vertices;
             let (behind, far) = self.behind(c);
             v[D] = self.cells[behind as usize].vertices[far];
             let a = self.differences(&v);
             self.cells[c as usize].test = Test::plane(&a);
         }
+    }
+
+    /// Prepares the test of a facet of a hull: by the first of the sites inside that is not on its
+    /// plane for certain, or else exactly.
+    fn measure_facet(&mut self, c: u32) {
+        let Some(mut inside) = self.hull.take() else {
+            return;
+        };
+        let mut v = self.cells[c as usize].vertices;
+        let mut found = None;
+        for &r in &inside.sites {
+            v[D] = r;
+            if self.sites.filtered && !v[..D].contains(&r) {
+                let test = Test::plane(&self.differences(&v));
+                if test.q0 < f64::INFINITY {
+                    self.cells[c as usize].test = test;
+                    found = Some(r);
+                    break;
+                }
+            }
+        }
+        let exact = |r: &u32| {
+            let mut v = v;
+            v[D] = *r;
+            !v[..D].contains(r) && Frame::new(&self.sites, &v).is_some()
+        };
+        // The sites are not on one plane, so there is one.
+        let r = found.or_else(|| inside.sites.iter().copied().find(|r| exact(r)));
+        if inside.far.len() <= c as usize {
+            inside.far.resize(c as usize + 1, INFINITE);
+        }
+        inside.far[c as usize] = r.unwrap_or(INFINITE);
+        self.hull = Some(inside);
     }
 
     /// The simplex behind the facet of a ghost, and its corner off the facet.

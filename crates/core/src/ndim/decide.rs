@@ -1,7 +1,7 @@
 //! Whether a point is in conflict with a cell: the stages, and the rule of ties.
 
-use super::cell::Mesh;
-use super::filter::{barycentric, invert, minus};
+use super::cell::{INFINITE, Mesh};
+use super::filter::{Test, barycentric, invert, minus};
 use super::fine::Fine;
 use super::frame::Frame;
 use super::residues::is_zero;
@@ -27,6 +27,9 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     #[cold]
     #[inline(never)]
     fn uncertain(&mut self, c: u32, p: u32) -> Result<bool> {
+        if self.cells[c as usize].is_ghost() && self.hull.is_some() {
+            return self.beyond(c, p);
+        }
         if self.cells[c as usize].is_ghost() {
             let (behind, far) = self.behind(c);
             return match self.side(behind, far, p)? {
@@ -41,6 +44,65 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
             }
             power => Ok(power < 0),
         }
+    }
+
+    /// Whether a point is outside of a facet of a hull. On its plane, with the site inside in the place
+    /// of the infinite vertex, the rule of ties decides alone: a point that the corners enclose is never
+    /// the smallest, so it is not outside, and extreme points only become vertices. Or else the sphere
+    /// through these corners decides first.
+    fn beyond(&mut self, c: u32, p: u32) -> Result<bool> {
+        let mut v = self.cells[c as usize].vertices;
+        let Some(inside) = &self.hull else {
+            return Err(lost());
+        };
+        let is_delaunay = inside.is_delaunay;
+        v[D] = inside.far[c as usize];
+        if v[D] == p || v[..D].contains(&p) {
+            return Ok(false);
+        }
+        // Frames are those of the simplex with that site.
+        self.cells[c as usize].vertices = v;
+        let decided = self.decided(c, p, is_delaunay);
+        self.cells[c as usize].vertices[D] = INFINITE;
+        decided
+    }
+
+    /// Whether a point is on the plane of a facet of a hull.
+    pub fn is_level(&mut self, c: u32, p: u32) -> Result<bool> {
+        let (value, bound) = self.value(c, &self.sites.scaled[p as usize]);
+        if value.abs() > bound {
+            return Ok(false);
+        }
+        let Some(inside) = &self.hull else {
+            return Err(lost());
+        };
+        self.cells[c as usize].vertices[D] = inside.far[c as usize];
+        let side = self.side(c, D, p);
+        self.cells[c as usize].vertices[D] = INFINITE;
+        Ok(side? == 0)
+    }
+
+    fn decided(&mut self, c: u32, p: u32, is_delaunay: bool) -> Result<bool> {
+        match self.side(c, D, p)? {
+            0 => {}
+            side => return Ok(side < 0),
+        }
+        self.counts.ties += 1;
+        if is_delaunay {
+            let test = if self.sites.filtered {
+                Test::sphere(&self.differences(&self.cells[c as usize].vertices))
+            } else {
+                Test::UNKNOWN
+            };
+            let o = self.cells[c as usize].vertices[0];
+            let at = |u: u32| &self.sites.scaled[u as usize];
+            let rounded = test.value(&minus(at(p), at(o)), false);
+            match self.power_after(c, p, rounded)? {
+                0 => {}
+                power => return Ok(power < 0),
+            }
+        }
+        self.tie(c, p)
     }
 
     /// The smallest of the point and of the corners that span it affinely decides.
@@ -62,8 +124,13 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
 
     /// The sign of the power of a point with respect to the sphere of a simplex: negative inside.
     pub fn power(&mut self, c: u32, p: u32) -> Result<i32> {
+        let rounded = self.value(c, &self.sites.scaled[p as usize]);
+        self.power_after(c, p, rounded)
+    }
+
+    /// The same after a rounded value with its bound.
+    fn power_after(&mut self, c: u32, p: u32, (value, bound): (f64, f64)) -> Result<i32> {
         let v = self.cells[c as usize].vertices;
-        let (value, bound) = self.value(c, &self.sites.scaled[p as usize]);
         if value.abs() > bound {
             return Ok(sign(value));
         }

@@ -54,7 +54,7 @@ macro_rules! dispatched {
 }
 
 use super::cell::Mesh;
-use super::{cavity, walk};
+use super::{cavity, hull, walk};
 use crate::arrays::Given;
 use crate::error::Result;
 use crate::locate::Located;
@@ -68,6 +68,15 @@ dispatched! {
         used: &[bool],
         pace: &mut Pace,
     ) -> Result<()> = cavity::insert_all::<D, V, P>;
+}
+
+dispatched! {
+    /// Inserts the points that are outside into the hull of the first ones.
+    pub fn wrap<const D, const V, const P>(
+        mesh: &mut Mesh<D, V, P>,
+        points: &[u32],
+        pace: &mut Pace,
+    ) -> Result<()> = hull::wrap::<D, V, P>;
 }
 
 dispatched! {

@@ -43,6 +43,21 @@ pub fn transforms<const D: usize, const V: usize, const P: usize>(
     each(points, simplices, workers, watch, transform)
 }
 
+/// The orientations of simplices: 1, 0 or -1, exactly.
+pub fn orientations<const D: usize, const V: usize, const P: usize>(
+    points: &[[f64; D]],
+    simplices: &[[i32; V]],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<i32>> {
+    let sign = |corners| match simplex::orientation::<D, V, P>(&corners) {
+        Sign::Negative => -1,
+        Sign::Zero => 0,
+        Sign::Positive => 1,
+    };
+    each(points, simplices, workers, watch, sign)
+}
+
 /// The first fault of simplices: neighbors that are not mutual, or an orientation that is not positive.
 pub fn fault<const D: usize, const V: usize, const P: usize>(
     given: Given<D, V>,

@@ -43,6 +43,7 @@ mod dispatch;
 mod filter;
 mod fine;
 mod frame;
+mod hull;
 mod location;
 mod measure;
 mod order;
@@ -55,7 +56,8 @@ mod triangulate;
 mod validate;
 mod walk;
 
+pub use hull::{Hull, hull};
 pub use location::{Hyper, Weighed, Within, nearest, within};
-pub use measure::{circumcenters, fault, transforms, volumes};
+pub use measure::{circumcenters, fault, orientations, transforms, volumes};
 pub use triangulate::{Simplices, triangulate};
 pub use validate::{Findings, validate};

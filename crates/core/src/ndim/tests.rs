@@ -2,6 +2,7 @@
 
 mod bounds;
 mod brute;
+mod hulls;
 mod sets;
 mod simplices;
 

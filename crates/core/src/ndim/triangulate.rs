@@ -82,16 +82,7 @@ pub fn inserted<const D: usize, const V: usize, const P: usize>(
     order: &[u32],
     pace: &mut Pace,
 ) -> Result<Mesh<D, V, P>> {
-    let first = independent(&sites, order, pace)?;
-    let Ok(corners) = <[u32; V]>::try_from(first.as_slice()) else {
-        let mut spanning: Vec<u32> = first.iter().map(|&v| rows[v as usize]).collect();
-        spanning.sort_unstable();
-        return Err(Error::Flat {
-            dimension: D,
-            distinct: sites.len(),
-            rows: spanning,
-        });
-    };
+    let corners: [u32; V] = simplex_of(&sites, rows, order, pace)?;
     let mut used = filled(sites.len(), false)?;
     for &v in &corners {
         used[v as usize] = true;
@@ -99,6 +90,25 @@ pub fn inserted<const D: usize, const V: usize, const P: usize>(
     let mut mesh = Mesh::new(sites, corners)?;
     dispatch::insert_all(&mut mesh, order, &used, pace)?;
     Ok(mesh)
+}
+
+/// The first points of `order` that are the corners of a simplex; an error if all lie in a flat.
+pub fn simplex_of<const D: usize, const V: usize, const P: usize>(
+    sites: &Sites<D, P>,
+    rows: &[u32],
+    order: &[u32],
+    pace: &mut Pace,
+) -> Result<[u32; V]> {
+    let first = independent(sites, order, pace)?;
+    <[u32; V]>::try_from(first.as_slice()).map_err(|_| {
+        let mut spanning: Vec<u32> = first.iter().map(|&v| rows[v as usize]).collect();
+        spanning.sort_unstable();
+        Error::Flat {
+            dimension: D,
+            distinct: sites.len(),
+            rows: spanning,
+        }
+    })
 }
 
 /// The first points of `order` that are affinely independent, up to D + 1 of them: exact, by

@@ -3,7 +3,8 @@
 use delone_core::delaunay2::{Method, triangulate as plane};
 use delone_core::delaunay3::triangulate as space;
 use delone_core::error::Error;
-use delone_core::ndim::triangulate;
+use delone_core::hull::hull3 as solid;
+use delone_core::ndim::{hull, triangulate};
 use delone_core::watch::IDLE;
 
 /// Numbers with few or with many bits: ties, duplicates and general position.
@@ -60,6 +61,23 @@ fn the_plane_and_space_have_the_same_simplices() {
         assert_eq!(
             oriented(&signed(&here.simplices)),
             oriented(&there.arrays.simplices)
+        );
+    }
+}
+
+#[test]
+fn the_hull_in_space_has_the_same_facets() {
+    for seed in 0..60 {
+        let at = points::<3>(40, seed);
+        let here = hull::<3, 4, 4>(&at, &IDLE).unwrap();
+        let Some(there) = solid(&at, &IDLE).unwrap() else {
+            panic!("no hull");
+        };
+        assert_eq!(here.duplicates, there.duplicates);
+        assert_eq!(
+            oriented(&signed(&here.simplices)),
+            oriented(&there.simplices),
+            "{seed}"
         );
     }
 }
