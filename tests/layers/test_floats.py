@@ -130,6 +130,18 @@ ALLOWED: dict[str, dict[str, str]] = {
         "np.hypot(*normal.T) > limit": DRAWN,
     },
     "terrain/reshaping.py": {"mesh.areas <= closeness(mesh.points) * longest": DRAWN},
+    # What a table and a drawing show: rows that differ by roundings are one, and stations within a
+    # rounding of a corner are at it.
+    "terrain/sections.py": {
+        "np.diff(every) > _ROUNDING * along[-1]": VALUE,
+        "np.abs(along[near] - at) <= _ROUNDING * along[-1]": VALUE,
+        "length - every > _ROUNDING * length": VALUE,
+        "length / step < _STATIONS": CHECK,
+        "at <= length + slack": CHECK,
+        # The ends of a part are among the distances.
+        "distances >= at[0]": EXACT,
+        "distances <= at[-1]": EXACT,
+    },
     "terrain/smoothing.py": {"simplex.barycentric < 1e-09": VALUE},
     "terrain/snapping.py": {"way < length - limit": DRAWN},
     "terrain/volumes.py": {"area > 0": EMPTY},

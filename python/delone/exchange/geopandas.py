@@ -12,13 +12,13 @@ from delone.exchange.parts import parts_of
 from delone.extras import require
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from delone.exchange.parts import Given
 
-__all__ = ["beside", "by_region", "shapely_or_say", "to_geopandas"]
+__all__ = ["beside", "by_region", "columns_beside", "shapely_or_say", "to_geopandas"]
 
 
 def to_geopandas(mesh: Given, crs: Any = None, data: Any = None) -> Any:
@@ -74,11 +74,35 @@ def beside(
         crs = data.crs if crs is None else crs
         data = data.drop(columns=data.geometry.name)
     pandas = require("pandas", extra="geo", what="a table of geometries")
-    frame = pandas.DataFrame(data)
-    if len(frame) != len(shapes):
-        raise InputError(f"data has {len(frame)} rows for {len(shapes)} {of}")
-    if taken := [name for name in frame.columns if name in own or name == "geometry"]:
-        raise InputError(f"data has a column {taken[0]!r:.60}, as the table itself: rename it")
+    frame = _checked(pandas.DataFrame(data), len(shapes), {*own, "geometry"}, of)
     geometry = geopandas.GeoSeries(shapes, index=frame.index, crs=crs)
     whole = pandas.concat([pandas.DataFrame(own, index=frame.index), frame], axis=1)
     return geopandas.GeoDataFrame(whole, geometry=geometry)
+
+
+def columns_beside(
+    own: Mapping[str, Any], data: Any = None, *, of: str, repeats: Sequence[int] | None = None
+) -> Any:
+    """Return a DataFrame of columns beside those of `data`, whose index and geometry it leaves out.
+
+    `repeats` says how many rows of the table a row of `data` is for, by default one.
+    """
+    pandas = require("pandas", extra="geo", what="a table")
+    table = pandas.DataFrame(dict(own))
+    if data is None:
+        return table
+    if hasattr(data, "geometry") and hasattr(data, "crs"):
+        data = data.drop(columns=data.geometry.name)
+    count = len(table) if repeats is None else len(repeats)
+    frame = _checked(pandas.DataFrame(data), count, set(own), of)
+    rows = np.repeat(np.arange(count), 1 if repeats is None else repeats)
+    return pandas.concat([table, frame.iloc[rows].reset_index(drop=True)], axis=1)
+
+
+def _checked(frame: Any, count: int, taken: set[str], of: str) -> Any:
+    """Refuse a table with another number of rows, or with columns that are taken."""
+    if len(frame) != count:
+        raise InputError(f"data has {len(frame)} rows for {count} {of}")
+    if found := [name for name in frame.columns if name in taken]:
+        raise InputError(f"data has a column {found[0]!r:.60}, as the table itself: rename it")
+    return frame

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from delone.errors import InputError
 from delone.plot.axes import new_axes
 from delone.plot.style import require_style, restyle
@@ -13,7 +15,10 @@ if TYPE_CHECKING:
 
     from delone._types import Floats
 
-__all__ = ["plot_lines", "plot_profile"]
+__all__ = ["plot_lines", "plot_profile", "plot_profiles", "plot_stations"]
+
+# Stations that are labeled.
+_LABELS = 30
 
 
 def plot_lines(lines: Sequence[Floats], widths: Floats, ax: Any = None, **style: Any) -> Any:
@@ -33,11 +38,40 @@ def plot_lines(lines: Sequence[Floats], widths: Floats, ax: Any = None, **style:
 def plot_profile(distances: Floats, z: Floats, ax: Any = None, **style: Any) -> Any:
     """Plot heights over distances."""
     axes = new_axes(ax)
-    (line,) = axes.plot(distances, z)
+    _set(axes.plot(distances, z), style)
+    axes.set(xlabel="distance", ylabel="height")
+    return axes
+
+
+def plot_profiles(
+    distances: Floats, z: Floats, names: Sequence[str], ax: Any = None, **style: Any
+) -> Any:
+    """Plot the heights of several surfaces over distances, with a legend."""
+    axes = plot_profile(distances, z, ax, **style)
+    for line, name in zip(axes.lines[-len(names) :], names, strict=True):
+        line.set_label(name)
+    axes.legend()
+    return axes
+
+
+def plot_stations(
+    ends: Floats, centers: Floats, stations: Floats, ax: Any = None, **style: Any
+) -> Any:
+    """Plot cross sections in plan, with their stations at the right ends."""
+    axes = plot_lines(list(ends), np.full(len(ends), 0.8), ax, **style)
+    axes.plot(*centers.T, color="0.5", linewidth=0.8, linestyle="--")
+    step = -(-len(stations) // _LABELS)
+    for (x, y), station in zip(ends[::step, 1], stations[::step], strict=True):
+        axes.annotate(
+            f"{station:.6g}", (x, y), fontsize=8, textcoords="offset points", xytext=(2, 2)
+        )
+    return axes
+
+
+def _set(lines: Sequence[Any], style: dict[str, Any]) -> None:
     try:
-        line.set(**style)
+        for line in lines:
+            line.set(**style)
     except (AttributeError, TypeError, ValueError) as error:
         shown = ", ".join(f"{name}={value!r:.60}" for name, value in style.items())
         raise InputError(f"a line of matplotlib does not take {shown}: {error}") from error
-    axes.set(xlabel="distance", ylabel="height")
-    return axes

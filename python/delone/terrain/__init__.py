@@ -12,6 +12,7 @@ from delone.terrain.contouring import Bands, Contours
 from delone.terrain.deviations import Deviations
 from delone.terrain.profiles import Profile, Sight
 from delone.terrain.regions import Volumes
+from delone.terrain.sections import CrossSections, Profiles
 from delone.terrain.simplifying import Simplification
 from delone.terrain.tin import TIN
 from delone.terrain.volumes import Volume
@@ -20,8 +21,10 @@ __all__ = [
     "TIN",
     "Bands",
     "Contours",
+    "CrossSections",
     "Deviations",
     "Profile",
+    "Profiles",
     "Sight",
     "Simplification",
     "Volume",

@@ -155,8 +155,9 @@ class Volumes(ReadOnly):
         >>> table[["name", "cut", "coverage"]].values.tolist()
         [['pit', 4.0, 1.0], ['heap', 1.0, 0.25]]
         """
-        pandas = require("pandas", extra="geo", what="a table")
-        return pandas.DataFrame(self.to_geopandas(data).drop(columns="geometry"))
+        from delone.exchange.geopandas import columns_beside
+
+        return columns_beside({name: getattr(self, name) for name in _COLUMNS}, data, of="regions")
 
     def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
         """Return a table of the polygons with their volumes (extra ``geo``).

@@ -1,0 +1,558 @@
+"""Profiles of several surfaces along one line, and cross sections along an alignment."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import as_number, as_plain_array
+from delone.counting import counted
+from delone.errors import BudgetExceededError, DtypeError, InputError
+from delone.extras import require
+from delone.immutable import ReadOnly, sealed
+from delone.terrain.lines import line_of
+from delone.terrain.profiles import profile
+from delone.terrain.volumes import goal_of
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from delone._types import Floats, Rows
+    from delone.terrain.surface import Surface
+
+__all__ = ["CrossSections", "Profiles", "cross_sections", "profiles"]
+
+# Stations that a call may have.
+_STATIONS = 100_000
+# Distances that differ by this share of the length of the line are one row, and a station as close
+# to a corner of the alignment is at it: both differ by roundings only.
+_ROUNDING = 1e-12
+_END, _GAP, _PLAIN = range(3)  # kinds of rows, in the order in which they follow each other
+# Names of surfaces must not be those of other columns.
+_TAKEN = ("distance", "station", "offset", "x", "y")
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Profiles(ReadOnly):
+    """Heights of several surfaces along one line, at common distances.
+
+    Parameters
+    ----------
+    distances : ndarray of float64, shape (k,)
+        Distances from the start of the line, horizontally: wherever one of the surfaces has an edge
+        or ends, and at the points of the line.
+    z : ndarray of float64, shape (k, s)
+        The height of each surface there; NaN outside of it.
+    points : ndarray of float64, shape (k, 2)
+        The positions.
+    names : tuple of str
+        The names of the surfaces.
+    crs, units : str, optional
+        The reference system, and the unit of heights.
+
+    Examples
+    --------
+    >>> from delone.terrain import TIN
+    >>> ground = TIN.from_points([(0, 0, 0), (8, 0, 0), (8, 8, 8), (0, 8, 8)])
+    >>> design = TIN.from_points([(0, 0, 3), (8, 0, 3), (8, 4, 3), (0, 4, 3)])
+    >>> found = ground.profiles([(1, 0), (1, 8)], {"design": design})
+    >>> found
+    <Profiles of 2 surfaces: 5 points over 8>
+    >>> found.to_pandas()[["distance", "surface", "design"]].values.tolist()[1:3]
+    [[0.5, 0.5, 3.0], [1.0, 1.0, 3.0]]
+    """
+
+    distances: Floats
+    z: Floats
+    points: Floats
+    names: tuple[str, ...]
+    crs: str | None = None
+    units: str | None = None
+
+    def __len__(self) -> int:
+        return len(self.distances)
+
+    def __repr__(self) -> str:
+        length = float(self.distances[-1]) if len(self) else 0.0
+        return (
+            f"<Profiles of {counted(len(self.names), 'surface')}: {counted(len(self), 'point')} "
+            f"over {length:.6g}>"
+        )
+
+    def to_pandas(self, data: Any = None) -> Any:
+        """Return a table (extra ``geo``).
+
+        Parameters
+        ----------
+        data : DataFrame or mapping, optional
+            Columns to include, with one row for each row of the table.
+
+        Returns
+        -------
+        pandas.DataFrame
+            ``distance``, a column with the heights of each surface, ``x`` and ``y``. A surface has
+            a gap, or ends, where its height is NaN.
+
+        Raises
+        ------
+        MissingExtraError
+            pandas is not installed.
+        InputError
+            `data` does not have one row for each, or a column of the table.
+
+        Examples
+        --------
+        See `TIN.profiles`.
+        """
+        from delone.exchange.geopandas import columns_beside
+
+        heights = dict(zip(self.names, self.z.T, strict=True))
+        x, y = self.points.T
+        own = {"distance": self.distances} | heights | {"x": x, "y": y}
+        return columns_beside(own, data, of="rows")
+
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Plot the heights of all surfaces over distances (extra ``plot``).
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Axes to draw on; by default new ones.
+        **options
+            Options of ``Axes.plot`` for all lines, such as ``linewidth``.
+
+        Returns
+        -------
+        matplotlib Axes
+            The axes, with a legend.
+
+        Raises
+        ------
+        MissingExtraError
+            matplotlib is not installed.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> ground = TIN.from_points([(0, 0, 0), (8, 0, 0), (8, 8, 8), (0, 8, 8)])
+        >>> design = TIN.from_points([(0, 0, 3), (8, 0, 3), (8, 4, 3), (0, 4, 3)])
+        >>> ax = ground.profiles([(1, 0), (1, 8)], {"design": design}).plot()
+        """
+        from delone.plot.lines import plot_profiles
+
+        return plot_profiles(self.distances, self.z, self.names, ax, **options)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class CrossSections(ReadOnly):
+    """Profiles across an alignment, one for each station.
+
+    Parameters
+    ----------
+    stations : ndarray of float64, shape (k,)
+        Distances along the alignment, plus `start`.
+    centers : ndarray of float64, shape (k, 2)
+        The positions of the stations.
+    ends : ndarray of float64, shape (k, 2, 2)
+        The left and the right end of each section.
+    left : float
+        The distance from the left end to the alignment.
+    sections : tuple of Profiles
+        The heights along each section, from left to right.
+    crs, units : str, optional
+        The reference system, and the unit of heights.
+
+    Examples
+    --------
+    >>> from delone.terrain import TIN
+    >>> ground = TIN.from_points([(0, 0, 0), (90, 0, 0), (90, 90, 9), (0, 90, 9)])
+    >>> found = ground.cross_sections([(20, 20), (80, 20)], interval=25, left=10)
+    >>> found
+    <CrossSections of 1 surface: 4 stations from 0 to 60, 10 to the left, 10 to the right>
+    >>> found.offsets_of(0).round(9).tolist(), found.sections[0].z.ravel().round(9).tolist()
+    ([-10.0, 0.0, 10.0], [3.0, 2.0, 1.0])
+    """
+
+    stations: Floats
+    centers: Floats
+    ends: Floats
+    left: float
+    right: float
+    sections: tuple[Profiles, ...]
+    crs: str | None = None
+    units: str | None = None
+
+    def __len__(self) -> int:
+        return len(self.stations)
+
+    def __repr__(self) -> str:
+        low, high = self.stations[0], self.stations[-1]
+        return (
+            f"<CrossSections of {counted(len(self.sections[0].names), 'surface')}: "
+            f"{counted(len(self), 'station')} from {low:.6g} to {high:.6g}, "
+            f"{self.left:.6g} to the left, {self.right:.6g} to the right>"
+        )
+
+    def offsets_of(self, section: int) -> Floats:
+        """Return the distances from the alignment of the points of a section.
+
+        Parameters
+        ----------
+        section : int
+            Its number.
+
+        Returns
+        -------
+        ndarray of float64, shape (j,)
+            Negative to the left of the alignment, as seen in its direction.
+
+        Examples
+        --------
+        See `CrossSections`.
+        """
+        return sealed(self.sections[section].distances - self.left)
+
+    def to_pandas(self, data: Any = None) -> Any:
+        """Return one table of all sections (extra ``geo``).
+
+        Parameters
+        ----------
+        data : DataFrame or mapping, optional
+            Columns to include, with one row for each section; they repeat in all of its rows.
+
+        Returns
+        -------
+        pandas.DataFrame
+            ``station``, ``offset`` (negative to the left), a column with the heights of each
+            surface, ``x`` and ``y``.
+
+        Raises
+        ------
+        MissingExtraError
+            pandas is not installed.
+        InputError
+            `data` does not have one row for each section, or a column of the table.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> ground = TIN.from_points([(0, 0, 0), (90, 0, 0), (90, 90, 9), (0, 90, 9)])
+        >>> table = ground.cross_sections([(20, 20), (80, 20)], interval=60, left=5).to_pandas()
+        >>> table.groupby("station").surface.max().round(9).tolist()
+        [2.5, 2.5]
+        """
+        from delone.exchange.geopandas import columns_beside
+
+        sizes = [len(one) for one in self.sections]
+        offsets = [self.offsets_of(row) for row in range(len(self))]
+        heights = np.concatenate([one.z for one in self.sections])
+        x, y = np.concatenate([one.points for one in self.sections]).T
+        own = {"station": np.repeat(self.stations, sizes), "offset": np.concatenate(offsets)}
+        own |= dict(zip(self.sections[0].names, heights.T, strict=True)) | {"x": x, "y": y}
+        return columns_beside(own, data, of="sections", repeats=sizes)
+
+    def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
+        """Return the lines of the sections in plan (extra ``geo``).
+
+        Parameters
+        ----------
+        data : DataFrame or mapping, optional
+            Columns to include, with one row for each section.
+        crs : optional
+            Reference system; by default that of the surface.
+
+        Returns
+        -------
+        geopandas.GeoDataFrame
+            One row for each section: ``station``, and its line from left to right.
+
+        Raises
+        ------
+        MissingExtraError
+            geopandas is not installed.
+        InputError
+            `data` does not have one row for each section.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> ground = TIN.from_points([(0, 0, 0), (90, 0, 0), (90, 90, 9), (0, 90, 9)])
+        >>> table = ground.cross_sections([(20, 20), (80, 20)], interval=60, left=5).to_geopandas()
+        >>> table.geometry[0].wkt
+        'LINESTRING (20 25, 20 15)'
+        """
+        from delone.exchange.geopandas import beside
+
+        shapely = require("shapely", extra="geo", what="geometries")
+        own = self.crs if crs is None else crs
+        shapes = shapely.linestrings(self.ends)
+        return beside(shapes, data, own, columns={"station": self.stations}, of="sections")
+
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Plot the sections in plan, with their stations (extra ``plot``).
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Axes to draw on; by default new ones.
+        **options
+            Properties of matplotlib's lines, such as ``color``.
+
+        Returns
+        -------
+        matplotlib Axes
+            The axes. ``sections[k].plot()`` draws one section, `figure` all.
+
+        Raises
+        ------
+        MissingExtraError
+            matplotlib is not installed.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> ground = TIN.from_points([(0, 0, 0), (90, 0, 0), (90, 90, 9), (0, 90, 9)])
+        >>> ax = ground.cross_sections([(20, 20), (80, 20)], interval=20, left=5).plot()
+        """
+        from delone.plot.lines import plot_stations
+
+        return plot_stations(self.ends, self.centers, self.stations, ax, **options)
+
+    def figure(self, *, columns: int = 3) -> Any:
+        """Draw all sections beside each other, on equal scales (extra ``plot``).
+
+        Parameters
+        ----------
+        columns : int, optional
+            The number of sections in a row.
+
+        Returns
+        -------
+        matplotlib Figure
+            A figure with axes for each section, in the order of the stations.
+
+        Raises
+        ------
+        MissingExtraError
+            matplotlib is not installed.
+        InputError
+            `columns` is below 1.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> ground = TIN.from_points([(0, 0, 0), (90, 0, 0), (90, 90, 9), (0, 90, 9)])
+        >>> figure = ground.cross_sections([(20, 20), (80, 20)], interval=20, left=5).figure()
+        >>> len(figure.axes)
+        4
+        """
+        from delone.plot.sections import draw_sections
+
+        tables = [(self.offsets_of(k), one.z) for k, one in enumerate(self.sections)]
+        return draw_sections(self.stations, tables, self.sections[0].names, columns)
+
+
+def named(tin: Surface, others: Any, name: str) -> dict[str, Surface]:
+    """Return a surface and others that are compared with it, by their names."""
+    if others is None:
+        others = {}
+    elif hasattr(others, "_sheet"):
+        others = {"other": others}
+    elif not isinstance(others, Mapping):
+        others = {f"other {k + 1}": other for k, other in enumerate(others)}
+    if name in others or set(_TAKEN) & {name, *others}:
+        raise InputError(
+            f"the names of surfaces must differ, and not be one of {', '.join(_TAKEN)}; got "
+            f"{', '.join(map(repr, [name, *others]))}"
+        )
+    for key, other in others.items():
+        if not hasattr(other, "_sheet"):
+            raise DtypeError(f"surface {key!r:.40} must be a TIN, got {type(other).__name__}")
+        goal_of(tin, other)
+    return {name: tin, **others}
+
+
+def profiles(tin: Surface, line: Any, others: Any, name: str) -> Profiles:
+    """Return the heights of surfaces along a line."""
+    surfaces = named(tin, others, name)
+    return _common(surfaces, line_of(line, name="line", crs=tin.crs), tin)
+
+
+def _common(surfaces: Mapping[str, Surface], line: Floats, tin: Surface) -> Profiles:
+    """Return profiles along a line with common distances."""
+    found = [profile(each, line) for each in surfaces.values()]
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
+    known = [~np.isnan(one.z) for one in found]
+    every = np.sort(
+        np.concatenate([one.distances[at] for one, at in zip(found, known, strict=True)])
+    )
+    common = every[np.append(True, np.diff(every) > _ROUNDING * along[-1])[: len(every)]]
+    places = np.column_stack([np.interp(common, along, axis) for axis in line.T])
+    parts, gaps = [], []
+    for k, (one, at) in enumerate(zip(found, known, strict=True)):
+        # Each distance is that of the common row from which it differs by roundings.
+        row = np.searchsorted(common, one.distances, side="right") - 1
+        places[row[at]] = one.points[at]
+        own = _split(common[np.maximum(row, 0)] if len(common) else one.distances, one.z)
+        parts.append(own)
+        gaps += [(k, before[0][-1], after[0][0]) for before, after in pairwise(own)]
+    rows = _rows(common, gaps)
+    distances = common[rows[:, 0]] if len(rows) else np.empty(0)
+    return Profiles(
+        distances=distances,
+        z=np.column_stack([_heights(rows, distances, own, k) for k, own in enumerate(parts)]),
+        points=places[rows[:, 0]],
+        names=tuple(surfaces),
+        crs=tin.crs,
+        units=tin.units,
+    )
+
+
+def _split(distances: Floats, z: Floats) -> list[tuple[Floats, Floats]]:
+    """Return the distances and heights of the parts of a profile between gaps."""
+    gaps = np.flatnonzero(np.isnan(z)).tolist()
+    return [
+        (distances[start:stop], z[start:stop])
+        for start, stop in zip([0, *(gap + 1 for gap in gaps)], [*gaps, len(z)], strict=True)
+        if stop > start
+    ]
+
+
+def _rows(common: Floats, gaps: list[tuple[int, float, float]]) -> Rows:
+    """Return the rows of a table: a distance, what the row is, and a surface, (r, 3).
+
+    Where nothing lies between two parts of a surface, there is a row with a gap before the second
+    one; if both are at one distance, also one with the end of the first.
+    """
+    rows = [(k, _PLAIN, -1) for k in range(len(common))]
+    for surface, end, start in gaps:
+        before, after = np.searchsorted(common, (end, start)).tolist()
+        if after - before < 2:
+            rows.append((after, _GAP, surface))
+        if after == before:
+            rows.append((after, _END, surface))
+    return np.array(sorted(rows), dtype=np.int64).reshape(-1, 3)
+
+
+def _heights(
+    rows: Rows, distances: Floats, parts: list[tuple[Floats, Floats]], surface: int
+) -> Floats:
+    """Return the heights of a surface in the rows of a table."""
+    first, last = np.full((2, len(rows)), np.nan)
+    for found, several in ((last, parts), (first, parts[::-1])):
+        for at, z in several:
+            within = (distances >= at[0]) & (distances <= at[-1])
+            found[within] = np.interp(distances[within], at, z)
+    own = rows[:, 2] == surface
+    heights = np.where(own & (rows[:, 1] == _END), first, last)
+    heights[own & (rows[:, 1] == _GAP)] = np.nan
+    return heights
+
+
+def cross_sections(  # noqa: PLR0917
+    tin: Surface,
+    line: Any,
+    interval: float | None,
+    stations: ArrayLike | None,
+    start: float,
+    left: float,
+    right: float | None,
+    others: Any,
+    name: str,
+) -> CrossSections:
+    """Return profiles across an alignment."""
+    surfaces = named(tin, others, name)
+    alignment = line_of(line, name="line", crs=tin.crs)
+    widths = [as_number(left, name="left")]
+    widths.append(widths[0] if right is None else as_number(right, name="right"))
+    if not (np.isfinite(widths).all() and min(widths) >= 0 and max(widths) > 0):
+        raise InputError(f"left and right must be finite, at least 0, and not both 0; got {widths}")
+    moved = np.append(True, (np.diff(alignment, axis=0) != 0).any(axis=1))
+    alignment = alignment[moved]
+    if len(alignment) < 2:
+        raise InputError("line has no length: an alignment needs two points that differ")
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(alignment, axis=0).T)))
+    origin = as_number(start, name="start")
+    at = _stations(along[-1], interval, stations, origin)
+    centers, aside = _across(alignment, along, at)
+    ends = np.stack((centers - widths[0] * aside, centers + widths[1] * aside), axis=1)
+    return CrossSections(
+        stations=at + origin,
+        centers=centers,
+        ends=ends,
+        left=float(widths[0]),
+        right=float(widths[1]),
+        sections=tuple(_common(surfaces, section, tin) for section in ends),
+        crs=tin.crs,
+        units=tin.units,
+    )
+
+
+def _stations(
+    length: float, interval: float | None, stations: ArrayLike | None, origin: float
+) -> Floats:
+    """Return distances from the start of an alignment."""
+    if (interval is None) == (stations is None):
+        raise InputError("give either an interval or stations")
+    if not math.isfinite(origin):
+        raise InputError(f"start must be finite, got {origin}")
+    if stations is not None:
+        given = as_plain_array(stations, "stations")
+        if given.ndim != 1 or given.dtype.kind not in "iuf":
+            raise DtypeError("stations must be a row of real numbers")
+        at = given.astype(np.float64) - origin
+        slack = _ROUNDING * (length + abs(origin))
+        bad = np.flatnonzero(~((at >= -slack) & (at <= length + slack)))
+        if len(bad):
+            raise InputError(
+                f"{counted(len(bad), 'station')} outside of the line, which has stations from "
+                f"{origin:.10g} to {origin + length:.10g}; first row {bad[0]}: {given[bad[0]]:.10g}"
+            )
+        if not len(at):
+            raise InputError("stations is empty")
+        return np.clip(at, 0.0, length)
+    step = math.nan if interval is None else as_number(interval, name="interval")
+    if not 0 < step < math.inf:
+        raise InputError(f"interval must be above 0 and finite, got {interval!r:.60}")
+    if not length / step < _STATIONS:
+        raise BudgetExceededError(
+            f"an interval of {step:g} gives {length / step:.3g} stations on {length:.6g}; at most "
+            f"{_STATIONS:,} are possible",
+            limit=_STATIONS,
+            found=int(min(length / step, 2.0**62)),
+        )
+    every = np.arange(math.floor(length / step) + 1).astype(np.float64) * step
+    # The end, unless a multiple is there but for roundings.
+    return np.append(every[length - every > _ROUNDING * length], length)
+
+
+def _across(line: Floats, along: Floats, at: Floats) -> tuple[Floats, Floats]:
+    """Return positions on a line, and unit vectors to the right of it.
+
+    At a corner the vector halves the angle; for a line that turns back, it is that of the first
+    segment.
+    """
+    steps = np.diff(line, axis=0)
+    ways = steps / np.hypot(*steps.T)[:, None]
+    before = np.clip(np.searchsorted(along, at, side="left") - 1, 0, len(ways) - 1)
+    after = np.clip(np.searchsorted(along, at, side="right") - 1, 0, len(ways) - 1)
+    # Stations within a rounding of a corner are at it.
+    later = np.clip(np.searchsorted(along, at), 1, len(along) - 1)
+    near = np.where(at - along[later - 1] < along[later] - at, later - 1, later)
+    corner = np.abs(along[near] - at) <= _ROUNDING * along[-1]
+    before = np.where(corner, np.maximum(near - 1, 0), before)
+    after = np.where(corner, np.minimum(near, len(ways) - 1), after)
+    way = ways[before] + ways[after]
+    size: Floats = np.hypot(*way.T)
+    back = size <= _ROUNDING
+    way[back], size[back] = ways[before[back]], 1.0
+    way /= size[:, None]
+    share = ((at - along[before]) / np.diff(along)[before])[:, None]
+    centers = line[before] + share * steps[before]
+    centers[corner] = line[near[corner]]
+    return centers, np.column_stack((way[:, 1], -way[:, 0]))
