@@ -78,10 +78,28 @@ def test_parts_that_meet_at_one_distance_keep_both_ends():
 
     common = np.array([0.0, 5.0, 9.0])
     parts = [(np.array([0.0, 5.0]), np.array([1.0, 2.0])), (common[1:], np.array([7.0, 8.0]))]
-    rows = _rows(common, [(0, 5.0, 5.0)])
+    # The other surface has a part that starts at the same distance.
+    rows, own = _rows(common, [(0, 5.0, 5.0), (1, 0.0, 5.0)], 2)
     assert rows[:, 1].tolist() == [_PLAIN, _END, _GAP, _PLAIN, _PLAIN]
-    z = _heights(rows, common[rows[:, 0]], parts, 0)
+    z = _heights(own[:, 0], common[rows[:, 0]], parts)
     assert z[[0, 1, 3, 4]].tolist() == [1, 2, 7, 8] and np.isnan(z[2])
+    other = [(common[:1], np.array([4.0])), (common[1:], np.array([5.0, 6.0]))]
+    z = _heights(own[:, 1], common[rows[:, 0]], other)
+    assert z[[0, 3, 4]].tolist() == [4, 5, 6] and np.isnan(z[1:3]).all()
+
+
+def test_surfaces_with_the_same_hole_have_the_same_gap():
+    hole = [(30, 20), (60, 20), (60, 80), (30, 80)]
+    one, other = (TIN.from_points([(x, y, z) for x, y, _ in FLAT], holes=[hole]) for z in (1, 2))
+    found = one.profiles([(0, 50), (100, 50)], [other, TIN.from_points(FLAT)])
+    # Each of both ends before the gap and starts after it.
+    for z, level in zip(found.z.T[:2], (1, 2), strict=True):
+        gap = np.flatnonzero(np.isnan(z))
+        assert len(gap) and (np.diff(gap) == 1).all() and set(z[~np.isnan(z)]) == {level}
+        assert found.distances[[gap[0] - 1, gap[-1] + 1]].tolist() == [30, 60]
+    # Without the third surface nothing is between the ends.
+    found = one.profiles([(0, 50), (100, 50)], other)
+    assert np.isnan(found.z).all(axis=1).sum() == np.isnan(found.z).any(axis=1).sum() == 1
 
 
 def test_rows_of_common_edges_are_one():

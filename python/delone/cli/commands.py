@@ -96,7 +96,7 @@ COMMANDS = {
     "profile": Listed(
         "terrain",
         "profile",
-        "Compute the heights along a line: a table of distances and heights, or a plot of them.",
+        "Compute the heights of surfaces along a line, or in cross sections: a table or a drawing.",
     ),
     "volume": Listed(
         "terrain",

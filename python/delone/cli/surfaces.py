@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -50,6 +50,7 @@ __all__ = [
     "Voids",
     "curves_of",
     "figures_of",
+    "other_surface",
     "print_figures",
     "surface",
 ]
@@ -199,6 +200,18 @@ def surface(
         if isinstance(survey, PointSet):
             return TIN.from_points(survey, planar=True, **lined)
         return TIN.from_surface(survey, faces=not options.retriangulate, planar=True, **lined)
+
+
+def other_surface(
+    file: Path, options: SurfaceOptions, watch: Stopwatch, say: Callable[[str], None]
+) -> TIN:
+    """Read a surface that is compared with the first one; lines of other files are not for it."""
+    own: dict[str, Any] = {
+        **curves_of(file, options.chord),
+        "step": options.step if is_raster(file) else 1,
+    }
+    alone = replace(options, breaklines=None, soft_breaklines=None, boundary=None, **own)
+    return surface(file, alone, watch, say)
 
 
 def _read_raster(source: Path, options: SurfaceOptions) -> PointSet:

@@ -14,6 +14,15 @@ from delone.atomic import replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
 from delone.cli.options import Chord, Classes, Json, Layer, Quiet, Workers
+from delone.cli.profiles import (
+    PROFILE_SUFFIXES,
+    SectionOptions,
+    name_of,
+    named_files,
+    profile_figures,
+    ready_profile,
+    write_profile,
+)
 from delone.cli.quantities import (
     ROW_SUFFIXES,
     read_regions,
@@ -43,13 +52,12 @@ from delone.cli.surfaces import (
     Voids,
     curves_of,
     figures_of,
+    other_surface,
     print_figures,
     surface,
 )
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
-from delone.extras import require
 from delone.io import read_geometries
-from delone.io.dem import is_raster
 from delone.terrain import Volumes
 from delone.terrain.contouring import MOST
 
@@ -157,10 +165,38 @@ def profile(
     source: Survey,
     line: Annotated[Path, typer.Argument(metavar="LINE", help="File with one line.")],
     *,
+    other: Annotated[
+        list[Path] | None,
+        typer.Option(help="File of another surface, once or more, such as a design."),
+    ] = None,
+    other_layer: Annotated[
+        list[str] | None,
+        typer.Option(help="Layer or surface of each --other, if not that of --layer."),
+    ] = None,
+    interval: Annotated[
+        float | None,
+        typer.Option(help="Cross sections at this distance along the line, and at its end."),
+    ] = None,
+    left: Annotated[
+        float | None, typer.Option(help="How far cross sections reach to the left of the line.")
+    ] = None,
+    right: Annotated[
+        float | None, typer.Option(help="How far to the right; by default as to the left.")
+    ] = None,
+    start: Annotated[float, typer.Option(help="The station of the start of the line.")] = 0.0,
+    exaggeration: Annotated[
+        float | None, typer.Option(help="Factor of heights in DXF drawings; by default 1.")
+    ] = None,
+    text_height: Annotated[
+        float | None, typer.Option(help="Height of texts in DXF drawings, in their units.")
+    ] = None,
     output: Annotated[
-        Path | None,
+        list[Path] | None,
         typer.Option(
-            "--output", "-o", metavar="OUTPUT", help="File to write: .csv, .png, .svg, .pdf."
+            "--output",
+            "-o",
+            metavar="OUTPUT",
+            help="File to write, once or more: " + " ".join(PROFILE_SUFFIXES),
         ),
     ] = None,
     breaklines: Breaklines = None,
@@ -185,31 +221,29 @@ def profile(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Compute the heights along a line: a table of distances and heights, or a plot of them."""
+    """Compute the heights of surfaces along a line, or in cross sections: a table or a drawing.
+
+    Lines and boundary are those of the first surface.
+    """
     options = SurfaceOptions.among(locals())
-    if output is not None and output.suffix.lower() not in (".csv", ".png", ".svg", ".pdf"):
-        raise Failure(f"{output}: a profile can be written to .csv .png .svg .pdf", Exit.USAGE)
+    wanted = SectionOptions.among(locals())
     require_known(crs)
-    with writing():
-        protect_inputs([] if output is None else [output], source, line, *options.inputs())
+    ready_profile(output or [], [source, line, *(other or []), *options.inputs()], wanted)
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         with reading(quiet=quiet):
             along = read_geometries(line, **curves_of(line, chord))
-        tin = surface(source, options, watch, say, others=[line])
+        tin = surface(source, options, watch, say, others=[line, *(other or [])])
+        others = {
+            name: other_surface(path, replace(options, layer=own or layer), watch, say)
+            for name, path, own in named_files(source, other or [], other_layer or [])
+        }
         say("computing the profile")
         with watch.stage("profile"), noting(quiet=quiet):
-            found = tin.profile(along)
-        if output is not None:
-            with writing(), replacing(output) as target, watch.stage(f"write {output.name}"):
-                _write_profile(found, target)
-    figures = figures_of(source, tin, [] if output is None else [output]) | {
-        "length": float(found.distances[-1]) if len(found) else 0.0,
-        "profile_points": len(found),
-        "lowest": float(np.nanmin(found.z)) if np.isfinite(found.z).any() else None,
-        "highest": float(np.nanmax(found.z)) if np.isfinite(found.z).any() else None,
-        "stages": watch.rows(tin.npoints),
-    }
+            found = wanted.of(tin, along, others, name_of(source))
+        write_profile(found, output or [], watch, wanted)
+    figures = figures_of(source, tin, output) | profile_figures(found)
+    figures["stages"] = watch.rows(tin.npoints)
     print_figures(source, figures, as_json=as_json, quiet=quiet)
 
 
@@ -323,17 +357,7 @@ def _goal(
             return float(other)
         except ValueError:
             raise Failure(f"{other}: neither a file nor a height", Exit.INPUT) from None
-    file = Path(other)
-    own: dict[str, Any] = {
-        **curves_of(file, options.chord),
-        "step": options.step if is_raster(file) else 1,
-    }
-    return surface(
-        file,
-        replace(options, breaklines=None, soft_breaklines=None, boundary=None, **own),
-        watch,
-        say,
-    )
+    return other_surface(Path(other), options, watch, say)
 
 
 def _write(table: Callable[[], Any], output: list[Path], watch: Stopwatch, layer: str) -> None:
@@ -344,15 +368,3 @@ def _write(table: Callable[[], Any], output: list[Path], watch: Stopwatch, layer
         for path in output:
             with watch.stage(f"write {path.name}"):
                 write_table(rows, stack.enter_context(replacing(path)), layer=layer)
-
-
-def _write_profile(found: Any, path: Path) -> None:
-    if path.suffix.lower() == ".csv":
-        table = np.column_stack((found.distances, found.z, found.points))
-        np.savetxt(path, table, fmt="%.17g", delimiter=",", header="distance,z,x,y", comments="")
-        return
-    pyplot = require("matplotlib.pyplot", extra="plot", what="drawing")
-    figure, ax = pyplot.subplots(figsize=(9, 3), layout="constrained")
-    found.plot(ax)
-    figure.savefig(path, format=path.suffix[1:].lower())
-    pyplot.close(figure)

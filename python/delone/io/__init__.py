@@ -5,6 +5,7 @@ package handles one family of formats and imports the libraries it needs when it
 """
 
 from delone.io.dem import read_raster
+from delone.io.drawing import write_drawing
 from delone.io.geometryset import GeometrySet
 from delone.io.meshfile import MeshFile
 from delone.io.pointset import PointSet
@@ -36,6 +37,7 @@ __all__ = [
     "read_points",
     "read_raster",
     "read_surface",
+    "write_drawing",
     "write_mesh",
     "write_raster",
 ]

@@ -401,11 +401,16 @@ def _common(surfaces: Mapping[str, Surface], line: Floats, tin: Surface) -> Prof
         own = _split(common[np.maximum(row, 0)] if len(common) else one.distances, one.z)
         parts.append(own)
         gaps += [(k, before[0][-1], after[0][0]) for before, after in pairwise(own)]
-    rows = _rows(common, gaps)
+    rows, own_rows = _rows(common, gaps, len(found))
     distances = common[rows[:, 0]] if len(rows) else np.empty(0)
     return Profiles(
         distances=distances,
-        z=np.column_stack([_heights(rows, distances, own, k) for k, own in enumerate(parts)]),
+        z=np.column_stack(
+            [
+                _heights(column, distances, own)
+                for column, own in zip(own_rows.T, parts, strict=True)
+            ]
+        ),
         points=places[rows[:, 0]],
         names=tuple(surfaces),
         crs=tin.crs,
@@ -423,34 +428,39 @@ def _split(distances: Floats, z: Floats) -> list[tuple[Floats, Floats]]:
     ]
 
 
-def _rows(common: Floats, gaps: list[tuple[int, float, float]]) -> Rows:
-    """Return the rows of a table: a distance, what the row is, and a surface, (r, 3).
+def _rows(common: Floats, gaps: list[tuple[int, float, float]], count: int) -> tuple[Rows, Rows]:
+    """Return the rows of a table as distances and kinds, (r, 2), and what each surface has there.
 
     Where nothing lies between two parts of a surface, there is a row with a gap before the second
-    one; if both are at one distance, also one with the end of the first.
+    one; if both are at one distance, also one with the end of the first. In such rows, all surfaces
+    with a part that starts there have a gap, too.
     """
-    rows = [(k, _PLAIN, -1) for k in range(len(common))]
+    kinds = [(k, _PLAIN) for k in range(len(common))]
+    starting: dict[int, list[tuple[int, int]]] = {}
     for surface, end, start in gaps:
         before, after = np.searchsorted(common, (end, start)).tolist()
-        if after - before < 2:
-            rows.append((after, _GAP, surface))
-        if after == before:
-            rows.append((after, _END, surface))
-    return np.array(sorted(rows), dtype=np.int64).reshape(-1, 3)
+        starting.setdefault(after, []).append((surface, before))
+    for after, several in starting.items():
+        nearest = max(before for _, before in several)
+        kinds += [(after, _GAP)] if after - nearest < 2 else []
+        kinds += [(after, _END)] if after == nearest else []
+    rows = np.array(sorted(kinds), dtype=np.int64).reshape(-1, 2)
+    own = np.full((len(rows), count), _PLAIN)
+    for row, (at, kind) in enumerate(rows.tolist()):
+        for surface, before in starting.get(at, ()) if kind != _PLAIN else ():
+            own[row, surface] = _END if kind == _END and before == at else _GAP
+    return rows, own
 
 
-def _heights(
-    rows: Rows, distances: Floats, parts: list[tuple[Floats, Floats]], surface: int
-) -> Floats:
+def _heights(own: Rows, distances: Floats, parts: list[tuple[Floats, Floats]]) -> Floats:
     """Return the heights of a surface in the rows of a table."""
-    first, last = np.full((2, len(rows)), np.nan)
+    first, last = np.full((2, len(own)), np.nan)
     for found, several in ((last, parts), (first, parts[::-1])):
         for at, z in several:
             within = (distances >= at[0]) & (distances <= at[-1])
             found[within] = np.interp(distances[within], at, z)
-    own = rows[:, 2] == surface
-    heights = np.where(own & (rows[:, 1] == _END), first, last)
-    heights[own & (rows[:, 1] == _GAP)] = np.nan
+    heights = np.where(own == _END, first, last)
+    heights[own == _GAP] = np.nan
     return heights
 
 

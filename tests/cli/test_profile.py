@@ -1,0 +1,104 @@
+"""The command ``profile``: several surfaces, cross sections, tables, drawings and pictures."""
+
+from __future__ import annotations
+
+import csv
+
+import numpy as np
+import pytest
+
+from delone.terrain import TIN
+
+geopandas = pytest.importorskip("geopandas")
+shapely = pytest.importorskip("shapely")
+ezdxf = pytest.importorskip("ezdxf")
+
+SLOPE = [(0, 0, 0), (40, 0, 0), (40, 40, 20), (0, 40, 20)]
+AXIS = [(10, 5), (10, 35)]
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    path = tmp_path / "day 1 of the höhe"
+    path.mkdir()
+    monkeypatch.chdir(path)
+    for name, add in (("the ground", 0), ("a design", 3)):
+        table = [(x, y, z + add * (x > 20)) for x, y, z in SLOPE]
+        np.savetxt(f"{name}.csv", table, delimiter=",", header="x,y,z", comments="")
+    geopandas.GeoSeries([shapely.LineString(AXIS)]).to_file("axis.gpkg")
+    return path
+
+
+def rows(path):
+    with path.open(encoding="utf-8") as file:
+        return list(csv.reader(file))
+
+
+def test_several_surfaces_in_one_table(folder, figures):
+    others = ("--other", "a design.csv", "--other", "the ground.csv")
+    found = figures("profile", "the ground.csv", "axis.gpkg", *others, "-o", "a.csv", "-o", "a.dxf")
+    table = rows(folder / "a.csv")
+    assert table[0] == ["distance", "the ground", "a design", "the ground 2", "x", "y"]
+    numbers = np.array(table[1:], dtype=float)
+    ground = TIN.from_points(SLOPE)
+    assert numbers[:, 1].tolist() == numbers[:, 3].tolist()
+    assert numbers[:, 1] == pytest.approx(ground.heights(numbers[:, 4:]))
+    assert found["profile_points"] == len(numbers) and found["length"] == 30
+    layers = {layer.dxf.name for layer in ezdxf.readfile("a.dxf").layers}
+    assert {"PROFILE_the ground", "PROFILE_a design", "PROFILE_the ground 2"} <= layers
+
+
+def test_cross_sections(folder, figures):
+    call = ("profile", "the ground.csv", "axis.gpkg", "--interval", 12, "--left", 4, "--right", 6)
+    outputs = ("-o", "a.csv", "-o", "a.dxf", "-o", "a.png", "-o", "a.svg")
+    found = figures(*call, "--start", 100, "--other", "a design.csv", *outputs)
+    assert found["stations"] == 4 and found["length"] == 30 and found["output_bytes"] > 0
+    table = rows(folder / "a.csv")
+    assert table[0] == ["station", "offset", "the ground", "a design", "x", "y"]
+    numbers = np.array(table[1:], dtype=float)
+    assert sorted(set(numbers[:, 0])) == [100, 112, 124, 130]
+    assert numbers[:, 1].min() == -4 and numbers[:, 1].max() == 6
+    # To the right of an axis to the north is east.
+    assert numbers[:, 4] == pytest.approx(10 + numbers[:, 1])
+    assert numbers[:, 2] == pytest.approx(TIN.from_points(SLOPE).heights(numbers[:, 4:]))
+    texts = [each.dxf.text for each in ezdxf.readfile("a.dxf").modelspace().query("TEXT")]
+    assert {"100", "112", "124", "130"} <= set(texts)
+    assert (folder / "a.png").stat().st_size > 5000
+    low = figures(*call, "--quiet")["lowest"]
+    assert low == pytest.approx(2.5)
+
+
+def test_stations_outside_of_the_surface_are_counted(folder, figures):
+    geopandas.GeoSeries([shapely.LineString([(10, 30), (10, 80)])]).to_file("long.gpkg")
+    found = figures("profile", "the ground.csv", "long.gpkg", "--interval", 25, "--left", 4)
+    assert (found["stations"], found["stations_without_heights"]) == (3, 2)
+
+
+def test_text_and_exaggeration_of_drawings(folder, figures):
+    call = ("profile", "the ground.csv", "axis.gpkg", "-o", "a.dxf", "--text-height", 0.5)
+    figures(*call, "--exaggeration", 10)
+    space = ezdxf.readfile("a.dxf").modelspace()
+    assert {each.dxf.height for each in space.query("TEXT")} == {0.5}
+    (line,) = space.query('LWPOLYLINE[layer=="PROFILE_surface"]')
+    up = [point[1] for point in line.get_points()]
+    assert max(up) - min(up) == pytest.approx(150)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--left", 4), "need --interval"),
+        (("--start", 4), "need --interval"),
+        (("--interval", 4), "--interval needs --left"),
+        (("--other-layer", "a"), "once for each --other"),
+        (("--exaggeration", 4), "for DXF drawings"),
+        (("-o", "x.txt"), "can be written to .csv .dxf .png"),
+        (("-o", "axis.gpkg"), "can be written to"),
+        (("-o", "a design.csv", "--other", "a design.csv"), "would replace the input"),
+        (("--interval", 0, "--left", 2), "interval must be above 0"),
+        (("--other", "nothing.csv"), "nothing.csv"),
+    ],
+)
+def test_what_does_not_go_together_is_refused(folder, command, options, words):
+    code, _, message = command("profile", "the ground.csv", "axis.gpkg", *options)
+    assert code != 0 and words in message
