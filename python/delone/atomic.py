@@ -27,6 +27,13 @@ FULL = {
     errno.EDQUOT: "your quota on this disk is used up",
     errno.EFBIG: "the file system, or the limit of ulimit -f, does not allow a larger file",
 }
+# Formats of several files: what belongs to a file, besides itself, with the same stem.
+_PARTS = {
+    ".shp": (".shx", ".dbf", ".prj", ".cpg"),
+    ".mif": (".mid",),
+}
+# Indices of others that would not be those of the new file.
+_STALE = {".shp": (".sbn", ".sbx", ".qix")}
 # Characters of the target's name in the temporary name: file systems allow 255 bytes.
 _RECOGNIZABLE = 100
 # Bytes written to find out whether the disk is full.
@@ -69,6 +76,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         if target.exists():
             # A private file remains private.
             temporary.chmod(stat.S_IMODE(target.stat().st_mode))
+        _replace_parts(temporary, target)
         # Windows cannot replace a file that is open elsewhere; its error says so.
         os.replace(temporary, target)
     except MemoryError:
@@ -83,6 +91,17 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         for left in target.parent.iterdir():
             if left.name.startswith(stem):
                 left.unlink(missing_ok=True)
+
+
+def _replace_parts(temporary: Path, target: Path) -> None:
+    """Rename the other files of a format of several files; old ones that have no new one go."""
+    kind = target.suffix.lower()
+    for suffix in (*_PARTS.get(kind, ()), *_STALE.get(kind, ())):
+        made, old = temporary.with_suffix(suffix), target.with_suffix(suffix)
+        if made.exists():
+            os.replace(made, old)
+        else:
+            old.unlink(missing_ok=True)
 
 
 def _refusal(error: Exception, temporary: Path, path: str) -> OutputError | None:

@@ -123,12 +123,12 @@ def write_profile(
         for path in output:
             suffix = path.suffix.lower()
             with watch.stage(f"write {path.name}"):
+                target = stack.enter_context(replacing(path))
                 if suffix == ".dxf":
                     factor = 1.0 if options.exaggeration is None else options.exaggeration
-                    write_drawing(path, found, exaggeration=factor, text_height=options.text_height)
-                    continue
-                target = stack.enter_context(replacing(path))
-                if suffix == ".csv":
+                    height = options.text_height
+                    write_drawing(target, found, exaggeration=factor, text_height=height)
+                elif suffix == ".csv":
                     _write_csv(found, target)
                 else:
                     _draw(found, target, suffix[1:])

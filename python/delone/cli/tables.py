@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure
+from delone.cli.notes import note
+from delone.errors import FileFormatError
 from delone.extras import require
 from delone.io.vector import write_layer
 
@@ -14,8 +16,18 @@ if TYPE_CHECKING:
 
 __all__ = ["TABLE_SUFFIXES", "ready_table", "write_table"]
 
-_DRIVERS = {".gpkg": "GPKG", ".geojson": "GeoJSON", ".fgb": "FlatGeobuf"}
+_DRIVERS = {
+    ".gpkg": "GPKG",
+    ".geojson": "GeoJSON",
+    ".fgb": "FlatGeobuf",
+    ".shp": "ESRI Shapefile",
+    ".kml": "LIBKML",
+    ".sqlite": "SQLite",
+    ".mif": "MapInfo File",
+}
 TABLE_SUFFIXES = (*_DRIVERS, ".parquet")
+# Characters of the name of a column in a Shapefile.
+_SHORT = 10
 
 
 def ready_table(path: Path, what: str, *, also: str = "") -> None:
@@ -42,7 +54,30 @@ def write_table(table: Any, path: Path, *, layer: str, multi: bool = False) -> N
         table.to_parquet(path, index=False)
         return
     options: dict[str, Any] = {"driver": _DRIVERS[suffix], "promote_to_multi": multi}
+    if suffix == ".kml":
+        if table.crs is None:
+            raise FileFormatError(
+                "KML has longitudes and latitudes, and the reference system is unknown: give --crs"
+            )
+        table = table.to_crs(4326)
+    elif suffix == ".shp":
+        table = _with_short_names(table)
     if suffix == ".fgb" and (table.geometry.isna() | table.geometry.is_empty).any():
         # The index of FlatGeobuf cannot contain empty geometries.
         options["SPATIAL_INDEX"] = "NO"
     write_layer(path, table, layer, **options)
+
+
+def _with_short_names(table: Any) -> Any:
+    """Return a table whose columns have names that Shapefiles can have, and say so."""
+    names: dict[str, str] = {}
+    for name in map(str, table.columns.drop(table.geometry.name)):
+        short, number = name[:_SHORT], 1
+        # Ends, since the names are finitely many.
+        while short in names.values():
+            number += 1
+            short = f"{name[: _SHORT - len(str(number))]}{number}"
+        names[name] = short
+        if short != name:
+            note(f"Shapefiles have short names: the column {name!r:.80} is {short!r}")
+    return table.rename(columns=names)

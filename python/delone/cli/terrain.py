@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 import typer
 
-from delone.atomic import replacing
+from delone.atomic import check_target, replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
 from delone.cli.options import Chord, Classes, Json, Layer, Quiet, Workers
@@ -57,7 +57,8 @@ from delone.cli.surfaces import (
     surface,
 )
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
-from delone.io import read_geometries
+from delone.extras import require
+from delone.io import read_geometries, write_drawing
 from delone.terrain import Volumes
 from delone.terrain.contouring import MOST
 
@@ -74,7 +75,7 @@ Output = Annotated[
         "--output",
         "-o",
         metavar="OUTPUT",
-        help="File to write, once or more: " + " ".join(TABLE_SUFFIXES),
+        help="File to write, once or more: " + " ".join([*TABLE_SUFFIXES, ".dxf"]),
     ),
 ]
 
@@ -128,7 +129,7 @@ def contours(
     if bands and min_length:
         raise Failure("--min-length is for lines, not for --bands", Exit.USAGE)
     options = SurfaceOptions.among(locals())
-    _check(output or [], source, options, "contours")
+    _check(output or [], source, options, bands=bands)
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         tin = surface(source, options, watch, say)
@@ -148,7 +149,7 @@ def contours(
                     max_points=max_points,
                 )
         say(f"writing {len(found):,} {'polygons' if bands else 'lines'}")
-        _write(found.to_geopandas, output or [], watch, "bands" if bands else "contours")
+        _write(found, output or [], watch, "bands" if bands else "contours")
     what = "polygons" if bands else "lines"
     figures = figures_of(source, tin, output) | {
         what: len(found),
@@ -340,12 +341,18 @@ def _numbers(text: str, option: str) -> list[float]:
         raise Failure(f"{option} takes numbers, got {text!r:.80}", Exit.USAGE) from None
 
 
-def _check(output: list[Path], source: Path, options: SurfaceOptions, what: str) -> None:
+def _check(output: list[Path], source: Path, options: SurfaceOptions, *, bands: bool) -> None:
     require_known(options.crs)
     with writing():
         protect_inputs(output, source, *options.inputs())
         for path in output:
-            ready_table(path, what)
+            if path.suffix.lower() != ".dxf":
+                ready_table(path, "contours", also=".dxf")
+            elif bands:
+                raise Failure(f"{path}: drawings have contours, not the areas between", Exit.USAGE)
+            else:
+                require("ezdxf", extra="dxf", what="writing DXF")
+                check_target(path)
 
 
 def _goal(
@@ -360,11 +367,14 @@ def _goal(
     return other_surface(Path(other), options, watch, say)
 
 
-def _write(table: Callable[[], Any], output: list[Path], watch: Stopwatch, layer: str) -> None:
-    if not output:
-        return
+def _write(found: Any, output: list[Path], watch: Stopwatch, layer: str) -> None:
     with writing(), ExitStack() as stack:
-        rows = table()
+        drawings = [path for path in output if path.suffix.lower() == ".dxf"]
+        rows = found.to_geopandas() if len(output) > len(drawings) else None
         for path in output:
             with watch.stage(f"write {path.name}"):
-                write_table(rows, stack.enter_context(replacing(path)), layer=layer)
+                target = stack.enter_context(replacing(path))
+                if path in drawings:
+                    write_drawing(target, found)
+                else:
+                    write_table(rows, target, layer=layer)
