@@ -92,3 +92,11 @@ def test_speeds_are_those_of_what_was_worked_on(
     assert speeds["read"] == pytest.approx(9, rel=0.05)
     assert speeds["refine"] == pytest.approx(found["points"], rel=0.05)
     assert found["points"] > 1000
+
+
+def test_second_order(lake: Path, tmp_path: Path) -> None:
+    meshio = pytest.importorskip("meshio")
+    for order, name in ((1, "triangle"), (2, "triangle6")):
+        out = tmp_path / "lake.vtu"
+        assert run(["mesh", str(lake), "--order", str(order), "-o", str(out), "--quiet"]) == 0
+        assert name in meshio.read(out).cells_dict

@@ -106,6 +106,8 @@ def test_surfaces_that_cannot_be_filled(tmp_path, command):
         (("--hole", "9,9,9"), "holes: 1 seed outside"),
         (("--inside", "odd"), "inside must be one of"),
         (("-o", "a.svg"), "cannot store tetrahedra"),
+        (("-o", "a.su2", "--order", "2"), ".su2 files have no second order"),
+        (("-o", "a.vtu", "--order", "3"), "order must be 1 or 2"),
     ],
 )
 def test_options(tmp_path, command, options, words):
@@ -124,3 +126,17 @@ def test_other_files(tmp_path, command):
     code, _, err = command("tetrahedralize", source, "-o", source)
     assert code == 2
     assert "would replace the input" in err
+
+
+def test_second_order(tmp_path, command):
+    meshio = pytest.importorskip("meshio")
+    source = save(tmp_path / "cube.ply", *CUBE)
+    files = [tmp_path / name for name in ("a.vtu", "a.inp", "a.png")]
+    outputs = [word for file in files for word in ("-o", file)]
+    assert command("tetrahedralize", source, "--order", "2", *outputs, "--quiet")[0] == 0
+    wanted = delone.tetrahedralize(source).to_meshio(order=2)
+    for file in files[:2]:
+        found = meshio.read(file)
+        assert np.array_equal(found.points, wanted.points)
+        assert np.array_equal(found.cells_dict["tetra10"], wanted.cells_dict["tetra10"])
+    assert files[2].exists()

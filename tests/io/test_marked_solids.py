@@ -312,6 +312,24 @@ def test_gmsh_reads_groups(mesh, suffix, options, tmp_path):
     assert found == expected
 
 
+def test_gmsh_reads_references_of_medit(tmp_path):
+    gmsh = pytest.importorskip("gmsh")
+    path = tmp_path / "a.mesh"
+    delone.io.write_mesh(path, MESH)
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.open(str(path))
+        found = {}
+        for ndim, tag in gmsh.model.getEntities():
+            (corners,) = gmsh.model.mesh.getElements(ndim, tag)[2]
+            kind = {2: "marker", 3: "region"}[ndim]
+            found |= named([(f"{kind} {tag}", corners.reshape(-1, ndim + 1).astype(int) - 1)])
+    finally:
+        gmsh.finalize()
+    assert found == expected_groups(MESH)
+
+
 @pytest.mark.parametrize("version", ["2.2", "4.1"])
 @pytest.mark.parametrize("binary", [False, True])
 def test_groups_of_surfaces_are_face_markers(version, binary, tmp_path):

@@ -13,7 +13,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from delone import Mesh, __version__, mesh
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
-from delone.cli.options import Chord, Json, Layer, MeshOutput, Quiet
+from delone.cli.options import Chord, Json, Layer, MeshOutput, Order, Quiet
 from delone.cli.outputs import ready, write_all
 from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, peak_memory, summary
@@ -57,6 +57,7 @@ def make_mesh(
     freeze: Annotated[
         bool, typer.Option("--freeze-boundary", help="Add no points on the boundary.")
     ] = False,
+    order: Order = 1,
     chord: Chord = None,
     layer: Layer = None,
     crs: Crs = None,
@@ -71,7 +72,7 @@ def make_mesh(
     require_known(crs)
     with writing():
         protect_inputs(output or (), source)
-        writers = {path: ready(path) for path in output or ()}
+        writers = {path: ready(path, order=order) for path in output or ()}
     watch = Stopwatch()
     with reading(quiet=quiet), watch.stage("read"):
         survey = read_geometries(source, layer=layer, chord=chord)

@@ -19,6 +19,7 @@ __all__ = [
     "Json",
     "Layer",
     "MeshOutput",
+    "Order",
     "Quiet",
     "Solid",
     "Workers",
@@ -56,6 +57,9 @@ MeshOutput = Annotated[
         metavar="OUTPUT",
         help="File to write, once or more: " + " ".join(output_suffixes()),
     ),
+]
+Order = Annotated[
+    int, typer.Option(help="Order of the elements in files: 1, or 2 with a node on each edge.")
 ]
 Workers = Annotated[int | None, typer.Option(help="Threads; by default one per core.")]
 # Two options, since of a pair of switches the last one counts without a word.

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 __all__ = ["ready", "write_all"]
 
 
-def ready(path: Path) -> Callable[..., None]:
+def ready(path: Path, *, space: bool = False, order: int = 1) -> Callable[..., None]:
     """Return what writes a mesh to a file, after checking that it can be written."""
-    write = writer(path)
+    write = writer(path, space=space, order=order)
     check_target(path)
     return write
 

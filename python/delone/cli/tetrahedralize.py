@@ -10,11 +10,10 @@ import numpy as np
 import typer
 
 from delone import TetMesh, __version__, improve, tetrahedralize
-from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure, as_options, protect_inputs, writing
 from delone.cli.faces import read_parts
-from delone.cli.options import Json, MeshOutput, Quiet, Workers
-from delone.cli.outputs import write_all
+from delone.cli.options import Json, MeshOutput, Order, Quiet, Workers
+from delone.cli.outputs import ready, write_all
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import print_json, print_report, spinner
 from delone.cli.solid import improvement_figures, improvement_rows
@@ -27,7 +26,7 @@ from delone.errors import (
     NonFiniteError,
     OpenSurfaceError,
 )
-from delone.io.registry import mesh_suffixes, writer
+from delone.io.registry import mesh_suffixes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -99,6 +98,7 @@ def fill(
     better: Annotated[
         bool, typer.Option("--improve", help="Remove slivers; all triangles are kept.")
     ] = False,
+    order: Order = 1,
     workers: Workers = None,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -113,7 +113,7 @@ def fill(
     """
     with writing():
         protect_inputs(output or (), source)
-        writers = {path: _ready(path) for path in output or ()}
+        writers = {path: ready(path, space=True, order=order) for path in output or ()}
     options: dict[str, Any] = {
         "boundary": boundary,
         # Faces of TetGen's files have any orientation.
@@ -161,12 +161,6 @@ def fill(
         print_json(figures)
     elif not quiet:
         print_report(str(source), _rows(figures), figures)
-
-
-def _ready(path: Path) -> Callable[..., None]:
-    write = writer(path, space=True)
-    check_target(path)
-    return write
 
 
 def _numbers(given: Sequence[str] | None, option: str, columns: int) -> list[list[float]] | None:

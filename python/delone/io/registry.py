@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib
 import os
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -721,14 +722,18 @@ def _plain(
 
 
 def writer(
-    path: str | os.PathLike[str], *, space: bool = False, surface: bool = False
+    path: str | os.PathLike[str], *, space: bool = False, surface: bool = False, order: int = 1
 ) -> Callable[..., None]:
     """Return the function that writes this suffix in place, after importing its library.
 
     It takes the arguments of `write_mesh`. With `space`, tetrahedra will be written; with
-    `surface`, triangles in 3-D.
+    `surface`, triangles in 3-D; with ``order=2``, elements of second order, except to images.
     """
-    return _writer(path, "surface" if surface else "tetrahedra" if space else "triangles")
+    write = _writer(path, "surface" if surface else "tetrahedra" if space else "triangles")
+    suffix = Path(path).suffix.lower()
+    if as_order(order) == 1 or suffix in _LABELS:
+        return write
+    return partial(write, order=_second_order(suffix, edges=False))
 
 
 def _writer(path: str | os.PathLike[str], kind: str) -> Callable[..., None]:
