@@ -19,9 +19,11 @@ from delone.cli.options import (
     Flat,
     Json,
     Layer,
+    PointsInput,
     Quiet,
     Solid,
     Workers,
+    outputs,
     space_or_plane,
 )
 from delone.cli.referenced import Crs, Planar, require_known
@@ -29,7 +31,6 @@ from delone.cli.report import Stopwatch, peak_memory
 from delone.cli.rows import ROW_SUFFIXES, carried, read_rows, ready_rows, renaming, write_rows
 from delone.cli.show import print_json, print_report, spinner
 from delone.cli.solid import is_space
-from delone.io import input_suffixes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -79,19 +80,11 @@ _NAMES = {
 
 
 def cluster_points(
-    source: Annotated[
-        Path, typer.Argument(metavar="INPUT", help="File of points: " + " ".join(input_suffixes()))
-    ],
+    source: PointsInput,
     *,
     method: Annotated[Method, typer.Option(help="The method.")] = Method.HDBSCAN,
     output: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="OUTPUT",
-            help="File of points with labels, once or more: " + " ".join(ROW_SUFFIXES),
-        ),
+        list[Path] | None, outputs("File of points with labels", ROW_SUFFIXES)
     ] = None,
     min_cluster_size: Annotated[
         int | None, typer.Option(help="hdbscan: smallest number of points; 5 by default.")

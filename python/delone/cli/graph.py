@@ -19,9 +19,11 @@ from delone.cli.options import (
     Flat,
     Json,
     Layer,
+    PointsInput,
     Quiet,
     Solid,
     Workers,
+    outputs,
     space_or_plane,
 )
 from delone.cli.referenced import Crs, Planar, require_known
@@ -32,7 +34,6 @@ from delone.cli.solid import is_space
 from delone.cli.tables import TABLE_SUFFIXES, write_table
 from delone.counting import counted
 from delone.extras import require
-from delone.io import input_suffixes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -97,20 +98,10 @@ _OWN = {
 
 
 def graph(
-    source: Annotated[
-        Path, typer.Argument(metavar="INPUT", help="File of points: " + " ".join(input_suffixes()))
-    ],
+    source: PointsInput,
     *,
     kind: Annotated[Kind, typer.Option(help="The graph.")] = Kind.DELAUNAY,
-    output: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="OUTPUT",
-            help="File of edges, once or more: " + " ".join(_SUFFIXES),
-        ),
-    ] = None,
+    output: Annotated[list[Path] | None, outputs("File of edges", _SUFFIXES)] = None,
     nodes: Annotated[
         list[Path] | None,
         typer.Option(

@@ -12,13 +12,24 @@ import typer
 from delone import AlphaComplex, Delaunay, __version__, concave_hull
 from delone.atomic import replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
-from delone.cli.options import Classes, Json, Layer, Quiet, Workers, class_numbers, split
+from delone.cli.options import (
+    Classes,
+    Json,
+    Layer,
+    PlaneColumns,
+    PointsInput,
+    Quiet,
+    Workers,
+    class_numbers,
+    outputs,
+    split,
+)
 from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import print_json, print_report, spinner
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
 from delone.extras import require
-from delone.io import input_suffixes, read_points
+from delone.io import read_points
 
 if TYPE_CHECKING:
     from delone.alpha.shape import Kept
@@ -29,19 +40,9 @@ _BEST = "optimal"
 
 
 def hull(
-    source: Annotated[
-        Path, typer.Argument(metavar="INPUT", help="File of points: " + " ".join(input_suffixes()))
-    ],
+    source: PointsInput,
     *,
-    output: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="OUTPUT",
-            help="File of the outline, once or more: " + " ".join(TABLE_SUFFIXES),
-        ),
-    ] = None,
+    output: Annotated[list[Path] | None, outputs("File of the outline", TABLE_SUFFIXES)] = None,
     concave: Annotated[
         bool, typer.Option("--concave", help="One polygon, with long edges carved away.")
     ] = False,
@@ -61,9 +62,7 @@ def hull(
         ),
     ] = None,
     classes: Classes = None,
-    columns: Annotated[
-        str | None, typer.Option(help="Columns of x and y, by name or by number from 0.")
-    ] = None,
+    columns: PlaneColumns = None,
     layer: Layer = None,
     crs: Crs = None,
     planar: Planar = False,

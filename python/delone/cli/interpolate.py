@@ -11,7 +11,7 @@ import typer
 from delone import __version__
 from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
-from delone.cli.options import Classes, Json, Layer, Quiet, Workers, split
+from delone.cli.options import Classes, Json, Layer, Quiet, Workers, outputs, split
 from delone.cli.outputs import write_all
 from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
@@ -69,15 +69,7 @@ def interpolate(
         str | None,
         typer.Option(help="Left, bottom, right, top; by default the bounding box of the points."),
     ] = None,
-    output: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="OUTPUT",
-            help="File to write, once or more: " + " ".join(raster_suffixes()),
-        ),
-    ] = None,
+    output: Annotated[list[Path] | None, outputs("File to write", raster_suffixes())] = None,
     extrapolate: Annotated[
         str, typer.Option(help="Outside the hull: nan, nearest or linear.")
     ] = "nan",

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from delone.cli.exits import Exit, Failure
 from delone.io import input_suffixes, output_suffixes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 __all__ = [
     "Chord",
@@ -20,14 +23,27 @@ __all__ = [
     "Layer",
     "MeshOutput",
     "Order",
+    "PlaneColumns",
+    "PointsInput",
     "Quiet",
     "Solid",
     "Workers",
     "class_numbers",
+    "outputs",
     "space_or_plane",
     "split",
 ]
 
+
+def outputs(what: str, suffixes: Iterable[str]) -> Any:
+    """Return the option --output of a command that writes files of one kind."""
+    text = f"{what}, once or more: " + " ".join(suffixes)
+    return typer.Option("--output", "-o", metavar="OUTPUT", help=text)
+
+
+PointsInput = Annotated[
+    Path, typer.Argument(metavar="INPUT", help="File of points: " + " ".join(input_suffixes()))
+]
 Input = Annotated[
     Path,
     typer.Argument(
@@ -45,19 +61,14 @@ Columns = Annotated[
         help="Columns of x, y and z, by name or by number from 0: lon,lat,depth or 0,1,2."
     ),
 ]
+PlaneColumns = Annotated[
+    str | None, typer.Option(help="Columns of x and y, by name or by number from 0.")
+]
 Classes = Annotated[
     str | None, typer.Option(help="Keep the points of these classes (LAS, LAZ): 2 or 2,6.")
 ]
 Layer = Annotated[str | None, typer.Option(help="Layer of a file that has several.")]
-MeshOutput = Annotated[
-    list[Path] | None,
-    typer.Option(
-        "--output",
-        "-o",
-        metavar="OUTPUT",
-        help="File to write, once or more: " + " ".join(output_suffixes()),
-    ),
-]
+MeshOutput = Annotated[list[Path] | None, outputs("File to write", output_suffixes())]
 Order = Annotated[
     int, typer.Option(help="Order of the elements in files: 1, or 2 with a node on each edge.")
 ]

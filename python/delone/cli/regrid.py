@@ -14,7 +14,7 @@ from delone import __version__, datasets, sphere
 from delone.atomic import check_target, replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import note
-from delone.cli.options import Json, Quiet, Workers, split
+from delone.cli.options import Json, Quiet, Workers, outputs, split
 from delone.cli.report import Stopwatch, peak_memory
 from delone.cli.show import print_json, print_report, spinner
 from delone.extras import require
@@ -49,15 +49,7 @@ def regrid(
         ),
     ],
     *,
-    output: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="OUTPUT",
-            help="File to write, once or more: " + " ".join(_SUFFIXES + _IMAGES),
-        ),
-    ] = None,
+    output: Annotated[list[Path] | None, outputs("File to write", _SUFFIXES + _IMAGES)] = None,
     method: Annotated[
         str,
         typer.Option(

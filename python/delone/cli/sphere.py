@@ -14,7 +14,17 @@ from delone import __version__, datasets, sphere
 from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import note
-from delone.cli.options import Classes, Columns, Json, Layer, Quiet, Workers, class_numbers, split
+from delone.cli.options import (
+    Classes,
+    Columns,
+    Json,
+    Layer,
+    Quiet,
+    Workers,
+    class_numbers,
+    outputs,
+    split,
+)
 from delone.cli.outputs import write_all
 from delone.cli.referenced import Crs, require_known
 from delone.cli.report import Stopwatch, peak_memory
@@ -48,15 +58,7 @@ def globe(
         ),
     ],
     *,
-    output: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="OUTPUT",
-            help="File to write, once or more: " + " ".join(_SUFFIXES + _IMAGES),
-        ),
-    ] = None,
+    output: Annotated[list[Path] | None, outputs("File to write", _SUFFIXES + _IMAGES)] = None,
     columns: Columns = None,
     classes: Classes = None,
     layer: Layer = None,

@@ -12,7 +12,7 @@ import typer
 from delone import Voronoi, __version__
 from delone.atomic import replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
-from delone.cli.options import Json, Layer, Quiet, Workers, split
+from delone.cli.options import Json, Layer, PlaneColumns, Quiet, Workers, outputs, split
 from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import print_json, print_report, spinner
@@ -36,15 +36,7 @@ def voronoi(
         Path, typer.Argument(metavar="INPUT", help="File of sites: " + " ".join(input_suffixes()))
     ],
     *,
-    output: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="OUTPUT",
-            help="File of cells, once or more: " + " ".join(TABLE_SUFFIXES),
-        ),
-    ] = None,
+    output: Annotated[list[Path] | None, outputs("File of cells", TABLE_SUFFIXES)] = None,
     clip: Annotated[
         str,
         typer.Option(help="A file of polygons; XMIN,YMIN,XMAX,YMAX; or box (of the sites)."),
@@ -57,9 +49,7 @@ def voronoi(
         str | None,
         typer.Option(help="Columns to keep; by default all of a file of geometries."),
     ] = None,
-    columns: Annotated[
-        str | None, typer.Option(help="Columns of x and y, by name or by number from 0.")
-    ] = None,
+    columns: PlaneColumns = None,
     layer: Layer = None,
     crs: Crs = None,
     planar: Planar = False,
