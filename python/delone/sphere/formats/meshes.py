@@ -19,7 +19,7 @@ from delone.sphere.formats.variables import (
 )
 
 if TYPE_CHECKING:
-    from delone._types import Floats
+    from delone._types import Floats, Rows
     from delone.sphere.formats.cells import Choices
 
     Variables = dict[str, Any]
@@ -49,6 +49,15 @@ def _nodes(
     ]
     lon, lat = (numbers(variables[name], name) for name in names)
     return places(lon, lat, (degrees[0], degrees[1]), names, choices)
+
+
+def _cells(
+    convention: str, dims: tuple[Any, ...], nodes: Floats, cells: tuple[Rows, Rows], **more: Any
+) -> Cells:
+    """Return the cells of corners, as rows of nodes, and starts; fields have one axis."""
+    corners, starts = cells
+    shape = (len(starts) - 1,)
+    return Cells(convention, dims, shape, nodes=nodes, corners=corners, starts=starts, **more)
 
 
 def topologies(variables: Variables) -> list[str]:
@@ -93,23 +102,21 @@ def read_ugrid(variables: Variables, choices: Choices) -> Cells:
     table = variables[faces]
     along = topology.get("face_dimension")
     transposed = table.ndim == 2 and along == table.dims[1] != table.dims[0]
-    corners, starts = connected(
+    cells = connected(
         table,
         faces,
         len(vectors),
         start=int(table.attrs.get("start_index", 0)),
         transposed=transposed,
     )
-    centers = str(topology.get("face_coordinates", "")).split()
-    return Cells(
-        format="UGRID",
-        dims=(table.dims[1 if transposed else 0],),
-        shape=(len(starts) - 1,),
-        nodes=vectors,
-        corners=corners,
-        starts=starts,
-        coords=_ordered(variables, centers),
-    )
+    dims = (table.dims[1 if transposed else 0],)
+    coords = _ordered(variables, str(topology.get("face_coordinates", "")).split())
+    return _cells("UGRID", dims, vectors, cells, coords=coords)
+
+
+def _present(variables: Variables, lon: str, lat: str) -> tuple[str, str] | None:
+    """Return two names if both are variables, or None."""
+    return (lon, lat) if {lon, lat} <= set(variables) else None
 
 
 def _ordered(variables: Variables, names: list[str]) -> tuple[str, str] | None:
@@ -137,21 +144,13 @@ def read_esmf(variables: Variables, choices: Choices) -> Cells:
     lengths = None if counts is None else numbers(counts, "numElementConn")
     options: dict[str, Any] = {"start": start, "counts": lengths}
     if table.ndim == 1 and counts is not None:
-        corners, starts = ragged(table, "elementConn", len(vectors), **options)
+        cells = ragged(table, "elementConn", len(vectors), **options)
         dims = counts.dims
     else:
-        corners, starts = connected(table, "elementConn", len(vectors), **options)
+        cells = connected(table, "elementConn", len(vectors), **options)
         dims = table.dims[:1]
-    count = len(starts) - 1
-    return Cells(
-        format="ESMF",
-        dims=dims,
-        shape=(count,),
-        nodes=vectors,
-        corners=corners,
-        starts=starts,
-        mask=flags_of(variables.get("elementMask"), count),
-    )
+    mask = flags_of(variables.get("elementMask"), len(cells[1]) - 1)
+    return _cells("ESMF", dims, vectors, cells, mask=mask)
 
 
 def read_mpas(variables: Variables, choices: Choices, attributes: dict[str, Any]) -> Cells:
@@ -166,15 +165,9 @@ def read_mpas(variables: Variables, choices: Choices, attributes: dict[str, Any]
         vectors = _nodes(variables, ("lonVertex", "latVertex"), choices, fixed=False)
     table = variables["verticesOnCell"]
     counts = numbers(variables["nEdgesOnCell"], "nEdgesOnCell")
-    corners, starts = connected(table, "verticesOnCell", len(vectors), start=1, counts=counts)
-    return Cells(
-        format="MPAS",
-        dims=table.dims[:1],
-        shape=(len(starts) - 1,),
-        nodes=vectors,
-        corners=corners,
-        starts=starts,
-        coords=("lonCell", "latCell") if {"lonCell", "latCell"} <= set(variables) else None,
+    cells = connected(table, "verticesOnCell", len(vectors), start=1, counts=counts)
+    return _cells(
+        "MPAS", table.dims[:1], vectors, cells, coords=_present(variables, "lonCell", "latCell")
     )
 
 
@@ -188,18 +181,9 @@ def read_icon(variables: Variables, choices: Choices) -> Cells:
         raise ShapeError(f"vertex_of_cell must have shape (3, cell), got {table.shape}")
     # The axis of cells is that of their centers; without these, the file's order is (3, cell).
     transposed = table.dims[0] != along and table.shape[0] == 3
-    corners, starts = connected(
-        table, "vertex_of_cell", len(vectors), start=1, transposed=transposed
-    )
-    return Cells(
-        format="ICON",
-        dims=(table.dims[1 if transposed else 0],),
-        shape=(len(starts) - 1,),
-        nodes=vectors,
-        corners=corners,
-        starts=starts,
-        coords=("clon", "clat") if {"clon", "clat"} <= set(variables) else None,
-    )
+    cells = connected(table, "vertex_of_cell", len(vectors), start=1, transposed=transposed)
+    dims = (table.dims[1 if transposed else 0],)
+    return _cells("ICON", dims, vectors, cells, coords=_present(variables, "clon", "clat"))
 
 
 def read_fesom(variables: Variables, choices: Choices) -> Cells:
@@ -207,15 +191,8 @@ def read_fesom(variables: Variables, choices: Choices) -> Cells:
     vectors = _nodes(variables, ("lon", "lat"), choices, fixed=True)
     table = variables["triag_nodes"]
     transposed = table.ndim == 2 and table.shape[0] == 3 and table.shape[1] != 3
-    corners, starts = connected(table, "triag_nodes", len(vectors), start=1, transposed=transposed)
-    return Cells(
-        format="FESOM",
-        dims=(table.dims[1 if transposed else 0],),
-        shape=(len(starts) - 1,),
-        nodes=vectors,
-        corners=corners,
-        starts=starts,
-    )
+    cells = connected(table, "triag_nodes", len(vectors), start=1, transposed=transposed)
+    return _cells("FESOM", (table.dims[1 if transposed else 0],), vectors, cells)
 
 
 def read_exodus(variables: Variables, choices: Choices) -> Cells:
@@ -285,14 +262,7 @@ def read_uxarray(given: Any, choices: Choices) -> Cells:
     variables = {"node_lon": lon, "node_lat": lat}
     vectors = _nodes(variables, ("node_lon", "node_lat"), choices, fixed=True)
     start = attribute(table, "start_index")
-    corners, starts = connected(
+    cells = connected(
         table, "face_node_connectivity", len(vectors), start=0 if start is None else int(start)
     )
-    return Cells(
-        format="uxarray",
-        dims=("n_face",),
-        shape=(len(starts) - 1,),
-        nodes=vectors,
-        corners=corners,
-        starts=starts,
-    )
+    return _cells("uxarray", ("n_face",), vectors, cells)
