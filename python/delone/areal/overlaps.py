@@ -18,7 +18,7 @@ from delone.immutable import sealed
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from delone._types import Rows
 
@@ -28,7 +28,7 @@ __all__ = ["AreaWeights", "OverlapReport", "Overlaps"]
 _ROWS = "source_turned", "target_turned"
 
 
-class Overlaps(SharedAreas, Stored):
+class Overlaps(SharedAreas[AreaWeights], Stored):
     """The areas that cells of two layers in the plane share: the basis of areal interpolation.
 
     Parameters
@@ -108,6 +108,7 @@ class Overlaps(SharedAreas, Stored):
 
     __slots__ = ("_areas", "_rows", "_shapes", "_sums", "_turned")
 
+    _weights = AreaWeights
     _turned: tuple[Rows, Rows]
 
     def __init__(self, source: Any, target: Any, *, workers: int | None = None) -> None:
@@ -124,30 +125,14 @@ class Overlaps(SharedAreas, Stored):
         if (crs := first.crs or second.crs) is not None:
             object.__setattr__(self, "_system", crs)
 
-    def _fill(
-        self,
-        rows: tuple[Any, Any, Any],
-        sums: tuple[Any, Any, Any, Any],
-        turned: tuple[Rows, Rows],
-        workers: int | None,
-    ) -> None:
-        a, b, c = (sealed(x) for x in rows)
-        s, t, u, v = (sealed(x) for x in sums)
+    def _fill(self, *parts: Any) -> None:
+        rows, sums, turned, workers = parts
         p, q = (sealed(x) for x in turned)
-        shapes = (len(s),), (len(t),)
-        self._hold(
-            rows=(a, b, c), areas=(s, t), sums=(u, v), shapes=shapes, turned=(p, q), workers=workers
-        )
+        shapes = (len(sums[0]),), (len(sums[1]),)
+        self._hold_areas(rows, sums, shapes=shapes, turned=(p, q), workers=workers)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        sums = self._areas + self._sums
-        return self._again, (self._rows, sums, self._turned, self._workers)
-
-    @classmethod
-    def _again(cls, *parts: Any) -> Self:
-        made = cls.__new__(cls)
-        made._fill(*parts)
-        return made
+        return self._again, (self._rows, self._areas + self._sums, self._turned, self._workers)
 
     @classmethod
     def _stored_as(cls) -> str:
@@ -171,56 +156,6 @@ class Overlaps(SharedAreas, Stored):
     def target_turned(self) -> Rows:
         """Target cells with a clockwise outer ring."""
         return self._turned[1]
-
-    def to_weights(
-        self,
-        method: str = "conservative",
-        *,
-        source_mask: ArrayLike | None = None,
-        target_mask: ArrayLike | None = None,
-    ) -> AreaWeights:
-        """Return the contribution of each source cell to each target cell.
-
-        Parameters
-        ----------
-        method : {"conservative", "normalized", "sum", "majority"}, optional
-            How values are combined:
-
-            - "conservative": integrals over the target cell, divided by its area. This preserves
-              the sum of values times areas. A partly covered cell gets proportionally less.
-            - "normalized": means over the covered part. A constant stays constant.
-            - "sum": amounts, such as numbers of inhabitants: each source cell gives its value to
-              target cells by the share of its area.
-            - "majority": categories: the value that covers most of the target cell.
-        source_mask, target_mask : array_like of bool, optional
-            True, or 1, for the cells to use; by default all.
-
-        Returns
-        -------
-        AreaWeights
-            The weights, without the cells. Masked target cells have no entries.
-
-        Raises
-        ------
-        InputError
-            `method` is unknown.
-        ShapeError, DtypeError
-            A mask has another shape, or is not boolean.
-
-        Examples
-        --------
-        >>> from delone import Overlaps
-        >>> source = [[(k, 0), (k + 1, 0), (k + 1, 1), (k, 1)] for k in range(3)]
-        >>> target = [[(k, 0), (k + 2, 0), (k + 2, 1), (k, 1)] for k in (0, 2)]
-        >>> overlaps = Overlaps(source, target)
-        >>> for method in ("conservative", "normalized", "sum", "majority"):
-        ...     print(method, overlaps.to_weights(method).apply([6.0, 6.0, 3.0]).tolist())
-        conservative [6.0, 1.5]
-        normalized [6.0, 3.0]
-        sum [12.0, 3.0]
-        majority [6.0, 3.0]
-        """
-        return self._to_weights(method, source_mask, target_mask)
 
     def transfer(
         self,

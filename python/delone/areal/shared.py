@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from delone.counting import counted
 from delone.immutable import ReadOnly, kept, sealed
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import ArrayLike, NDArray
 
     from delone._types import Floats, Rows
@@ -79,15 +81,34 @@ class OverlapReport(ReadOnly):
         return f"<OverlapReport: {', '.join(parts)}>"
 
 
-class SharedAreas(Paired):
+W = TypeVar("W", bound=AreaWeights)
+
+
+class SharedAreas(Paired, Generic[W]):
     """The areas that cells of two grids share, and what follows from them."""
 
     __slots__ = ()
 
     # The class of weights.
-    _weights: ClassVar[type[AreaWeights]] = AreaWeights
+    _weights: type[W]
     # The sums of the parts of source and target cells.
     _sums: tuple[Floats, Floats]
+
+    def _hold_areas(self, rows: Iterable[Any], sums: Iterable[Any], **more: Any) -> None:
+        """Hold rows, and areas and sums of source and target, with what a class has in addition."""
+        a, b, c = (sealed(x) for x in rows)
+        s, t, u, v = (sealed(x) for x in sums)
+        self._hold(rows=(a, b, c), areas=(s, t), sums=(u, v), **more)
+
+    def _fill(self, *parts: Any) -> None:
+        """Hold the parts that ``__reduce__`` has."""
+        raise NotImplementedError
+
+    @classmethod
+    def _again(cls, *parts: Any) -> Self:
+        made = cls.__new__(cls)
+        made._fill(*parts)
+        return made
 
     def _arrays(self) -> dict[str, NDArray[Any]]:
         """Return the arrays of files."""
@@ -139,10 +160,72 @@ class SharedAreas(Paired):
             rows += [np.flatnonzero(x) for x in (outside, partly, more, np.isnan(share))]
         return OverlapReport(len(self.areas), *rows)
 
-    def _to_weights(
-        self, method: str, source_mask: ArrayLike | None, target_mask: ArrayLike | None
-    ) -> AreaWeights:
-        """Return the weights of `to_weights`."""
+    def to_weights(
+        self,
+        method: str = "conservative",
+        *,
+        source_mask: ArrayLike | None = None,
+        target_mask: ArrayLike | None = None,
+    ) -> W:
+        """Return the contribution of each source cell to each target cell.
+
+        Parameters
+        ----------
+        method : {"conservative", "normalized", "sum", "majority"}, optional
+            How values are combined:
+
+            - "conservative": integrals over the target cell, divided by its area ("destarea" in map
+              files). This preserves the sum of values times areas. A partly covered cell gets
+              proportionally less.
+            - "normalized": means over the covered part ("fracarea"). A constant stays constant.
+            - "sum": amounts, such as numbers of inhabitants: each source cell gives its value to
+              target cells by the share of its area.
+            - "majority": categories: the value that covers most of the target cell.
+        source_mask, target_mask : array_like of bool, optional
+            True, or 1, for the cells to use, as in files; in the shape of fields or of cells. By
+            default all.
+
+        Returns
+        -------
+        AreaWeights, on the sphere Weights
+            The weights, without the cells. Masked target cells have no entries.
+
+        Raises
+        ------
+        InputError
+            `method` is unknown.
+        ShapeError, DtypeError
+            A mask has another shape, or is not boolean.
+
+        Notes
+        -----
+        Use "conservative" for fluxes and densities, and "normalized" for states such as
+        temperatures.
+
+        Examples
+        --------
+        >>> from delone import sphere
+        >>> source = sphere.Grid.from_lonlat([0, 1, 2, 3], [0, 1])
+        >>> target = sphere.Grid.from_lonlat([0, 2, 4], [0, 1])
+        >>> overlaps = sphere.Overlaps(source, target)
+        >>> for method in ("conservative", "normalized", "sum", "majority"):
+        ...     weights = overlaps.to_weights(method)
+        ...     print(method, weights.apply([[6.0, 6.0, 3.0]]).round(9).tolist())
+        conservative [[6.0, 1.5]]
+        normalized [[6.0, 3.0]]
+        sum [[12.0, 3.0]]
+        majority [[6.0, 3.0]]
+        >>> overlaps.to_weights("normalized", source_mask=[0, 1, 0]).apply([[9, 6, 3]]).tolist()
+        [[6.0, nan]]
+
+        In the plane:
+
+        >>> from delone import Overlaps
+        >>> left, right = [(0, 0), (2, 0), (2, 1), (0, 1)], [(2, 0), (4, 0), (4, 1), (2, 1)]
+        >>> overlaps = Overlaps([left, right], [[(1, 0), (4, 0), (4, 1), (1, 1)]])
+        >>> overlaps.to_weights("sum").apply([10.0, 6.0]).tolist()
+        [11.0]
+        """
         kind = as_choice(method, METHODS, name="method")
         sources = as_mask(source_mask, self.source_shape, "source_mask")
         targets = as_mask(target_mask, self.target_shape, "target_mask")

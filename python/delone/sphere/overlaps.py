@@ -8,20 +8,17 @@ from delone._arrays import as_workers
 from delone.areal.shared import OverlapReport, SharedAreas
 from delone.complex import Stored
 from delone.errors import DtypeError
-from delone.immutable import sealed
 from delone.sphere.grid import Grid
 from delone.sphere.weights import Weights
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    from delone._types import Floats, Rows
 
 __all__ = ["OverlapReport", "Overlaps"]
 
 
-class Overlaps(SharedAreas, Stored):
+class Overlaps(SharedAreas[Weights], Stored):
     """The areas that cells of two grids share: the basis of conservative regridding.
 
     Parameters
@@ -103,29 +100,13 @@ class Overlaps(SharedAreas, Stored):
             workers,
         )
 
-    def _fill(
-        self,
-        rows: tuple[Rows, NDArray[np.int32], Floats],
-        sums: tuple[Floats, Floats, Floats, Floats],
-        shapes: tuple[tuple[int, ...], tuple[int, ...]],
-        grids: tuple[Grid, Grid] | None,
-        workers: int | None,
-    ) -> None:
-        a, b, c = (sealed(x) for x in rows)
-        s, t, u, v = (sealed(x) for x in sums)
-        self._hold(
-            rows=(a, b, c), areas=(s, t), sums=(u, v), shapes=shapes, grids=grids, workers=workers
-        )
+    def _fill(self, *parts: Any) -> None:
+        rows, sums, shapes, grids, workers = parts
+        self._hold_areas(rows, sums, shapes=shapes, grids=grids, workers=workers)
 
     def __reduce__(self) -> tuple[Any, ...]:
         sums = self._areas + self._sums
         return self._again, (self._rows, sums, self._shapes, self._grids, self._workers)
-
-    @classmethod
-    def _again(cls, *parts: Any) -> Self:
-        made = cls.__new__(cls)
-        made._fill(*parts)
-        return made
 
     @classmethod
     def _stored_as(cls) -> str:
@@ -147,64 +128,3 @@ class Overlaps(SharedAreas, Stored):
     def target(self) -> Grid | None:
         """The target; None if this was loaded from a file, which has no grids."""
         return None if self._grids is None else self._grids[1]
-
-    def to_weights(
-        self,
-        method: str = "conservative",
-        *,
-        source_mask: ArrayLike | None = None,
-        target_mask: ArrayLike | None = None,
-    ) -> Weights:
-        """Return the contribution of each source cell to each target cell.
-
-        Parameters
-        ----------
-        method : {"conservative", "normalized", "sum", "majority"}, optional
-            How values are combined:
-
-            - "conservative": integrals over the target cell, divided by its area ("destarea"). This
-              preserves the sum of values times areas. A partly covered cell gets proportionally
-              less.
-            - "normalized": means over the covered part ("fracarea"). A constant stays constant.
-            - "sum": amounts, such as numbers of inhabitants: each source cell gives its value to
-              target cells by the share of its area.
-            - "majority": categories: the value that covers most of the target cell.
-        source_mask, target_mask : array_like of bool, optional
-            True, or 1, for the cells to use, as in files; in the shape of fields or of cells. By
-            default all.
-
-        Returns
-        -------
-        Weights
-            The weights, without the grids. Masked target cells have no entries.
-
-        Raises
-        ------
-        InputError
-            `method` is unknown.
-        ShapeError, DtypeError
-            A mask has another shape, or is not boolean.
-
-        Notes
-        -----
-        Use "conservative" for fluxes and densities, and "normalized" for states such as
-        temperatures.
-
-        Examples
-        --------
-        >>> from delone import sphere
-        >>> source = sphere.Grid.from_lonlat([0, 1, 2, 3], [0, 1])
-        >>> target = sphere.Grid.from_lonlat([0, 2, 4], [0, 1])
-        >>> overlaps = sphere.Overlaps(source, target)
-        >>> for method in ("conservative", "normalized", "sum", "majority"):
-        ...     weights = overlaps.to_weights(method)
-        ...     print(method, weights.apply([[6.0, 6.0, 3.0]]).round(9).tolist())
-        conservative [[6.0, 1.5]]
-        normalized [[6.0, 3.0]]
-        sum [[12.0, 3.0]]
-        majority [[6.0, 3.0]]
-        >>> overlaps.to_weights("normalized", source_mask=[0, 1, 0]).apply([[9, 6, 3]]).tolist()
-        [[6.0, nan]]
-        """
-        found: Weights = self._to_weights(method, source_mask, target_mask)  # type: ignore[assignment]
-        return found
