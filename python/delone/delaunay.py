@@ -17,7 +17,7 @@ from delone.higher.dimension import MOST
 from delone.immutable import own_copy
 from delone.space.plane import plane_of
 from delone.triangulation import PointTriangulation
-from delone.validation import ValidationReport, of_simplices, of_tetrahedra, of_triangles
+from delone.validation import HigherReport, SpaceReport, ValidationReport
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -251,10 +251,10 @@ class Delaunay(PointTriangulation):
         """
         arrays = self._points, self._simplices, self._neighbors
         if self.ndim == 2:
-            return of_triangles(_core.validate2(*arrays))
+            return ValidationReport._of(_core.validate2(*arrays))
         if self.ndim == 3:
-            return of_tetrahedra(_core.validate3(*arrays))
-        return of_simplices(_core.validate_n(*arrays))
+            return SpaceReport._of(_core.validate3(*arrays))
+        return HigherReport._of(_core.validate_n(*arrays))
 
     def _described(self) -> str:
         points = counted(self.npoints, "point")

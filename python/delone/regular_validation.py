@@ -17,8 +17,6 @@ from delone.validation import (
     SpaceReport,
     ValidationReport,
     no_rows,
-    of_tetrahedra,
-    of_triangles,
 )
 
 if TYPE_CHECKING:
@@ -181,14 +179,14 @@ def validate_regular(
     """Check a 2-D or 3-D regular triangulation; duplicates are rows, and those that they repeat."""
     if points.shape[1] == 3:
         solid = _core.validate_regular3(points, weights, simplices, neighbors)
-        return RegularSpaceReport(
-            **vars(of_tetrahedra(solid.faults)),
+        return RegularSpaceReport._of(
+            solid.faults,
             hidden=solid.hidden,
             duplicates=_differing(duplicates, repeated_rows(solid.stands_for, weights)),
         )
     flat = _core.validate_regular2(points, weights, simplices, neighbors)
-    return RegularReport(
-        **vars(of_triangles(flat.faults)),
+    return RegularReport._of(
+        flat.faults,
         hidden=flat.hidden,
         duplicates=_differing(duplicates, repeated_rows(flat.stands_for, weights)),
     )
@@ -220,16 +218,4 @@ def validate_periodic(
         neighbors,
         partners,
     )
-    return PeriodicReport(
-        offsets=found.offsets,
-        orientation=found.orientation,
-        neighbors=found.neighbors,
-        hull=found.hull,
-        missing=found.missing,
-        repeats=found.repeats,
-        hidden=found.hidden,
-        delaunay=found.delaunay,
-        ties=found.ties,
-        count=found.count,
-        layers=found.layers,
-    )
+    return PeriodicReport._of(found)

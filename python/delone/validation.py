@@ -7,7 +7,7 @@ messages. `validate` accepts triangles from any source.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -56,6 +56,10 @@ def no_rows() -> NDArray[np.int64]:
 
 def no_pairs() -> NDArray[np.int64]:
     return np.empty((0, 2), dtype=np.int64)
+
+
+def no_triples() -> NDArray[np.int64]:
+    return np.empty((0, 3), dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -117,6 +121,13 @@ class ValidationReport(ReadOnly):
     _SUBJECT: ClassVar[str] = "a canonical Delaunay triangulation"
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = SENTENCES
 
+    @classmethod
+    def _of(cls, faults: Any, **more: Any) -> Self:
+        """Return a report of what the core found, by its names, and of more or other fields."""
+        names = {each.name for each in fields(cls)} - set(more)
+        found = {name: getattr(faults, name) for name in names if hasattr(faults, name)}
+        return cls(**found, **more)
+
     def __post_init__(self) -> None:
         for each in fields(self):
             array = np.array(getattr(self, each.name), dtype=np.int64)
@@ -164,10 +175,6 @@ _SPACE_SENTENCES = SENTENCES | {
 }
 
 
-def _no_triples() -> NDArray[np.int64]:
-    return np.empty((0, 3), dtype=np.int64)
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SpaceReport(ValidationReport):
     """The result of ``validate()`` in 3-D: truthy if the triangulation is correct.
@@ -190,7 +197,7 @@ class SpaceReport(ValidationReport):
     [0]
     """
 
-    facets: NDArray[np.integer] = field(default_factory=_no_triples)
+    facets: NDArray[np.integer] = field(default_factory=no_triples)
 
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = _SPACE_SENTENCES
 
@@ -295,49 +302,14 @@ def validate(
         else:
             beside = as_neighbors(neighbors, len(cells), d)
         if d == 3:
-            return of_tetrahedra(_core.validate3(rows, cells, beside))
-        return of_simplices(_core.validate_n(rows, cells, beside))
+            return SpaceReport._of(_core.validate3(rows, cells, beside))
+        return HigherReport._of(_core.validate_n(rows, cells, beside))
     triangles = as_simplices(simplices, len(rows), 2)
     if neighbors is None:
         beyond = topology.neighbors(triangles, len(rows))
     else:
         beyond = as_neighbors(neighbors, len(triangles), 2)
-    return of_triangles(_core.validate2(rows, triangles, beyond))
-
-
-def of_triangles(faults: _core.Faults2) -> ValidationReport:
-    """Make a report of what the core found wrong with triangles."""
-    return ValidationReport(
-        orientation=faults.orientation,
-        edges=faults.edges,
-        neighbors=faults.neighbors,
-        hull=faults.hull,
-        missing=faults.missing,
-        repeats=faults.repeats,
-        delaunay=faults.delaunay,
-        ties=faults.ties,
-        count=faults.count,
-    )
-
-
-def of_tetrahedra(faults: _core.Faults3) -> SpaceReport:
-    """Make a report of what the core found wrong with tetrahedra."""
-    return SpaceReport(
-        orientation=faults.orientation,
-        facets=faults.facets,
-        neighbors=faults.neighbors,
-        hull=faults.hull,
-        missing=faults.missing,
-        repeats=faults.repeats,
-        delaunay=faults.delaunay,
-        ties=faults.ties,
-    )
-
-
-def of_simplices(faults: _core.FaultsN) -> HigherReport:
-    """Make a report of what the core found wrong with simplices of more dimensions."""
-    names = (each.name for each in fields(HigherReport) if each.name not in ("edges", "count"))
-    return HigherReport(**{name: getattr(faults, name) for name in names})
+    return ValidationReport._of(_core.validate2(rows, triangles, beyond))
 
 
 def not_across(

@@ -15,7 +15,7 @@ import numpy as np
 
 from delone import _core
 from delone.plane.topology import among, edge_keys
-from delone.validation import SENTENCES, ValidationReport
+from delone.validation import SENTENCES, ValidationReport, no_pairs, no_rows, not_across
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -25,14 +25,6 @@ if TYPE_CHECKING:
     from delone._types import Bools, Floats, Indices
 
 __all__ = ["ConstrainedReport"]
-
-
-def _none() -> NDArray[np.int64]:
-    return np.empty(0, dtype=np.int64)
-
-
-def _no_pairs() -> NDArray[np.int64]:
-    return np.empty((0, 2), dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -72,10 +64,10 @@ class ConstrainedReport(ValidationReport):
     (True, 0)
     """
 
-    flags: NDArray[np.integer] = field(default_factory=_none)
-    absent: NDArray[np.integer] = field(default_factory=_no_pairs)
-    uncovered: NDArray[np.integer] = field(default_factory=_none)
-    bent: NDArray[np.integer] = field(default_factory=_no_pairs)
+    flags: NDArray[np.integer] = field(default_factory=no_rows)
+    absent: NDArray[np.integer] = field(default_factory=no_pairs)
+    uncovered: NDArray[np.integer] = field(default_factory=no_rows)
+    bent: NDArray[np.integer] = field(default_factory=no_pairs)
 
     _SUBJECT: ClassVar[str] = "a canonical constrained Delaunay triangulation"
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {
@@ -103,28 +95,15 @@ def validate(
     edges = edge_keys(simplices[:, [1, 2, 0]], simplices[:, [2, 0, 1]], len(points))
     segments = edge_keys(made.segments[:, 0], made.segments[:, 1], len(points))
     wanted = among(edges, segments)
-    return ConstrainedReport(
-        orientation=faults.orientation,
-        edges=faults.edges,
-        neighbors=faults.neighbors,
-        hull=faults.hull,
-        missing=faults.missing,
-        repeats=faults.repeats,
-        delaunay=_not_across(faults.delaunay, neighbors, wanted),
-        ties=_not_across(faults.ties, neighbors, wanted),
-        count=faults.count,
+    return ConstrainedReport._of(
+        faults,
+        delaunay=not_across(faults.delaunay, neighbors, wanted),
+        ties=not_across(faults.ties, neighbors, wanted),
         flags=np.flatnonzero((wanted != made.constrained).any(axis=1)),
         absent=made.segments[~among(segments, edges.ravel())],
         uncovered=uncovered_rows(made, ends, len(points)),
-        bent=_no_pairs() if conforming else _bent(points, made, ends),
+        bent=no_pairs() if conforming else _bent(points, made, ends),
     )
-
-
-def _not_across(pairs: Indices, neighbors: Indices, wanted: Bools) -> Indices:
-    """Leave out pairs of triangles that a subsegment separates."""
-    across = neighbors[pairs[:, 0]] == pairs[:, 1:]
-    left: Indices = pairs[~(across & wanted[pairs[:, 0]]).any(axis=1)]
-    return left
 
 
 def _directed(made: _core.ConstrainedTriangulation) -> tuple[Indices, Indices, Indices]:

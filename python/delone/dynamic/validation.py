@@ -18,7 +18,7 @@ from delone.constrained import ConstrainedDelaunay
 from delone.constrained.validation import ConstrainedReport
 from delone.duplicates import first_rows
 from delone.plane.topology import among, edge_keys
-from delone.validation import not_across
+from delone.validation import no_rows, no_triples, not_across
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -30,14 +30,6 @@ if TYPE_CHECKING:
     Handles = NDArray[np.int64]
 
 __all__ = ["DynamicReport", "validate"]
-
-
-def _no_triples() -> NDArray[np.int64]:
-    return np.empty((0, 3), dtype=np.int64)
-
-
-def _none() -> NDArray[np.int64]:
-    return np.empty(0, dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -75,8 +67,8 @@ class DynamicReport(ConstrainedReport):
     (True, 0)
     """
 
-    surplus: NDArray[np.integer] = field(default_factory=_none)
-    crossings: NDArray[np.integer] = field(default_factory=_no_triples)
+    surplus: NDArray[np.integer] = field(default_factory=no_rows)
+    crossings: NDArray[np.integer] = field(default_factory=no_triples)
 
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {
         **ConstrainedReport._SENTENCES,
@@ -112,16 +104,10 @@ def validate(made: Any, own: Any, *, split: bool, workers: int | None) -> Dynami
     known = np.zeros(len(points), dtype=bool)
     known[given] = True
     known[place[place >= 0]] = True
-    return DynamicReport(
-        orientation=faults.orientation,
-        edges=faults.edges,
-        neighbors=faults.neighbors,
-        hull=faults.hull,
-        missing=faults.missing,
-        repeats=faults.repeats,
+    return DynamicReport._of(
+        faults,
         delaunay=not_across(faults.delaunay, neighbors, made.constrained),
         ties=not_across(faults.ties, neighbors, made.constrained),
-        count=faults.count,
         flags=np.flatnonzero((among(edges, keys) != made.constrained).any(axis=1)),
         absent=found[~among(keys, edges.ravel())],
         uncovered=own.handles[_sources(fresh, missed)],
