@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -90,38 +90,11 @@ class DBSCAN(Clusterer):
         self.workers = workers
         self.planar = planar
 
-    def fit(self, X: ArrayLike, y: Any = None) -> Self:  # noqa: N803
-        """Cluster points.
-
-        Parameters
-        ----------
-        X : array_like, shape (n, 2) or (n, 3)
-            Finite coordinates.
-        y : optional
-            Ignored.
-
-        Returns
-        -------
-        DBSCAN
-            The estimator itself.
-
-        Raises
-        ------
-        InputError
-            An option is out of range, or the metric is not Euclidean.
-        NonFiniteError
-            A coordinate is NaN or infinite.
-        ShapeError, DtypeError
-            `X` is not a real array of shape (n, 2) or (n, 3), or an option has the wrong type.
-
-        Examples
-        --------
-        See `DBSCAN`.
-        """
+    def _cluster(self, given: ArrayLike) -> None:
         eps = as_reach(self.eps, name="eps")
         samples = as_least(self.min_samples, 1, name="min_samples")
         workers = as_workers(self.workers)
-        points = self._points(X)
+        points = self._points(given)
         # A count above that of all rows stands for every larger one.
         scaled, exponent = rescaled(points, eps)
         reach = float(np.ldexp(eps, exponent))
@@ -129,4 +102,3 @@ class DBSCAN(Clusterer):
         self.labels_ = numbered(clusters)
         self.core_sample_indices_ = np.flatnonzero(is_core).astype(np.int32)
         self.components_ = points[self.core_sample_indices_]
-        return self

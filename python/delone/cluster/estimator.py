@@ -98,7 +98,39 @@ class Clusterer:
         return self
 
     def fit(self, X: ArrayLike, y: Any = None) -> Self:  # noqa: N803
-        """Cluster points; subclasses say how."""
+        """Cluster points.
+
+        Parameters
+        ----------
+        X : array_like, shape (n, 2) or (n, 3)
+            Finite coordinates.
+        y : optional
+            Ignored.
+
+        Returns
+        -------
+        The estimator itself.
+
+        Raises
+        ------
+        InputError
+            An option is out of range, or the metric is not Euclidean.
+        NonFiniteError
+            A coordinate is NaN or infinite.
+        ShapeError, DtypeError
+            `X` is not a real array of shape (n, 2) or (n, 3), or an option has the wrong type.
+
+        Examples
+        --------
+        >>> from delone.cluster import DBSCAN
+        >>> DBSCAN(1.5, min_samples=2).fit([(0, 0), (9, 9), (1, 1)]).labels_
+        array([ 0, -1,  0], dtype=int32)
+        """
+        self._cluster(X)
+        return self
+
+    def _cluster(self, given: ArrayLike) -> None:
+        """Check the options, and set the attributes that a fitted estimator has."""
         raise NotImplementedError
 
     def fit_predict(self, X: ArrayLike, y: Any = None, **options: Any) -> Indices:  # noqa: N803

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -120,34 +120,7 @@ class HDBSCAN(Clusterer):
         self.workers = workers
         self.planar = planar
 
-    def fit(self, X: ArrayLike, y: Any = None) -> Self:  # noqa: N803
-        """Cluster points.
-
-        Parameters
-        ----------
-        X : array_like, shape (n, 2) or (n, 3)
-            Finite coordinates.
-        y : optional
-            Ignored.
-
-        Returns
-        -------
-        HDBSCAN
-            The estimator itself.
-
-        Raises
-        ------
-        InputError
-            An option is out of range, or the metric is not Euclidean.
-        NonFiniteError
-            A coordinate is NaN or infinite.
-        ShapeError, DtypeError
-            `X` is not a real array of shape (n, 2) or (n, 3), or an option has the wrong type.
-
-        Examples
-        --------
-        See `HDBSCAN`.
-        """
+    def _cluster(self, given: ArrayLike) -> None:
         least = as_least(self.min_cluster_size, 2, name="min_cluster_size")
         samples = least
         if self.min_samples is not None:
@@ -161,7 +134,7 @@ class HDBSCAN(Clusterer):
         method = as_choice(self.cluster_selection_method, methods, name=name)
         single = as_flag(self.allow_single_cluster, name="allow_single_cluster")
         workers = as_workers(self.workers)
-        points = self._points(X)
+        points = self._points(given)
         tree = condensed_tree(
             points, samples=samples, least=least, epsilon=epsilon, workers=workers
         )
@@ -173,7 +146,6 @@ class HDBSCAN(Clusterer):
         self.labels_ = numbered(labels)
         self.probabilities_ = memberships(tree, labels)
         self.condensed_tree_ = tree.table()
-        return self
 
     def to_hdbscan(self) -> NDArray[np.void]:
         """Return the condensed tree with binary splits, as the package hdbscan expects.
