@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["first_rows"]
+__all__ = ["first_rows", "vertices_of"]
 
 
 def first_rows(points: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -21,4 +21,11 @@ def first_rows(points: NDArray[np.float64]) -> NDArray[np.int64]:
     # The sort is stable, so that the first of equal rows comes first.
     first = np.empty(len(order), dtype=np.int64)
     first[order] = order[np.flatnonzero(new)][np.cumsum(new) - 1]
+    return first
+
+
+def vertices_of(duplicates: NDArray[np.int32], count: int) -> NDArray[np.int32]:
+    """Return the vertex of each of `count` rows, where duplicates, (k, 2), are the other ones."""
+    first = np.arange(count, dtype=np.int32)
+    first[duplicates[:, 0]] = duplicates[:, 1]
     return first

@@ -15,6 +15,7 @@ from delone import location, measures
 from delone._arrays import as_workers
 from delone.complex import Complex
 from delone.dimension import FLAT_OR_SOLID, only
+from delone.duplicates import vertices_of
 from delone.higher.dimension import HIGHER
 from delone.immutable import kept, sealed
 from delone.plane.dimension import PLANE
@@ -580,6 +581,4 @@ class PointTriangulation(HullTiling):
     @kept
     def duplicate_of(self) -> Indices:
         """The vertex of each row, (n,): the first row with the same coordinates."""
-        first = np.arange(self.npoints, dtype=np.int32)
-        first[self._duplicates[:, 0]] = self._duplicates[:, 1]
-        return sealed(first)
+        return sealed(vertices_of(self._duplicates, self.npoints))

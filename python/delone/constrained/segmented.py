@@ -15,6 +15,7 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_workers
 from delone.constrained import coverage, regions, segments
+from delone.duplicates import vertices_of
 from delone.immutable import kept, sealed
 from delone.renames import renamed
 from delone.triangulation import PointTriangulation
@@ -156,7 +157,7 @@ class Segmented(PointTriangulation):
     def _polygons(self, component: Indices) -> Indices:
         """Return the first polygon of each component."""
         origin, npoints = self._given.origin, len(self._points)
-        ends = _vertices(self._made.duplicates, npoints)[self._given.segments]
+        ends = vertices_of(self._made.duplicates, npoints)[self._given.segments]
         sides = coverage.closed_rings(ends, origin.geometries, origin.rings)
         return coverage.first_polygon(self._made, origin.geometries, component, sides)
 
@@ -283,17 +284,11 @@ class Segmented(PointTriangulation):
         made, ends = self._made, self.duplicate_of[self._given.segments]
         crossings = made.crossings
         known = np.concatenate((crossings[:, [0, 2]], crossings[:, [1, 2]], made.through))
-        repeated = segments.repeated_rows(ends)
         hole, hole_on_segment = self._located(self._given.holes)
         triangle, on_segment = self._located(self._given.regions)
         outside = (triangle < 0) | (self._is_removed(triangle) & ~on_segment)
         report = segments.SegmentReport(
-            duplicates=made.duplicates,
-            zero=made.zero,
-            through=made.through,
-            crossings=crossings,
-            repeated=repeated,
-            overlaps=segments.overlapping_rows(made.source_start, made.source, repeated),
+            **segments.listed(made, ends),
             steiner=segments.steiner_rows(
                 made.segments, made.source_start, made.source, known, ends
             ),
@@ -352,9 +347,3 @@ class Segmented(PointTriangulation):
 
 def _rows(marked: Bools) -> Indices:
     return np.flatnonzero(marked).astype(np.int32)
-
-
-def _vertices(duplicates: Indices, npoints: int) -> Indices:
-    first = np.arange(npoints, dtype=np.int32)
-    first[duplicates[:, 0]] = duplicates[:, 1]
-    return first

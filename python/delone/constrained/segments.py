@@ -8,7 +8,7 @@ follow from its arrays.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -195,6 +195,22 @@ def repeated_rows(ends: Indices) -> Indices:
     later = ~new & (low != high)
     pairs = np.column_stack((order[later], first[later]))
     return pairs[np.argsort(pairs[:, 0])].astype(np.int32)
+
+
+def listed(made: Any, ends: Indices) -> dict[str, Indices]:
+    """Return the fields of a report that the input segments have in the plane and on the sphere.
+
+    In `ends`, (s, 2), equal points have the same vertex.
+    """
+    repeated = repeated_rows(ends)
+    return {
+        "duplicates": made.duplicates,
+        "zero": made.zero,
+        "repeated": repeated,
+        "overlaps": overlapping_rows(made.source_start, made.source, repeated),
+        "through": made.through,
+        "crossings": made.crossings,
+    }
 
 
 def overlapping_rows(start: NDArray[np.int64], source: Indices, repeated: Indices) -> Indices:

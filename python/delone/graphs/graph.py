@@ -17,6 +17,7 @@ from delone._arrays import (
 )
 from delone.complex import Exchanged, Stored
 from delone.counting import counted, listed
+from delone.duplicates import vertices_of
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.graphs.coincident import clique, repeated
 from delone.graphs.lengths import lengths_of, lowest, squares, up_to
@@ -201,9 +202,7 @@ class Graph(Stored, Exchanged):
     @kept
     def duplicate_of(self) -> Indices:
         """The vertex of each row, (n,): the first row with the same coordinates."""
-        first = np.arange(self.npoints, dtype=np.int32)
-        first[self._duplicates[:, 0]] = self._duplicates[:, 1]
-        return sealed(first)
+        return sealed(vertices_of(self._duplicates, self.npoints))
 
     @property
     @kept

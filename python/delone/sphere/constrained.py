@@ -318,16 +318,8 @@ class ConstrainedDelaunay(Delaunay):
     @kept
     def report(self) -> SegmentReport:
         """The input report: duplicates, overlaps and more, row by row."""
-        made = self._made
-        repeated = segments.repeated_rows(self.duplicate_of[self._given.segments])
-        return segments.SegmentReport(
-            duplicates=made.duplicates,
-            zero=made.zero,
-            repeated=repeated,
-            overlaps=segments.overlapping_rows(made.source_start, made.source, repeated),
-            through=made.through,
-            crossings=made.crossings,
-        )
+        ends = self.duplicate_of[self._given.segments]
+        return segments.SegmentReport(**segments.listed(self._made, ends))
 
     @property
     @kept

@@ -9,12 +9,13 @@ import numpy as np
 from delone import _core, measures
 from delone._arrays import as_flag, as_workers
 from delone.counting import counted
+from delone.duplicates import vertices_of
 from delone.errors import InternalError
 from delone.exchange.parts import Parts
 from delone.immutable import kept, sealed
 from delone.location import as_tolerance
 from delone.plane import topology
-from delone.sphere.coordinates import directions_of, lonlat_of, queries_of, units_of
+from delone.sphere.coordinates import directions_of, queries_of
 from delone.sphere.globe import OnGlobe
 from delone.sphere.nearby import nearby
 
@@ -226,23 +227,6 @@ class Delaunay(OnGlobe):
         return Parts(self.points, self.simplices, of_points=values)
 
     @property
-    def vectors(self) -> Floats:
-        """The vectors whose directions are triangulated, (n, 3)."""
-        return self._vectors
-
-    @property
-    @kept
-    def points(self) -> Floats:
-        """The unit vectors, rounded, (n, 3)."""
-        return sealed(units_of(self._vectors, self._workers))
-
-    @property
-    @kept
-    def lonlat(self) -> Floats:
-        """Longitudes, -180 to 180, and latitudes in degrees, rounded, (n, 2)."""
-        return sealed(lonlat_of(self._vectors))
-
-    @property
     def simplices(self) -> Indices:
         """The triangles as rows of `vectors`, counter-clockwise seen from outside, (m, 3)."""
         return self._simplices
@@ -261,14 +245,7 @@ class Delaunay(OnGlobe):
     @kept
     def duplicate_of(self) -> Indices:
         """The vertex of each row, (n,): the first row with the same direction."""
-        first = np.arange(self.npoints, dtype=np.int32)
-        first[self._duplicates[:, 0]] = self._duplicates[:, 1]
-        return sealed(first)
-
-    @property
-    def npoints(self) -> int:
-        """Number of rows, duplicates included."""
-        return len(self._vectors)
+        return sealed(vertices_of(self._duplicates, self.npoints))
 
     @property
     def nsimplex(self) -> int:

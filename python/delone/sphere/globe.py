@@ -1,21 +1,50 @@
-"""What triangulations and diagrams on the sphere have in common: their pictures."""
+"""What triangulations and diagrams on the sphere have in common: directions, and plots."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
 from delone.complex import Stored
+from delone.immutable import kept, sealed
+from delone.sphere.coordinates import lonlat_of, units_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+    from delone._types import Floats
 
 __all__ = ["OnGlobe"]
 
 
 class OnGlobe(Stored):
-    """Arrays on the sphere that are drawn on a globe."""
+    """Directions, and arrays on the sphere that are drawn on a globe."""
 
     __slots__ = ()
+
+    _vectors: Floats
+    _workers: int | None
+
+    @property
+    def vectors(self) -> Floats:
+        """The vectors whose directions are the points or sites, (n, 3)."""
+        return self._vectors
+
+    @property
+    @kept
+    def points(self) -> Floats:
+        """The unit vectors of the points or sites, rounded, (n, 3)."""
+        return sealed(units_of(self._vectors, self._workers))
+
+    @property
+    @kept
+    def lonlat(self) -> Floats:
+        """Longitudes, -180 to 180, and latitudes in degrees, rounded, (n, 2)."""
+        return sealed(lonlat_of(self._vectors))
+
+    @property
+    def npoints(self) -> int:
+        """Number of rows, duplicates included."""
+        return len(self._vectors)
 
     def _draw(self, ax: Any, points: bool | None, options: dict[str, Any]) -> Any:
         """Draw with the options of `plot`."""

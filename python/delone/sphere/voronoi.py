@@ -343,31 +343,9 @@ class Voronoi(OnGlobe):
         return self._mesh
 
     @property
-    def vectors(self) -> Floats:
-        """The vectors whose directions are the sites, (n, 3)."""
-        return self._vectors
-
-    @property
-    @kept
-    def points(self) -> Floats:
-        """The unit vectors of the sites, rounded, (n, 3)."""
-        return sealed(units_of(self._vectors, self._workers))
-
-    @property
-    @kept
-    def lonlat(self) -> Floats:
-        """Longitudes, -180 to 180, and latitudes of the sites in degrees, rounded, (n, 2)."""
-        return sealed(lonlat_of(self._vectors))
-
-    @property
     def radius(self) -> float:
         """The radius of the sphere."""
         return self._radius
-
-    @property
-    def npoints(self) -> int:
-        """Number of rows, duplicates included."""
-        return len(self._vectors)
 
     @property
     @kept
