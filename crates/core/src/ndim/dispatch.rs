@@ -54,7 +54,7 @@ macro_rules! dispatched {
 }
 
 use super::cell::Mesh;
-use super::{cavity, hull, walk};
+use super::{cavity, walk, wrapping};
 use crate::arrays::Given;
 use crate::error::Result;
 use crate::locate::Located;
@@ -76,7 +76,7 @@ dispatched! {
         mesh: &mut Mesh<D, V, P>,
         points: &[u32],
         pace: &mut Pace,
-    ) -> Result<()> = hull::wrap::<D, V, P>;
+    ) -> Result<()> = wrapping::wrap::<D, V, P>;
 }
 
 dispatched! {

@@ -55,6 +55,7 @@ mod tests;
 mod triangulate;
 mod validate;
 mod walk;
+mod wrapping;
 
 pub use hull::{Hull, hull};
 pub use location::{Hyper, Weighed, Within, nearest, within};
