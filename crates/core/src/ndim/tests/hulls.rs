@@ -4,7 +4,8 @@ use super::super::{hull, triangulate};
 use super::brute;
 use super::sets::{Random, kinds};
 use crate::error::Error;
-use crate::watch::IDLE;
+use crate::watch::{IDLE, Watch};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Whether rows of points have some point strictly on the side of a facet where `inside` is not.
 fn is_beyond<const D: usize>(
@@ -136,4 +137,22 @@ fn the_hull_of_points_in_general_position_is_that_of_their_triangulation() {
     facets.sort_unstable();
     expected.sort_unstable();
     assert_eq!(facets, expected);
+}
+
+#[test]
+fn work_on_a_hull_is_interrupted_soon() {
+    let mut random = Random::new(3);
+    // On a sphere, so that all are vertices.
+    let points: Vec<[f64; 5]> = (0..300)
+        .map(|_| {
+            let p = [0; 5].map(|_| random.unit() - 0.5);
+            let length = p.iter().map(|x| x * x).sum::<f64>().sqrt();
+            p.map(|x| x / length)
+        })
+        .collect();
+    let asked = AtomicUsize::new(0);
+    let stop = || asked.fetch_add(1, Ordering::Relaxed) == 5;
+    let found = hull::<5, 6, 8>(&points, &Watch::new(&stop));
+    assert_eq!(found, Err(Error::Interrupted));
+    assert_eq!(asked.into_inner(), 6);
 }
