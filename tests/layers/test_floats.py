@@ -70,6 +70,7 @@ ALLOWED: dict[str, dict[str, str]] = {
         "before + 4 * layers + int(sizes.sum(dtype=np.int64)) > length": EXACT,
         "length > 0": EXACT,
     },
+    "io/landxml_survey.py": {"np.hypot(*away) <= max(_GAP, _SAME * length)": CHECK},
     "io/registry.py": {"distance > 0": CHECK},
     "location.py": {
         "distance + error <= limit": FILTER,

@@ -1,4 +1,4 @@
-"""LandXML 1.0 to 1.2: the surfaces of a file, with lxml (extra ``landxml``).
+"""LandXML 1.0 to 1.2: surfaces, survey points and alignments, with lxml (extra ``landxml``).
 
 Coordinates are northing, easting and height, in this order. Document types are refused, so there
 are no entities; nothing else is opened; limits of libxml2 on depth and length of text hold.
@@ -6,39 +6,64 @@ are no entities; nothing else is opened; limits of libxml2 on depth and length o
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from delone.errors import FileFormatError
+import numpy as np
+
+from delone.errors import FileFormatError, InputError
 from delone.extras import require
+from delone.io.geometryset import GeometrySet
 from delone.io.landxml_parts import ORDERS, Draft, Head
+from delone.io.landxml_survey import Survey
 from delone.io.landxml_writing import require_libraries, write_mesh
 from delone.io.markup import decoded, refuse_document_type
+from delone.io.pointset import PointSet
+from delone.io.surfacefile import SurfaceFile
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Collection, Iterator, Sequence
     from pathlib import Path
 
-    from delone.io.geometryset import GeometrySet
-    from delone.io.pointset import PointSet
-    from delone.io.surfacefile import SurfaceFile
+    from delone._types import Floats
 
 __all__ = ["read_geometries", "read_points", "read_surface", "require_libraries", "write_mesh"]
 
 # Elements that are done when they end: all others are small, and hold what belongs to these.
 _LEAVES = ("P", "F", "PntList2D", "PntList3D")
 _SHOWN = 20
+# What selects survey points and alignments instead of a surface.
+_SURVEY, _ALIGNMENTS = "CgPoints", "Alignments"
 # Points, faces and lines that are dropped together.
 _AT_ONCE = 256
 
 
 def read_points(
-    path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str], layer: str | None
+    path: Path,
+    *,
+    columns: Sequence[str | int] | None,
+    attributes: Sequence[str],
+    layer: str | None,
+    everything: bool = False,
 ) -> PointSet:
-    """Read the points of a surface; see `delone.io.read_points`."""
-    _refuse_columns(path, columns, attributes)
+    """Read the points of a surface, or survey points; see `delone.io.read_points`."""
+    _refuse_columns(path, columns)
     found = read_surface(path, name=layer, order="nez")
-    found.warn_left_out()
-    return found.as_points()
+    if found.name != _SURVEY:
+        _refuse_attributes(path, attributes)
+        found.warn_left_out()
+        return found.as_points()
+    survey = _survey(path, "nez")
+    places, known = survey.points()
+    _surveyed(survey, places).warn_left_out()
+    _refuse_attributes(path, set(attributes) - set(known))
+    return PointSet(
+        points=np.ascontiguousarray(places[:, :2]),
+        z=None if np.isnan(places[:, 2]).all() else places[:, 2].copy(),
+        attributes=known if everything else {name: known[name] for name in attributes},
+        crs=survey.head.crs,
+        source=str(path),
+    )
 
 
 def read_geometries(
@@ -47,19 +72,77 @@ def read_geometries(
     columns: Sequence[str | int] | None,
     layer: str | None,
     attributes: Sequence[str] = (),
+    everything: bool = False,
+    chord: float | None = None,
 ) -> GeometrySet:
-    """Read the lines of a surface; see `delone.io.read_geometries`."""
-    _refuse_columns(path, columns, attributes)
+    """Read the lines of a surface, or alignments; see `delone.io.read_geometries`."""
+    _refuse_columns(path, columns)
+    survey = _survey(path, "nez")
+    if layer == _ALIGNMENTS or (survey.names and _has_no_surface(path, layer)):
+        return _aligned(path, survey, layer, None if everything else attributes, chord)
+    _refuse_attributes(path, attributes)
+    if chord is not None:
+        raise InputError(f"{path}: chord is for alignments, and these are the lines of a surface")
     found = read_surface(path, name=layer, order="nez")
     found.warn_left_out()
     return found.as_geometries()
 
 
-def _refuse_columns(
-    path: Path, columns: Sequence[str | int] | None, attributes: Sequence[str]
-) -> None:
-    if columns is not None or attributes:
+def _has_no_surface(path: Path, name: str | None) -> bool:
+    etree = require("lxml.etree", extra="landxml", what="reading LandXML")
+    # Of a name that no surface has, no content is read.
+    names = [draft.name for draft in _drafts(etree, path, Head(str(path), ORDERS["nez"]), "\0")]
+    return not names if name is None else name not in names
+
+
+def _aligned(
+    path: Path,
+    survey: Survey,
+    layer: str | None,
+    attributes: Sequence[str] | None,
+    chord: float | None,
+) -> GeometrySet:
+    """Return alignments as lines."""
+    shapely = require("shapely", extra="geo", what="geometries")
+    name = None if layer in (None, _ALIGNMENTS) else layer
+    if name is not None and name not in survey.names:
+        shown = ", ".join(map(repr, survey.names[:_SHOWN]))
+        raise FileFormatError(
+            f"{path} has no surface or alignment {name!r:.80}; its alignments are {shown}"
+        )
+    found = survey.alignments(chord, name)
+    if not found:
+        raise FileFormatError(f"{path} contains no alignments")
+    lines = np.concatenate([each.line for each in found])
+    places = np.column_stack((lines, np.full(len(lines), np.nan)))
+    _surveyed(survey, places).warn_left_out()
+    known = {
+        "name": np.array([each.name for each in found], dtype=object),
+        "start": np.array([each.start for each in found]),
+    }
+    _refuse_attributes(path, set(attributes or ()) - set(known))
+    geometries = np.empty(len(found), dtype=object)
+    geometries[:] = [shapely.LineString(each.line) for each in found]
+    wanted = known if attributes is None else attributes
+    return GeometrySet(
+        geometries=geometries,
+        crs=survey.head.crs,
+        source=str(path),
+        attributes={each: known[each] for each in wanted},
+    )
+
+
+def _refuse_columns(path: Path, columns: Sequence[str | int] | None) -> None:
+    if columns is not None:
         raise FileFormatError(f"{path}: points of LandXML have x, y and z, and no other columns")
+
+
+def _refuse_attributes(path: Path, attributes: Collection[str]) -> None:
+    if attributes:
+        raise FileFormatError(
+            f"{path} has no column {sorted(attributes)[0]!r:.60}: CgPoints have name, code and "
+            "desc, alignments name and start, surfaces none"
+        )
 
 
 def read_surface(path: Path, *, name: str | None, order: str) -> SurfaceFile:
@@ -67,29 +150,89 @@ def read_surface(path: Path, *, name: str | None, order: str) -> SurfaceFile:
     etree = require("lxml.etree", extra="landxml", what="reading LandXML")
     refuse_document_type(path)
     head = Head(str(path), ORDERS[order])
-    try:
+    with _valid(etree, path):
         drafts = list(_drafts(etree, path, head, name))
-    except etree.XMLSyntaxError as error:
-        raise FileFormatError(f"{path} is not valid XML: {error.msg}") from error
+    if name == _SURVEY or (name is None and not drafts):
+        survey = _survey(path, order)
+        if survey.has_points:
+            found = _surveyed(survey, survey.points()[0])
+            found.require_order(order)
+            return found
     found = _chosen(drafts, name, str(path)).finished()
     found.require_order(order)
     return found
 
 
+@contextmanager
+def _valid(etree: Any, path: Path) -> Iterator[None]:
+    try:
+        yield
+    except etree.XMLSyntaxError as error:
+        raise FileFormatError(f"{path} is not valid XML: {error.msg}") from error
+
+
+def _surveyed(survey: Survey, places: Floats) -> SurfaceFile:
+    """Return survey points with heights as a surface without faces."""
+    high = ~np.isnan(places[:, 2])
+    left_out = survey.left_out.copy()
+    left_out["CgPoint without a height"] += int((~high).sum()) if high.any() else 0
+    return SurfaceFile(
+        points=places[high],
+        faces=np.empty((0, 3), dtype=np.int32),
+        units=survey.head.units,
+        lengths=survey.head.lengths,
+        crs=survey.head.crs,
+        name=_SURVEY,
+        source=survey.head.source,
+        left_out=dict(+left_out),
+    )
+
+
+def _survey(path: Path, order: str) -> Survey:
+    """Read survey points and alignments."""
+    etree = require("lxml.etree", extra="landxml", what="reading LandXML")
+    refuse_document_type(path)
+    survey = Survey(str(path), order)
+    with _valid(etree, path), decoded(path) as (file, encoding):
+        depth = 0
+        for event, element in _events(etree, file, encoding):
+            if event == "start":
+                if depth == 0:
+                    _require_root(element, path)
+                depth += 1
+                survey.begin(_local(element), element)
+                continue
+            depth -= 1
+            survey.end(_local(element), element)
+            _drop(element)
+    return survey
+
+
+def _events(etree: Any, file: Any, encoding: str | None) -> Any:
+    return etree.iterparse(
+        file,
+        encoding=encoding,
+        events=("start", "end"),
+        resolve_entities=False,
+        load_dtd=False,
+        no_network=True,
+        huge_tree=False,
+        remove_comments=True,
+        remove_pis=True,
+    )
+
+
+def _drop(element: Any) -> None:
+    """Drop what was read."""
+    element.clear()
+    while element.getprevious() is not None:
+        del element.getparent()[0]
+
+
 def _drafts(etree: Any, path: Path, head: Head, wanted: str | None) -> Iterator[Draft]:
     """Yield the surfaces, in the order of the file; those of other names have no content."""
     with decoded(path) as (file, encoding):
-        events = etree.iterparse(
-            file,
-            encoding=encoding,
-            events=("start", "end"),
-            resolve_entities=False,
-            load_dtd=False,
-            no_network=True,
-            huge_tree=False,
-            remove_comments=True,
-            remove_pis=True,
-        )
+        events = _events(etree, file, encoding)
         draft: Draft | None = None
         depth = leaves = 0
         names: dict[str, str] = {}
@@ -122,9 +265,7 @@ def _drafts(etree: Any, path: Path, head: Head, wanted: str | None) -> Iterator[
                 if leaves % _AT_ONCE:
                     continue
             # What was read is dropped, some elements at a time.
-            element.clear()
-            while element.getprevious() is not None:
-                del element.getparent()[0]
+            _drop(element)
 
 
 def _local(element: Any) -> str:
@@ -144,7 +285,7 @@ def _chosen(drafts: list[Draft], name: str | None, source: str) -> Draft:
     names = ", ".join(repr(draft.name) for draft in drafts[:_SHOWN])
     names += ", ..." if len(drafts) > _SHOWN else ""
     if not drafts:
-        raise FileFormatError(f"{source} contains no surface")
+        raise FileFormatError(f"{source} contains no surface, and no survey points (CgPoints)")
     found = [draft for draft in drafts if name in (None, draft.name)]
     if not found:
         raise FileFormatError(f"{source} has no surface {name!r:.80}; its surfaces are {names}")

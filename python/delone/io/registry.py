@@ -111,7 +111,7 @@ _HOLDERS: dict[str, tuple[tuple[str, ...], str]] = {
 }
 _SHEETS = ("landxml", "dxf")
 # Files of points without values.
-_WITHOUT_ATTRIBUTES = (".landxml", ".dxf", ".off", ".dem")
+_WITHOUT_ATTRIBUTES = (".dxf", ".off", ".dem")
 _GEOMETRIES = ("vector", "parquet", *_SHEETS)
 # Formats that can store a reference system, or label the axes with it.
 _LABELS = (".png", ".svg")
@@ -189,12 +189,13 @@ def read_points(
     classes : sequence of int, optional
         Keep the points of these classes (LAS and LAZ).
     layer : str, optional
-        The layer, for files that have several; the array of an npz file; the surface of LandXML;
-        the band of a raster.
+        The layer, for files that have several; the array of an npz file; the surface of LandXML,
+        or ``"CgPoints"`` for its survey points; the band of a raster.
     attributes : sequence of str or "all", optional
         Further columns to read. "all" means all that are not coordinates: those of text files are
         numbers if every field is one, otherwise strings; the number of the column is appended to
-        repeated names; LandXML, DXF and OFF have none.
+        repeated names. Survey points of LandXML have ``name``, ``code`` and ``desc``; DXF and OFF
+        have none.
     chord : float, optional
         The maximum distance of chords from the curves of a DXF file; see `read_surface`.
 
@@ -344,11 +345,13 @@ def read_geometries(
         The one attribute that is the height of each feature, as for contour lines. By default
         heights are those of the coordinates, if any.
     layer : str, optional
-        The layer, for files that have several.
+        The layer, for files that have several; of LandXML a surface, an alignment, or
+        ``"Alignments"`` for all.
     attributes : sequence of str or "all", optional
-        Further columns to read, as for `read_points`; LandXML and DXF have none.
+        Further columns to read, as for `read_points`; alignments have ``name`` and ``start``.
     chord : float, optional
-        The maximum distance of chords from the curves of a DXF file; see `read_surface`.
+        The maximum distance of chords from the curves of DXF files (`read_surface`) and of
+        alignments.
 
     Returns
     -------
@@ -377,7 +380,7 @@ def read_geometries(
     modules = {suffix: name for suffix, name in _READERS.items() if name in _GEOMETRIES}
     module = _module(modules, _suffix(file), file, "read geometries from")
     read: Callable[..., GeometrySet] = module.read_geometries
-    options = _chord(file, chord) | _attributes(attributes, module)
+    options = _chord(file, chord, _SHEETS) | _attributes(attributes, module)
     return read(file, columns=columns, layer=layer, **options)
 
 
@@ -410,8 +413,8 @@ def read_surface(
     path : str or path-like
         LandXML 1.0, 1.1 or 1.2 (.xml, .landxml), or DXF.
     layer : str, optional
-        The name of the surface, for LandXML files that have several; for DXF the layers to read,
-        separated by commas, by default all.
+        The name of the surface, for LandXML files that have several, or ``"CgPoints"`` for its
+        survey points; for DXF the layers to read, separated by commas, by default all.
     order : {"nez", "enz"}, optional
         Whether northings come first in a LandXML file, as in the standard (the default), or
         eastings.
@@ -480,11 +483,11 @@ def read_surface(
     return read(file, name=layer, order=order or plain, **_chord(file, chord))
 
 
-def _chord(file: Path, chord: float | None) -> dict[str, float]:
-    """Return the option `chord` of the reader of DXF files, if it is given."""
+def _chord(file: Path, chord: float | None, curved: tuple[str, ...] = ("dxf",)) -> dict[str, float]:
+    """Return the option `chord` of the reader of files with curves, if it is given."""
     if chord is None:
         return {}
-    if _READERS.get(_suffix(file)) != "dxf":
+    if _READERS.get(_suffix(file)) not in curved:
         raise InputError(f"{file}: chord is for DXF files, which have curves")
     distance = as_number(chord, name="chord")
     if not distance > 0:
