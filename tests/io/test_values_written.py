@@ -78,6 +78,7 @@ def test_every_format_is_looked_at() -> None:
     others = {".su2", ".med", ".node", ".ele", ".poly", ".gpkg", ".geojson", ".npz", ".stl"}
     surfaces = {".xml", ".landxml"}  # in tests/terrain
     surfaces |= {".off", ".smesh", ".face"}  # in test_solids
+    surfaces |= {".glb"}  # in test_gltf
     assert {*MESHIO, *others, *surfaces, *PICTURES} == set(output_suffixes())
 
 

@@ -75,6 +75,7 @@ _WRITERS = {
     **dict.fromkeys(_TRIANGLE, "triangle"),
     **dict.fromkeys(_TETGEN, "tetgen"),
     ".off": "off",
+    ".glb": "gltf",
     **dict.fromkeys((".gpkg", ".geojson"), "vector"),
     ".npz": "arrays",
     **dict.fromkeys(_LANDXML, "landxml"),
@@ -95,6 +96,7 @@ _SURFACES = (
     ".mesh",
     ".png",
     ".off",
+    ".glb",
     ".node",
     ".poly",
     *_TETGEN,
@@ -115,7 +117,7 @@ _WITHOUT_ATTRIBUTES = (".dxf", ".off", ".dem")
 _GEOMETRIES = ("vector", "parquet", *_SHEETS)
 # Formats that can store a reference system, or label the axes with it.
 _LABELS = (".png", ".svg")
-WITH_CRS = (".gpkg", ".geojson", ".npz", *_LANDXML, *_LABELS)
+WITH_CRS = (".gpkg", ".geojson", ".npz", ".glb", *_LANDXML, *_LABELS)
 _MESH_READERS = {
     ".npz": "arrays",
     **dict.fromkeys(_READ_MESHES, "mesh"),
