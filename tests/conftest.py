@@ -72,6 +72,7 @@ EXPECTED_SKIPS = {
     ("tests/alpha/*", "could not import 'gudhi'*"): "needed by tests alone, and not everywhere",
     ("tests/io/*", "could not import 'gmsh'*"): "needed by benchmarks and a few tests of files",
     ("tests/exchange/*", "could not import 'gmsh'*"): "needed by benchmarks and these tests",
+    ("tests/exchange/*", "could not import 'dolfinx'*"): "not a package of PyPI",
     ("tests/compat/*", "could not import 'tetgen'*"): "the package that is replaced, with the AGPL",
     ("tests/distributed/test_resume.py*", "root may write anywhere"): "containers run as root",
     (

@@ -525,7 +525,8 @@ class Triangulation(Complex):
         -------
         dict of ndarray
             ``cells`` and ``x`` for ``dolfinx.mesh.create_mesh``; with regions ``cell_tags``, and
-            with segments ``facets`` (pairs of points) and ``facet_tags`` (markers).
+            with segments or marked faces ``facets`` (their nodes) and ``facet_tags`` (markers). Of
+            these, ``dolfinx.io.distribute_entity_data`` and ``meshtags_from_entities`` make tags.
 
         Raises
         ------

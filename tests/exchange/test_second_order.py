@@ -194,8 +194,12 @@ def test_dolfinx(name: str) -> None:
     assert np.array_equal(lifted(found["x"]), nodes_of(mesh))
     check_cells(found["x"], found["cells"], UFC[mesh.simplices.shape[1]], mesh.simplices)
     plain = to_dolfinx_arrays(mesh)
-    for key in ("facets", "facet_tags", "cell_tags"):
+    for key in ("facet_tags", "cell_tags"):
         assert np.array_equal(found[key], plain[key])
+    width = plain["facets"].shape[1]
+    table = UFC[3] if width == 3 else VTK[2]
+    check_cells(found["x"], found["facets"], table, plain["facets"])
+    assert np.isin(found["facets"], found["cells"]).all()
 
 
 def test_edges_of_graphs() -> None:

@@ -17,17 +17,17 @@ if TYPE_CHECKING:
 __all__ = ["to_dolfinx_arrays"]
 
 
-# The edges of a cell of second order as DOLFINx has them, each opposite to a corner or an edge, by
-# their places in the order of VTK.
-_EDGES = {6: (1, 2, 0), 10: (5, 4, 1, 3, 2, 0)}
+# The nodes of elements of second order as DOLFINx has them, by their places in the order of VTK:
+# corners, then edges, each opposite to a corner or an edge.
+_NODES = {3: (0, 1, 2), 6: (0, 1, 2, 4, 5, 3), 10: (0, 1, 2, 3, 9, 8, 5, 7, 6, 4)}
 
 
 def to_dolfinx_arrays(mesh: Given, *, order: int = 1) -> dict[str, NDArray[Any]]:
     """Return ``cells`` and ``x`` for ``dolfinx.mesh.create_mesh``, of triangles or tetrahedra.
 
     Beside them ``facets``, the segments that are edges of triangles or marked faces of tetrahedra,
-    and regions and markers as ``cell_tags`` and ``facet_tags``, zero where there are none. Facets
-    have corners alone in any order.
+    and regions and markers as ``cell_tags`` and ``facet_tags``, zero where there are none. With
+    ``order=2``, cells and facets have all their nodes, which ``distribute_entity_data`` needs.
     """
     parts = parts_of(mesh)
     kind_of(parts, what="a mesh of DOLFINx", kinds=("triangles", "surface", "tetrahedra"))
@@ -35,16 +35,15 @@ def to_dolfinx_arrays(mesh: Given, *, order: int = 1) -> dict[str, NDArray[Any]]
     region = parts.of_simplices.get("region", np.zeros(len(parts.simplices)))
     marker = parts.of_segments.get("marker")
     tags = np.zeros(len(rows)) if marker is None else marker[rows]
-    parts = of_order(parts._replace(segments=None, of_points={}), as_order(order))
-    cells = parts.simplices.astype(np.int64)
+    parts = of_order(parts._replace(segments=pairs, of_points={}), as_order(order))
+    cells, facets = parts.simplices, parts.segments
+    assert facets is not None
     if parts.order == 2:
-        corners = cells.shape[1] - len(_EDGES[cells.shape[1]])
-        places = [corners + k for k in _EDGES[cells.shape[1]]]
-        cells = cells[:, [*range(corners), *places]]
+        cells, facets = (each[:, _NODES[each.shape[1]]] for each in (cells, facets))
     return {
-        "cells": cells,
+        "cells": cells.astype(np.int64),
         "x": parts.points.copy(),
         "cell_tags": region.astype(np.int32),
-        "facets": pairs.astype(np.int64),
+        "facets": facets.astype(np.int64),
         "facet_tags": tags.astype(np.int32),
     }
