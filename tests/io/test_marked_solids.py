@@ -438,3 +438,30 @@ def test_heights_and_markers_of_triangles_in_msh(version, tmp_path):
     assert np.array_equal(found.points, flat.points) and np.array_equal(found.z, values)
     assert np.array_equal(found.attributes["u"], 2 * values)
     assert np.array_equal(np.sort(read_mesh(path).simplices), np.sort(flat.simplices))
+
+
+QUADS = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4)])
+TOP = np.array([(1, 5, 7), (1, 7, 3)])
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".vtk", ".mesh", ".msh"])
+def test_markers_of_polygons_that_are_divided(suffix, tmp_path):
+    path = tmp_path / f"a{suffix}"
+    corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
+    name = {".mesh": "medit:ref", ".msh": "gmsh:physical"}.get(suffix, "marker")
+    values = {name: [np.arange(5) + 11, np.array([16, 17])]}
+    if suffix == ".msh":
+        values["gmsh:geometrical"] = values[name]
+    given = meshio.Mesh(corners, [("quad", QUADS), ("triangle", TOP)], cell_data=values)
+    if suffix == ".msh":
+        meshio.gmsh.write(path, given, "2.2")
+    else:
+        given.write(path)
+    mesh = tetrahedralize(path)
+    assert mesh.volumes.sum() == pytest.approx(1)
+    expected = {11: 2, 12: 2, 13: 2, 14: 2, 15: 2, 16: 1, 17: 1}
+    assert dict(zip(*np.unique(mesh.face_markers, return_counts=True), strict=True)) == expected
+    for number, quad in enumerate(QUADS.tolist(), 11):
+        rows = mesh.input_faces[mesh.face_markers == number]
+        places = {tuple(place) for place in mesh.points[rows].reshape(-1, 3).tolist()}
+        assert places == {tuple(place) for place in corners[quad].tolist()}

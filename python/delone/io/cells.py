@@ -12,7 +12,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["Cells", "ReadMesh", "grouped", "name_of_polygon"]
+__all__ = ["POLYGONS", "Cells", "ReadMesh", "grouped", "name_of_polygon"]
+
+# Types of cells that are polygons, which have markers.
+POLYGONS = ("triangle", "quad", "polygon")
 
 
 class Cells(NamedTuple):
@@ -24,7 +27,7 @@ class Cells(NamedTuple):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ReadMesh:
-    """Points, cells in the order of the file, values of points, and markers of triangles."""
+    """Points, cells in the order of the file, values of points, and markers of polygons."""
 
     points: NDArray[np.float64]
     cells: list[Cells]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from delone.io.cells import POLYGONS
 from delone.io.gmsh import Bytes, Checked, Words, spans
 from delone.io.numbered import as_markers
 
@@ -90,7 +91,7 @@ def _entities(checked: Checked, body: bytes) -> dict[tuple[int, int], int]:
 
 
 def markers(mesh: Any, path: Path) -> NDArray[np.int32] | None:
-    """Return a number for each triangle of a mesh of meshio: its group, 0 where there is none.
+    """Return a number for each polygon of a mesh of meshio: its group, 0 where there is none.
 
     A name that delone writes, as "marker 7", gives the number in it. None if there are no groups.
     """
@@ -101,7 +102,7 @@ def markers(mesh: Any, path: Path) -> NDArray[np.int32] | None:
     meaning = {tag: _OWN.fullmatch(name) for (ndim, tag), name in groups.names.items() if ndim == 2}
     rows = [np.empty((0, 1))]
     for block, own in zip(mesh.cells, tags, strict=True):
-        if block.type != "triangle":
+        if block.type not in POLYGONS:
             continue
         values, place = np.unique(np.asarray(own, dtype=np.int64), return_inverse=True)
         known = []

@@ -1,6 +1,6 @@
 """Medit's MESH files as text: sections of a word, a count and rows of numbers, read by delone.
 
-Cells keep their references where they are triangles. Sections of other names are left out.
+Cells keep their references where they are polygons. Sections of other names are left out.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone.errors import FileFormatError
-from delone.io.cells import Cells, ReadMesh
+from delone.io.cells import POLYGONS, Cells, ReadMesh
 from delone.io.numbered import as_markers, as_rows, parsed, read_text
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def read(path: Path) -> ReadMesh:
             rows = _rows(numbers, width + 1, name, path)
             corners = as_rows(rows[:, :width].ravel(), 1, path, len(points)).reshape(-1, width)
             cells.append(Cells(kind, corners))
-            if kind == "triangle":
+            if kind in POLYGONS:
                 markers.append(as_markers(rows[:, width:], path).ravel())
     if ndim == 0:
         raise FileFormatError(f"{path} has no Dimension of 2 or 3")

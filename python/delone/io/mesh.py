@@ -23,7 +23,7 @@ from delone.errors import DeloneError, FileFormatError, InputError
 from delone.exchange.meshio import TAGS, to_meshio
 from delone.extras import require
 from delone.io import gmsh_groups, medit, msh, obj, ply, vtk, vtu
-from delone.io.cells import Cells, ReadMesh
+from delone.io.cells import POLYGONS, Cells, ReadMesh
 from delone.io.content import content
 from delone.io.facets import facet_triangles
 from delone.io.gmsh import needed_sections
@@ -43,7 +43,6 @@ __all__ = ["read_mesh", "read_points", "require_libraries", "write_mesh"]
 
 _MODULES = {".vtu": "vtu", ".ply": "ply", ".obj": "obj", ".stl": "stl", ".msh": "gmsh"}
 _DIMENSIONS = {"triangle": 2, "tetra": 3}
-_POLYGONS = ("triangle", "quad", "polygon")
 # These hold triangles, and no lines or tetrahedra.
 _PLAIN = (".ply", ".obj", ".stl")
 _HEAD, _TAIL = 1 << 16, 1 << 12
@@ -86,10 +85,10 @@ def read_mesh(path: Path, *, split: bool = False) -> MeshFile:
         return _tetrahedra(mesh, path)
     points, z = _coordinates(mesh, path)
     others = {block.type for block in mesh.cells} - {"triangle", "vertex", "line"}
-    if split and others and all(kind.startswith(_POLYGONS) for kind in others):
+    if split and others and all(kind.startswith(POLYGONS) for kind in others):
         return _polygons(mesh, path)
     if others:
-        flat = all(kind.startswith(_POLYGONS) for kind in others)
+        flat = all(kind.startswith(POLYGONS) for kind in others)
         raise FileFormatError(
             f"{path} contains {', '.join(sorted(others)):.80} cells, not only triangles"
             + ('; polygons="split" divides them' if flat else "")
@@ -106,6 +105,7 @@ def _polygons(mesh: ReadMesh, path: Path) -> MeshFile:
     heights = np.zeros(len(plane)) if z is None else z
     points = np.column_stack((plane, heights))
     faces: list[list[int]] = []
+    counts: list[int] = []
     nothing = np.empty((0, 3))
     for block in mesh.cells:
         if block.type in ("vertex", "line"):
@@ -114,9 +114,12 @@ def _polygons(mesh: ReadMesh, path: Path) -> MeshFile:
         if corners.dtype.kind not in "iu" or corners.min() < 0 or corners.max() >= len(points):
             raise FileFormatError(f"{path} names points that there are not")
         for polygon in corners.tolist():
-            faces += facet_triangles(points, [polygon], nothing, str(path))
+            made = facet_triangles(points, [polygon], nothing, str(path))
+            faces += made
+            counts.append(len(made))
     simplices = as_simplices(np.array(faces), len(points), 2)
-    return MeshFile(points=plane, simplices=simplices, z=z, source=str(path))
+    markers = None if mesh.markers is None else np.repeat(mesh.markers, counts)
+    return MeshFile(points=plane, simplices=simplices, z=z, source=str(path), markers=markers)
 
 
 def _simplices(mesh: ReadMesh, kind: str, npoints: int, path: Path) -> NDArray[np.int32]:
@@ -191,7 +194,7 @@ def _read(path: Path, attributes: Sequence[str] | None = (), *, marked: bool = F
             f"{path} is truncated or not a {suffix} file: {reason!s:.100}"
         ) from error
     cells = [Cells(block.type, block.data) for block in mesh.cells]
-    surface = {block.type for block in cells} & {"triangle", "tetra"} == {"triangle"}
+    surface = all(block.type in (*POLYGONS, "vertex", "line") for block in cells)
     groups = marked and suffix == ".msh" and surface
     markers = gmsh_groups.markers(mesh, path) if groups else None
     return ReadMesh(points=mesh.points, cells=cells, point_data=mesh.point_data, markers=markers)

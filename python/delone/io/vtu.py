@@ -19,7 +19,7 @@ import numpy as np
 
 from delone.bounded import largest
 from delone.errors import FileFormatError
-from delone.io.cells import Cells, ReadMesh, name_of_polygon
+from delone.io.cells import POLYGONS, Cells, ReadMesh, name_of_polygon
 from delone.io.markup import decoded, refuse_document_type
 from delone.io.numbered import as_markers
 
@@ -134,7 +134,7 @@ def _piece(piece: Any, arrays: _Arrays, path: Path) -> ReadMesh:
 
 
 def markers_of(cells: list[Cells], values: NDArray[Any], path: Path) -> NDArray[np.int32] | None:
-    """Return the values of triangles, in their order; None for vectors."""
+    """Return the values of triangles and polygons, in their order; None for vectors."""
     count = sum(len(block.data) for block in cells)
     if values.shape[1:] not in ((), (1,)):
         return None
@@ -143,7 +143,7 @@ def markers_of(cells: list[Cells], values: NDArray[Any], path: Path) -> NDArray[
     start, found = 0, [np.empty((0, 1))]
     for block in cells:
         stop = start + len(block.data)
-        if block.type == "triangle":
+        if block.type in POLYGONS:
             found.append(values[start:stop].reshape(-1, 1).astype(np.float64))
         start = stop
     return as_markers(np.concatenate(found), path).ravel()
