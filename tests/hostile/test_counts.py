@@ -52,6 +52,33 @@ def msh(version, *sections):
     return f"$MeshFormat\n{version} 0 8\n$EndMeshFormat\n" + "".join(sections)
 
 
+def test_torn_entities_of_msh(tmp_path):
+    """Counts and numbers of groups that are changed are an error, or other markers."""
+    path = tmp_path / "a.msh"
+    square = [(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+    mesh = delone.mesh(square, max_area=2, segment_markers=[4, 4, 0, 6], regions=[(1, 1, 5)])
+    delone.io.write_mesh(path, mesh, version="4.1")
+    good = path.read_bytes()
+    assert (read_mesh(path).markers == 5).all()
+    start, end = good.index(b"$Entities\n") + 10, good.index(b"\n$EndEntities")
+    refused = 0
+    tracemalloc.start()
+    for at in range(start, end, 4):
+        for wrong in (b"\xff" * 4, b"\0\0\0\x7f", b"\1\0\0\0"):
+            path.write_bytes(good[:at] + wrong + good[at + 4 :])
+            try:
+                assert len(read_mesh(path).markers) == mesh.nsimplex
+            except FileFormatError:
+                refused += 1
+    assert tracemalloc.get_traced_memory()[1] < 1 << 26
+    tracemalloc.stop()
+    assert refused > 20
+    for stop in range(start + 1, end, 7):
+        path.write_bytes(good[:stop] + good[end:])
+        with pytest.raises(FileFormatError):
+            read_mesh(path)
+
+
 @pytest.mark.parametrize("version", NODES)
 @pytest.mark.parametrize("name", SECTIONS)
 def test_sections_that_are_not_needed_are_left_out(tmp_path, version, name):
