@@ -21,7 +21,7 @@ from delone.renames import renamed
 from delone.triangulation import PointTriangulation
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
     from delone._types import Bools, Floats, Indices
     from delone.constrained.segments import SegmentReport
@@ -93,7 +93,7 @@ class Given(NamedTuple):
 
 
 @renamed(polygon="polygon_of_simplex")
-class Segmented(PointTriangulation):
+class Segmented(segments.SegmentArrays, PointTriangulation):
     """A triangulation whose edges include segments, with regions between them."""
 
     __slots__ = ("_constrained", "_given", "_made", "_number", "_options")
@@ -185,43 +185,6 @@ class Segmented(PointTriangulation):
     def nadded(self) -> int:
         """Number of added vertices; they are the last rows of `points`."""
         return len(self._made.added)
-
-    @property
-    def input_segments(self) -> Indices:
-        """The input segments, (s, 2)."""
-        return self._given.segments
-
-    @property
-    def segments(self) -> Indices:
-        """The subsegments, (q, 2), in the order of the first row that covers them, and along it.
-
-        Each once, in the direction of that row, including those in holes and outside the
-        outline.
-        """
-        return self._made.segments
-
-    @property
-    def segment_source(self) -> tuple[NDArray[np.int64], Indices]:
-        """The rows that cover subsegments as compressed rows (indptr, indices).
-
-        Subsegment i is part of the rows ``indices[indptr[i]:indptr[i + 1]]`` of `input_segments`,
-        ascending. There is more than one if rows repeat or overlap.
-        """
-        return self._made.source_start, self._made.source
-
-    @property
-    def segment_forward(self) -> Bools:
-        """For each index of `segment_source`, whether the row has the direction of the subsegment.
-
-        True if the row reaches ``segments[i, 0]`` before ``segments[i, 1]``; always true for the
-        first row of each subsegment.
-        """
-        return self._made.forward
-
-    @property
-    def geometry_of_segment(self) -> Indices:
-        """The geometry that each of `input_segments` came from, (s,); -1 for arrays."""
-        return self._given.origin.geometries
 
     @property
     def part_of_segment(self) -> Indices:

@@ -18,9 +18,10 @@ from delone.plane.topology import among
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Indices
+    from delone._core import ConstrainedTriangulation
+    from delone._types import Bools, Indices
 
-__all__ = ["SegmentReport"]
+__all__ = ["SegmentArrays", "SegmentReport"]
 
 _SHOWN = 5
 
@@ -178,6 +179,54 @@ def open_ends(segments: Indices, simplices: Indices, npoints: int) -> Indices:
     degree = np.bincount(segments.ravel(), minlength=npoints)
     degree[simplices] = 0
     return np.flatnonzero(degree == 1).astype(np.int32)
+
+
+class SegmentArrays:
+    """The segments, or arcs, of a constrained triangulation: those given, and their parts."""
+
+    __slots__ = ()
+
+    _given: Any
+    _made: ConstrainedTriangulation
+
+    @property
+    def input_segments(self) -> Indices:
+        """The input segments or arcs, (s, 2)."""
+        given: Indices = self._given.segments
+        return given
+
+    @property
+    def segments(self) -> Indices:
+        """The subsegments, (q, 2), in the order of the first row that covers them, and along it.
+
+        Each once, in the direction of that row, including those in holes and outside the
+        outline.
+        """
+        return self._made.segments
+
+    @property
+    def segment_source(self) -> tuple[NDArray[np.int64], Indices]:
+        """The rows that cover subsegments as compressed rows (indptr, indices).
+
+        Subsegment i is part of the rows ``indices[indptr[i]:indptr[i + 1]]`` of `input_segments`,
+        ascending. There is more than one if rows repeat or overlap.
+        """
+        return self._made.source_start, self._made.source
+
+    @property
+    def segment_forward(self) -> Bools:
+        """For each index of `segment_source`, whether the row has the direction of the subsegment.
+
+        True if the row reaches ``segments[i, 0]`` before ``segments[i, 1]``; always true for the
+        first row of each subsegment.
+        """
+        return self._made.forward
+
+    @property
+    def geometry_of_segment(self) -> Indices:
+        """The geometry that each of `input_segments` came from, (s,); -1 for arrays."""
+        geometries: Indices = self._given.origin.geometries
+        return geometries
 
 
 def repeated_rows(ends: Indices) -> Indices:

@@ -52,7 +52,7 @@ class Given(NamedTuple):
 
 
 @renamed(polygon="polygon_of_simplex")
-class ConstrainedDelaunay(Delaunay):
+class ConstrainedDelaunay(segments.SegmentArrays, Delaunay):
     """The constrained Delaunay triangulation of directions and arcs: coastlines on the sphere.
 
     Parameters
@@ -284,35 +284,6 @@ class ConstrainedDelaunay(Delaunay):
     def nadded(self) -> int:
         """Number of added vertices; they are the last rows of `vectors`."""
         return len(self._vectors) - self._given.npoints
-
-    @property
-    def input_segments(self) -> Indices:
-        """The given arcs, (s, 2)."""
-        return self._given.segments
-
-    @property
-    def segments(self) -> Indices:
-        """The subsegments, (q, 2), in the order of the first row that covers them, and along it."""
-        return self._made.segments
-
-    @property
-    def segment_source(self) -> tuple[NDArray[np.int64], Indices]:
-        """The rows that cover subsegments as compressed rows (indptr, indices).
-
-        Subsegment i is part of the rows ``indices[indptr[i]:indptr[i + 1]]`` of `input_segments`,
-        ascending. There is more than one if rows repeat or overlap.
-        """
-        return self._made.source_start, self._made.source
-
-    @property
-    def segment_forward(self) -> Bools:
-        """For each index of `segment_source`, whether the row runs along the subsegment."""
-        return self._made.forward
-
-    @property
-    def geometry_of_segment(self) -> Indices:
-        """The geometry that each of `input_segments` came from, (s,); -1 for arrays."""
-        return self._given.origin.geometries
 
     @property
     @kept
