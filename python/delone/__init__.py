@@ -83,6 +83,7 @@ if TYPE_CHECKING:
     from delone.constrained.segments import SegmentReport
     from delone.constrained.validation import ConstrainedReport
     from delone.dynamic.dynamic import Dynamic
+    from delone.estimation import Estimate, estimate
     from delone.explorer.widget import explore
     from delone.flips import LawsonResult, lawson
     from delone.hull import ConvexHull
@@ -128,6 +129,7 @@ __all__ = [
     "Dynamic",
     "EditConflictError",
     "Editing",
+    "Estimate",
     "FileFormatError",
     "GeographicWarning",
     "HandleError",
@@ -167,6 +169,7 @@ __all__ = [
     "concave_hull",
     "datasets",
     "distributed",
+    "estimate",
     "explore",
     "from_geometry",
     "graphs",
@@ -226,6 +229,7 @@ _HOMES = {
     "ConvexHull": "hull",
     "Dynamic": "dynamic.dynamic",
     "Editing": "constrained.editing",
+    "Estimate": "estimation",
     "ImproveReport": "tetmesh.report",
     "LawsonResult": "flips",
     "LloydResult": "voronoi.centroidal",
@@ -244,6 +248,7 @@ _HOMES = {
     "Voronoi": "voronoi.diagram",
     "check_surface": "surface.check",
     "concave_hull": "alpha.concave",
+    "estimate": "estimation",
     "explore": "explorer.widget",
     "from_geometry": "constrained.polygons",
     "improve": "tetmesh.improvement",

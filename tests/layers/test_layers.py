@@ -44,7 +44,7 @@ PYTHON: tuple[set[str], ...] = (
     {"complex"},
     {"triangulation", "regular_validation"},
     {"delaunay", "constrained", "regular", "tetmesh"},
-    {"dynamic", "hull", "periodic", "refine"},
+    {"dynamic", "estimation", "hull", "periodic", "refine"},
     {"alpha", "graphs", "io"},
     {"voronoi", "interpolate", "cluster", "tetrahedra", "areal"},
     {"compat", "distributed", "explorer", "sphere", "terrain"},
