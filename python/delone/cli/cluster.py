@@ -22,6 +22,7 @@ from delone.cli.options import (
     PointsInput,
     Quiet,
     Solid,
+    SolidColumns,
     Workers,
     outputs,
     space_or_plane,
@@ -115,10 +116,7 @@ def cluster_points(
         int | None, typer.Option(help="single-linkage: the number of clusters.")
     ] = None,
     classes: Classes = None,
-    columns: Annotated[
-        str | None,
-        typer.Option(help="Columns of x, y and z, by name or by number from 0."),
-    ] = None,
+    columns: SolidColumns = None,
     layer: Layer = None,
     in_space: Solid = False,
     in_plane: Flat = False,

@@ -27,6 +27,7 @@ __all__ = [
     "PointsInput",
     "Quiet",
     "Solid",
+    "SolidColumns",
     "Workers",
     "class_numbers",
     "outputs",
@@ -60,6 +61,9 @@ Columns = Annotated[
     typer.Option(
         help="Columns of x, y and z, by name or by number from 0: lon,lat,depth or 0,1,2."
     ),
+]
+SolidColumns = Annotated[
+    str | None, typer.Option(help="Columns of x, y and z, by name or by number from 0.")
 ]
 PlaneColumns = Annotated[
     str | None, typer.Option(help="Columns of x and y, by name or by number from 0.")
