@@ -57,6 +57,14 @@ def test_contours(folder, figures):
     lengths = table.geometry.length
     assert few["short_lines_left_out"] == np.count_nonzero(lengths < 41)
     assert few["lines"] + few["short_lines_left_out"] == 4
+    bump = folder / "a bump.csv"
+    lines = (folder / "the points.csv").read_text() + "20,20,30\n"
+    bump.write_text(lines)
+    call = ("contours", bump, "--levels", "5,29.5", "--min-area", 5)
+    found = figures(*call)
+    assert (found["lines"], found["small_lines_left_out"]) == (1, 1)
+    found = figures(*call, "--bands")
+    assert (found["polygons"], found["small_polygons_left_out"]) == (2, 1)
     bands = folder / "some bands.geojson"
     figures("contours", folder / "the points.csv", "--levels", "10", "--bands", "-o", bands)
     assert geopandas.read_file(bands).area.tolist() == [800, 800]

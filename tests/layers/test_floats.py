@@ -122,7 +122,10 @@ ALLOWED: dict[str, dict[str, str]] = {
         "length > limit": FILTER,
         "np.abs(length - limit) <= limit * 2.0 ** (-48) + 2.0 ** (-1070)": FILTER,
     },
-    "terrain/contouring.py": {"_lengths(points, starts) >= least": WANTED},
+    "terrain/contouring.py": {
+        "_lengths(points, starts) >= least": WANTED,
+        "np.abs(ring_areas(points, starts)) >= smallest": WANTED,
+    },
     "terrain/deviations.py": {
         "_distance(part.points[k], part.corners[k]) > Fraction(limit)": EXACT,
     },
@@ -139,6 +142,9 @@ ALLOWED: dict[str, dict[str, str]] = {
         # The ends of a part are among the distances.
         "distances >= at[0]": EXACT,
         "distances <= at[-1]": EXACT,
+    },
+    "terrain/small.py": {
+        "np.abs(ring_areas(given.points, given.rings)) < least": WANTED,
     },
     "terrain/smoothing.py": {"simplex.barycentric < 1e-09": VALUE},
     "terrain/snapping.py": {"way < length - limit": DRAWN},

@@ -93,6 +93,13 @@ def contours(
     min_length: Annotated[
         float, typer.Option(help="Leave out lines shorter than this, in units of the points.")
     ] = 0.0,
+    min_area: Annotated[
+        float,
+        typer.Option(
+            help="Leave out closed lines around less than this area; polygons become part of the "
+            "one around them."
+        ),
+    ] = 0.0,
     bands: Annotated[
         bool, typer.Option("--bands", help="Write polygons between levels instead of lines.")
     ] = False,
@@ -137,7 +144,13 @@ def contours(
         with watch.stage("contours"):
             found: Any
             if bands:
-                found = tin.bands(wanted, interval=interval, base=base, max_points=max_points)
+                found = tin.bands(
+                    wanted,
+                    interval=interval,
+                    base=base,
+                    min_area=min_area,
+                    max_points=max_points,
+                )
             else:
                 found = tin.contours(
                     wanted,
@@ -146,6 +159,7 @@ def contours(
                     index=index,
                     smooth=smooth,
                     min_length=min_length,
+                    min_area=min_area,
                     max_points=max_points,
                 )
         say(f"writing {len(found):,} {'polygons' if bands else 'lines'}")
@@ -157,6 +171,7 @@ def contours(
         "coordinates": len(found.points),
         "triangles_left_out": found.left_out or None,
         "short_lines_left_out": found.short if min_length else None,
+        f"small_{what}_left_out": found.small if min_area else None,
         "stages": watch.rows(tin.npoints),
     }
     print_figures(source, figures, as_json=as_json, quiet=quiet)

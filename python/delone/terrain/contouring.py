@@ -19,6 +19,7 @@ from delone.extras import require
 from delone.immutable import ReadOnly, sealed
 from delone.renames import renamed
 from delone.terrain.slivers import drawn
+from delone.terrain.small import Rings, ring_areas, without_small
 from delone.terrain.surface import on_surface
 
 if TYPE_CHECKING:
@@ -59,6 +60,8 @@ class Contours(ReadOnly):
         resolution of the coordinates, so that lines in them would cross. Usually 0.
     short : int, optional
         The number of lines that are left out because they are shorter than `min_length`.
+    small : int, optional
+        The number of closed lines that are left out because they enclose less than `min_area`.
     crs : str, optional
         Coordinate reference system.
     units : str, optional
@@ -80,6 +83,7 @@ class Contours(ReadOnly):
     levels: Floats
     left_out: int = 0
     short: int = 0
+    small: int = 0
     crs: str | None = None
     units: str | None = None
 
@@ -292,6 +296,9 @@ class Bands(ReadOnly):
     left_out : int, optional
         The number of triangles at the outline that are left out because they are thinner than the
         resolution of the coordinates, so that lines in them would cross. Usually 0.
+    small : int, optional
+        The number of polygons that are part of the one around them because of `min_area`. They are
+        higher than `high` there, or lower than `low`.
     crs : str, optional
         Coordinate reference system.
     units : str, optional
@@ -312,6 +319,7 @@ class Bands(ReadOnly):
     low: Floats
     high: Floats
     left_out: int = 0
+    small: int = 0
     crs: str | None = None
     units: str | None = None
 
@@ -466,16 +474,21 @@ def _multiples(
     return found[within], np.asarray(marked)[within]
 
 
-def lines(  # noqa: PLR0917
-    tin: Surface, levels: Floats, marked: Bools, smooth: int, min_length: float, max_points: int
+def lines(
+    tin: Surface,
+    levels: Floats,
+    marked: Bools,
+    smooth: int,
+    max_points: int,
+    *,
+    min_length: float,
+    min_area: float,
 ) -> Contours:
     """Return the contours of a surface."""
     from delone.terrain.smoothing import smoothed
 
     rounds = as_count(smooth, name="smooth")
-    least = as_number(min_length, name="min_length")
-    if not 0 <= least < math.inf:
-        raise InputError(f"min_length must be finite and at least 0, got {min_length!r:.60}")
+    least, smallest = _least(min_length, "min_length"), _least(min_area, "min_area")
     # Each round doubles the points at most.
     factor = 1 << min(rounds, _MOST_ROUNDS)
     made, left_out = _within(_core.contour_lines2, tin, levels, max_points, factor)
@@ -483,6 +496,12 @@ def lines(  # noqa: PLR0917
     if rounds:
         points, starts = smoothed(points, starts, tin, rounds)
     level = made.levels
+    small = 0
+    if smallest:
+        closed = (points[starts[:-1]] == points[starts[1:] - 1]).all(axis=1)
+        kept = ~closed | (np.abs(ring_areas(points, starts)) >= smallest)
+        small = int((~kept).sum())
+        points, starts, level = *_only(points, starts, kept), level[kept]
     if least:
         kept = _lengths(points, starts) >= least
         points, starts, level = *_only(points, starts, kept), level[kept]
@@ -493,10 +512,19 @@ def lines(  # noqa: PLR0917
         index=marked[level],
         levels=levels,
         left_out=left_out,
-        short=len(made.levels) - len(level),
+        short=len(made.levels) - len(level) - small,
+        small=small,
         crs=tin.crs,
         units=tin.units,
     )
+
+
+def _least(given: float, name: str) -> float:
+    """Return the least measure of what is not left out."""
+    found = as_number(given, name=name)
+    if not 0 <= found < math.inf:
+        raise InputError(f"{name} must be finite and at least 0, got {given!r:.60}")
+    return found
 
 
 def _lengths(points: Floats, starts: Rows) -> Floats:
@@ -540,18 +568,24 @@ def _within(
         ) from error
 
 
-def bands(tin: Surface, levels: Floats, max_points: int) -> Bands:
+def bands(tin: Surface, levels: Floats, min_area: float, max_points: int) -> Bands:
     """Return the polygons between contours of a surface."""
+    smallest = _least(min_area, "min_area")
     made, left_out = _within(_core.contour_bands2, tin, levels, max_points, 1)
     used = tin.z[on_surface(tin)]
     ends = np.concatenate(([used.min()], levels, [used.max()]))
+    found, rows = Rings(made.points, made.rings, made.polygons), np.arange(len(made.bands))
+    if smallest:
+        found, rows = without_small(found, smallest)
+    band = made.bands[rows]
     return Bands(
-        points=made.points,
-        ring_starts=made.rings,
-        polygon_starts=made.polygons,
-        low=ends[made.bands],
-        high=ends[made.bands + 1],
+        points=found.points,
+        ring_starts=found.rings,
+        polygon_starts=found.polygons,
+        low=ends[band],
+        high=ends[band + 1],
         left_out=left_out,
+        small=len(made.bands) - len(band),
         crs=tin.crs,
         units=tin.units,
     )

@@ -370,6 +370,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         index: int = 5,
         smooth: int = 0,
         min_length: float = 0.0,
+        min_area: float = 0.0,
         max_points: int = contouring.MOST,
     ) -> contouring.Contours:
         """Compute contour lines.
@@ -390,6 +391,8 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
             Smoothed lines do not cross: where they would, corners remain.
         min_length : float, optional
             Lines shorter than this, in the unit of the points, are left out and counted.
+        min_area : float, optional
+            Closed lines that enclose less than this are left out and counted.
         max_points : int, optional
             Maximum number of points of all contours; smoothing may double them in each round.
 
@@ -401,7 +404,8 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         Raises
         ------
         InputError
-            Levels or `min_length` are out of range, or not one of `levels` and `interval` is given.
+            Levels or least measures are out of range, or not one of `levels` and `interval` is
+            given.
         BudgetExceededError
             There would be more than `max_points` points; raised before they are computed.
 
@@ -423,7 +427,8 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         ([3.0, 6.0], [[0.0, 3.0], [3.0, 3.0], [4.0, 3.0]])
         """
         wanted, marked = contouring.levels_of(self, levels, interval, base, index)
-        return contouring.lines(self, wanted, marked, smooth, min_length, max_points)
+        least = {"min_length": min_length, "min_area": min_area}
+        return contouring.lines(self, wanted, marked, smooth, max_points, **least)
 
     def bands(
         self,
@@ -431,6 +436,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         *,
         interval: float | None = None,
         base: float = 0.0,
+        min_area: float = 0.0,
         max_points: int = contouring.MOST,
     ) -> contouring.Bands:
         """Compute the areas between contours as polygons.
@@ -439,6 +445,9 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         ----------
         levels, interval, base, max_points
             As for `contours`.
+        min_area : float, optional
+            A part of less than this area that fills a hole of a polygon becomes part of it, with
+            everything inside; holes of the surface stay. The polygons are counted.
 
         Returns
         -------
@@ -459,7 +468,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         <Bands of 2 ranges: 2 polygons>
         """
         wanted, _ = contouring.levels_of(self, levels, interval, base, 1)
-        return contouring.bands(self, wanted, max_points)
+        return contouring.bands(self, wanted, min_area, max_points)
 
     def profile(self, line: Any) -> profiles.Profile:
         """Compute the heights along a line.
