@@ -54,28 +54,52 @@ def test_meshio_reads_markers_and_regions(suffix, tmp_path):
     assert triangles == WALLS
 
 
-@pytest.mark.parametrize("suffix", [".med", ".inp"])
-def test_groups_of_markers_and_regions(suffix, tmp_path):
-    path = tmp_path / f"a{suffix}"
+def test_groups_of_med(tmp_path):
+    path = tmp_path / "a.med"
     delone.io.write_mesh(path, MESH)
     found = meshio.read(path)
     groups = {}
-    if suffix == ".med":
-        for i, block in enumerate(found.cells):
-            for row, tag in zip(block.data.tolist(), found.cell_data["cell_tags"][i], strict=True):
-                for name in found.cell_tags.get(int(tag), []):
-                    groups.setdefault(name, set()).add(tuple(sorted(row)))
-    else:
-        for name, sets in found.cell_sets.items():
-            for block, rows in zip(found.cells, sets, strict=True):
-                if len(rows):
-                    own = {tuple(sorted(row)) for row in block.data[rows].tolist()}
-                    groups.setdefault(name.replace("_", " "), set()).update(own)
-    expected = {}
-    for kind, rows in (("region", REGIONS), ("marker", WALLS)):
-        for row, value in rows.items():
-            expected.setdefault(f"{kind} {value}", set()).add(row)
-    assert groups == expected
+    for i, block in enumerate(found.cells):
+        for row, tag in zip(block.data.tolist(), found.cell_data["cell_tags"][i], strict=True):
+            for name in found.cell_tags.get(int(tag), []):
+                groups.setdefault(name, set()).add(tuple(sorted(row)))
+    assert groups == expected_groups(MESH)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_sets_of_inp(order, tmp_path):
+    """Elements of regions, nodes of markers; facets are no elements, which need a section."""
+    path = tmp_path / "a.inp"
+    delone.io.write_mesh(path, MESH, order=order)
+    found = meshio.read(path)
+    assert [block.type for block in found.cells] == [{1: "tetra", 2: "tetra10"}[order]]
+    expected = expected_groups(MESH)
+    for name, (rows,) in found.cell_sets.items():
+        own = named([("", found.cells[0].data[rows, :4])])[""]
+        assert own == expected.pop(name.replace("_", " "))
+    facets = MESH.to_meshio(order=order).cells[1].data
+    for name, nodes in found.point_sets.items():
+        number = int(name.removeprefix("marker_"))
+        assert sorted(nodes) == np.unique(facets[MESH.face_markers == number]).tolist()
+        del expected[f"marker {number}"]
+    assert not expected
+
+
+def test_numbers_of_inp_have_20_characters(tmp_path):
+    """Longer ones are an error in Abaqus and CalculiX; others are exact."""
+    path = tmp_path / "a.inp"
+    random = np.random.default_rng(0)
+    points = random.normal(size=(40, 3)) * 10.0 ** random.integers(-12, 12, (40, 3))
+    points[:5] = [(-1 / 3e-100, 2 / 3, 0.1), (1e300 / 3, 1e-300 / 7, 4), *np.eye(3)]
+    mesh = delone.Delaunay(points)
+    delone.io.write_mesh(path, mesh)
+    lines = path.read_text().partition("*NODE\n")[2].partition("*")[0].splitlines()
+    words = [line.split(", ") for line in lines]
+    assert max(len(word) for row in words for word in row) == 20
+    found = np.array([row[1:] for row in words], dtype=float)
+    assert np.abs(found / np.where(points, points, 1) - (points != 0)).max() < 5e-13
+    short = np.array([[len(repr(x)) <= 20 for x in row] for row in points.tolist()])
+    assert short.any() and np.array_equal(found[short], points[short])
 
 
 # The manual of Abaqus: the nodes, from 1, of each side of C3D4 and CPS3.

@@ -31,18 +31,22 @@ def test_files_of_solvers(mesh: delone.Mesh, tmp_path: Path, suffix: str) -> Non
     found = meshio.read(file)
     assert np.array_equal(found.points[:, :2], mesh.points)
     assert np.array_equal(found.cells_dict["triangle"], mesh.simplices)
+    if suffix == ".inp":
+        for marker in (1, 2, 3, 4):
+            nodes = np.unique(mesh.segments[mesh.segment_markers == marker])
+            assert np.array_equal(np.sort(found.point_sets[f"marker_{marker}"]), nodes)
+        return
     lines = found.cells_dict["line"]
     assert {frozenset(pair) for pair in lines.tolist()} == {
         frozenset(pair) for pair in mesh.segments.tolist()
     }
     name = {".msh": "gmsh:physical", ".su2": "su2:tag"}.get(suffix, "marker")
-    if suffix != ".inp":
-        markers = np.concatenate(
-            [d for b, d in zip(found.cells, found.cell_data[name], strict=True) if b.type == "line"]
-        )
-        found_of = {frozenset(p): m for p, m in zip(lines.tolist(), markers.tolist(), strict=True)}
-        pairs = zip(mesh.segments.tolist(), mesh.segment_markers.tolist(), strict=True)
-        assert found_of == {frozenset(pair): marker for pair, marker in pairs}
+    markers = np.concatenate(
+        [d for b, d in zip(found.cells, found.cell_data[name], strict=True) if b.type == "line"]
+    )
+    found_of = {frozenset(p): m for p, m in zip(lines.tolist(), markers.tolist(), strict=True)}
+    pairs = zip(mesh.segments.tolist(), mesh.segment_markers.tolist(), strict=True)
+    assert found_of == {frozenset(pair): marker for pair, marker in pairs}
 
 
 @pytest.mark.parametrize("suffix", [".ply", ".obj", ".stl", ".gpkg", ".geojson", ".png", ".svg"])

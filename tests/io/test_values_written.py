@@ -90,9 +90,11 @@ def test_by_meshio(suffix: str, name: str, deep: bool, tmp_path: Path) -> None:
     z = heights(mesh) if deep else None
     write_mesh(file, mesh, z=z)
     found = meshio.read(file)
-    assert np.array_equal(found.points[:, :2], mesh.points)
+    # Numbers of INP have 20 characters.
+    close = {"rtol": 1e-14 if suffix == ".inp" else 0}
+    np.testing.assert_allclose(found.points[:, :2], mesh.points, **close)
     if deep or found.points.shape[1] == 3:
-        assert np.array_equal(found.points[:, 2], heights(mesh) * deep)
+        np.testing.assert_allclose(found.points[:, 2], heights(mesh) * deep, **close)
     assert np.array_equal(found.get_cells_type("triangle"), mesh.simplices)
     lines = found.get_cells_type("line")
     if not isinstance(mesh, delone.Mesh) or suffix in {".ply", ".obj"}:
@@ -102,7 +104,7 @@ def test_by_meshio(suffix: str, name: str, deep: bool, tmp_path: Path) -> None:
         return
     assert len(set(mesh.region.tolist())) == 2
     if suffix == ".inp":
-        assert by_edge(lines, [0] * len(lines)) == by_edge(mesh.segments, [0] * len(mesh.segments))
+        assert len(lines) == 0
         return
     edges = by_edge(mesh.segments, mesh.segment_markers)
     assert set(edges.values()) == set(MARKERS)

@@ -47,7 +47,7 @@ def test_dolfinx() -> None:
         assert sides(made["facets"][made["facet_tags"] == marker]) == wanted
 
 
-@pytest.mark.parametrize("suffix", [".vtu", ".xdmf", ".msh", ".med", ".inp", ".su2"])
+@pytest.mark.parametrize("suffix", [".vtu", ".xdmf", ".msh", ".med", ".su2"])
 def test_files(suffix: str, tmp_path: Path) -> None:
     if suffix in (".xdmf", ".med"):
         pytest.importorskip("h5py")
@@ -66,8 +66,6 @@ def test_files(suffix: str, tmp_path: Path) -> None:
         elif suffix == ".med":
             (tag,) = (n for n, names in found.cell_tags.items() if names == [f"marker {marker}"])
             rows = found.cell_data["cell_tags"][block] == tag
-        elif suffix == ".inp":
-            rows = found.cell_sets[f"marker_{marker}"][block]
         else:
             rows = found.cell_data["su2:tag"][block] == marker
         assert sides(faces[rows]) == WANTED[marker]

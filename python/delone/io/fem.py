@@ -2,7 +2,7 @@
 
 Triangles or tetrahedra are written, and the segments of a mesh with their markers: as named parts
 of the boundary in SU2, as values in XDMF, as groups in MED, which has regions as well, and as sets
-of elements and surfaces in INP.
+of nodes and surfaces in INP.
 """
 
 from __future__ import annotations
@@ -43,9 +43,11 @@ _ABAQUS_SIDES = {
 # The nodes of tetrahedra in MED files, whose first face is seen from outside, in the order of VTK.
 _MED_ORDERS = {"tetra": (0, 2, 1, 3), "tetra10": (0, 2, 1, 3, 6, 5, 4, 7, 9, 8)}
 # The types of elements that Gmsh writes as well, by those of meshio.
-_ABAQUS_TYPES = {
-    "R3D3": "CPS3", "B31H": "T3D2", "B33H": "T3D3", "C3D10MH": "C3D10"
-}  # fmt: skip
+_ABAQUS_TYPES = {"R3D3": "CPS3", "C3D10MH": "C3D10"}
+# Those of surfaces in 3-D.
+_SHELLS = {"R3D3": "S3", "CPE6": "STRI65"}
+# Characters of a number in an INP file.
+_CHARACTERS = 20
 _ELEMENT = re.compile(r"^(\*ELEMENT, TYPE=)(\w+)$", re.MULTILINE)
 # The numbers that SU2 has for cells, those of VTK.
 _LINE, _TRIANGLE, _TETRAHEDRON = 3, 5, 10
@@ -121,16 +123,36 @@ def _write_med(path: Path, mesh: Any, module: Any) -> None:
 
 
 def _write_inp(path: Path, mesh: Any, module: Any) -> None:
-    mesh.cell_sets, surfaces = _sets(mesh), _surfaces(mesh)
+    """Write elements with sets of regions, and facets as surfaces and sets of nodes.
+
+    Facets are not elements: solvers refuse elements without a section.
+    """
+    surfaces = _surfaces(mesh)
+    mesh.cell_sets, mesh.point_sets = _sets(mesh), _node_sets(mesh)
     mesh.point_data, mesh.cell_data = {}, {}
+    mesh.cells = mesh.cells[:1]
     module.write(path, mesh)
-    # meshio writes types of rigid bodies, beams and incompressible solids.
     text = path.read_text(encoding="utf-8")
-    path.write_text(_ELEMENT.sub(_usual, text) + surfaces, encoding="utf-8")
+    head, _, rest = text.partition("*NODE\n")
+    rest = rest[rest.index("*ELEMENT") :]
+    nodes = [
+        ", ".join([str(i), *map(_fitted, place)]) for i, place in enumerate(mesh.points.tolist(), 1)
+    ]
+    # meshio writes types of rigid bodies, beams and incompressible solids.
+    types = {**_ABAQUS_TYPES, **(_SHELLS if mesh.points[:, 2].any() else {})}
+    rest = _ELEMENT.sub(lambda line: line[1] + types.get(line[2], line[2]), rest)
+    path.write_text("\n".join([f"{head}*NODE", *nodes, rest]) + surfaces, encoding="utf-8")
 
 
-def _usual(line: re.Match[str]) -> str:
-    return line[1] + _ABAQUS_TYPES.get(line[2], line[2])
+def _fitted(number: float) -> str:
+    """Return a number in 20 characters, as long as the format allows: with 13 digits or more."""
+    text = repr(number)
+    digits = 17
+    while len(text) > _CHARACTERS:  # ends: a digit less each time
+        digits -= 1
+        mantissa, _, exponent = f"{number:.{digits - 1}e}".partition("e")
+        text = f"{mantissa}e{int(exponent)}"
+    return text
 
 
 def _drop(mesh: Any, *names: str) -> None:
@@ -180,17 +202,23 @@ def _references(mesh: Any) -> dict[str, list[NDArray[np.int64]]]:
 
 
 def _sets(mesh: Any) -> dict[str, list[NDArray[np.int64]]]:
-    """The sets of elements of an INP file: regions of cells and markers of facets, by name."""
-    nothing = [np.empty(0, dtype=np.int64) for _ in mesh.cells]
-    found = {}
-    for name, block, none in (("region", 0, -1), ("marker", 1, 0)):
-        values = mesh.cell_data.get(name, ())
-        for value in list(values)[block : block + 1]:
-            for own in np.setdiff1d(value, none).tolist():
-                rows = list(nothing)
-                rows[block] = np.flatnonzero(value == own)
-                found[f"{name}_{own}"] = rows
-    return found
+    """The sets of elements of an INP file: regions, by name."""
+    region = np.asarray(mesh.cell_data.get("region", [np.empty(0)])[0])
+    return {
+        f"region_{own}": [np.flatnonzero(region == own)]
+        for own in np.setdiff1d(region, -1).tolist()
+    }
+
+
+def _node_sets(mesh: Any) -> dict[str, NDArray[np.int64]]:
+    """The sets of nodes of an INP file: those of facets by their markers."""
+    if "marker" not in mesh.cell_data or len(mesh.cells) < 2:
+        return {}
+    marker, facets = np.asarray(mesh.cell_data["marker"][1]), mesh.cells[1].data
+    return {
+        f"marker_{own}": np.unique(facets[marker == own]).astype(np.int64)
+        for own in np.setdiff1d(marker, 0).tolist()
+    }
 
 
 def _surfaces(mesh: Any) -> str:

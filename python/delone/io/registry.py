@@ -614,7 +614,8 @@ def write_mesh(
     Notes
     -----
     Vertex numbers in the file are the rows of ``triangulation.points``; duplicates remain as points
-    that no triangle uses. Coordinates are written as doubles, or with all their digits.
+    that no triangle uses. Coordinates are written as doubles, or with all their digits; in INP
+    files, whose numbers have 20 characters at most, with 13 digits or more.
 
     For a `ConstrainedDelaunay`, the triangles that are kept are written. VTU, MSH, XDMF, GeoPackage
     and GeoJSON contain their `region` and, if there are polygons, ``polygon`` as attributes;
