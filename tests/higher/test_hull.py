@@ -84,6 +84,23 @@ def test_compositions_keep_all_extreme_points() -> None:
         assert inside == (first not in hull.vertices)
 
 
+def test_a_facet_through_the_ends_of_all_axes() -> None:
+    # The least and the greatest along each axis lie on one plane, which has a facet.
+    random = np.random.default_rng(4)
+    ends = np.vstack((np.zeros(4), np.ones(4), np.eye(4)[:3] * 0.5 + 0.25))
+    normal = np.array([1.0, 1.0, 1.0, -3.0])
+    flat = ends - np.outer(ends @ normal, [0, 0, 0, -1 / 3])
+    flat = np.round(flat * 64) / 64
+    flat[:, 3] = flat[:, :3].sum(axis=1) / 4
+    points = np.vstack((flat * 4, [[2, 2, 2, 1.75]], random.random((3, 4)) * 0.1 + [2, 2, 2, 1.6]))
+    hull = ConvexHull(points)
+    assert np.isfinite(hull.equations).all()
+    assert np.isfinite(hull.area)
+    assert (
+        np.einsum("kd,nd->kn", hull.equations[:, :4], points) < 1e-12 - hull.equations[:, 4:]
+    ).all()
+
+
 def test_points_inside_and_on_the_boundary() -> None:
     for d in (4, 7):
         hull = ConvexHull(some(d, 2))

@@ -40,22 +40,34 @@ def hull_arrays(points: Floats) -> dict[str, NDArray[Any]]:
 
 
 def _cones(points: Floats, facets: Indices, vertices: Indices) -> tuple[Indices, Floats]:
-    """Return simplices of facets and a point inside each, and the maps to their coordinates.
+    """Return simplices of facets and a vertex off each, and the maps to their coordinates.
 
-    The point is the vertex that is farthest from the plane of the facet, by rounded distances.
+    Rounded distances choose the vertex; that it is off the plane is decided exactly.
     """
-    # Vertices that span the hull: the least and the greatest along each axis.
+    # Vertices at the ends of the axes are off the planes of most facets.
     ends = np.unique((points[vertices].argmin(axis=0), points[vertices].argmax(axis=0)))
-    few = vertices[ends]
+    cones = np.column_stack((_farthest(points, facets, vertices[ends])[:, 0], facets))
+    flat = np.flatnonzero(_core.orientations_n(points, cones, 1) == 0)
+    for row, order in zip(flat, _farthest(points, facets[flat], vertices), strict=True):
+        tried = np.column_stack(
+            (order, np.broadcast_to(facets[row], (len(order), cones.shape[1] - 1)))
+        )
+        off = np.flatnonzero(_core.orientations_n(points, tried.astype(np.int32), 1))
+        cones[row, 0] = order[off[0]]
+    return cones, measures.transform(points, cones)
+
+
+def _farthest(points: Floats, facets: Indices, among: Indices) -> Indices:
+    """Return rows of points for each facet, the farthest from its plane first, by rounding."""
     corners = points[facets]
-    # Rounded normals, only to choose.
     steps = corners[:, 1:] - corners[:, :1]
     with np.errstate(all="ignore"):
-        rough = np.linalg.svd(steps / np.abs(steps).max(axis=(1, 2), keepdims=True))[2][:, -1]
-        away = np.abs(np.einsum("kd,kvd->kv", rough, points[few][None] - corners[:, :1]))
-    far = few[np.nan_to_num(away, nan=-1.0).argmax(axis=1)]
-    cones = np.column_stack((far, facets)).astype(np.int32)
-    return cones, measures.transform(points, cones)
+        scaled = steps / np.abs(steps).max(axis=(1, 2), keepdims=True)
+        rough = np.linalg.svd(np.nan_to_num(scaled))[2][:, -1]
+        away = np.abs(np.einsum("kd,kvd->kv", rough, points[among][None] - corners[:, :1]))
+    order = np.argsort(-np.nan_to_num(away, nan=-1.0), axis=1, kind="stable")
+    found: Indices = among[order].astype(np.int32)
+    return found
 
 
 def normals(points: Floats, facets: Indices, vertices: Indices) -> Floats:
@@ -65,7 +77,7 @@ def normals(points: Floats, facets: Indices, vertices: Indices) -> Floats:
     inward = maps[:, 0]
     with np.errstate(all="ignore"):
         scaled = inward / np.abs(inward).max(axis=1, keepdims=True)
-        found: Floats = -scaled / np.linalg.norm(scaled, axis=1, keepdims=True)
+        found: Floats = -scaled / _lengths(scaled)[:, None]
     return found
 
 
