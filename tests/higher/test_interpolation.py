@@ -121,7 +121,8 @@ def test_grids_are_taken_without_triangulation_from_four_dimensions_on() -> None
     with pytest.raises(delone.InputError, match="1 of 2 queries is outside the hull: row 1"):
         Linear(points, points.sum(axis=1), extrapolate="raise")([(1, 1, 1, 1), (1, 1, 1, 3)])
     # Without a node, or with one more, points are not a grid.
-    for other in (points[1:], np.vstack((points, points[:1] + 0.5))):
+    twice = np.vstack((points[1:], points[1:2]))
+    for other in (points[1:], np.vstack((points, points[:1] + 0.5)), twice):
         assert repr(Linear(other, other.sum(axis=1))).startswith("<Linear on <Delaunay")
     values = points.sum(axis=1)
     values[3] = np.nan
