@@ -73,10 +73,9 @@ fn the_hull_in_space_has_the_same_facets() {
         let Some(there) = solid(&at, &IDLE).unwrap() else {
             panic!("no hull");
         };
-        assert_eq!(here.duplicates, there.duplicates);
         assert_eq!(
             oriented(&signed(&here.simplices)),
-            oriented(&there.simplices),
+            oriented(&signed(&there.simplices)),
             "{seed}"
         );
     }
