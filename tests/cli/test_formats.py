@@ -61,6 +61,25 @@ def test_a_drawing_of_contours(folder, figures, command):
     assert code != 0 and "can only be written to .dxf .gpkg" in message
 
 
+def test_labels_of_contours(folder, figures, command):
+    call = (*CALL, "--label-length", 3)
+    found = figures(*call, "--labels", "the labels.gpkg", "-o", "a.gpkg")
+    table = geopandas.read_file("the labels.gpkg")
+    assert len(table) == found["labels"] > 0 and table.crs.to_epsg() == 28992
+    assert found["outputs"] == ["a.gpkg", "the labels.gpkg"]
+    assert found["labels"] + found["lines_too_short_for_a_label"] == found["lines"]
+    lines = geopandas.read_file("a.gpkg").union_all()
+    assert shapely.distance(lines, table.geometry.values).max() < 1e-6
+    for options, words in (
+        ((), "--label-length needs --labels"),
+        (("--labels", "b.gpkg", "--bands"), "--labels is for lines"),
+        (("--labels", "b.txt"), "can only be written to"),
+        (("--labels", "a b.csv"), "would replace the input"),
+    ):
+        code, _, message = command(*call, *options)
+        assert code != 0 and words in message
+
+
 def test_parts_of_a_shapefile_are_replaced_together(folder, figures, command):
     out = folder / "lines.shp"
     figures(*CALL, "-o", out)

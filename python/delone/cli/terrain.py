@@ -103,6 +103,16 @@ def contours(
     bands: Annotated[
         bool, typer.Option("--bands", help="Write polygons between levels instead of lines.")
     ] = False,
+    labels: Annotated[
+        Path | None,
+        typer.Option(
+            help="File for labels along the lines, as points with text and angle: "
+            + " ".join(TABLE_SUFFIXES)
+        ),
+    ] = None,
+    label_length: Annotated[
+        float | None, typer.Option(help="Length of a label, in units of the points.")
+    ] = None,
     max_points: Annotated[
         int, typer.Option(help="Maximum number of points of all contours.")
     ] = MOST,
@@ -135,8 +145,16 @@ def contours(
         raise Failure("--smooth is for lines, not for --bands", Exit.USAGE)
     if bands and min_length:
         raise Failure("--min-length is for lines, not for --bands", Exit.USAGE)
+    if labels is None and label_length is not None:
+        raise Failure("--label-length needs --labels", Exit.USAGE)
+    if labels is not None and bands:
+        raise Failure("--labels is for lines, not for --bands", Exit.USAGE)
     options = SurfaceOptions.among(locals())
     _check(output or [], source, options, bands=bands)
+    if labels is not None:
+        with writing():
+            protect_inputs([labels, *(output or [])], source, *options.inputs())
+            ready_table(labels, "labels")
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         tin = surface(source, options, watch, say)
@@ -164,14 +182,20 @@ def contours(
                 )
         say(f"writing {len(found):,} {'polygons' if bands else 'lines'}")
         _write(found, output or [], watch, "bands" if bands else "contours")
+        texts = None if labels is None else found.labels(length=label_length)
+        if texts is not None:
+            _write(texts, [labels] if labels else [], watch, "labels")
     what = "polygons" if bands else "lines"
-    figures = figures_of(source, tin, output) | {
+    written = [*(output or []), *([] if labels is None else [labels])]
+    figures = figures_of(source, tin, written) | {
         what: len(found),
         "levels": len(np.unique(found.low if bands else found.level)),
         "coordinates": len(found.points),
         "triangles_left_out": found.left_out or None,
         "short_lines_left_out": found.short if min_length else None,
         f"small_{what}_left_out": found.small if min_area else None,
+        "labels": None if texts is None else len(texts),
+        "lines_too_short_for_a_label": None if texts is None else texts.short,
         "stages": watch.rows(tin.npoints),
     }
     print_figures(source, figures, as_json=as_json, quiet=quiet)

@@ -56,7 +56,8 @@ def write_drawing(
     *things : TIN, Contours, PointSet, Profile, Profiles or CrossSections
         What is drawn: surfaces as 3DFACE on the layer ``TIN`` and their breaklines as 3-D polylines
         on ``BREAKLINES`` and ``SOFT_BREAKLINES``; contours as 3-D polylines on ``CONTOURS`` and
-        ``CONTOURS_INDEX``; points as POINT on ``POINTS``, with their heights as text on
+        ``CONTOURS_INDEX``, with a `text_height` also labels, of index contours if there are any, on
+        ``CONTOURS_TEXT``; points as POINT on ``POINTS``, with their heights as text on
         ``POINTS_TEXT``; profiles and cross sections as polylines on ``PROFILE_`` and the name of
         the surface, with a frame, texts and stations on ``PROFILE_FRAME`` and ``PROFILE_TEXT``.
         Layers of a second thing of one kind end in ``_2``.
@@ -127,6 +128,8 @@ class _Sheet:
     def __init__(self, drawing: Any, text: float | None, factor: float) -> None:
         self._drawing, self._space = drawing, drawing.modelspace()
         self._text, self._factor = text, factor
+        enums = require("ezdxf.enums", extra="dxf", what="writing DXF")
+        self._middle = enums.TextEntityAlignment.MIDDLE_CENTER
         self._counts: dict[str, int] = {}
 
     def add(self, thing: Any) -> str:
@@ -156,7 +159,7 @@ class _Sheet:
         count = self._counts[kind] = self._counts.get(kind, 0) + 1
         return "" if count == 1 else f"_{count}"
 
-    def _layer(self, name: str, color: int) -> dict[str, str]:
+    def _layer(self, name: str, color: int) -> dict[str, Any]:
         layers = self._drawing.layers
         if not layers.has_entry(name):
             layers.add(name, color=color)
@@ -190,6 +193,16 @@ class _Sheet:
             color = 32 if contours.index[k] else _BROWN
             on = self._layer(f"{name}{end}", color)
             self._polyline(np.column_stack((points, np.full(len(points), contours.level[k]))), on)
+        # Labels are written where a height of texts is given.
+        if self._text is None:
+            return
+        labels = contours.labels(length=4 * self._text, index=bool(contours.index.any()))
+        on = self._layer(f"CONTOURS_TEXT{end}", _BROWN)
+        for row, text in enumerate(labels.text):
+            place = (*labels.points[row].tolist(), float(labels.level[row]))
+            turned = on | {"rotation": float(labels.angle[row])}
+            made = self._space.add_text(text, height=self._text, dxfattribs=turned)
+            made.set_placement(place, align=self._middle)
 
     def _points(self, points: Any) -> None:
         end = self._suffix("POINTS")

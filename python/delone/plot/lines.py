@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from delone._types import Floats
 
-__all__ = ["plot_lines", "plot_profile", "plot_profiles", "plot_stations"]
+__all__ = ["plot_labels", "plot_lines", "plot_profile", "plot_profiles", "plot_stations"]
 
 # Stations that are labeled.
 _LABELS = 30
@@ -33,6 +33,24 @@ def plot_lines(lines: Sequence[Floats], widths: Floats, ax: Any = None, **style:
     axes.autoscale_view()
     axes.set_aspect("equal")
     return axes
+
+
+def plot_labels(points: Floats, angles: Floats, texts: Sequence[str], axes: Any) -> None:
+    """Write texts along lines, with a gap in the line below each."""
+    for place, angle, text in zip(points, angles, texts, strict=True):
+        axes.text(
+            *place,
+            text,
+            rotation=angle,
+            rotation_mode="anchor",
+            transform_rotates_text=True,
+            ha="center",
+            va="center",
+            fontsize=7,
+            color="#6b4226",
+            clip_on=True,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6},
+        )
 
 
 def plot_profile(distances: Floats, z: Floats, ax: Any = None, **style: Any) -> Any:

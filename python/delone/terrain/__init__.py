@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from delone.terrain.contouring import Bands, Contours
 from delone.terrain.deviations import Deviations
+from delone.terrain.labeling import Labels
 from delone.terrain.profiles import Profile, Sight
 from delone.terrain.regions import Volumes
 from delone.terrain.sections import CrossSections, Profiles
@@ -23,6 +24,7 @@ __all__ = [
     "Contours",
     "CrossSections",
     "Deviations",
+    "Labels",
     "Profile",
     "Profiles",
     "Sight",

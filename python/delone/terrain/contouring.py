@@ -18,6 +18,7 @@ from delone.errors import BudgetExceededError, DtypeError, InputError
 from delone.extras import require
 from delone.immutable import ReadOnly, sealed
 from delone.renames import renamed
+from delone.terrain.labeling import Labels, labels_of
 from delone.terrain.slivers import drawn
 from delone.terrain.small import Rings, ring_areas, without_small
 from delone.terrain.surface import on_surface
@@ -118,6 +119,48 @@ class Contours(ReadOnly):
         See `TIN.contours`.
         """
         return self.points[self.starts[line] : self.starts[line + 1]]
+
+    def labels(
+        self, *, length: float | None = None, spacing: float | None = None, index: bool = False
+    ) -> Labels:
+        """Return places for labels along the lines.
+
+        Parameters
+        ----------
+        length : float, optional
+            The length of a label in the unit of the points; by default a fortieth of the extent.
+        spacing : float, optional
+            The distance of labels along a line; by default each line has one.
+        index : bool, optional
+            Whether only index contours are labeled.
+
+        Returns
+        -------
+        Labels
+            Positions where the lines are straightest, angles, texts, and the number of lines that
+            are too short for a label.
+
+        Raises
+        ------
+        InputError
+            `length` or `spacing` is not above 0, or there would be more than a million labels.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (40, 0, 0), (40, 40, 8), (0, 40, 8)])
+        >>> tin.contours(interval=1).labels(index=True).text
+        ('5',)
+        """
+        return labels_of(
+            [self.coordinates(k) for k in range(len(self))],
+            self.level,
+            self.index,
+            index=index,
+            length=length,
+            spacing=spacing,
+            crs=self.crs,
+        )
 
     def to_shapely(self) -> NDArray[Any]:
         """Return the lines as geometries (extra ``geo``).
@@ -253,7 +296,8 @@ class Contours(ReadOnly):
         ax : matplotlib Axes, optional
             Axes to draw on; by default new ones.
         **options
-            Properties of matplotlib's lines, such as ``color`` and ``linestyle``.
+            Properties of matplotlib's lines, such as ``color`` and ``linestyle``; ``labels``, which
+            is what `labels` returns, or True for those of index contours or, without any, of all.
 
         Returns
         -------
@@ -271,10 +315,16 @@ class Contours(ReadOnly):
         >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
         >>> ax = tin.contours(interval=1).plot()
         """
-        from delone.plot.lines import plot_lines
+        from delone.plot.lines import plot_labels, plot_lines
 
+        labels = options.pop("labels", None)
+        if labels is True:
+            labels = self.labels(index=bool(self.index.any()))
         runs = [self.coordinates(k) for k in range(len(self))]
-        return plot_lines(runs, np.where(self.index, 1.2, 0.5), ax, **options)
+        axes = plot_lines(runs, np.where(self.index, 1.2, 0.5), ax, **options)
+        if labels:
+            plot_labels(labels.points, labels.angle, labels.text, axes)
+        return axes
 
 
 @renamed(rings="ring_starts", polygons="polygon_starts")

@@ -1,0 +1,192 @@
+"""Labels of contours: where a line is straightest, along it, and readable from below."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import as_number
+from delone.counting import counted
+from delone.errors import InputError
+from delone.extras import require
+from delone.immutable import ReadOnly
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from delone._types import Bools, Floats, Rows
+
+__all__ = ["Labels", "labels_of"]
+
+# Places that are compared for a label, and the length of one by default, as a part of the extent.
+_PLACES, _LENGTH = 32, 1 / 40
+# Labels that a call may make.
+_MOST = 1_000_000
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Labels(ReadOnly):
+    """Where the labels of contours are, and what they say.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (k, 2)
+        The middle of each label, on its line.
+    angle : ndarray of float64, shape (k,)
+        The direction of the text in degrees, counterclockwise from that of x: above -90, at most
+        90.
+    text : tuple of str
+        The texts.
+    line : ndarray of int64, shape (k,)
+        The number of the line in the contours.
+    level : ndarray of float64, shape (k,)
+        Its level.
+    index : ndarray of bool, shape (k,)
+        Whether it is an index contour.
+    length : float
+        The length of a label for which the places are made.
+    short : int
+        The number of lines without a label because they are shorter than two labels.
+    crs : str, optional
+        Coordinate reference system.
+
+    Examples
+    --------
+    >>> from delone.terrain import TIN
+    >>> tin = TIN.from_points([(0, 0, 0), (40, 0, 0), (40, 40, 8), (0, 40, 8)])
+    >>> found = tin.contours([3, 6]).labels(length=5)
+    >>> found
+    <Labels of contours: 2 labels, 0 lines too short>
+    >>> found.text, found.angle.tolist(), found.points.round(1).tolist()
+    (('3', '6'), [0.0, 0.0], [[20.0, 15.0], [20.0, 30.0]])
+    """
+
+    points: Floats
+    angle: Floats
+    text: tuple[str, ...]
+    line: Rows
+    level: Floats
+    index: Bools
+    length: float
+    short: int = 0
+    crs: str | None = None
+
+    def __len__(self) -> int:
+        return len(self.text)
+
+    def __repr__(self) -> str:
+        short = counted(self.short, "line")
+        return f"<Labels of contours: {counted(len(self), 'label')}, {short} too short>"
+
+    def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
+        """Return a table of the labels as points, for a map (extra ``geo``).
+
+        Parameters
+        ----------
+        data : DataFrame or mapping, optional
+            Columns to include, with one row for each label.
+        crs : optional
+            Reference system; by default that of the surface.
+
+        Returns
+        -------
+        geopandas.GeoDataFrame
+            One row for each label: ``level``, ``index``, ``text``, ``angle``, ``line``, geometry.
+
+        Raises
+        ------
+        MissingExtraError
+            geopandas is not installed.
+        InputError
+            `data` does not have one row for each label.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (40, 0, 0), (40, 40, 8), (0, 40, 8)])
+        >>> tin.contours([3]).labels(length=5).to_geopandas()[["text", "angle"]].values.tolist()
+        [['3', 0.0]]
+        """
+        from delone.exchange.geopandas import beside
+
+        shapely = require("shapely", extra="geo", what="geometries")
+        own = self.crs if crs is None else crs
+        columns = {
+            "level": self.level,
+            "index": self.index,
+            "text": list(self.text),
+            "angle": self.angle,
+            "line": self.line,
+        }
+        return beside(shapely.points(self.points), data, own, columns=columns, of="labels")
+
+
+def labels_of(
+    lines: Sequence[Floats],
+    level: Floats,
+    marked: Bools,
+    *,
+    index: bool,
+    length: float | None,
+    spacing: float | None,
+    crs: str | None,
+) -> Labels:
+    """Return labels for those lines that are wanted."""
+    extent = max((float(np.ptp(line, axis=0).max()) for line in lines), default=0.0)
+    size = extent * _LENGTH if length is None else as_number(length, name="length")
+    apart = math.inf if spacing is None else as_number(spacing, name="spacing")
+    if not (0 < size < math.inf or not len(lines)) or not apart > 0:
+        raise InputError("length and spacing must be above 0, and length finite")
+    found: list[tuple[int, Floats, float]] = []
+    short = 0
+    for row in np.flatnonzero(marked | (not index)).tolist():
+        along = np.append(0.0, np.cumsum(np.hypot(*np.diff(lines[row], axis=0).T)))
+        if along[-1] < 2 * size:
+            short += 1
+            continue
+        count = max(1, math.floor(along[-1] / max(apart, 2 * size)))
+        if len(found) + count > _MOST:
+            raise InputError(f"there would be more than {_MOST:,} labels: choose a larger spacing")
+        found += [(row, *each) for each in _placed(lines[row], along, size, count)]
+    rows = np.array([row for row, _, _ in found], dtype=np.int64)
+    return Labels(
+        points=np.array([place for _, place, _ in found]).reshape(-1, 2),
+        angle=np.array([angle for _, _, angle in found], dtype=np.float64),
+        text=tuple(f"{level[row]:.10g}" for row in rows),
+        line=rows,
+        level=level[rows],
+        index=marked[rows],
+        length=size,
+        short=short,
+        crs=crs,
+    )
+
+
+def _placed(line: Floats, along: Floats, size: float, count: int) -> list[tuple[Floats, float]]:
+    """Return the middles and angles of labels, each in its part of a line."""
+    found = []
+    ends = np.linspace(0.0, along[-1], count + 1)
+    for start, stop in pairwise(ends.tolist()):
+        # A label stays within its part, and the middle comes first among equals.
+        at = np.linspace(start + size / 2, stop - size / 2, _PLACES + 1)
+        at = at[np.argsort(np.abs(at - (start + stop) / 2), kind="stable")]
+        first, middle, last = (_on(line, along, at + shift) for shift in (-size / 2, 0, size / 2))
+        chord = np.hypot(*(last - first).T)
+        # Straight within a hundredth is straight: there the middle is better.
+        best = int((chord >= chord.max() - size / 100).argmax())
+        x, y = (last - first)[best]
+        angle = math.degrees(math.atan2(y, x))
+        if angle > 90:
+            angle -= 180
+        elif angle <= -90:
+            angle += 180
+        found.append((middle[best], angle + 0.0))
+    return found
+
+
+def _on(line: Floats, along: Floats, at: Floats) -> Floats:
+    return np.column_stack([np.interp(at, along, axis) for axis in line.T])
