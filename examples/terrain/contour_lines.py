@@ -4,7 +4,7 @@ Contour map over a hillshade
 
 Contour lines of lidar points with index contours and labels, over a hillshade of the same triangles.
 
-Install: ``pip install "delone[plot]"``.
+Install: ``pip install "delone[plot,geo]"``.
 """
 
 import matplotlib.pyplot as plt
@@ -50,17 +50,14 @@ for ax, tin, title in zip(
     ax.tripcolor(smooth.to_matplotlib(), shade, cmap="gray", vmin=-0.3, vmax=1)
     contours = tin.contours(interval=0.25, index=4, smooth=2)
     print(title, contours)
-    contours.plot(ax, colors="firebrick")
+    labels = contours.labels(length=8, index=True)
+    contours.plot(ax, colors="firebrick", labels=labels)
     ax.set(title=title, xlabel="m", aspect="equal", xlim=(0, 100), ylim=(0, 100))
 
 # %%
-# Labels are at the longest line of each index contour. For a map in a GIS, ``contours.to_geopandas().to_file(...)``.
+# Index contours are labeled where they are straightest, if they are long enough. For a map in a GIS,
+# ``contours.to_geopandas().to_file(...)``, and ``labels.to_geopandas()`` for the labels with their angles.
 
-lengths = np.diff(contours.starts)
-for level in np.unique(contours.level[contours.index]):
-    longest = np.flatnonzero(contours.level == level)[lengths[contours.level == level].argmax()]
-    line = contours.coordinates(longest)
-    x, y = line[len(line) // 2]
-    box = {"facecolor": "white", "edgecolor": "none", "pad": 1}
-    axes[1].text(x, y, f"{level:g} m", fontsize=8, ha="center", va="center", bbox=box)
+print(labels)
+print(labels.to_geopandas()[["text", "angle"]].round(0).to_string(index=False))
 plt.show()

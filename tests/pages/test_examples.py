@@ -23,6 +23,7 @@ INSTALL = re.compile(r"``pip install ([^`]+)``")
 MODULES = {
     "cli": "typer",
     "dask": "dask",
+    "dxf": "ezdxf",
     "fem": "skfem",
     "geo": "shapely",
     "las": "laspy",
