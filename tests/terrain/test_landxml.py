@@ -277,6 +277,13 @@ def test_units_are_written_and_never_mixed(tmp_path):
         assert TIN.from_file(tmp_path / "a.xml").units == known
         tin.save(tmp_path / "a.npz")
         assert TIN.load(tmp_path / "a.npz").units == known
+    # The last file states millimeters.
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert TIN.from_file(tmp_path / "a.xml", units="mm").units == "mm"
+    for faces in (True, False):
+        with pytest.warns(delone.UnitsWarning, match="states heights in mm, and units='ft'"):
+            assert TIN.from_file(tmp_path / "a.xml", units="ft", faces=faces).units == "ft"
     feet, meters, unknown = (TIN.from_points(xyz, units=u) for u in ("ft", "m", None))
     with pytest.raises(
         InputError, match=r"heights are in ft and in m: multiply those in m by 3\.28"

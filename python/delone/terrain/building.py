@@ -59,6 +59,7 @@ __all__ = [
     "is_soft",
     "peeled",
     "settled_units",
+    "stated_units",
     "system_of",
 ]
 
@@ -215,6 +216,19 @@ def system_of(crs: Any, *data: Any) -> str | None:
 def degrees_of(system: str | None) -> str | None:
     """Return a system whose coordinates are degrees; None for all others."""
     return system[:60] if system is not None and is_geographic(system) else None
+
+
+def stated_units(given: Any, stated: str | None, by: str) -> str | None:
+    """Return the unit of heights, given or stated by a file; warn if these differ."""
+    units = as_units(given)
+    if units is not None and stated is not None and units != stated:
+        warnings.warn(
+            f"{by:.60} states heights in {stated}, and units={given!r:.20} is used instead: leave "
+            "units out if the file is right",
+            UnitsWarning,
+            stacklevel=caller_level(),
+        )
+    return units or stated
 
 
 def settled_units(given: Any, system: str | None, lengths: str | None, by: str) -> str | None:

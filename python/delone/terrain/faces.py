@@ -58,7 +58,10 @@ def build_faces(surface: SurfaceFile, options: dict[str, Any]) -> building.Built
     as_choice(duplicates, POLICIES, name="duplicates")
     system = building.system_of(options.get("crs"), surface)
     units = building.settled_units(
-        options.get("units") or surface.units, system, surface.lengths, surface.source
+        building.stated_units(options.get("units"), surface.units, surface.source),
+        system,
+        surface.lengths,
+        surface.source,
     )
     warn_of_degrees(
         surface,

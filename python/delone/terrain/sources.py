@@ -215,6 +215,9 @@ class Sources(HullTiling):
         options = faces_.with_lines(surface, options)
         system = options["crs"] = building.system_of(options.get("crs"), surface)
         options["units"] = building.settled_units(
-            options.get("units") or surface.units, system, surface.lengths, surface.source
+            building.stated_units(options.get("units"), surface.units, surface.source),
+            system,
+            surface.lengths,
+            surface.source,
         )
         return cls._of_points(surface.points, options.pop("crs", None), options)
