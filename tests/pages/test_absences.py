@@ -71,6 +71,7 @@ ABSENCES: dict[tuple[str, str], str] = {
         "coming_from/matlab.rst",
         "no class;",
     ): "a triangulation is computed from points; validate checks others",
+    ("guide/higher.rst", "do not exist from 4-D on"): "no library draws or stores such simplices",
     ("coming_from/matlab.rst", '"v4"'): "there are no radial basis functions",
     ("coming_from/scipy.rst", "``RBFInterpolator``"): "they need no triangulation",
     (
