@@ -95,7 +95,7 @@ class ShapeError(InputError):
     ...     delone.Delaunay([0, 1, 2])
     ... except delone.ShapeError as error:
     ...     print(error)
-    points must have shape (n, 2) or (n, 3), got (3,)
+    points must have shape (n, d) with d from 2 to 8, got (3,)
     """
 
 
