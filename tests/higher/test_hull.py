@@ -101,6 +101,17 @@ def test_a_facet_through_the_ends_of_all_axes() -> None:
     ).all()
 
 
+def test_no_point_of_many_is_outside() -> None:
+    random = np.random.default_rng(7)
+    points = random.normal(size=(2500, 4))
+    points[2000:] /= np.linalg.norm(points[2000:], axis=1, keepdims=True) / 6
+    hull = ConvexHull(points)
+    beyond = points @ hull.equations[:, :4].T + hull.equations[:, 4]
+    assert beyond.max() < 1e-12
+    assert hull.vertices.min() >= 2000
+    assert len(hull.vertices) == 500
+
+
 def test_points_inside_and_on_the_boundary() -> None:
     for d in (4, 7):
         hull = ConvexHull(some(d, 2))

@@ -182,3 +182,17 @@ def test_paths_are_monotone() -> None:
         step = nodes[:, after] - nodes[:, before]
         assert (np.sort(step, axis=1) == [0, 0, 1]).all()
     assert np.abs(np.einsum("kc,kcd->kd", cells.weights, nodes) - queries).max() < 1e-14
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_many_queries_are_answered_as_few_are(workers: int) -> None:
+    random = np.random.default_rng(6)
+    points, queries = random.random((60, 4)), random.random((3000, 4))
+    mesh = Delaunay(points, workers=workers)
+    whole = mesh.locate(queries)
+    for start in range(0, len(queries), 100):
+        part = mesh.locate(queries[start : start + 100])
+        rows = slice(start, start + 100)
+        assert np.array_equal(whole.simplex[rows], part.simplex)
+        assert np.array_equal(whole.barycentric[rows], part.barycentric, equal_nan=True)
+    assert (whole.simplex >= 0).sum() > 500

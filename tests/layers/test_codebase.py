@@ -26,7 +26,6 @@ CRATES = ROOT / "crates"
 # Files that may hold `unsafe`, each with what it is for.
 UNSAFE = {
     "crates/core/src/memory.rs": "zeroed pages, large pages, signed rows",
-    "crates/core/src/ndim/dispatch.rs": "code for newer processors",
     "crates/core/src/delaunay3/dispatch.rs": "code for features found at run time",
 }
 

@@ -12,10 +12,10 @@
 //! triangulation of each flat facet its Delaunay triangulation, with the canonical choice among ties.
 
 use super::cell::{INFINITE, Inside, Mesh};
-use super::dispatch;
 use super::order::arranged;
 use super::sites::Sites;
 use super::triangulate::{simplex_of, sorted};
+use super::wrapping::wrap;
 use crate::error::Result;
 use crate::memory::{filled, push, with_room};
 use crate::watch::{Pace, Watch};
@@ -85,7 +85,7 @@ fn faceted<const D: usize, const V: usize, const P: usize>(
     let mut mesh = Mesh::facets(sites, corners, inside)?;
     let mut left = with_room(order.len())?;
     left.extend(order.iter().copied().filter(|p| !corners.contains(p)));
-    dispatch::wrap(&mut mesh, &left, pace)?;
+    wrap(&mut mesh, &left, pace)?;
     Ok(mesh)
 }
 

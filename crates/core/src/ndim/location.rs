@@ -6,7 +6,8 @@
 use delone_predicates::Sign;
 use num_bigint::BigInt;
 
-use super::{dispatch, simplex};
+use super::simplex;
+use super::walk::walk;
 use crate::arrays::{Given, Side};
 use crate::error::Result;
 use crate::locate::{self, Batch, Dimension, First, Located, Locator, Output, Place};
@@ -54,7 +55,7 @@ macro_rules! dimensions {
             }
 
             fn walk(given: &Given<$d, $n>, from: usize, q: [f64; $d]) -> Result<Located<$n>> {
-                Ok(dispatch::walk::<$d, $n, $p>(given, from, &q))
+                Ok(walk::<$d, $n, $p>(given, from, &q))
             }
 
             fn first_around(given: &Given<$d, $n>, place: Place<$n>) -> First<$n> {

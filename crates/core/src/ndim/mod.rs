@@ -39,7 +39,6 @@
 mod cavity;
 mod cell;
 mod decide;
-mod dispatch;
 mod filter;
 mod fine;
 mod frame;
