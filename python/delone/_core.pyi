@@ -35,6 +35,7 @@ __all__ = [
     "ImprovedMesh",
     "ImprovementCounts",
     "JudgedTriangles",
+    "LazyN",
     "Live2",
     "Live3",
     "LiveArrays2",
@@ -869,6 +870,21 @@ class JudgedTriangles:
     @property
     def beyond(self) -> NDArray[np.int32]:
         """Those that are beyond the range of doubles, (b,)."""
+
+@final
+class LazyN:
+    """Points with any number of coordinates, whose triangulation is not made."""
+
+    def __new__(cls, points: NDArray[np.float64]) -> LazyN: ...
+    @property
+    def duplicates(self) -> NDArray[np.int32]:
+        """Rows that repeat earlier rows, and the first of these, (k, 2)."""
+    def within(
+        self, xi: NDArray[np.float64], workers: int
+    ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+        """For each query the rows of the corners of the simplex that contains it, -1 outside,
+        and their weights.
+        """
 
 @final
 class Live2:

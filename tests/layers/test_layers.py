@@ -96,6 +96,7 @@ CORE: dict[str, set[str]] = {
         "locate",
         "measure",
         "order",
+        "parallel",
         "points",
         "wide",
         "num_bigint",

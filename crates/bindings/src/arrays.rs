@@ -21,14 +21,24 @@ pub fn rows<'a, T: Element, const D: usize>(
     array: &'a PyReadonlyArray2<'_, T>,
     name: &str,
 ) -> Result<&'a [[T; D]]> {
+    Ok(flattened(array, D, name)?.as_chunks().0)
+}
+
+/// All numbers of an array with `width` columns, row by row.
+pub fn flattened<'a, T: Element>(
+    array: &'a PyReadonlyArray2<'_, T>,
+    width: usize,
+    name: &str,
+) -> Result<&'a [T]> {
     let flat = array
         .as_slice()
         .map_err(|_| Error::Shape(format!("{name} is not C-contiguous")))?;
-    if array.shape()[1] != D {
-        let width = array.shape()[1];
-        return Err(Error::Shape(format!("{name} has {width} columns, not {D}")));
+    match array.shape()[1] {
+        found if found == width => Ok(flat),
+        found => Err(Error::Shape(format!(
+            "{name} has {found} columns, not {width}"
+        ))),
     }
-    Ok(flat.as_chunks().0)
 }
 
 /// The number of columns of an array: of points, their coordinates.

@@ -106,7 +106,7 @@ mod _core {
     };
     #[pymodule_export]
     use super::ndim::{
-        FaultsN, HullN, LocatorN, hull_n, orientations_n, triangulate_n, validate_n,
+        FaultsN, HullN, LazyN, LocatorN, hull_n, orientations_n, triangulate_n, validate_n,
     };
     #[pymodule_export]
     use super::overlap::{CellGrid, CheckedCells, PlaneCells, SharedCells};

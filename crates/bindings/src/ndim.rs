@@ -2,11 +2,13 @@
 
 use delone_core::arrays::Arrays;
 use delone_core::locate::find;
-use delone_core::ndim::{self, Findings, Hyper, Weighed};
+use delone_core::ndim::{self, Findings, Hyper, Lazy, Weighed};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, columns, in_many, number_rows, numbers, rows, shaped};
+use crate::arrays::{
+    Column, Table, column, columns, flattened, in_many, number_rows, numbers, rows, shaped,
+};
 use crate::errors::Outcome;
 use crate::given::{checked, simplices_of};
 use crate::interpolate::Points;
@@ -185,5 +187,39 @@ impl LocatorN {
     /// The nearest vertex to each query.
     fn nearest(&self, xi: Points<'_>, workers: usize) -> Outcome<Column<i32>> {
         self.0.nearest(&xi, workers)
+    }
+}
+
+/// Points with any number of coordinates, whose triangulation is not made.
+#[pyclass(frozen, module = "delone._core")]
+pub struct LazyN(Lazy);
+
+#[pymethods]
+impl LazyN {
+    #[new]
+    fn new(points: PyReadonlyArray2<'_, f64>) -> Outcome<Self> {
+        let d = columns(&points).max(1);
+        let given = flattened(&points, columns(&points), "points")?;
+        let made = watched(points.py(), |watch| Lazy::new(given, d, watch))?;
+        Ok(Self(made))
+    }
+
+    /// Rows that repeat earlier rows, and the first of these, (k, 2).
+    #[getter]
+    fn duplicates(&self, py: Python<'_>) -> Outcome<Table<i32>> {
+        number_rows(py, self.0.duplicates())
+    }
+
+    /// For each query the rows of the corners of the simplex that contains it, -1 outside, and
+    /// their weights.
+    fn within(&self, xi: Points<'_>, workers: usize) -> Outcome<(Table<i32>, Table<f64>)> {
+        let (py, d) = (xi.py(), self.0.dimension());
+        let given = flattened(&xi, d, "xi")?;
+        let found = watched(py, |watch| self.0.locate(given, workers, watch))?;
+        let shape = [given.len() / d, d + 1];
+        Ok((
+            shaped(py, found.rows, shape)?,
+            shaped(py, found.weights, shape)?,
+        ))
     }
 }

@@ -65,22 +65,22 @@ pub fn scan<const D: usize>(points: &[[f64; D]]) -> Result<()> {
             limit,
         });
     }
-    // The sum of 0 * x is 0 only if all x are finite; it needs no branch per row.
-    let zero: f64 = points.as_flattened().iter().map(|x| 0.0 * x).sum();
-    if zero == 0.0 {
-        Ok(())
-    } else {
-        Err(non_finite(points))
-    }
+    finite(points.as_flattened(), D)
 }
 
-fn non_finite<const D: usize>(points: &[[f64; D]]) -> Error {
-    let bad = |p: &[f64; D]| !p.iter().all(|x| x.is_finite());
-    let rows = (0u32..).zip(points).filter(|(_, p)| bad(p)).map(|(i, _)| i);
-    Error::NonFinite {
-        rows: rows.take(NAMED_ROWS).collect(),
-        count: points.iter().filter(|p| bad(p)).count(),
+/// Checks that rows of `d` coordinates are finite.
+pub fn finite(coordinates: &[f64], d: usize) -> Result<()> {
+    // The sum of 0 * x is 0 only if all x are finite; it needs no branch per row.
+    let zero: f64 = coordinates.iter().map(|x| 0.0 * x).sum();
+    if zero == 0.0 {
+        return Ok(());
     }
+    let rows = || (0u32..).zip(coordinates.chunks_exact(d));
+    let bad = rows().filter(|(_, p)| !p.iter().all(|x| x.is_finite()));
+    Err(Error::NonFinite {
+        rows: bad.clone().map(|(i, _)| i).take(NAMED_ROWS).collect(),
+        count: bad.count(),
+    })
 }
 
 /// The error of distinct `points` that span no triangle; `rows` are their rows in the input.

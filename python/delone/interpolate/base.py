@@ -22,6 +22,7 @@ from delone.counting import agreed
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
 from delone.georeference import warn_of_degrees
+from delone.higher.dimension import MOST
 from delone.immutable import own_copy
 from delone.interpolate.hull import summed
 from delone.interpolate.policies import Policies
@@ -360,9 +361,10 @@ class Interpolator:
     def _check_higher(self) -> None:
         """Refuse what needs the nearest points of the hull, or is not there, from 4-D on."""
         if self._ndim > self._MOST:
+            others = "Linear and Nearest accept" if self._ndim <= MOST else "Linear accepts"
             raise InputError(
-                f"{type(self).__name__} is only available in 2-D and 3-D: Linear and Nearest "
-                f"accept points with {self._ndim} coordinates"
+                f"{type(self).__name__} is only available with up to {self._MOST} coordinates: "
+                f"{others} points with {self._ndim}"
             )
         if self._tolerance or self._extrapolate not in ("nan", "raise", self.EXTRAPOLATE[0]):
             option = "tolerance" if self._tolerance else f"extrapolate={self._extrapolate!r}"

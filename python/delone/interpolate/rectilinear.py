@@ -69,6 +69,20 @@ class Rectilinear(NamedTuple):
         weights = -np.diff(np.column_stack((ends[0], along, ends[1])), axis=1)
         return Cells(inside, order, self.rows[number], weights, steps)
 
+    @property
+    def first(self) -> Indices:
+        """The first row of each site with the same coordinates."""
+        return np.arange(self.rows.size, dtype=np.int32)
+
+    def within(self, queries: Floats) -> tuple[Indices, Floats]:
+        """Return rows of corners, (k, d + 1), -1 outside, and their weights, NaN outside."""
+        cells = self.find(queries)
+        width = queries.shape[1] + 1
+        rows = np.full((len(queries), width), -1, np.int32)
+        weights = np.full((len(queries), width), np.nan)
+        rows[cells.inside], weights[cells.inside] = cells.corners, cells.weights
+        return rows, weights
+
     def values(self, queries: Floats, columns: Floats) -> Floats:
         """Return values, (k, c), NaN outside."""
         found = np.full((len(queries), columns.shape[1]), np.nan)
@@ -96,6 +110,9 @@ class Rectilinear(NamedTuple):
             np.put_along_axis(slopes, axes, rise.transpose(0, 2, 1) / step[:, None, :], axis=2)
             found[block][cells.inside] = slopes
         return found
+
+    def __str__(self) -> str:
+        return f"a grid of {' x '.join(str(len(axis)) for axis in self.axes)} points"
 
 
 def _share(at: Floats, low: Floats, high: Floats) -> tuple[Floats, Floats]:

@@ -11,11 +11,28 @@ use std::ops::{Div, Mul, Sub};
 
 use num_bigint::BigInt;
 
-use super::sites::Sites;
+/// Points as integers of one unit.
+pub trait Integers {
+    /// The number of coordinates.
+    fn dimension(&self) -> usize;
+
+    /// Differences are below 2^bits units.
+    fn bits(&self) -> u32;
+
+    /// Coordinate k of `p - o` in units, if all differences are machine integers.
+    fn small(&self, p: u32, o: u32, k: usize) -> Option<i64>;
+
+    /// Coordinate k of `p - o` in units.
+    fn wide(&self, p: u32, o: u32, k: usize) -> BigInt;
+
+    /// Whether differences are machine integers.
+    fn is_small(&self) -> bool;
+}
 
 /// The integers of a simplex, with a positive determinant.
 pub struct Frame {
     numbers: Numbers,
+    dimension: usize,
     /// Whether the determinant of the differences was positive.
     pub positive: bool,
 }
@@ -44,25 +61,23 @@ fn minor_bits(d: u32, bits: u32) -> u32 {
 
 impl Frame {
     /// The frame of `corners`, the first of which is the origin. `None` if they lie in a flat.
-    pub fn new<const D: usize, const P: usize>(
-        sites: &Sites<D, P>,
-        corners: &[u32],
-    ) -> Option<Self> {
-        let minor = minor_bits(D as u32, sites.bits);
+    pub fn new(sites: &impl Integers, corners: &[u32]) -> Option<Self> {
+        let d = sites.dimension();
+        let minor = minor_bits(d as u32, sites.bits());
         let small = |i: usize, k: usize| sites.small(corners[i + 1], corners[0], k);
         // A step of the elimination computes the difference of two products of minors.
         let products = 2 * minor + 1;
         let numbers = if sites.is_small() && products < 63 {
-            let solved = eliminate::<i64, D>(|i, k| small(i, k).unwrap_or(0))?;
+            let solved = eliminate::<i64>(d, |i, k| small(i, k).unwrap_or(0))?;
             Numbers::Small(solved.map(i128::from))
         } else if sites.is_small() && products < 127 {
-            Numbers::Small(eliminate::<i128, D>(|i, k| {
+            Numbers::Small(eliminate::<i128>(d, |i, k| {
                 small(i, k).unwrap_or(0).into()
             })?)
         } else {
-            let solved = eliminate::<BigInt, D>(|i, k| sites.wide(corners[i + 1], corners[0], k))?;
+            let solved = eliminate::<BigInt>(d, |i, k| sites.wide(corners[i + 1], corners[0], k))?;
             // Scalar products have terms of the size of minors, and twice D of them.
-            if sites.is_small() && minor + sites.bits + 4 < 126 {
+            if sites.is_small() && minor + sites.bits() + 4 < 126 {
                 Numbers::Small(solved.map(|x| i128::try_from(x).unwrap_or(0)))
             } else {
                 Numbers::Wide(solved)
@@ -72,7 +87,11 @@ impl Frame {
             Numbers::Small(solved) => solved.positive,
             Numbers::Wide(solved) => solved.positive,
         };
-        Some(Self { numbers, positive })
+        Some(Self {
+            numbers,
+            dimension: d,
+            positive,
+        })
     }
 
     /// The determinant, which is positive.
@@ -92,28 +111,22 @@ impl Frame {
     }
 
     /// The determinant times entry `k, i` of the inverse of the differences.
-    pub fn adjoint<const D: usize>(&self, k: usize, i: usize) -> BigInt {
+    pub fn adjoint(&self, k: usize, i: usize) -> BigInt {
         match &self.numbers {
-            Numbers::Small(s) => s.adjoint[k * D + i].into(),
-            Numbers::Wide(s) => s.adjoint[k * D + i].clone(),
+            Numbers::Small(s) => s.adjoint[k * self.dimension + i].into(),
+            Numbers::Wide(s) => s.adjoint[k * self.dimension + i].clone(),
         }
     }
 
     /// The determinant times the barycentric coordinate of corner `i` at `p`, where `o` is the first
     /// corner.
-    pub fn share<const D: usize, const P: usize>(
-        &self,
-        sites: &Sites<D, P>,
-        o: u32,
-        i: usize,
-        p: u32,
-    ) -> BigInt {
-        let columns = if i == 0 { 0..D } else { i - 1..i };
+    pub fn share(&self, sites: &impl Integers, o: u32, i: usize, p: u32) -> BigInt {
+        let columns = if i == 0 { 0..self.dimension } else { i - 1..i };
         let mut sum = BigInt::ZERO;
-        for k in 0..D {
+        for k in 0..self.dimension {
             let x = sites.wide(p, o, k);
             for c in columns.clone() {
-                sum += self.adjoint::<D>(k, c) * &x;
+                sum += self.adjoint(k, c) * &x;
             }
         }
         if i == 0 {
@@ -124,16 +137,11 @@ impl Frame {
     }
 
     /// The sign of the power of `p` where `o` is the first corner: negative inside.
-    pub fn power<const D: usize, const P: usize>(
-        &self,
-        sites: &Sites<D, P>,
-        o: u32,
-        p: u32,
-    ) -> i32 {
+    pub fn power(&self, sites: &impl Integers, o: u32, p: u32) -> i32 {
         match &self.numbers {
             Numbers::Small(s) => {
                 let mut sum = 0i128;
-                for k in 0..D {
+                for k in 0..self.dimension {
                     let x = i128::from(sites.small(p, o, k).unwrap_or(0));
                     sum += x * (s.determinant * x - s.lifted[k]);
                 }
@@ -141,7 +149,7 @@ impl Frame {
             }
             Numbers::Wide(s) => {
                 let mut sum = BigInt::ZERO;
-                for k in 0..D {
+                for k in 0..self.dimension {
                     let x = sites.wide(p, o, k);
                     sum += &x * (&s.determinant * &x - &s.lifted[k]);
                 }
@@ -151,22 +159,16 @@ impl Frame {
     }
 
     /// The sign of the barycentric coordinate of corner `i` at `p`.
-    pub fn coordinate<const D: usize, const P: usize>(
-        &self,
-        sites: &Sites<D, P>,
-        o: u32,
-        i: usize,
-        p: u32,
-    ) -> i32 {
-        let columns = if i == 0 { 0..D } else { i - 1..i };
+    pub fn coordinate(&self, sites: &impl Integers, o: u32, i: usize, p: u32) -> i32 {
+        let columns = if i == 0 { 0..self.dimension } else { i - 1..i };
         match &self.numbers {
             Numbers::Small(s) => {
                 let mut sum = 0i128;
-                for k in 0..D {
+                for k in 0..self.dimension {
                     let x = i128::from(sites.small(p, o, k).unwrap_or(0));
                     sum += columns
                         .clone()
-                        .map(|c| s.adjoint[k * D + c] * x)
+                        .map(|c| s.adjoint[k * self.dimension + c] * x)
                         .sum::<i128>();
                 }
                 let value = if i == 0 { s.determinant - sum } else { sum };
@@ -174,10 +176,10 @@ impl Frame {
             }
             Numbers::Wide(s) => {
                 let mut sum = BigInt::ZERO;
-                for k in 0..D {
+                for k in 0..self.dimension {
                     let x = sites.wide(p, o, k);
                     for c in columns.clone() {
-                        sum += &s.adjoint[k * D + c] * &x;
+                        sum += &s.adjoint[k * self.dimension + c] * &x;
                     }
                 }
                 sign(&if i == 0 { &s.determinant - sum } else { sum })
@@ -203,24 +205,24 @@ impl<T> Solved<T> {
 
 /// [A | b | I] -> [det I | det A^-1 b | det A^-1], with the signs of a positive determinant. `None` if
 /// A is singular.
-fn eliminate<T, const D: usize>(at: impl Fn(usize, usize) -> T) -> Option<Solved<T>>
+fn eliminate<T>(d: usize, at: impl Fn(usize, usize) -> T) -> Option<Solved<T>>
 where
     T: Clone + From<i64> + PartialOrd,
     for<'a> &'a T: Mul<&'a T, Output = T> + Sub<&'a T, Output = T> + Div<&'a T, Output = T>,
 {
-    let (zero, one, width) = (T::from(0), T::from(1), 2 * D + 1);
-    let mut rows: Vec<Vec<T>> = (0..D).map(|_| vec![zero.clone(); width]).collect();
+    let (zero, one, width) = (T::from(0), T::from(1), 2 * d + 1);
+    let mut rows: Vec<Vec<T>> = (0..d).map(|_| vec![zero.clone(); width]).collect();
     for (i, row) in rows.iter_mut().enumerate() {
-        for k in 0..D {
+        for k in 0..d {
             row[k] = at(i, k);
             let negative = &zero - &(&row[k] * &row[k]);
-            row[D] = &row[D] - &negative;
+            row[d] = &row[d] - &negative;
         }
-        row[D + 1 + i] = one.clone();
+        row[d + 1 + i] = one.clone();
     }
     let (mut previous, mut positive) = (one, true);
-    for k in 0..D {
-        let pivot = (k..D).find(|&r| rows[r][k] != zero)?;
+    for k in 0..d {
+        let pivot = (k..d).find(|&r| rows[r][k] != zero)?;
         if pivot != k {
             rows.swap(k, pivot);
             positive = !positive;
@@ -242,10 +244,10 @@ where
     let signed = |x: &T| if negative { &zero - x } else { x.clone() };
     Some(Solved {
         determinant: signed(&previous),
-        lifted: rows.iter().map(|row| signed(&row[D])).collect(),
+        lifted: rows.iter().map(|row| signed(&row[d])).collect(),
         adjoint: rows
             .iter()
-            .flat_map(|row| row[D + 1..].iter().map(signed))
+            .flat_map(|row| row[d + 1..].iter().map(signed))
             .collect(),
         positive: positive ^ negative,
     })

@@ -43,6 +43,7 @@ mod filter;
 mod fine;
 mod frame;
 mod hull;
+mod lazy;
 mod location;
 mod measure;
 mod order;
@@ -57,6 +58,7 @@ mod walk;
 mod wrapping;
 
 pub use hull::{Hull, hull};
+pub use lazy::{Lazy, Located};
 pub use location::{Hyper, Weighed, Within, nearest, within};
 pub use measure::{circumcenters, fault, orientations, transforms, volumes};
 pub use triangulate::{Simplices, triangulate};

@@ -457,7 +457,7 @@ pub fn transform<const D: usize, const V: usize, const P: usize>(
     let determinant = frame.determinant();
     for (i, row) in found.iter_mut().enumerate().take(D) {
         for (k, entry) in row.iter_mut().enumerate() {
-            let adjoint = frame.adjoint::<D>(k, i);
+            let adjoint = frame.adjoint(k, i);
             let far = if adjoint < BigInt::ZERO {
                 f64::NEG_INFINITY
             } else {

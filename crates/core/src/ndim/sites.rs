@@ -10,16 +10,17 @@ use delone_predicates::arithmetic::{bit_span, decode_odd};
 use num_bigint::BigInt;
 
 use super::filter::{Matrix, dot, minus};
+use super::frame::Integers;
 use super::residues::{Points, ROWS};
 use crate::error::Result;
 use crate::memory::with_room;
 use crate::wide;
 
 /// Bits from the lowest to the highest of coordinates that the filters take.
-const WIDEST: u32 = 400;
+pub const WIDEST: u32 = 400;
 
 /// Differences of fewer bits are kept as machine integers. Two of them are added without overflow.
-const SMALL: u32 = 61;
+pub const SMALL: u32 = 61;
 
 /// Distinct points in lexicographic order.
 pub struct Sites<const D: usize, const P: usize> {
@@ -89,29 +90,6 @@ impl<const D: usize, const P: usize> Sites<D, P> {
         self.given.len()
     }
 
-    /// Whether differences are machine integers.
-    pub fn is_small(&self) -> bool {
-        self.small.is_some()
-    }
-
-    /// Coordinate k of `p - o` in units, if differences are machine integers.
-    #[inline]
-    pub fn small(&self, p: u32, o: u32, k: usize) -> Option<i64> {
-        let small = self.small.as_ref()?;
-        Some(small[p as usize][k] - small[o as usize][k])
-    }
-
-    /// Coordinate k of `p - o` in units.
-    pub fn wide(&self, p: u32, o: u32, k: usize) -> BigInt {
-        match self.small(p, o, k) {
-            Some(difference) => difference.into(),
-            None => {
-                let at = |q: u32| wide::scaled(self.given[q as usize][k], self.low);
-                at(p) - at(o)
-            }
-        }
-    }
-
     /// A coordinate as it was given, and the exponent of the unit.
     pub fn coordinate(&self, p: u32, k: usize) -> (f64, i64) {
         (self.given[p as usize][k], self.low)
@@ -158,7 +136,38 @@ impl<const D: usize, const P: usize> Sites<D, P> {
     }
 }
 
+impl<const D: usize, const P: usize> Integers for Sites<D, P> {
+    #[inline(always)]
+    fn dimension(&self) -> usize {
+        D
+    }
+
+    fn bits(&self) -> u32 {
+        self.bits
+    }
+
+    fn is_small(&self) -> bool {
+        self.small.is_some()
+    }
+
+    #[inline]
+    fn small(&self, p: u32, o: u32, k: usize) -> Option<i64> {
+        let small = self.small.as_ref()?;
+        Some(small[p as usize][k] - small[o as usize][k])
+    }
+
+    fn wide(&self, p: u32, o: u32, k: usize) -> BigInt {
+        match self.small(p, o, k) {
+            Some(difference) => difference.into(),
+            None => {
+                let at = |q: u32| wide::scaled(self.given[q as usize][k], self.low);
+                at(p) - at(o)
+            }
+        }
+    }
+}
+
 /// 2^exponent, for exponents from -1022 to 1023.
-fn factor(exponent: i32) -> f64 {
+pub fn factor(exponent: i32) -> f64 {
     f64::from_bits(((1023 + exponent) as u64) << 52)
 }

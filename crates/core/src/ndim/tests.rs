@@ -3,6 +3,7 @@
 mod bounds;
 mod brute;
 mod hulls;
+mod lazily;
 mod sets;
 mod simplices;
 

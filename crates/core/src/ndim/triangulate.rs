@@ -5,6 +5,7 @@ use num_bigint::BigInt;
 
 use super::cavity::insert_all;
 use super::cell::Mesh;
+use super::frame::Integers;
 use super::order::arranged;
 use super::sites::Sites;
 use crate::error::{Error, Result};
@@ -113,22 +114,19 @@ pub fn simplex_of<const D: usize, const V: usize, const P: usize>(
 
 /// The first points of `order` that are affinely independent, up to D + 1 of them: exact, by
 /// fraction-free elimination of the differences (Bareiss), a row for each point that is kept.
-fn independent<const D: usize, const P: usize>(
-    sites: &Sites<D, P>,
-    order: &[u32],
-    pace: &mut Pace,
-) -> Result<Vec<u32>> {
+pub fn independent(sites: &impl Integers, order: &[u32], pace: &mut Pace) -> Result<Vec<u32>> {
+    let d = sites.dimension();
     let Some((&origin, others)) = order.split_first() else {
         return Ok(Vec::new());
     };
-    let (mut kept, mut rows) = (vec![origin], Vec::<(usize, [BigInt; D])>::new());
+    let (mut kept, mut rows) = (vec![origin], Vec::<(usize, Vec<BigInt>)>::new());
     for &p in others {
         pace.spend(16)?;
-        let mut row: [BigInt; D] = std::array::from_fn(|k| sites.wide(p, origin, k));
+        let mut row: Vec<BigInt> = (0..d).map(|k| sites.wide(p, origin, k)).collect();
         let mut previous = BigInt::from(1);
         for (pivot, of_pivot) in &rows {
             let factor = row[*pivot].clone();
-            for k in 0..D {
+            for k in 0..d {
                 // The division has no remainder: the result is a minor.
                 row[k] = (&of_pivot[*pivot] * &row[k] - &factor * &of_pivot[k]) / &previous;
             }
@@ -137,7 +135,7 @@ fn independent<const D: usize, const P: usize>(
         if let Some(pivot) = row.iter().position(|x| *x != BigInt::ZERO) {
             rows.push((pivot, row));
             kept.push(p);
-            if kept.len() == D + 1 {
+            if kept.len() == d + 1 {
                 break;
             }
         }

@@ -1,0 +1,98 @@
+"""Linear interpolation in the simplices that contain the queries, without the other simplices.
+
+The core finds the simplex of the canonical Delaunay triangulation that contains a query by linear
+programming and proves it, so the values are those of the triangulation up to rounding, in any
+number of dimensions.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import _core
+from delone.blocks import ROWS, blocks
+from delone.higher.dimension import MOST
+from delone.interpolate.space import slopes
+
+if TYPE_CHECKING:
+    from delone._types import Floats, Indices
+
+__all__ = ["Lazily"]
+
+
+class Lazily:
+    """Sites whose triangulation is not made."""
+
+    def __init__(self, points: Floats, workers: int) -> None:
+        self.points = points
+        self.workers = workers
+        # Degenerate sites are refused now.
+        self._sites  # noqa: B018
+
+    @cached_property
+    def _sites(self) -> Any:
+        return _core.LazyN(self.points)
+
+    @property
+    def first(self) -> Indices:
+        """The first row of each site with the same coordinates."""
+        first = np.arange(len(self.points), dtype=np.int32)
+        repeats, earlier = self._sites.duplicates.T
+        first[repeats] = earlier
+        return first
+
+    def within(self, queries: Floats) -> tuple[Indices, Floats]:
+        """Return rows of corners, (k, d + 1), -1 outside, and their weights, NaN outside."""
+        found: tuple[Indices, Floats] = self._sites.within(queries, self.workers)
+        return found
+
+    def values(self, queries: Floats, columns: Floats) -> Floats:
+        """Return values, (k, c), NaN outside."""
+        corners, weights = self.within(queries)
+        found = np.full((len(queries), columns.shape[1]), np.nan)
+        inside = np.flatnonzero(corners[:, 0] >= 0)
+        for block in blocks(len(inside)):
+            rows = inside[block]
+            sums = np.zeros((len(rows), columns.shape[1]))
+            for k in range(corners.shape[1]):
+                weight = weights[rows, k, None]
+                # What has no weight has no effect, not even as NaN.
+                sums += np.where(weight == 0, 0.0, weight * columns[corners[rows, k]])
+            found[rows] = sums
+        return found
+
+    def gradients(self, queries: Floats, columns: Floats) -> Floats:
+        """Return gradients, (k, c, d), NaN outside."""
+        count, d = queries.shape
+        corners, _ = self.within(queries)
+        found = np.full((count, columns.shape[1], d), np.nan)
+        inside = np.flatnonzero(corners[:, 0] >= 0)
+        of = slopes if d <= MOST else _slopes
+        # Matrices of a block take as much memory as one of its columns elsewhere.
+        step = max(1, ROWS // d**2)
+        for start in range(0, len(inside), step):
+            rows = inside[start : start + step]
+            found[rows] = of(self.points, corners[rows], columns)
+        return found
+
+    def __getstate__(self) -> dict[str, Any]:
+        # The core's index is built again.
+        return {"points": self.points, "workers": self.workers}
+
+    def __str__(self) -> str:
+        count, d = self.points.shape
+        return f"{count} points in {d}-D"
+
+
+def _slopes(points: Floats, corners: Indices, columns: Floats) -> Floats:
+    """The gradients, (k, c, d), of linear functions on simplices, (k, d + 1), none flat."""
+    last = points[corners[:, -1:]]
+    sides = points[corners[:, :-1]] - last
+    rise = columns[corners[:, :-1]] - columns[corners[:, -1:]]
+    # Each side has the length 1, so that thin simplices are not lost to the scale of one axis.
+    length = np.linalg.norm(sides, axis=2, keepdims=True)
+    found: Floats = (np.linalg.pinv(sides / length) @ (rise / length)).transpose(0, 2, 1)
+    return found
