@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -243,8 +244,16 @@ def refuse(gone: Handles, twice: Handles, noun: str) -> None:
         raise HandleError(f"{noun} {twice[0]} is named twice", handles=twice)
 
 
+# Exactly integers: booleans, and numbers of NumPy, have types of their own.
+_INT = frozenset((int,))
+
+
 def as_handles(handles: ArrayLike, name: str = "handles") -> Handles:
     """Return handles as a contiguous array."""
+    # Most edits name a few points, and take less time than the checks below.
+    if isinstance(handles, list) and len(handles) <= FEW and _INT.issuperset(map(type, handles)):
+        with suppress(OverflowError):
+            return np.array(handles, dtype=np.int64)
     array = _as_integers(handles, name)
     if array.size and array.ndim != 1:
         raise ShapeError(f"{name} must have shape (k,), got {array.shape}")
