@@ -58,6 +58,7 @@ __all__ = [
     "Refinement2",
     "RegularFaults2",
     "RegularFaults3",
+    "RegularFaultsN",
     "RegularTriangulation",
     "SharedCells",
     "Simplified2",
@@ -164,6 +165,7 @@ __all__ = [
     "validate_periodic2",
     "validate_regular2",
     "validate_regular3",
+    "validate_regular_n",
     "volumes2",
     "voronoi2",
     "voronoi3",
@@ -1493,6 +1495,20 @@ class RegularFaults3:
         """The row that stands for each point, (n,)."""
 
 @final
+class RegularFaultsN:
+    """What is wrong with a regular triangulation in four to eight dimensions."""
+
+    @property
+    def faults(self) -> FaultsN:
+        """Faults as without weights; `missing` has points outside all simplices."""
+    @property
+    def hidden(self) -> NDArray[np.int32]:
+        """Rows that should be vertices though simplices cover them, (k,)."""
+    @property
+    def stands_for(self) -> NDArray[np.int32]:
+        """The row that stands for each point, (n,)."""
+
+@final
 class RegularTriangulation:
     """The regular triangulation of weighted points, of either dimension d."""
 
@@ -2403,6 +2419,14 @@ def validate_regular3(
     neighbors: NDArray[np.int32],
 ) -> RegularFaults3:
     """What is wrong with a 3-D regular triangulation."""
+
+def validate_regular_n(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+) -> RegularFaultsN:
+    """What is wrong with a regular triangulation in four to eight dimensions."""
 
 def volumes2(
     surface: _Sheet,

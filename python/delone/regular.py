@@ -15,8 +15,9 @@ from delone._arrays import as_plain_array, as_vectors, as_workers
 from delone.counting import agreed, counted
 from delone.errors import DegenerateInputError, InternalError, NonFiniteError, ShapeError
 from delone.georeference import warn_of_degrees
+from delone.higher.dimension import MOST
 from delone.immutable import kept, own_copy, sealed
-from delone.regular_validation import RegularReport, RegularSpaceReport, validate_regular
+from delone.regular_validation import validate_regular
 from delone.space.plane import plane_of, repeated_rows
 from delone.triangulation import PointTriangulation
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone._types import Floats, Indices
+    from delone.regular_validation import RegularHigherReport, RegularReport, RegularSpaceReport
 
 __all__ = ["RegularTriangulation"]
 
@@ -31,12 +33,12 @@ _SPACE = 3
 
 
 class RegularTriangulation(PointTriangulation):
-    """The regular (weighted Delaunay) triangulation of 2-D or 3-D points.
+    """The regular (weighted Delaunay) triangulation of points with two to eight coordinates.
 
     Parameters
     ----------
-    points : array_like, shape (n, 2) or (n, 3)
-        Finite coordinates; results are exact for the given doubles.
+    points : array_like, shape (n, d)
+        Finite coordinates, two to eight of each point; results are exact for the given doubles.
     weights : array_like, shape (n,)
         Finite weights, in squared units of the points: squared radii, if points represent circles
         or spheres. Adding a constant to all weights does not change the result.
@@ -52,7 +54,8 @@ class RegularTriangulation(PointTriangulation):
     weights : ndarray of float64, shape (n,)
         The weights.
     simplices : ndarray of int32, shape (m, d + 1)
-        The triangles, counter-clockwise, or tetrahedra, positively oriented, as rows of `points`.
+        The triangles, counter-clockwise, or the tetrahedra or simplices, positively oriented, as
+        rows of `points`.
     neighbors : ndarray of int32, shape (m, d + 1)
         The simplex opposite each vertex; -1 outside.
 
@@ -120,7 +123,7 @@ class RegularTriangulation(PointTriangulation):
         workers: int | None = None,
         planar: bool = False,
     ) -> None:
-        own = own_copy(points, ndim=None)
+        own = own_copy(points, ndim=None, most=MOST)
         warn_of_degrees(points, own, planar=planar)
         own_weights = as_weights(weights, len(own))
         if workers is not None:
@@ -144,12 +147,12 @@ class RegularTriangulation(PointTriangulation):
         seen[self._simplices] = True
         return sealed(np.flatnonzero(~seen[self.duplicate_of]).astype(np.int32))
 
-    def validate(self) -> RegularReport | RegularSpaceReport:
+    def validate(self) -> RegularReport | RegularSpaceReport | RegularHigherReport:
         """Prove that this is the canonical regular triangulation, or list the faults.
 
         Returns
         -------
-        RegularReport, in 3-D RegularSpaceReport
+        RegularReport, in 3-D RegularSpaceReport, in more dimensions RegularHigherReport
             Truthy if there are no faults: simplices are positively oriented and tile the exact
             hull, neighbors are mutual, each edge or face is locally regular, ties are broken
             canonically, each vertex is the first of the heaviest rows with its coordinates,
@@ -221,7 +224,7 @@ def triangulated(
         error.points = np.column_stack((points, weights))
         raise
     except DegenerateInputError as error:
-        if error.reason == "coplanar" or len(error.chain) == 3:
+        if points.shape[1] == _SPACE and (error.reason == "coplanar" or len(error.chain) == 3):
             error.plane = plane_of(points, threads, weights)
         raise
     arrays: dict[str, NDArray[Any]] = {

@@ -6,7 +6,7 @@ The checks run in the core, as those of `validation`. This module names the faul
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from delone import _core
 from delone.space.plane import repeated_rows
 from delone.validation import (
     SENTENCES,
+    HigherReport,
     SpaceReport,
     ValidationReport,
     no_rows,
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
     from delone._types import Floats, Indices
 
-__all__ = ["PeriodicReport", "RegularReport", "RegularSpaceReport"]
+__all__ = ["PeriodicReport", "RegularHigherReport", "RegularReport", "RegularSpaceReport"]
 
 _REGULAR = {
     "missing": (
@@ -110,6 +111,35 @@ class RegularSpaceReport(SpaceReport):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
+class RegularHigherReport(HigherReport):
+    """The result of ``RegularTriangulation.validate()`` in more than three dimensions.
+
+    The fields are those of `HigherReport`, with the changes of `RegularReport`. Two more:
+
+    Parameters
+    ----------
+    hidden : ndarray of int, shape (k,)
+        Rows that should be vertices, though simplices cover them.
+    duplicates : ndarray of int, shape (k,)
+        Rows that should be listed as duplicates and are not, or the reverse.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone import RegularTriangulation
+    >>> corners = np.vstack((np.zeros(4), np.eye(4)))
+    >>> RegularTriangulation(corners, [0, 0, 0, 0, 1]).validate().ok
+    True
+    """
+
+    hidden: NDArray[np.integer] = field(default_factory=no_rows)
+    duplicates: NDArray[np.integer] = field(default_factory=no_rows)
+
+    _SUBJECT: ClassVar[str] = RegularReport._SUBJECT
+    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {**HigherReport._SENTENCES, **_REGULAR}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class PeriodicReport(ValidationReport):
     """The result of ``PeriodicDelaunay.validate()``: truthy if the triangulation is correct.
 
@@ -175,21 +205,20 @@ class PeriodicReport(ValidationReport):
 
 def validate_regular(
     points: Floats, weights: Floats, simplices: Indices, neighbors: Indices, duplicates: Indices
-) -> RegularReport | RegularSpaceReport:
-    """Check a 2-D or 3-D regular triangulation; duplicates are rows, and those that they repeat."""
-    if points.shape[1] == 3:
-        solid = _core.validate_regular3(points, weights, simplices, neighbors)
-        return RegularSpaceReport._of(
-            solid.faults,
-            hidden=solid.hidden,
-            duplicates=_differing(duplicates, repeated_rows(solid.stands_for, weights)),
-        )
-    flat = _core.validate_regular2(points, weights, simplices, neighbors)
-    return RegularReport._of(
-        flat.faults,
-        hidden=flat.hidden,
-        duplicates=_differing(duplicates, repeated_rows(flat.stands_for, weights)),
+) -> RegularReport | RegularSpaceReport | RegularHigherReport:
+    """Check a regular triangulation; duplicates are rows, and those that they repeat."""
+    checks: Any = {
+        2: (_core.validate_regular2, RegularReport),
+        3: (_core.validate_regular3, RegularSpaceReport),
+    }
+    check, report = checks.get(points.shape[1], (_core.validate_regular_n, RegularHigherReport))
+    found = check(points, weights, simplices, neighbors)
+    made: RegularReport | RegularSpaceReport | RegularHigherReport = report._of(
+        found.faults,
+        hidden=found.hidden,
+        duplicates=_differing(duplicates, repeated_rows(found.stands_for, weights)),
     )
+    return made
 
 
 def _differing(found: Indices, expected: Indices) -> NDArray[np.int64]:

@@ -98,6 +98,8 @@ CORE: dict[str, set[str]] = {
         "order",
         "parallel",
         "points",
+        "regular",
+        "regular3",
         "wide",
         "num_bigint",
         "delone_predicates",

@@ -124,8 +124,8 @@ mod _core {
     };
     #[pymodule_export]
     use super::regular_faults::{
-        PeriodicFaults, RegularFaults2, RegularFaults3, validate_periodic2, validate_regular2,
-        validate_regular3,
+        PeriodicFaults, RegularFaults2, RegularFaults3, RegularFaultsN, validate_periodic2,
+        validate_regular_n, validate_regular2, validate_regular3,
     };
     #[pymodule_export]
     use super::space::{Faults3, triangulate3, validate3};

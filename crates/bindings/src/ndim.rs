@@ -67,7 +67,7 @@ pub fn validate_n<'py>(
 }
 
 /// What is wrong, as arrays.
-fn faults<const D: usize>(py: Python<'_>, found: Findings<D>) -> Outcome<FaultsN> {
+pub fn faults<const D: usize>(py: Python<'_>, found: Findings<D>) -> Outcome<FaultsN> {
     Ok(FaultsN {
         orientation: numbers(py, found.orientation),
         neighbors: numbers(py, found.neighbors),

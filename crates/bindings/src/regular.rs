@@ -1,11 +1,11 @@
 //! Regular triangulations of weighted points, and triangulations of periodic points, as arrays.
 
 use delone_core::error::Error;
-use delone_core::{regular as plane, regular3 as space, voronoi};
+use delone_core::{ndim, regular as plane, regular3 as space, voronoi};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, columns, numbers, rows, table};
+use crate::arrays::{Column, Table, column, columns, in_many, number_rows, numbers, rows, table};
 use crate::errors::Outcome;
 use crate::given::finite_weights;
 use crate::signals::watched;
@@ -42,14 +42,28 @@ pub fn regular(
             stands_for: column(py, made.stands_for),
         });
     }
-    let points = rows(&points, "points")?;
-    let weights = finite_weights(Some(&weights), points.len())?;
-    let made = watched(py, |watch| space::regular(points, weights, workers, watch))?;
-    Ok(RegularTriangulation {
-        simplices: table(py, made.tetrahedra.simplices)?,
-        neighbors: table(py, made.tetrahedra.neighbors)?,
-        chain: column(py, Vec::new()),
-        stands_for: column(py, made.stands_for),
+    if columns(&points) == 3 {
+        let points = rows(&points, "points")?;
+        let weights = finite_weights(Some(&weights), points.len())?;
+        let made = watched(py, |watch| space::regular(points, weights, workers, watch))?;
+        return Ok(RegularTriangulation {
+            simplices: table(py, made.tetrahedra.simplices)?,
+            neighbors: table(py, made.tetrahedra.neighbors)?,
+            chain: column(py, Vec::new()),
+            stands_for: column(py, made.stands_for),
+        });
+    }
+    in_many!(columns(&points), D, N, P => {
+        let points: &[[f64; D]] = rows(&points, "points")?;
+        let weights = finite_weights(Some(&weights), points.len())?;
+        let (made, stands_for) =
+            watched(py, |watch| ndim::regular::<D, N, P>(points, weights, watch))?;
+        Ok(RegularTriangulation {
+            simplices: number_rows(py, &made.simplices)?,
+            neighbors: table(py, made.neighbors)?,
+            chain: column(py, Vec::new()),
+            stands_for: column(py, stands_for),
+        })
     })
 }
 

@@ -1,14 +1,18 @@
 //! What is wrong with regular and with periodic triangulations, as arrays.
 
 use delone_core::error::Error;
+use delone_core::ndim;
 use delone_core::regular::{self, Wrapped};
 use delone_core::regular3 as space;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, in_range, number_rows, numbers, rows};
+use crate::arrays::{
+    Column, Table, column, columns, in_many, in_range, number_rows, numbers, rows,
+};
 use crate::errors::Outcome;
 use crate::given::{checked, finite_weights, unequal};
+use crate::ndim::{FaultsN, faults};
 use crate::signals::watched;
 use crate::space::{Faults3, faults3};
 use crate::triangulation::{Faults2, faults2};
@@ -30,6 +34,17 @@ pub struct RegularFaults3 {
     /// Faults as without weights; `missing` has points outside all tetrahedra.
     pub faults: Py<Faults3>,
     /// Rows that should be vertices though tetrahedra cover them, (k,).
+    pub hidden: Column<i32>,
+    /// The row that stands for each point, (n,).
+    pub stands_for: Column<i32>,
+}
+
+/// What is wrong with a regular triangulation in four to eight dimensions.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct RegularFaultsN {
+    /// Faults as without weights; `missing` has points outside all simplices.
+    pub faults: Py<FaultsN>,
+    /// Rows that should be vertices though simplices cover them, (k,).
     pub hidden: Column<i32>,
     /// The row that stands for each point, (n,).
     pub stands_for: Column<i32>,
@@ -97,6 +112,30 @@ pub fn validate_regular3(
         faults: Py::new(py, faults3(py, found.faults)?)?,
         hidden: numbers(py, found.hidden),
         stands_for: column(py, found.stands_for),
+    })
+}
+
+/// What is wrong with a regular triangulation in four to eight dimensions.
+#[pyfunction]
+pub fn validate_regular_n(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: PyReadonlyArray1<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+) -> Outcome<RegularFaultsN> {
+    in_many!(columns(&points), D, N, P => {
+        let given = checked(&points, &simplices, &neighbors)?;
+        let weights = finite_weights(Some(&weights), given.points.len())?;
+        let (mut found, stands_for) = watched(py, |watch| {
+            ndim::validate_regular::<D, N, P>(given, weights, watch)
+        })?;
+        let hidden = numbers(py, std::mem::take(&mut found.hidden));
+        Ok(RegularFaultsN {
+            faults: Py::new(py, faults(py, found)?)?,
+            hidden,
+            stands_for: column(py, stands_for),
+        })
     })
 }
 

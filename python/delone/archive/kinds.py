@@ -201,7 +201,7 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
     "Mesh": (_MESH,),
     "TetMesh": (_TET_MESH,),
     "RegularTriangulation": tuple(
-        _input("RegularTriangulation", ndim, weights=_WEIGHTS) for ndim in (2, 3)
+        _input("RegularTriangulation", ndim, weights=_WEIGHTS) for ndim in (2, 3, *HIGHER)
     ),
     "PeriodicDelaunay": (_input("PeriodicDelaunay", 2, weights=_WEIGHTS, periods=_PERIODS),),
     "Voronoi": (

@@ -170,8 +170,8 @@ class Linear(Interpolator):
         )
         if self._method in _NEEDED and self._implicit is None:
             raise InputError(
-                f"method={self._method!r:.20} needs {_NEEDED[self._method]}, and not a triangulation: "
-                "choose method='auto'"
+                f"method={self._method!r:.20} needs {_NEEDED[self._method]}, and not a "
+                "triangulation: choose method='auto'"
             )
 
     def _tiled(self) -> Triangulation | None:

@@ -66,38 +66,40 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     /// Adds a point that is not a vertex yet.
     #[inline(always)]
     pub fn insert(&mut self, p: u32, room: &mut Room, pace: &mut Pace) -> Result<()> {
-        let start = self.locate(p, pace)?;
+        // A point with a weight can be hidden by others.
+        let Some(start) = self.locate(p, pace)? else {
+            return Ok(());
+        };
         self.open(p, start, room, pace)?;
         self.fill(p, room, pace)
     }
 
-    /// A cell in conflict with a point.
+    /// A cell in conflict with a point; `None` if there is none, because of weights.
     #[inline(always)]
-    fn locate(&mut self, p: u32, pace: &mut Pace) -> Result<u32> {
-        let at = self.sites.scaled[p as usize];
+    fn locate(&mut self, p: u32, pace: &mut Pace) -> Result<Option<u32>> {
         let mut here = self.last;
         if self.conflict(here, p)? {
-            return Ok(here);
+            return Ok(Some(here));
         }
         if self.cells[here as usize].is_ghost() {
             here = self.cells[here as usize].neighbors[D];
         }
         // Down the rounded power, which falls with each step: no cell is visited twice.
-        let mut value = self.value(here, &at).0;
+        let mut value = self.value(here, p).0;
         loop {
             if value < 0.0 && self.conflict(here, p)? {
-                return Ok(here);
+                return Ok(Some(here));
             }
             let (mut least, mut next) = (value, INFINITE);
             for t in self.cells[here as usize].neighbors {
                 pace.spend(1)?;
                 if self.cells[t as usize].is_ghost() {
                     if self.conflict(t, p)? {
-                        return Ok(t);
+                        return Ok(Some(t));
                     }
                     continue;
                 }
-                let there = self.value(t, &at).0;
+                let there = self.value(t, p).0;
                 if there < least {
                     (least, next) = (there, t);
                 }
@@ -115,7 +117,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     /// dimensions", 1990).
     #[cold]
     #[inline(never)]
-    fn walk(&mut self, p: u32, start: u32, pace: &mut Pace) -> Result<u32> {
+    fn walk(&mut self, p: u32, start: u32, pace: &mut Pace) -> Result<Option<u32>> {
         self.counts.walks += 1;
         let mut here = start;
         while !self.conflict(here, p)? {
@@ -129,8 +131,10 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
             }
             match next {
                 // The point is strictly beyond the facet.
-                Some(t) if self.cells[t as usize].is_ghost() => return Ok(t),
+                Some(t) if self.cells[t as usize].is_ghost() => return Ok(Some(t)),
                 Some(t) => here = t,
+                // Above the plane of the simplex, and so above that of every other one.
+                None if !self.sites.weights.is_empty() => return Ok(None),
                 // A point in a simplex that is none of its corners lies inside its sphere.
                 None => {
                     return Err(Error::Internal(
@@ -139,7 +143,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
                 }
             }
         }
-        Ok(here)
+        Ok(Some(here))
     }
 
     /// Finds the cells in conflict, which are connected, and the facets around them.

@@ -1,6 +1,6 @@
 //! Cells: simplices and ghosts, and the mesh that holds them.
 
-use super::filter::{Matrix, Test, minus};
+use super::filter::{Matrix, Test, U, minus};
 use super::fine::Fine;
 use super::frame::Frame;
 use super::sites::Sites;
@@ -292,7 +292,10 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     pub fn measure_simplex(&mut self, c: u32) {
         if self.sites.filtered {
             let a = self.differences(&self.cells[c as usize].vertices);
-            self.cells[c as usize].test = Test::sphere(&a);
+            let v = &self.cells[c as usize].vertices;
+            let weights = (!self.sites.weights.is_empty())
+                .then(|| std::array::from_fn(|i| self.sites.weight(v[i + 1], v[0])));
+            self.cells[c as usize].test = Test::lifted(&a, weights);
         }
     }
 
@@ -353,10 +356,17 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
 
     /// The value of a point in the test of a cell, and its bound.
     #[inline(always)]
-    pub fn value(&self, c: u32, p: &[f64; P]) -> (f64, f64) {
+    pub fn value(&self, c: u32, p: u32) -> (f64, f64) {
         let cell = &self.cells[c as usize];
-        let d = minus(p, &self.sites.scaled[cell.vertices[0] as usize]);
-        cell.test.value(&d, cell.is_ghost())
+        let at = |p: u32| &self.sites.scaled[p as usize];
+        let d = minus(at(p), at(cell.vertices[0]));
+        let (value, bound) = cell.test.value(&d, cell.is_ghost());
+        if self.sites.weights.is_empty() || cell.is_ghost() {
+            return (value, bound);
+        }
+        let weight = self.sites.weight(p, cell.vertices[0]);
+        let rounding = 4.0 * U * (value.abs() + weight.abs());
+        (value - weight, bound + rounding)
     }
 
     /// The finite simplices, positively oriented, and their neighbors, -1 outside.

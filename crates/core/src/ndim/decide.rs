@@ -15,7 +15,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     /// Whether a point is in conflict with a cell.
     #[inline(always)]
     pub fn conflict(&mut self, c: u32, p: u32) -> Result<bool> {
-        let (value, bound) = self.value(c, &self.sites.scaled[p as usize]);
+        let (value, bound) = self.value(c, p);
         // A comparison that NaN fails.
         if value.abs() > bound {
             Ok(value < 0.0)
@@ -69,7 +69,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
 
     /// Whether a point is on the plane of a facet of a hull.
     pub fn is_level(&mut self, c: u32, p: u32) -> Result<bool> {
-        let (value, bound) = self.value(c, &self.sites.scaled[p as usize]);
+        let (value, bound) = self.value(c, p);
         if value.abs() > bound {
             return Ok(false);
         }
@@ -124,7 +124,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
 
     /// The sign of the power of a point with respect to the sphere of a simplex: negative inside.
     pub fn power(&mut self, c: u32, p: u32) -> Result<i32> {
-        let rounded = self.value(c, &self.sites.scaled[p as usize]);
+        let rounded = self.value(c, p);
         self.power_after(c, p, rounded)
     }
 
@@ -167,12 +167,13 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
         let fine = match self.slow[row].fine {
             Some(fine) => fine,
             None => {
-                let fine = Fine::new(&v.map(at));
+                let weights = std::array::from_fn(|i| self.sites.weight_pair(v[i + 1], v[0]));
+                let fine = Fine::lifted(&v.map(at), weights);
                 self.slow[row].fine = Some(fine);
                 fine
             }
         };
-        Ok(fine.power(at(p), at(v[0])))
+        Ok(fine.power(at(p), at(v[0]), self.sites.weight_pair(p, v[0])))
     }
 
     /// The sign of the barycentric coordinate of corner `i` of a simplex at a point.

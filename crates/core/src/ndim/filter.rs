@@ -15,13 +15,16 @@
 //! **The solution.** Let A x = b, and let x^ be any vector, in practice B b. Then
 //! |x - x^| <= |A^-1| |b - A x^|. A component of the residual is computed with an error of at most
 //! (D + 2) u sum |a_ik x^_k| for the products, their sum and A^, (D + 3) u |b_i| for b_i = |a_i|^2 from
-//! rounded differences, and 2 u of the difference: at most (2 D + 8) u (sum |a_ik x^_k| + |b_i|).
+//! rounded differences, and 2 u of the difference: at most (2 D + 8) u (sum |a_ik x^_k| + |b_i|). With
+//! weights, b_i has the rounded difference of two of them as another term, which passes through two
+//! sums, and the sum of both magnitudes is in place of |b_i|.
 //!
 //! **The value.** A point p with d = p - v_0 has the power P = |d|^2 - x . d. In rounded numbers |d|^2
 //! errs by (D + 2) u |d|^2, x^ . d by (D + 1) u |x^| |d|, the difference by u of both, and x^ in place of x
 //! adds |d| |x - x^|. With c = (D + 5) u, |P^ - P| <= |d| (|x - x^| + c |x^|) + c |d|^2. For any r > 0,
 //! |d| <= (|d|^2 / r + r) / 2, so the bound is q0 + q1 |d|^2. It needs no root, and D + 5 in place of
-//! D + 3 pays for its own roundings.
+//! D + 3 pays for its own roundings. With weights, the rounded difference of two is subtracted last:
+//! that errs by u of it, and by u of the result, at most u times the sum of both magnitudes.
 //!
 //! **Underflow.** Coordinates are as `sites` describes: differences are zero or at least 2^-400. A
 //! product may underflow and err by 2^-1075 only if another factor is tiny. The floors below are larger
@@ -136,11 +139,12 @@ fn proven<const D: usize, const P: usize>(a: &Matrix<D, P>, b: &Matrix<D, P>) ->
     }
 }
 
-/// A bound of |x - A^-1 b|.
+/// A bound of |x - A^-1 b|, where `sizes` has the sums of the magnitudes that b is made of.
 #[inline(always)]
 pub fn error_of<const D: usize, const P: usize>(
     a: &Matrix<D, P>,
     b: &[f64; P],
+    sizes: &[f64; P],
     x: &[f64; P],
     norm: f64,
 ) -> f64 {
@@ -155,7 +159,7 @@ pub fn error_of<const D: usize, const P: usize>(
             sum += product;
             size += product.abs();
         }
-        let rounding = (2 * D + 8) as f64 * U * (size + b[i].abs());
+        let rounding = (2 * D + 8) as f64 * U * (size + sizes[i].abs());
         let residual = (sum - b[i]).abs() + rounding + LEAST_RESIDUAL;
         squares += residual * residual;
     }
@@ -200,9 +204,22 @@ impl<const D: usize> Test<D> {
     /// The test of a simplex with the differences `a`.
     #[inline(always)]
     pub fn sphere<const P: usize>(a: &Matrix<D, P>) -> Self {
-        let mut b = [0.0; P];
+        Self::lifted(a, None)
+    }
+
+    /// The same with the weights of the corners less that of the first one.
+    #[inline(always)]
+    pub fn lifted<const P: usize>(a: &Matrix<D, P>, weights: Option<[f64; D]>) -> Self {
+        let (mut b, mut sizes) = ([0.0; P], [0.0; P]);
         for i in 0..D {
             b[i] = dot(&a[i], &a[i]);
+            sizes[i] = b[i];
+        }
+        if let Some(weights) = weights {
+            for i in 0..D {
+                sizes[i] += weights[i].abs();
+                b[i] -= weights[i];
+            }
         }
         let inverse = invert(a);
         let mut x = [0.0; P];
@@ -211,7 +228,7 @@ impl<const D: usize> Test<D> {
         }
         let size = dot(&x, &x).sqrt();
         let c = (D + 5) as f64 * U;
-        let slope = ROUNDED * (error_of(a, &b, &x, inverse.norm) + c * size);
+        let slope = ROUNDED * (error_of(a, &b, &sizes, &x, inverse.norm) + c * size);
         // The best r is the length of x: most points that are tested are at that distance.
         Self::checked(x, slope * size / 2.0, slope / (2.0 * size) + ROUNDED * c)
     }
@@ -228,7 +245,7 @@ impl<const D: usize> Test<D> {
             x[k] = inverse.b[k][D - 1];
         }
         let c = (D + 5) as f64 * U;
-        let error = error_of(a, &unit, &x, inverse.norm);
+        let error = error_of(a, &unit, &unit, &x, inverse.norm);
         let slope = ROUNDED * (error + c * dot(&x, &x).sqrt());
         let longest = a.iter().map(|r| dot(r, r)).fold(0.0, f64::max).sqrt();
         let x = x.map(|v| -v);

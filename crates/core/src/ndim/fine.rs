@@ -31,15 +31,26 @@ pub fn differences<const D: usize, const P: usize>(p: &[f64; P], o: &[f64; P]) -
 impl<const D: usize> Fine<D> {
     /// The sphere of a simplex with the given corners.
     pub fn new<const V: usize, const P: usize>(corners: &[&[f64; P]; V]) -> Self {
+        Self::lifted(corners, [Pair::from_double(0.0); D])
+    }
+
+    /// The same with the weights of the corners less that of the first one.
+    pub fn lifted<const V: usize, const P: usize>(
+        corners: &[&[f64; P]; V],
+        weights: [Pair; D],
+    ) -> Self {
         let mut rounded: Matrix<D, P> = [[0.0; P]; D];
         let mut a = [[Pair::from_double(0.0); D]; D];
         let mut b = [Pair::from_double(0.0); D];
+        let mut sizes = [0.0; D];
         for i in 0..D {
             a[i] = differences(corners[i + 1], corners[0]);
             for k in 0..D {
                 rounded[i][k] = a[i][k].hi;
                 b[i] = b[i] + a[i][k].square();
             }
+            sizes[i] = b[i].hi + weights[i].hi.abs();
+            b[i] = b[i] - weights[i];
         }
         let inverse = invert(&rounded);
         let mut fine = Self {
@@ -50,7 +61,7 @@ impl<const D: usize> Fine<D> {
         // The first step is the solution itself. Each of the others gains at least some 30 bits, if
         // the simplex is not too thin; the last pass measures only.
         for step in 0..5 {
-            let (residual, bound) = fine.residual::<P>(&a, &b);
+            let (residual, bound) = fine.residual::<P>(&a, &b, &sizes);
             fine.error = ROUNDED * inverse.norm * bound;
             if step < 4 {
                 for k in 0..D {
@@ -73,12 +84,17 @@ impl<const D: usize> Fine<D> {
         self.error
     }
 
-    /// `b - A x` rounded, and a bound of its true length.
-    fn residual<const P: usize>(&self, a: &[[Pair; D]; D], b: &[Pair; D]) -> ([f64; P], f64) {
+    /// `b - A x` rounded, and a bound of its true length; `sizes` has the magnitudes in b.
+    fn residual<const P: usize>(
+        &self,
+        a: &[[Pair; D]; D],
+        b: &[Pair; D],
+        sizes: &[f64; D],
+    ) -> ([f64; P], f64) {
         let mut residual = [0.0; P];
         let mut squares = 0.0;
         for i in 0..D {
-            let (mut sum, mut size) = (b[i], b[i].hi);
+            let (mut sum, mut size) = (b[i], sizes[i]);
             for k in 0..D {
                 let product = a[i][k] * self.x[k];
                 size += product.hi.abs();
@@ -92,18 +108,23 @@ impl<const D: usize> Fine<D> {
         (residual, squares.sqrt())
     }
 
-    /// The power of `p` with respect to the sphere, where `o` is vertex 0, and the bound of its error.
-    pub fn power<const P: usize>(&self, p: &[f64; P], o: &[f64; P]) -> (f64, f64) {
+    /// The power of `p` with respect to the sphere, where `o` is vertex 0 and `weight` the difference
+    /// of their weights, and the bound of its error.
+    pub fn power<const P: usize>(&self, p: &[f64; P], o: &[f64; P], weight: Pair) -> (f64, f64) {
         let d: [Pair; D] = differences(p, o);
         let (mut sum, mut square) = (Pair::from_double(0.0), 0.0);
         for k in 0..D {
             square += d[k].hi * d[k].hi;
             sum = sum + d[k] * (d[k] - self.x[k]);
         }
+        sum = sum - weight;
         let length = ROUNDED * square.sqrt();
-        let rounding = (4 * D + 16) as f64 * U * U * (length + self.size);
+        let unit = (4 * D + 16) as f64 * U * U;
+        let rounding = unit * (length + self.size);
         // What is left out of the pair is below u of its head.
-        let bound = ROUNDED * length * (self.error + rounding) + U * sum.hi.abs() + LEAST_VALUE;
+        let bound = ROUNDED * (length * (self.error + rounding) + unit * weight.hi.abs())
+            + U * sum.hi.abs()
+            + LEAST_VALUE;
         (sum.hi, bound)
     }
 }

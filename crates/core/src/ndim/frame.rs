@@ -3,9 +3,9 @@
 //! det l_i = column i of (det A^-1) . d.
 //!
 //! By the fraction-free elimination of E. H. Bareiss (1968), whose entries are minors of the matrix
-//! [A | b | I]; b holds squares of lengths. With D rows and differences below 2^bits, Hadamard's
-//! inequality for columns bounds minors by D^(D / 2) 2^(D bits), and with b in place of a column by
-//! D D^(D / 2) 2^((D + 1) bits): below 2^[`minor_bits`].
+//! [A | b | I]; b holds squares of lengths, less differences of weights. With D rows and differences
+//! below 2^bits, Hadamard's inequality for columns bounds minors by D^(D / 2) 2^(D bits), and with b in
+//! place of a column by (D + 1) D^(D / 2) 2^((D + 1) bits): below 2^[`minor_bits`].
 
 use std::ops::{Div, Mul, Sub};
 
@@ -27,6 +27,17 @@ pub trait Integers {
 
     /// Whether differences are machine integers.
     fn is_small(&self) -> bool;
+
+    /// The weight of `p` less that of `o`, in squared units, if differences are machine integers. Its
+    /// magnitude is below 2^(2 bits).
+    fn small_weight(&self, _p: u32, _o: u32) -> i128 {
+        0
+    }
+
+    /// The same, however large.
+    fn wide_weight(&self, _p: u32, _o: u32) -> BigInt {
+        BigInt::ZERO
+    }
 }
 
 /// The integers of a simplex, with a positive determinant.
@@ -65,17 +76,22 @@ impl Frame {
         let d = sites.dimension();
         let minor = minor_bits(d as u32, sites.bits());
         let small = |i: usize, k: usize| sites.small(corners[i + 1], corners[0], k);
+        let weight = |i: usize| sites.small_weight(corners[i + 1], corners[0]);
         // A step of the elimination computes the difference of two products of minors.
         let products = 2 * minor + 1;
         let numbers = if sites.is_small() && products < 63 {
-            let solved = eliminate::<i64>(d, |i, k| small(i, k).unwrap_or(0))?;
+            let solved =
+                eliminate::<i64>(d, |i, k| small(i, k).unwrap_or(0), |i| weight(i) as i64)?;
             Numbers::Small(solved.map(i128::from))
         } else if sites.is_small() && products < 127 {
-            Numbers::Small(eliminate::<i128>(d, |i, k| {
-                small(i, k).unwrap_or(0).into()
-            })?)
+            let at = |i: usize, k: usize| small(i, k).unwrap_or(0).into();
+            Numbers::Small(eliminate::<i128>(d, at, weight)?)
         } else {
-            let solved = eliminate::<BigInt>(d, |i, k| sites.wide(corners[i + 1], corners[0], k))?;
+            let solved = eliminate::<BigInt>(
+                d,
+                |i, k| sites.wide(corners[i + 1], corners[0], k),
+                |i| sites.wide_weight(corners[i + 1], corners[0]),
+            )?;
             // Scalar products have terms of the size of minors, and twice D of them.
             if sites.is_small() && minor + sites.bits() + 4 < 126 {
                 Numbers::Small(solved.map(|x| i128::try_from(x).unwrap_or(0)))
@@ -140,7 +156,7 @@ impl Frame {
     pub fn power(&self, sites: &impl Integers, o: u32, p: u32) -> i32 {
         match &self.numbers {
             Numbers::Small(s) => {
-                let mut sum = 0i128;
+                let mut sum = -s.determinant * sites.small_weight(p, o);
                 for k in 0..self.dimension {
                     let x = i128::from(sites.small(p, o, k).unwrap_or(0));
                     sum += x * (s.determinant * x - s.lifted[k]);
@@ -148,7 +164,7 @@ impl Frame {
                 sum.signum() as i32
             }
             Numbers::Wide(s) => {
-                let mut sum = BigInt::ZERO;
+                let mut sum = -&s.determinant * sites.wide_weight(p, o);
                 for k in 0..self.dimension {
                     let x = sites.wide(p, o, k);
                     sum += &x * (&s.determinant * &x - &s.lifted[k]);
@@ -204,8 +220,12 @@ impl<T> Solved<T> {
 }
 
 /// [A | b | I] -> [det I | det A^-1 b | det A^-1], with the signs of a positive determinant. `None` if
-/// A is singular.
-fn eliminate<T>(d: usize, at: impl Fn(usize, usize) -> T) -> Option<Solved<T>>
+/// A is singular. `at` has the entries of A; b has the squares of its rows less what `weight` has.
+fn eliminate<T>(
+    d: usize,
+    at: impl Fn(usize, usize) -> T,
+    weight: impl Fn(usize) -> T,
+) -> Option<Solved<T>>
 where
     T: Clone + From<i64> + PartialOrd,
     for<'a> &'a T: Mul<&'a T, Output = T> + Sub<&'a T, Output = T> + Div<&'a T, Output = T>,
@@ -218,6 +238,7 @@ where
             let negative = &zero - &(&row[k] * &row[k]);
             row[d] = &row[d] - &negative;
         }
+        row[d] = &row[d] - &weight(i);
         row[d + 1 + i] = one.clone();
     }
     let (mut previous, mut positive) = (one, true);

@@ -61,5 +61,5 @@ pub use hull::{Hull, hull};
 pub use lazy::{Lazy, Located};
 pub use location::{Hyper, Weighed, Within, nearest, within};
 pub use measure::{circumcenters, fault, orientations, transforms, volumes};
-pub use triangulate::{Simplices, triangulate};
-pub use validate::{Findings, validate};
+pub use triangulate::{Simplices, regular, triangulate};
+pub use validate::{Findings, validate, validate_regular};

@@ -89,6 +89,8 @@ pub type Coordinate = (i64, u32);
 pub struct Points {
     /// The coordinates of each.
     pub rows: [[Coordinate; ROWS - 1]; ROWS + 1],
+    /// Their weights, in squared units.
+    pub weights: [Coordinate; ROWS + 1],
     /// How many points there are.
     pub count: usize,
     /// How many coordinates.
@@ -96,7 +98,7 @@ pub struct Points {
 }
 
 /// Whether the determinant of the points from the first is zero, if its magnitude is below 2^bits;
-/// with `lifted`, of the points with the squares of their lengths from the first. `None` if that
+/// with `lifted`, of the points with the squares of their lengths from the first, less their weights. `None` if that
 /// takes too many primes, or if it is not zero.
 pub fn is_zero(points: &Points, lifted: bool, bits: i64) -> Option<()> {
     let count = usize::try_from(bits.max(0) / i64::from(BITS) + 1).ok()?;
@@ -110,8 +112,7 @@ pub fn is_zero(points: &Points, lifted: bool, bits: i64) -> Option<()> {
 /// Whether the determinant vanishes modulo a prime.
 fn vanishes(points: &Points, lifted: bool, f: Prime) -> bool {
     let (n, d) = (points.count - 1, points.dimension);
-    let at = |row: usize, k: usize| {
-        let (odd, shift) = points.rows[row][k];
+    let value = |(odd, shift): Coordinate| {
         let integer = f.integer(odd);
         if shift == 0 {
             integer
@@ -119,6 +120,7 @@ fn vanishes(points: &Points, lifted: bool, f: Prime) -> bool {
             f.mul(integer, f.power(shift))
         }
     };
+    let at = |row: usize, k: usize| value(points.rows[row][k]);
     let origin: [u64; ROWS - 1] = std::array::from_fn(|k| if k < d { at(0, k) } else { 0 });
     let mut m = [[0u64; ROWS]; ROWS];
     for i in 0..n {
@@ -129,7 +131,8 @@ fn vanishes(points: &Points, lifted: bool, f: Prime) -> bool {
             square = f.add(square, f.mul(x, x));
         }
         if lifted {
-            m[i][d] = square;
+            let weight = f.sub(value(points.weights[i + 1]), value(points.weights[0]));
+            m[i][d] = f.sub(square, weight);
         }
     }
     // Rows are multiplied instead of divided: whether the determinant is zero stays the same.
@@ -225,6 +228,7 @@ mod tests {
         let [p, q] = [0, 1].map(|i| primes()[i].p as i64);
         let mut points = Points {
             rows: [[(0, 0); ROWS - 1]; ROWS + 1],
+            weights: [(0, 0); ROWS + 1],
             count: 3,
             dimension: 2,
         };

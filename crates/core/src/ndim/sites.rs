@@ -6,7 +6,7 @@
 //! scaled coordinates are exact, differences that are not zero are at least 2^-400, and their squares
 //! at least 2^-800: what underflows is far below the floors in `filter`. Otherwise no filter is used.
 
-use delone_predicates::arithmetic::{bit_span, decode_odd};
+use delone_predicates::arithmetic::{Pair, bit_span, decode_odd};
 use num_bigint::BigInt;
 
 use super::filter::{Matrix, dot, minus};
@@ -32,8 +32,12 @@ pub struct Sites<const D: usize, const P: usize> {
     pub bits: u32,
     /// The unit of `scaled` is 2^unit.
     pub unit: i64,
+    /// The weights times 2^(-2 high); none if all are zero.
+    pub weights: Vec<f64>,
     /// The coordinates as they were given.
     given: Vec<[f64; D]>,
+    /// The weights as they were given.
+    given_weights: Vec<f64>,
     /// The exponent of the unit of `given`.
     low: i64,
     /// The coordinates in units, if they have few bits.
@@ -43,12 +47,24 @@ pub struct Sites<const D: usize, const P: usize> {
 impl<const D: usize, const P: usize> Sites<D, P> {
     /// From finite points, distinct and in lexicographic order.
     pub fn new(given: Vec<[f64; D]>) -> Result<Self> {
+        Self::weighted(given, Vec::new())
+    }
+
+    /// The same with finite weights, one for each point or none.
+    pub fn weighted(given: Vec<[f64; D]>, given_weights: Vec<f64>) -> Result<Self> {
         let (mut low, mut high) = (i32::MAX, i32::MIN);
         for p in &given {
             // A width of zero: all coordinates are zero.
             if let Some((least, width @ 1..)) = bit_span(&[*p]) {
                 low = low.min(least);
                 high = high.max(least + width as i32);
+            }
+        }
+        for &w in &given_weights {
+            // Weights are multiples of 2^(2 low), and smaller than 2^(2 high).
+            if let Some((least, width @ 1..)) = bit_span(&[[w]]) {
+                low = low.min(least.div_euclid(2));
+                high = high.max((least + width as i32 + 1).div_euclid(2));
             }
         }
         if low > high {
@@ -63,12 +79,20 @@ impl<const D: usize, const P: usize> Sites<D, P> {
                 .iter()
                 .map(|p| std::array::from_fn(|k| if k < D { p[k] * first * second } else { 0.0 })),
         );
+        let mut weights = with_room(given_weights.len())?;
+        weights.extend(
+            given_weights
+                .iter()
+                .map(|w| w * first * second * first * second),
+        );
         let mut sites = Self {
             scaled,
+            weights,
             filtered: span <= WIDEST,
             bits: span + 1,
             unit: -i64::from(span),
             given,
+            given_weights,
             low: i64::from(low),
             small: None,
         };
@@ -107,23 +131,48 @@ impl<const D: usize, const P: usize> Sites<D, P> {
         std::array::from_fn(|i| minus(&self.scaled[v[i + 1] as usize], o))
     }
 
+    /// The scaled weight of `p` less that of `o`, rounded.
+    #[inline(always)]
+    pub fn weight(&self, p: u32, o: u32) -> f64 {
+        if self.weights.is_empty() {
+            return 0.0;
+        }
+        self.weights[p as usize] - self.weights[o as usize]
+    }
+
+    /// The same exactly.
+    pub fn weight_pair(&self, p: u32, o: u32) -> Pair {
+        if self.weights.is_empty() {
+            return Pair::from_double(0.0);
+        }
+        Pair::difference(self.weights[p as usize], self.weights[o as usize])
+    }
+
     /// Points as integers for residues.
     pub fn integers(&self, points: impl Iterator<Item = u32>) -> Points {
         let mut rows = [[(0, 0); ROWS - 1]; ROWS + 1];
+        let mut weights = [(0, 0); ROWS + 1];
         let mut count = 0;
+        let integer = |x: f64, low: i64| {
+            let (odd, exponent) = decode_odd(x);
+            let signed = if x < 0.0 { -(odd as i64) } else { odd as i64 };
+            // The exponent of zero means nothing.
+            let shift = (i64::from(exponent) - low) * i64::from(odd != 0);
+            (signed, shift as u32)
+        };
         for p in points {
             for k in 0..D {
                 let (x, low) = self.coordinate(p, k);
-                let (odd, exponent) = decode_odd(x);
-                if odd != 0 {
-                    let odd = if x < 0.0 { -(odd as i64) } else { odd as i64 };
-                    rows[count][k] = (odd, (i64::from(exponent) - low) as u32);
-                }
+                rows[count][k] = integer(x, low);
+            }
+            if let Some(&w) = self.given_weights.get(p as usize) {
+                weights[count] = integer(w, 2 * self.low);
             }
             count += 1;
         }
         Points {
             rows,
+            weights,
             count,
             dimension: D,
         }
@@ -137,6 +186,24 @@ impl<const D: usize, const P: usize> Sites<D, P> {
 }
 
 impl<const D: usize, const P: usize> Integers for Sites<D, P> {
+    fn small_weight(&self, p: u32, o: u32) -> i128 {
+        if self.weights.is_empty() {
+            return 0;
+        }
+        // Below 2^120 squared units: a double times a power of two is an integer, exactly.
+        let units = factor(-(self.unit as i32));
+        let integer = |p: u32| (self.weights[p as usize] * units * units) as i128;
+        integer(p) - integer(o)
+    }
+
+    fn wide_weight(&self, p: u32, o: u32) -> BigInt {
+        let of = |p: u32| {
+            let w = self.given_weights.get(p as usize);
+            w.map_or(BigInt::ZERO, |&w| wide::scaled(w, 2 * self.low))
+        };
+        of(p) - of(o)
+    }
+
     #[inline(always)]
     fn dimension(&self) -> usize {
         D

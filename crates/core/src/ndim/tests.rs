@@ -4,6 +4,7 @@ mod bounds;
 mod brute;
 mod hulls;
 mod lazily;
+mod regular;
 mod sets;
 mod simplices;
 

@@ -11,6 +11,7 @@ use super::sites::Sites;
 use crate::error::{Error, Result};
 use crate::memory::{self, filled, with_room};
 use crate::points;
+use crate::regular::{Heaviest, heaviest};
 use crate::watch::{Pace, Watch};
 
 /// Units of work between two checks for interruption: a cell takes a microsecond, and one with
@@ -37,9 +38,31 @@ pub fn triangulate<const D: usize, const V: usize, const P: usize>(
 ) -> Result<Simplices<V>> {
     const { assert!(V == D + 1 && P >= D && D >= 2 && D <= 8) };
     let (sites, rows, duplicates) = sorted::<D, P>(points)?;
+    made(sites, &rows, duplicates, watch)
+}
+
+/// The canonical regular triangulation of points with finite weights, and for each row the row that
+/// represents it: the first of the heaviest rows with the same coordinates. Points that are in no
+/// simplex are hidden.
+pub fn regular<const D: usize, const V: usize, const P: usize>(
+    points: &[[f64; D]],
+    weights: &[f64],
+    watch: &Watch,
+) -> Result<(Simplices<V>, Vec<i32>)> {
+    let (sites, rows, duplicates, stands_for) = weighted::<D, P>(points, weights)?;
+    Ok((made(sites, &rows, duplicates, watch)?, stands_for))
+}
+
+/// The triangulation of sites, which have the given rows.
+fn made<const D: usize, const V: usize, const P: usize>(
+    sites: Sites<D, P>,
+    rows: &[u32],
+    duplicates: Vec<[u32; 2]>,
+    watch: &Watch,
+) -> Result<Simplices<V>> {
     let mut pace = Pace::new(watch, PACE);
     let order = arranged::<D, P>(&sites.scaled)?;
-    let mesh = inserted::<D, V, P>(sites, &rows, &order, &mut pace)?;
+    let mesh = inserted::<D, V, P>(sites, rows, &order, &mut pace)?;
     let (mut simplices, neighbors) = mesh.export()?;
     for v in simplices.as_flattened_mut() {
         *v = rows[*v as usize];
@@ -51,11 +74,38 @@ pub fn triangulate<const D: usize, const V: usize, const P: usize>(
     })
 }
 
+/// The sites, the row of each, the pairs of rows that are equal, and for each row the one that
+/// represents it.
+type Heavy<const D: usize, const P: usize> = (Sites<D, P>, Vec<u32>, Vec<[u32; 2]>, Vec<i32>);
+
+/// Distinct points with weights.
+pub fn weighted<const D: usize, const P: usize>(
+    points: &[[f64; D]],
+    weights: &[f64],
+) -> Result<Heavy<D, P>> {
+    let (distinct, firsts, duplicates) = distinct(points)?;
+    let Heaviest {
+        rows,
+        weights,
+        stands_for,
+    } = heaviest(weights, &firsts, &duplicates)?;
+    let sites = Sites::weighted(distinct, weights)?;
+    Ok((sites, rows, duplicates, stands_for))
+}
+
 /// Distinct points, the first row of each, and the pairs of rows that are equal.
 type Sorted<const D: usize, const P: usize> = (Sites<D, P>, Vec<u32>, Vec<[u32; 2]>);
 
 /// Finite points in lexicographic order, so that their numbers compare as they do.
 pub fn sorted<const D: usize, const P: usize>(points: &[[f64; D]]) -> Result<Sorted<D, P>> {
+    let (distinct, rows, duplicates) = distinct(points)?;
+    Ok((Sites::new(distinct)?, rows, duplicates))
+}
+
+/// The coordinates, first rows, and pairs of equal rows.
+type Distinct<const D: usize> = (Vec<[f64; D]>, Vec<u32>, Vec<[u32; 2]>);
+
+fn distinct<const D: usize>(points: &[[f64; D]]) -> Result<Distinct<D>> {
     points::scan(points)?;
     let mut all = with_room(points.len())?;
     all.extend((0u32..).zip(points).map(|(row, _)| row));
@@ -73,7 +123,7 @@ pub fn sorted<const D: usize, const P: usize>(points: &[[f64; D]]) -> Result<Sor
     duplicates.sort_unstable();
     let mut distinct = with_room(rows.len())?;
     distinct.extend(rows.iter().map(|&row| at(row)));
-    Ok((Sites::new(distinct)?, rows, duplicates))
+    Ok((distinct, rows, duplicates))
 }
 
 /// A mesh of all sites, inserted in the given order.

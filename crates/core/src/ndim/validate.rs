@@ -13,7 +13,7 @@ use super::cell::Mesh;
 use super::frame::Frame;
 use super::simplex;
 use super::sites::Sites;
-use super::triangulate::sorted;
+use super::triangulate::{sorted, weighted};
 use crate::arrays::{Given, Side};
 use crate::error::Result;
 use crate::memory::{filled, push};
@@ -32,8 +32,10 @@ pub struct Findings<const D: usize> {
     pub neighbors: Vec<u32>,
     /// Facets of the boundary at which it is not convex or not closed.
     pub hull: Vec<[u32; D]>,
-    /// Distinct points that are not vertices.
+    /// Distinct points that are not vertices; with weights, those outside of all simplices.
     pub missing: Vec<u32>,
+    /// Points with weights that are in no simplex and should be.
+    pub hidden: Vec<u32>,
     /// Vertices that are not the first row with their coordinates.
     pub repeats: Vec<u32>,
     /// Adjacent simplices one of which has the other's apex in its circumsphere.
@@ -50,31 +52,60 @@ pub fn validate<const D: usize, const V: usize, const P: usize>(
     given: Given<D, V>,
     watch: &Watch,
 ) -> Result<Findings<D>> {
+    let (sites, rows, duplicates) = sorted::<D, P>(given.points)?;
+    let mut stands_for = filled(given.points.len(), 0)?;
+    for (row, own) in (0..).zip(&mut stands_for) {
+        *own = row;
+    }
+    for [row, first] in duplicates {
+        stands_for[row as usize] = first as i32;
+    }
+    checked(given, sites, &rows, &stands_for, watch)
+}
+
+/// The same of a regular triangulation; also, for each row, the one that represents it.
+pub fn validate_regular<const D: usize, const V: usize, const P: usize>(
+    given: Given<D, V>,
+    weights: &[f64],
+    watch: &Watch,
+) -> Result<(Findings<D>, Vec<i32>)> {
+    let (sites, rows, _, stands_for) = weighted::<D, P>(given.points, weights)?;
+    let found = checked(given, sites, &rows, &stands_for, watch)?;
+    Ok((found, stands_for))
+}
+
+/// Checks the triangulation of sites, each of which one of the rows represents.
+fn checked<const D: usize, const V: usize, const P: usize>(
+    given: Given<D, V>,
+    sites: Sites<D, P>,
+    rows: &[u32],
+    stands_for: &[i32],
+    watch: &Watch,
+) -> Result<Findings<D>> {
     let mut pace = Pace::new(watch, PACE);
     let mut found = Findings::default();
-    let (sites, rows, duplicates) = sorted::<D, P>(given.points)?;
-    // The number of each row in lexicographic order; duplicates have that of their first row.
+    // The number of each row in lexicographic order; those with the same coordinates share it.
     let mut rank = filled(given.points.len(), 0u32)?;
-    for (number, &row) in (0u32..).zip(&rows) {
+    for (number, &row) in (0u32..).zip(rows) {
         rank[row as usize] = number;
     }
     let mut used = filled(given.points.len(), false)?;
     for &v in given.simplices.as_flattened() {
         used[v as usize] = true;
     }
-    for &[row, first] in &duplicates {
-        rank[row as usize] = rank[first as usize];
-        if used[row as usize] {
-            push(&mut found.repeats, row)?;
-            used[first as usize] = true;
+    for (row, &own) in stands_for.iter().enumerate() {
+        let own = own as usize;
+        rank[row] = rank[own];
+        if used[row] && own != row {
+            push(&mut found.repeats, row as u32)?;
+            used[own] = true;
         }
     }
-    found.missing = rows
-        .iter()
-        .copied()
-        .filter(|&r| !used[r as usize])
-        .collect();
-    found.missing.sort_unstable();
+    let mut unused = Vec::new();
+    for &row in rows.iter().filter(|&&row| !used[row as usize]) {
+        push(&mut unused, row)?;
+    }
+    unused.sort_unstable();
     for t in 0..given.simplices.len() {
         pace.spend(1)?;
         if simplex::orientation::<D, V, P>(&given.corners(t)) != Sign::Positive {
@@ -84,12 +115,49 @@ pub fn validate<const D: usize, const V: usize, const P: usize>(
             push(&mut found.neighbors, t as u32)?;
         }
     }
+    let is_weighted = !sites.weights.is_empty();
+    if !is_weighted {
+        found.missing = std::mem::take(&mut unused);
+    }
     if !found.orientation.is_empty() || !found.neighbors.is_empty() || given.simplices.is_empty() {
         return Ok(found);
     }
-    let mesh = Mesh::<D, V, P>::given(sites, &given, &rank)?;
-    judged(&given, mesh, &mut found, &mut pace)?;
+    let mut mesh = Mesh::<D, V, P>::given(sites, &given, &rank)?;
+    judged(&given, &mut mesh, &mut found, &mut pace)?;
+    // Walks end in a regular triangulation.
+    if found == Findings::default() {
+        for row in unused {
+            let p = rank[row as usize];
+            match covering(&mut mesh, p, &mut pace)? {
+                None => push(&mut found.missing, row)?,
+                Some(t) if mesh.conflict(t, p)? => push(&mut found.hidden, row)?,
+                Some(_) => {}
+            }
+        }
+    }
     Ok(found)
+}
+
+/// The simplex that covers a site, by a visibility walk; `None` if it is outside.
+fn covering<const D: usize, const V: usize, const P: usize>(
+    mesh: &mut Mesh<D, V, P>,
+    p: u32,
+    pace: &mut Pace,
+) -> Result<Option<u32>> {
+    let mut here = 0;
+    'walk: loop {
+        for i in 0..V {
+            pace.spend(1)?;
+            if mesh.side(here, i, p)? < 0 {
+                here = mesh.cells[here as usize].neighbors[i];
+                if mesh.cells[here as usize].is_ghost() {
+                    return Ok(None);
+                }
+                continue 'walk;
+            }
+        }
+        return Ok(Some(here));
+    }
 }
 
 /// Whether the neighbors of a simplex have it as theirs across the same facet.
@@ -116,7 +184,7 @@ fn is_mutual<const D: usize, const V: usize>(given: &Given<D, V>, t: usize, rank
 /// Judges the facets of simplices, the ridges of the boundary, and one line.
 fn judged<const D: usize, const V: usize, const P: usize>(
     given: &Given<D, V>,
-    mut mesh: Mesh<D, V, P>,
+    mesh: &mut Mesh<D, V, P>,
     found: &mut Findings<D>,
     pace: &mut Pace,
 ) -> Result<()> {
@@ -143,7 +211,7 @@ fn judged<const D: usize, const V: usize, const P: usize>(
                 Some(_) => {}
                 None => {
                     let ghost = mesh.cells[t].neighbors[corner];
-                    if !is_convex(given, &mut mesh, ghost, side, pace)? {
+                    if !is_convex(given, mesh, ghost, side, pace)? {
                         let others = (0..V).filter(|&k| k != corner);
                         let facet: Vec<u32> =
                             others.map(|k| given.simplices[t][k] as u32).collect();

@@ -29,7 +29,7 @@ impl Waiting {
         for &c in facets {
             pace.spend(1)?;
             if mesh.conflict(c, p)? {
-                let (value, _) = mesh.value(c, &mesh.sites.scaled[p as usize]);
+                let (value, _) = mesh.value(c, p);
                 let c = c as usize;
                 self.next[p as usize] = self.head[c];
                 self.head[c] = p;

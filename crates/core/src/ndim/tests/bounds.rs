@@ -1,5 +1,6 @@
 //! Bounds of the filters against fractions: never exceeded, and not loose by orders of magnitude.
 
+use delone_predicates::arithmetic::Pair;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -124,7 +125,7 @@ fn check<const D: usize, const V: usize, const P: usize>() -> [f64; 4] {
         let first = BigRational::from_integer(1.into()) - l.iter().sum::<BigRational>();
         note(2, weights[0], bound, &first);
         let corners: [&[f64; P]; V] = std::array::from_fn(|i| &v[i]);
-        let (value, bound) = Fine::<D>::new(&corners).power(&p, &v[0]);
+        let (value, bound) = Fine::<D>::new(&corners).power(&p, &v[0], Pair::from_double(0.0));
         note(3, value, bound, &power);
     }
     used

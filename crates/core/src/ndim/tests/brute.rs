@@ -83,6 +83,12 @@ pub fn rank<const D: usize>(points: &[[f64; D]]) -> usize {
 /// The simplices as ascending numbers of the distinct points in lexicographic order.
 pub fn canonical<const D: usize, const V: usize>(points: &[[f64; D]]) -> BTreeSet<[u32; V]> {
     let at = distinct(points);
+    let weights = vec![BigInt::ZERO; at.len()];
+    regular(&at, &weights)
+}
+
+/// The simplices of the regular triangulation of distinct points in lexicographic order, with weights.
+pub fn regular<const V: usize>(at: &[Vec<BigInt>], weights: &[BigInt]) -> BTreeSet<[u32; V]> {
     let n = at.len() as u32;
     let mut found = BTreeSet::new();
     let mut subset: [u32; V] = std::array::from_fn(|i| i as u32);
@@ -90,8 +96,8 @@ pub fn canonical<const D: usize, const V: usize>(points: &[[f64; D]]) -> BTreeSe
         return found;
     }
     loop {
-        let positive = orientation(&at, &subset);
-        let empty = |q: u32| subset.contains(&q) || is_above(&at, &subset, positive, q);
+        let positive = orientation(at, &subset);
+        let empty = |q: u32| subset.contains(&q) || is_above(at, weights, &subset, positive, q);
         if positive != 0 && (0..n).all(empty) {
             found.insert(subset);
         }
@@ -107,12 +113,19 @@ pub fn canonical<const D: usize, const V: usize>(points: &[[f64; D]]) -> BTreeSe
 }
 
 /// Whether the perturbed height of a point is above the plane through those of a simplex.
-fn is_above(at: &[Vec<BigInt>], simplex: &[u32], positive: i32, q: u32) -> bool {
+fn is_above(
+    at: &[Vec<BigInt>],
+    weights: &[BigInt],
+    simplex: &[u32],
+    positive: i32,
+    q: u32,
+) -> bool {
     let all = [simplex, &[q]].concat();
     let lifted = |i: &u32| {
         let p = &at[*i as usize];
         let square: BigInt = p.iter().map(|x| x * x).sum();
-        [&[BigInt::from(1)], &p[..], &[square]].concat()
+        let height = square - &weights[*i as usize];
+        [&[BigInt::from(1)], &p[..], &[height]].concat()
     };
     // As a function of the height of q, the determinant has the slope `positive`.
     let mut value = sign(all.iter().map(lifted).collect()) * positive;
