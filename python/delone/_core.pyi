@@ -789,7 +789,7 @@ class Hull3:
 
 @final
 class HullN:
-    """The convex hull of points with four to eight coordinates."""
+    """The convex hull of points with four to nine coordinates."""
 
     @property
     def simplices(self) -> NDArray[np.int32]:
@@ -2018,7 +2018,9 @@ def hull3(points: NDArray[np.float64]) -> Hull3 | None:
     """The hull of 3-D points; None if they span no volume."""
 
 def hull_n(points: NDArray[np.float64]) -> HullN:
-    """The convex hull of points with four to eight coordinates."""
+    """The convex hull of points with four to nine coordinates: 8-D half-spaces are vectors
+    in 9-D.
+    """
 
 def improve3(
     points: NDArray[np.float64],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from itertools import combinations
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from delone.compat.scipy import DimensionError, HalfspaceIntersection, QhullError
+from delone.voronoi.halfspaces import common_part
 
 spatial = pytest.importorskip("scipy.spatial")
 
@@ -59,6 +61,24 @@ def solved(matrix: list[list[Fraction]]) -> list[Fraction] | None:
     return [row[count] for row in matrix]
 
 
+def is_turned(rows: Any, point: Any, facet: list[int]) -> bool:
+    """Whether the first vertices of a dual facet are counter-clockwise as seen from outside."""
+    d = len(point)
+    inside = [Fraction(x) for x in point.tolist()]
+    dual = []
+    for row in facet[:d]:
+        *normal, end = map(Fraction, rows[row].tolist())
+        slack = sum(a * x for a, x in zip(normal, inside, strict=True)) + end
+        dual.append([-a / slack for a in normal])
+    if d == 2:
+        (a, b), (c, e) = dual
+        return a * e > b * c
+    (a, b, c), v, w = dual
+    return a * (v[1] * w[2] - v[2] * w[1]) > b * (v[0] * w[2] - v[2] * w[0]) - c * (
+        v[0] * w[1] - v[1] * w[0]
+    )
+
+
 def by_facets(found: Any) -> dict[frozenset[int], Any]:
     return {
         frozenset(facet): corner
@@ -66,8 +86,9 @@ def by_facets(found: Any) -> dict[frozenset[int], Any]:
     }
 
 
-@pytest.mark.parametrize("count", [6, 40, 300])
-@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize(
+    ("count", "d"), [*((c, d) for c in (6, 40, 300) for d in (2, 3)), (200, 4), (60, 5), (30, 6)]
+)
 @pytest.mark.parametrize("far", [0.0, 500.0])
 def test_attributes_beside_scipy(d: int, count: int, far: float) -> None:
     rows, point = tangents(count, d, seed=count + d, far=far)
@@ -93,16 +114,17 @@ def test_attributes_beside_scipy(d: int, count: int, far: float) -> None:
     assert ours.dual_vertices.tolist() == theirs.dual_vertices.tolist()
 
 
-@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("d", [2, 3, 4, 5])
 @pytest.mark.parametrize("seed", range(8))
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(8)
 def test_corners_are_those_of_fractions(d: int, seed: int) -> None:
     """Small integers: many boundaries through one point, multiples and redundant half-spaces."""
     rng = np.random.default_rng(seed)
     box = np.column_stack((np.vstack((np.eye(d), -np.eye(d))), np.full(2 * d, -4.0)))
-    normals = rng.integers(-2, 3, (16 if d == 2 else 11, d)).astype(float)
+    normals = rng.integers(-2, 3, ({2: 16, 3: 11, 4: 7, 5: 3}[d], d)).astype(float)
     rows = np.vstack((box, np.column_stack((normals, -rng.integers(1, 5, len(normals))))))
-    rows = np.vstack((rows, 3 * rows[:4], 0.1 * rows[2:6]))
+    if d < 5:
+        rows = np.vstack((rows, 3 * rows[: 8 - d], 0.1 * rows[2:5]))
     point = rng.uniform(-0.1, 0.1, d)
     found = HalfspaceIntersection(rows, point)
     expected = exact_corners(np.unique(rows, axis=0))
@@ -118,9 +140,12 @@ def test_corners_are_those_of_fractions(d: int, seed: int) -> None:
     kept = set(found.dual_vertices.tolist())
     assert kept == {row for facet in found.dual_facets for row in facet}
     assert exact_corners(rows[sorted(kept)]) == expected
-    for row in kept:
+    for row in [*kept][:: d - 1]:
         fewer = exact_corners(rows[sorted(kept - {row})])
         assert fewer != expected
+    if d < 4:
+        for facet, corner in zip(found.dual_facets, found.intersections, strict=True):
+            assert is_turned(rows, point, facet), corner
 
 
 @pytest.mark.parametrize("point", [(0, 0, 0.3), (0.1, 0.02, 0.3), (0.123, -0.217, 0.111)])
@@ -157,6 +182,86 @@ def test_planes_through_one_edge() -> None:
         assert len(found.intersections) == 8
         assert found.dual_vertices.tolist() == list(range(6))
         np.testing.assert_allclose(np.abs(found.intersections @ skew.T), 1, atol=1e-14)
+
+
+def signs(d: int) -> Any:
+    return np.stack(np.meshgrid(*d * [[-1.0, 1.0]]), axis=-1).reshape(-1, d)
+
+
+@pytest.mark.parametrize("d", range(2, 9))
+@pytest.mark.deep("6", "7", "8")
+def test_cubes_and_cross_polytopes_in_all_dimensions(d: int) -> None:
+    rng = np.random.default_rng(d)
+    point = rng.uniform(-0.1, 0.1, d)
+    sides = np.vstack((np.eye(d), -np.eye(d)))
+    # A touching half-space at each of some faces, which is redundant.
+    touching = np.array([[*(signs(d)[0] * (np.arange(d) < k)), -float(k)] for k in range(2, d + 1)])
+    cube = HalfspaceIntersection(
+        np.vstack((np.column_stack((sides, np.full(2 * d, -1.0))), touching * 3)), point
+    )
+    assert cube.dual_vertices.tolist() == list(range(2 * d))
+    assert {tuple(corner) for corner in cube.intersections.round(14)} == {*map(tuple, signs(d))}
+    for facet, corner in zip(cube.dual_facets, cube.intersections, strict=True):
+        assert {*facet} == {*np.flatnonzero(sides @ corner > 0.5).tolist()}
+    # All corners of the cross-polytope are in 2^(d - 1) of its 2^d sides.
+    rows = np.column_stack((signs(d), np.full(2**d, -1.0)))
+    cross = HalfspaceIntersection(rows, point / d)
+    assert {tuple(corner) for corner in cross.intersections.round(14)} == {*map(tuple, sides)}
+    for facet, corner in zip(cross.dual_facets, cross.intersections, strict=True):
+        assert {*facet} == {*np.flatnonzero(signs(d) @ corner > 0.5).tolist()}
+    if d > 6:
+        return
+    # The sides of the dual cube, triangulated.
+    split = HalfspaceIntersection(rows, point / d, qhull_options="Qt")
+    assert {len(cell) for cell in split.dual_facets} == {d}
+    duals = split.dual_points[split.dual_facets]
+    volume = np.abs(np.linalg.det(duals)).sum() / math.factorial(d)
+    assert volume == pytest.approx(cross.dual_volume, rel=1e-12)
+
+
+@pytest.mark.parametrize("d", range(2, 9))
+@pytest.mark.parametrize("ulps", [-1, 0, 1])
+def test_what_a_half_space_cuts_off_is_exact(d: int, ulps: int) -> None:
+    """Dual points are rounded by more than what is cut off."""
+    sides = np.column_stack((np.vstack((np.eye(d), -np.eye(d))), np.full(2 * d, -1.0)))
+    cut = [*np.ones(d), -(d + ulps * np.spacing(float(d)))]
+    point = np.random.default_rng(d).uniform(-0.9, 0.3, d)
+    found = HalfspaceIntersection(np.vstack((sides, cut)), point)
+    assert (2 * d in found.dual_vertices) == (ulps < 0)
+    # In place of one corner there are d.
+    assert len(found.intersections) == 2**d + (d - 1 if ulps < 0 else 0)
+
+
+@pytest.mark.parametrize("d", [4, 6])
+def test_a_cone_without_an_end_in_more_dimensions(d: int) -> None:
+    # The coordinates are not negative, and the first is at most 1.
+    rows = np.column_stack((np.vstack((-np.eye(d), np.eye(d)[0])), np.zeros(d + 1)))
+    rows[-1, -1] = -1
+    found = HalfspaceIntersection(rows, np.full(d, 0.25))
+    ends = np.isfinite(found.intersections).all(axis=1)
+    assert ends.sum() == 2
+    assert np.isinf(found.intersections[~ends]).all()
+    # Along the other coordinates.
+    assert len(found.dual_facets) == 2 + d - 1
+    inner = found.dual_points @ found.dual_equations[:, :-1].T + found.dual_equations[:, -1]
+    assert inner.max() < 1e-14
+    for facet, heights in zip(found.dual_facets, inner.T, strict=True):
+        assert {*facet} == {*np.flatnonzero(heights > -1e-14).tolist()}
+
+
+def test_corners_are_those_of_double_description() -> None:
+    rows, point = tangents(60, 3, seed=4)
+    rows = np.round(rows * 4)
+    rows = rows[rows @ [*point, 1] < 0]
+    corners, faces, of = common_part(rows)
+    found = HalfspaceIntersection(rows, point)
+    assert found.dual_vertices.tolist() == of
+    key = {frozenset(of[f] for f, face in enumerate(faces) if k in face): c
+           for k, c in enumerate(corners)}  # fmt: skip
+    mine = by_facets(found)
+    assert mine.keys() == key.keys()
+    for facet, corner in mine.items():
+        np.testing.assert_allclose(corner, key[facet], rtol=1e-14, atol=1e-14)
 
 
 @pytest.mark.parametrize("d", [2, 3])
@@ -254,7 +359,7 @@ def test_what_is_refused_as_scipy_refuses_it() -> None:
         with pytest.raises(QhullError):
             kind(SQUARE[:2], inside)
     with pytest.raises(DimensionError, match=r"scipy\.spatial"):
-        HalfspaceIntersection(np.ones((6, 5)), np.zeros(4))
+        HalfspaceIntersection(np.ones((6, 10)), np.zeros(9))
     with pytest.raises(ValueError, match="intersection of half-spaces"):
         HalfspaceIntersection(SQUARE, inside, qhull_options="A-0.9")
 

@@ -80,7 +80,7 @@ pub fn faults<const D: usize>(py: Python<'_>, found: Findings<D>) -> Outcome<Fau
     })
 }
 
-/// The convex hull of points with four to eight coordinates.
+/// The convex hull of points with four to nine coordinates.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct HullN {
     /// Vertices of the facets, positively oriented behind a point inside, (m, d).
@@ -95,19 +95,28 @@ pub struct HullN {
     pub duplicates: Table<i32>,
 }
 
-/// The convex hull of points with four to eight coordinates.
+/// The convex hull of points with four to nine coordinates: 8-D half-spaces are vectors in 9-D.
 #[pyfunction]
 pub fn hull_n(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> Outcome<HullN> {
-    in_many!(columns(&points), D, N, P => {
-        let points: &[[f64; D]] = rows(&points, "points")?;
-        let found = watched(py, |watch| ndim::hull::<D, N, P>(points, watch))?;
-        Ok(HullN {
-            simplices: number_rows(py, &found.simplices)?,
-            neighbors: number_rows(py, &found.neighbors)?,
-            facet_of: numbers(py, found.plane),
-            inside: numbers(py, found.inside),
-            duplicates: number_rows(py, &found.duplicates)?,
-        })
+    if columns(&points) == 9 {
+        return faceted::<9, 10, 16>(py, &points);
+    }
+    in_many!(columns(&points), D, N, P => faceted::<D, N, P>(py, &points))
+}
+
+/// The hull of points with `D` coordinates.
+fn faceted<const D: usize, const V: usize, const P: usize>(
+    py: Python<'_>,
+    points: &PyReadonlyArray2<'_, f64>,
+) -> Outcome<HullN> {
+    let points: &[[f64; D]] = rows(points, "points")?;
+    let found = watched(py, |watch| ndim::hull::<D, V, P>(points, watch))?;
+    Ok(HullN {
+        simplices: number_rows(py, &found.simplices)?,
+        neighbors: number_rows(py, &found.neighbors)?,
+        facet_of: numbers(py, found.plane),
+        inside: numbers(py, found.inside),
+        duplicates: number_rows(py, &found.duplicates)?,
     })
 }
 

@@ -8,17 +8,18 @@
 [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]
 
 A half-space ``a x + b <= 0`` that contains the interior point p corresponds to the dual point ``-a
-/ (a p + b)``, and corners of the intersection to facets of the convex hull of the dual points.
+/ (a p + b)``, and corners of the intersection to facets of the convex hull of the dual points. Here
+the facets are those of the cone of the vectors (a, b), which are not rounded (`dual_facets`).
 Differences from SciPy:
 
-* Facets and corners are in delone's order, and the vertices of a dual facet are in order around it,
-counter-clockwise as seen from outside.
+* Facets and corners ascend by their half-spaces. In 2-D and 3-D the vertices of a dual facet are in
+order around it, counter-clockwise as seen from outside; in more dimensions they ascend.
 * Half-spaces whose boundaries meet exactly in one point have one corner there; if they miss it by
 rounding there are several corners, which SciPy merges within a tolerance.
 * If the intersection is unbounded, the dual facet that represents this has an infinite
 intersection. SciPy returns a point outside the intersection there.
 * Corners are computed from the half-spaces, not from the dual hull, and are more accurate.
-* Points in more than three dimensions are rejected.
+* Points with more than eight coordinates are rejected.
 * `add_halfspaces` recomputes everything.
 """
 
@@ -36,6 +37,7 @@ from delone.compat import dual_facets as duals
 from delone.compat.qhull import DimensionError, QhullError, read_options, told_as_qhull_does
 from delone.compat.qhull_options import HALFSPACES
 from delone.errors import DtypeError, NonFiniteError, ShapeError
+from delone.higher.dimension import MOST
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -44,7 +46,8 @@ if TYPE_CHECKING:
 
 __all__ = ["HalfspaceIntersection"]
 
-_SPACE = 3
+# The fewest columns: two coordinates and an offset.
+_FEWEST = 3
 # Sums with more cancellation than this are computed exactly.
 _CANCELED = 0.1
 
@@ -55,14 +58,14 @@ class HalfspaceIntersection:
     Parameters
     ----------
     halfspaces : array_like, shape (nineq, ndim + 1)
-        Rows ``(a, b)`` for ``a @ x + b <= 0``, in 2-D or 3-D.
+        Rows ``(a, b)`` for ``a @ x + b <= 0``, in two to eight dimensions.
     interior_point : array_like, shape (ndim,)
         A point that is strictly inside all of them.
     incremental : bool, optional
         Whether `add_halfspaces` may be called.
     qhull_options : str, optional
         As in SciPy. Options about rounding have no effect. With ``Qt``, dual facets are
-        triangulated in 3-D, and a corner is repeated for each triangle.
+        triangulated, and a corner is repeated for each simplex.
 
     Attributes
     ----------
@@ -94,13 +97,14 @@ class HalfspaceIntersection:
         A number is NaN, an array has a wrong shape or dtype or is masked, or an option requires a
         different result.
     DimensionError
-        There are more than three coordinates.
+        There are more than eight coordinates.
 
     Notes
     -----
-    Whether the point is inside, which boundaries meet in one point, and whether the intersection is
-    bounded are decided exactly. The dual points are rounded, so a half-space that cuts off less
-    than that may be classified as redundant.
+    Whether the point is inside, which half-spaces are redundant, which boundaries meet in one
+    point, and whether the intersection is bounded are decided exactly, for the given doubles; of
+    half-spaces that are multiples of each other the first counts. Corners, dual points and measures
+    are rounded. Time is that of a convex hull in one dimension more, several times that of Qhull.
 
     Examples
     --------
@@ -140,17 +144,14 @@ class HalfspaceIntersection:
         if not np.isfinite(points).all():
             row = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
             raise QhullError(f"interior_point is too close to the boundary of half-space {row}")
-        distinct = duals.first_of_equal(rows)
-        with told_as_qhull_does(points[distinct], "corner of the half-spaces"):
-            found = hull.ConvexHull(points[distinct])
-        simplices = distinct[found.simplices].astype(np.int32)
-        dual = duals.Dual(rows, self.interior_point, slack, simplices, found.neighbors)
-        self.halfspaces, self._hull = rows, found
-        self.dual_points, self.dual_area, self.dual_volume = points, found.area, found.volume
-        self._facets = dual.facets(triangulated=self._options.triangulated)
-        self.ndim, self.nineq = rows.shape[1] - 1, len(rows)
-        self.intersections = dual.corners(self._facets.simplex)
-        self.__dict__.pop("dual_vertices", None)
+        with told_as_qhull_does(points, "corner of the half-spaces"):
+            facets = duals.cone_facets(rows, slack, triangulated=self._options.triangulated)
+        found = duals.corners(rows, self.interior_point, slack, facets)
+        self.halfspaces, self._facets = rows, facets
+        self.dual_points, self.ndim, self.nineq = points, rows.shape[1] - 1, len(rows)
+        self.intersections, self.dual_equations = found.points, found.equations
+        for name in ("dual_vertices", "_dual_hull"):
+            self.__dict__.pop(name, None)
 
     @property
     def dual_facets(self) -> list[list[int]]:
@@ -158,9 +159,19 @@ class HalfspaceIntersection:
         return [list(facet) for facet in self._facets.vertices]
 
     @property
-    def dual_equations(self) -> Floats:
-        """Outer normals and offsets of the dual facets, (ninter, ndim + 1)."""
-        return self._hull.equations[self._facets.simplex]
+    def dual_area(self) -> float:
+        """Surface area of the dual hull; in 2-D its perimeter."""
+        return self._dual_hull.area
+
+    @property
+    def dual_volume(self) -> float:
+        """Volume of the dual hull; in 2-D its area."""
+        return self._dual_hull.volume
+
+    @cached_property
+    def _dual_hull(self) -> hull.ConvexHull:
+        """The hull of the rounded dual points, for its measures."""
+        return hull.ConvexHull(self.dual_points[self.dual_vertices])
 
     @cached_property
     def dual_vertices(self) -> NDArray[np.signedinteger[Any]]:
@@ -214,14 +225,14 @@ def _as_rows(halfspaces: ArrayLike) -> Floats:
     if given.dtype.kind not in "biufO":
         raise DtypeError(f"halfspaces must hold real numbers, got dtype {given.dtype}")
     rows = np.ascontiguousarray(given, dtype=np.float64)
-    if rows.ndim != 2 or rows.shape[1] < _SPACE:
+    if rows.ndim != 2 or rows.shape[1] < _FEWEST:
         raise ShapeError(
-            f"halfspaces must be a 2D array of shape (nineq, 3) or (nineq, 4), got {rows.shape}"
+            f"halfspaces must be a 2D array of shape (nineq, 3 or more), got {rows.shape}"
         )
-    if rows.shape[1] > _SPACE + 1:
+    if rows.shape[1] > MOST + 1:
         raise DimensionError(
-            "this function of delone.compat.scipy is only available in 2-D and 3-D; for "
-            f"{rows.shape[1] - 1} coordinates use scipy.spatial"
+            f"this function of delone.compat.scipy is only available in up to {MOST} dimensions; "
+            f"for {rows.shape[1] - 1} coordinates use scipy.spatial"
         )
     bad = np.flatnonzero(np.isnan(rows).any(axis=1))
     if bad.size:
