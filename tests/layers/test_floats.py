@@ -157,6 +157,9 @@ ALLOWED: dict[str, dict[str, str]] = {
     },
     # Documented: cells as thin as their rounding are named in a warning, and none is removed.
     "voronoi/space.py": {"areas > 0": EMPTY, "areas < _SMALL": WANTED},
+    "higher/spheres.py": {
+        "np.abs(centers[t] - centers[u]) > size * _APART + _LEAST": FILTER,
+    },
     "voronoi/thin.py": {
         "perimeters > 0": EMPTY,
         "areas[rows] > _ROUNDING * largest * perimeters[rows]": FILTER,

@@ -325,7 +325,7 @@ def test_bad_sites_are_refused_by_name() -> None:
         Voronoi([(0, 0), (1, np.nan), (2, 5)])
     assert caught.value.rows.tolist() == [1]
     with pytest.raises(ShapeError):
-        Voronoi([(1, 2, 3, 4)])
+        Voronoi([tuple(range(9))])
     with pytest.raises(DegenerateInputError):
         Voronoi(np.empty((0, 2)))
 

@@ -228,6 +228,8 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
             starts=("<i4", 0),
             planes=("<f8", 4),
         ),
+        # In more dimensions there is no clip.
+        *(_input("Voronoi", ndim) for ndim in HIGHER),
     ),
     "Graph": (_graph(2), _graph(3)),
     "Dynamic": tuple(

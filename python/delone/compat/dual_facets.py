@@ -24,9 +24,10 @@ import numpy as np
 
 from delone import _core, predicates
 from delone.errors import DegenerateInputError
+from delone.higher.rational import kernel
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
 
     from delone._types import Floats, Indices, Rows
 
@@ -147,7 +148,7 @@ def _parallel(rows: Floats, normals: Floats, simplex: Indices) -> Floats:
     """Return a direction in which an intersection is unbounded, along all of d boundaries."""
     exact = [[*map(Fraction, row)] for row in rows.tolist()]
     normal = [each[:-1] for each in exact]
-    found = _kernel(normal)
+    found = kernel(normal)
     # On one side are all half-spaces.
     direction = np.array([float(x / max(map(abs, found))) for x in found])
     away = normals @ direction
@@ -323,33 +324,10 @@ def first_of_equal(rows: Floats) -> Rows:
 def _meeting(rows: Floats, point: Floats) -> tuple[list[float], list[float]]:
     """The intersection of d boundaries, and the step to it, each coordinate rounded once."""
     exact = [[*map(Fraction, row)] for row in rows.tolist()]
-    *where, last = _kernel(exact)
+    *where, last = kernel(exact)
     found = [x / last for x in where]
     steps = [x - Fraction(y) for x, y in zip(found, point.tolist(), strict=True)]
     return [*map(rounded, found)], [*map(rounded, steps)]
-
-
-def _kernel(rows: Sequence[Sequence[Fraction]]) -> list[Fraction]:
-    """A vector that is orthogonal to others, one for which it exists, by Gauss and Jordan."""
-    left, width = [list(row) for row in rows], len(rows[0])
-    pivots: list[int] = []
-    for k in range(width):
-        found = next((i for i in range(len(pivots), len(left)) if left[i][k]), None)
-        if found is None:
-            continue
-        at = len(pivots)
-        left[at], left[found] = left[found], left[at]
-        left[at] = [x / left[at][k] for x in left[at]]
-        for i, row in enumerate(left):
-            if i != at and row[k]:
-                left[i] = [x - row[k] * y for x, y in zip(row, left[at], strict=True)]
-        pivots.append(k)
-    free = next(k for k in range(width) if k not in pivots)
-    vector = [Fraction(0)] * width
-    vector[free] = Fraction(1)
-    for i, k in enumerate(pivots):
-        vector[k] = -left[i][free]
-    return vector
 
 
 def rounded(exact: Fraction) -> float:

@@ -4,9 +4,10 @@
 
 * Sites on one circle or sphere share one vertex whatever their coordinates, so every ridge has a
 positive length or area, and vertices, ridges and regions are in delone's order.
-* In 3-D every ridge is listed; Qhull omits unbounded ones with one vertex.
+* From 3-D on every ridge is listed; Qhull omits unbounded ones with fewer than d - 1 vertices.
 * Furthest-site diagrams are only available in 2-D.
 * Every distinct point has a region; duplicates share that of their first row, as in SciPy.
+* Points with more than eight coordinates are rejected.
 * `add_points` recomputes the diagram.
 """
 
@@ -24,6 +25,9 @@ from delone.compat.qhull_options import VORONOI
 from delone.compat.scipy_plot import framed, points_and_axes
 from delone.duplicates import first_rows
 from delone.extras import require
+from delone.higher.dimension import MOST
+from delone.higher.dual import DiagramN
+from delone.voronoi.higher import of_mesh
 from delone.voronoi.rows import as_lists, from_the_gap, one_gap
 
 if TYPE_CHECKING:
@@ -33,14 +37,16 @@ if TYPE_CHECKING:
 
 __all__ = ["Voronoi", "voronoi_plot_2d"]
 
+_SPACE = 3
+
 
 class Voronoi(Incremental):
     """Voronoi diagram with the interface of ``scipy.spatial.Voronoi``.
 
     Parameters
     ----------
-    points : array_like, shape (npoints, 2) or (npoints, 3)
-        The sites.
+    points : array_like, shape (npoints, ndim)
+        The sites, with two to eight coordinates.
     furthest_site : bool, optional
         Whether to compute the furthest-site diagram, in which each cell is nearer to all other
         sites. Only available in 2-D.
@@ -60,8 +66,8 @@ class Voronoi(Incremental):
     ridge_points : ndarray of int32, shape (nridges, 2)
         The two sites of each ridge.
     ridge_vertices : list of list of int
-        The vertices of each ridge, two in 2-D, and in 3-D all in order around it; -1, which is
-        first, if it is unbounded.
+        The vertices of each ridge, two in 2-D, in 3-D all in order around it, in more dimensions
+        ascending; -1, which is first, if it is unbounded.
     ridge_dict : dict
         The vertices of each ridge keyed by the pair of its sites.
     regions : list of list of int
@@ -78,13 +84,13 @@ class Voronoi(Incremental):
     Raises
     ------
     QhullError
-        The points span no area, or in 3-D no volume; a coordinate is infinite; an option is
-        unknown. (`delone.Voronoi` supports any number of sites in 2-D.)
+        The points span no area, in 3-D no volume, or lie in a flat; a coordinate is infinite; an
+        option is unknown. (`delone.Voronoi` supports any number of sites in 2-D.)
     ValueError
         A coordinate is NaN, the array has a wrong shape or dtype, or an option requires a different
         diagram.
     DimensionError
-        The points have more than three coordinates, or more than two if `furthest_site` is set.
+        The points have more than eight coordinates, or more than two if `furthest_site` is set.
 
     Notes
     -----
@@ -102,6 +108,7 @@ class Voronoi(Incremental):
     """
 
     _what = VORONOI
+    _most = MOST
 
     def __init__(
         self,
@@ -118,9 +125,12 @@ class Voronoi(Incremental):
     def _set(self, points: Floats) -> None:
         mesh = triangulate(points, self.furthest_site, self._what)
         given = mesh.points, None, mesh.simplices, mesh.neighbors, as_workers(None)
+        self._dual: _core.Diagram2 | _core.Diagram3 | DiagramN
+        if mesh.ndim > _SPACE:
+            self._dual = of_mesh(mesh)
+        else:
+            self._dual = _core.voronoi2(*given) if mesh.ndim == 2 else _core.voronoi3(*given)
         self._points, self._mesh = points, mesh
-        self._dual: _core.Diagram2 | _core.Diagram3
-        self._dual = _core.voronoi2(*given) if mesh.ndim == 2 else _core.voronoi3(*given)
         self._forget()
         self.ndim, self.npoints = mesh.ndim, mesh.npoints
 
@@ -139,6 +149,8 @@ class Voronoi(Incremental):
         """The vertices of each ridge; -1, which comes first, where it is unbounded."""
         if isinstance(self._dual, _core.Diagram3):
             return as_lists(*from_the_gap(self._dual.ridge_starts, self._dual.ridge_entries))
+        if isinstance(self._dual, DiagramN):
+            return as_lists(self._dual.ridge_starts, self._dual.ridge_entries)
         found: list[list[int]] = np.maximum(self._dual.ends, -1).tolist()
         return found
 

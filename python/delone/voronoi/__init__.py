@@ -1,10 +1,11 @@
-"""2-D and 3-D Voronoi diagrams, whole or clipped to an outline or polyhedron.
+"""Voronoi diagrams in 2 to 8 dimensions, in 2-D and 3-D also clipped to an outline or polyhedron.
 
-`diagram` has the class, which holds the `cells` of its dimension, `plane` or `space`. `sites` has
-their triangulation, `dual` and `torus` the arrays of 2-D diagrams, `rows` lists of vertices,
-`results` what is returned besides arrays. 2-D cells are cut to an `outline` by `clipping`, with
-`pieces` and `overlay`, 3-D cells (`bodies`) to one of `polyhedra`; `thin` finds the cells that
-rounding has emptied. `line` has the nearest of collinear sites, `centroidal` Lloyd's method.
+`diagram` has the class, which holds the `cells` of its dimension, `plane`, `space` or `higher`.
+`sites` has their triangulation, `dual` and `torus` the arrays of 2-D diagrams, `rows` lists of
+vertices, `results` what is returned besides arrays. 2-D cells are cut to an `outline` by
+`clipping`, with `pieces` and `overlay`, 3-D cells (`bodies`) to one of `polyhedra`; `thin` finds
+the cells that rounding has emptied. `line` has the nearest of collinear sites, `centroidal` Lloyd's
+method.
 """
 
 from delone.voronoi.centroidal import LloydResult, lloyd

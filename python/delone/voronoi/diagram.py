@@ -1,7 +1,7 @@
-"""The class Voronoi: 2-D and 3-D diagrams as immutable arrays.
+"""The class Voronoi: diagrams in 2 to 8 dimensions as immutable arrays.
 
-A diagram holds the cells of its dimension, `plane` or `space`, which have the arrays of the core
-and the same methods. What follows from them is computed on first use and kept.
+A diagram holds the cells of its dimension, `plane`, `space` or `higher`, which have the arrays of
+the core and the same methods. What follows from them is computed on first use and kept.
 """
 
 from __future__ import annotations
@@ -13,13 +13,15 @@ import numpy as np
 from delone._arrays import as_flag, as_workers
 from delone.complex import Stored
 from delone.counting import counted
-from delone.dimension import only
+from delone.dimension import FLAT_OR_SOLID, only
 from delone.errors import InputError
 from delone.georeference import warn_of_degrees
+from delone.higher.dimension import MOST
 from delone.immutable import kept, own_copy, sealed
 from delone.regular import as_weights
 from delone.validation import ValidationReport
 from delone.voronoi import line, thin
+from delone.voronoi.higher import HigherCells
 from delone.voronoi.plane import PlaneCells
 from delone.voronoi.results import Neighbors, Rays, as_site
 from delone.voronoi.rows import as_lists, of_pairs
@@ -36,17 +38,21 @@ if TYPE_CHECKING:
 __all__ = ["Voronoi"]
 
 # By the number of coordinates.
-_CELLS: dict[int, type[PlaneCells | SpaceCells]] = {2: PlaneCells, 3: SpaceCells}
+_CELLS: dict[int, Any] = {2: PlaneCells, 3: SpaceCells} | dict.fromkeys(
+    range(4, MOST + 1), HigherCells
+)
+# What to use instead of measures.
+_WITHOUT = "cells with more coordinates have vertices and ridges, without measures"
 
 
 class Voronoi(Stored):
-    """The Voronoi diagram of 2-D or 3-D points, whole or clipped.
+    """The Voronoi diagram of points with two to eight coordinates; in 2-D and 3-D also clipped.
 
     Parameters
     ----------
-    points : array_like, shape (n, 2) or (n, 3)
+    points : array_like, shape (n, d)
         The sites, finite, in any unit. They are copied, and results are exact for the given
-        doubles.
+        doubles. With more than three coordinates there is no clip, and there are no weights.
     clip : "box", sequence of floats, geometry or polyhedron, optional
         The region to which cells are clipped: ``"box"`` is the bounding box of the sites. Sites may
         lie outside it.
@@ -87,10 +93,10 @@ class Voronoi(Stored):
         The two sites of each ridge, an edge or face between two cells.
     ridge_vertices : list of list of int
         The vertices of each ridge. If the ridge is unbounded, the first is -1. In 3-D they are
-        counter-clockwise as seen from the second site.
+        counter-clockwise as seen from the second site, in more dimensions ascending.
     regions : list of list of int
-        The vertices of each cell, with -1 if it is unbounded: in 2-D counter-clockwise, in 3-D
-        ascending.
+        The vertices of each cell, with -1 if it is unbounded: in 2-D counter-clockwise, in more
+        dimensions ascending.
     point_region : ndarray of int32, shape (n,)
         The cell of each point, as an index into `regions`. Points with the same coordinates share a
         cell. -1 for a site that has no cell because of its weight.
@@ -104,14 +110,17 @@ class Voronoi(Stored):
     DegenerateInputError
         There are no points. Or 3-D points lie in one plane, or there are fewer than four; the error
         is then that of `Delaunay` or `RegularTriangulation`: ``error.plane`` is the triangulation
-        of the plane, and its ``circumcenters`` are the vertices of the diagram in this plane.
+        of the plane, and its ``circumcenters`` are the vertices of the diagram in this plane. Or
+        points with more coordinates lie in a flat, as for `Delaunay`.
     NonFiniteError
         A coordinate or weight is NaN or infinite; ``error.rows`` has the rows.
     ShapeError, DtypeError
-        `points` is not a real array of shape (n, 2) or (n, 3), or there are not as many weights.
+        `points` is not a real array of shape (n, d) with d from 2 to 8, or there are not as many
+        weights.
     InputError
         `clip` has no area or volume, is unbounded, is none of the above, or is invalid; the message
-        says where. Or `periods` do not fit the points or the clip.
+        says where. Or `periods` do not fit the points or the clip. Or there is one of these, or
+        weights, and more than three coordinates.
     LimitError
         There are periods, and a vertex lies beyond the range of doubles; or, with one period, the
         next copy of a site does.
@@ -161,6 +170,10 @@ class Voronoi(Stored):
     compared exactly, whatever their exponents, and the corners of their intersection are rounded
     once. This takes O(k^2) expected time for k half-spaces, about half a second for 300.
 
+    With more than three coordinates a diagram has vertices, ridges and cells, but no measures,
+    clip, rays or pictures. A ridge may have any number of vertices, also one and infinity. The
+    number of vertices grows as that of simplices: ask `delone.estimate` first.
+
     Arrays are read-only and attributes cannot be set; attributes that are not listed above are
     computed on first use and kept. Time is that of the triangulation and O(n) for the rest;
     clipping to an outline adds O(s + c) for its s segments, and the intersection of each of the c
@@ -194,11 +207,13 @@ class Voronoi(Stored):
     <Voronoi of 9 points: 6 vertices, 20 ridges, clipped to a box>
     >>> diagram.cell_volumes[8].round(9), diagram.cell_volumes.sum().round(9)
     (np.float64(36.0), np.float64(216.0))
+    >>> Voronoi([(x, y, z, t) for x in (0, 1) for y in (0, 2) for z in (0, 3) for t in (0, 4, 8)])
+    <Voronoi of 24 points: 2 vertices, 52 ridges>
     """
 
     __slots__ = ("_cells",)
 
-    _cells: PlaneCells | SpaceCells
+    _cells: PlaneCells | SpaceCells | HigherCells
 
     def __init__(
         self,
@@ -214,7 +229,7 @@ class Voronoi(Stored):
         if workers is not None:
             as_workers(workers)
         repair = as_flag(fix, name="fix")
-        own = own_copy(points, ndim=None)
+        own = own_copy(points, ndim=None, most=MOST)
         if periods is None:
             warn_of_degrees(points, own, planar=planar)
         own_weights = None if weights is None else as_weights(weights, len(own))
@@ -225,7 +240,7 @@ class Voronoi(Stored):
         self._refer(points)
 
     @classmethod
-    def _from_cells(cls, cells: PlaneCells | SpaceCells, workers: int | None) -> Self:
+    def _from_cells(cls, cells: PlaneCells | SpaceCells | HigherCells, workers: int | None) -> Self:
         diagram = cls.__new__(cls)
         diagram._hold(cells=cells, workers=workers)
         return diagram
@@ -245,8 +260,9 @@ class Voronoi(Stored):
 
     @classmethod
     def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
-        points, weights = arrays["points"], arrays["weights"]
-        x_y = [None if np.isnan(each) else each for each in arrays["periods"].tolist()]
+        points, weights = arrays["points"], arrays.get("weights", ())
+        periods = arrays.get("periods", np.empty(0)).tolist()
+        x_y = [None if np.isnan(each) else each for each in periods]
         options: dict[str, Any] = {"periods": tuple(x_y) or None}
         if len(weights):
             options["weights"] = weights
@@ -279,7 +295,7 @@ class Voronoi(Stored):
 
     @property
     def ndim(self) -> int:
-        """Number of coordinates, 2 or 3."""
+        """Number of coordinates, 2 to 8."""
         return int(self.points.shape[1])
 
     @property
@@ -328,7 +344,8 @@ class Voronoi(Stored):
     def ridge_vertices(self) -> list[list[int]]:
         """The vertices of each ridge; -1, which comes first, if it is unbounded.
 
-        In 2-D two, in 3-D all around it, counter-clockwise as seen from its second site.
+        In 2-D two, in 3-D all around it, counter-clockwise as seen from its second site, in more
+        dimensions ascending.
         """
         return as_lists(*self.ridge_rows)
 
@@ -362,7 +379,7 @@ class Voronoi(Stored):
     def regions(self) -> list[list[int]]:
         """The vertices of each cell, with -1 if it is unbounded.
 
-        In 2-D counter-clockwise, in 3-D ascending.
+        In 2-D counter-clockwise, in more dimensions ascending.
         """
         return as_lists(*self.region_rows)
 
@@ -387,6 +404,7 @@ class Voronoi(Stored):
         return sealed(np.flatnonzero(self.point_region < 0).astype(np.int32))
 
     @property
+    @only(FLAT_OR_SOLID, "unbounded ridges have -1 among their `ridge_vertices`")
     @kept
     def rays(self) -> Rays:
         """The unbounded ridges, with their origins and directions.
@@ -396,15 +414,15 @@ class Voronoi(Stored):
         ridge has two rows: in the first, its boundary comes from infinity; in the second, it goes
         to infinity.
         """
-        ridge, origin, direction = self._cells.rays()
+        ridge, origin, direction = self._measured.rays()
         return Rays(sealed(ridge), sealed(origin), sealed(direction))
 
     @property
     @kept
     def _left(self) -> Any:
         """The clipped cells; without a clip the whole ones."""
-        found = self._cells.left
-        thin.warn(self._rows_of(self._cells.thin()), self._cells.measure)
+        found = self._measured.left
+        thin.warn(self._rows_of(self._measured.thin()), self._measured.measure)
         return found
 
     def _rows_of(self, cells: NDArray[np.bool_]) -> Indices:
@@ -417,6 +435,7 @@ class Voronoi(Stored):
         return sealed(np.concatenate((measures, fill))[self.point_region])
 
     @property
+    @only(FLAT_OR_SOLID, _WITHOUT)
     @kept
     def thin_cells(self) -> Indices:
         """The rows whose clipped cells are only a few units in the last place wide, (k,).
@@ -425,9 +444,10 @@ class Voronoi(Stored):
         `ThinCellWarning` names the rows when measures, polygons or faces are computed. If a cell
         with weights is empty within the clip, it is unknown whether rounding is the cause.
         """
-        return sealed(self._rows_of(self._cells.thin()))
+        return sealed(self._rows_of(self._measured.thin()))
 
     @property
+    @only(FLAT_OR_SOLID, _WITHOUT)
     @kept
     def cell_areas(self) -> Floats:
         """Areas of the clipped cells, in 3-D of their surfaces, (n,), in the square of the unit.
@@ -458,6 +478,7 @@ class Voronoi(Stored):
         return self._by_row(self._left.volumes)
 
     @property
+    @only(FLAT_OR_SOLID, _WITHOUT)
     @kept
     def cell_centroids(self) -> Floats:
         """Centroids of the clipped cells, (n, d); NaN for unbounded and empty ones."""
@@ -471,6 +492,7 @@ class Voronoi(Stored):
         return sealed(self._left.ridge_sizes())
 
     @property
+    @only(FLAT_OR_SOLID, "`ridge_points` has the pairs of neighbors")
     @kept
     def neighbors(self) -> Neighbors:
         """Sites whose cells share an edge or face, with its length or area, as compressed rows.
@@ -484,6 +506,7 @@ class Voronoi(Stored):
         indptr, indices, beside = of_pairs(pairs, sizes[rows], self.npoints)
         return Neighbors(sealed(indptr), sealed(indices), sealed(beside))
 
+    @only(FLAT_OR_SOLID, "`regions` and `point_region` have the vertices of cells")
     def cell(self, i: int) -> Any:
         """Return the cell of a site.
 
@@ -519,7 +542,7 @@ class Voronoi(Stored):
         region, site = int(self.point_region[row]), int(self.duplicate_of[row])
         indptr, indices, sizes = self.neighbors
         beside = slice(indptr[site], indptr[site + 1])
-        return self._cells.cell(
+        return self._measured.cell(
             region,
             site=site,
             neighbors=indices[beside],
@@ -651,6 +674,7 @@ class Voronoi(Stored):
         own = self.crs if crs is None else crs
         return beside(self.polygons(), data, own)
 
+    @only(FLAT_OR_SOLID, "PyVista has no cells of more dimensions")
     def to_pyvista(self) -> Any:
         """Convert the bounded or clipped cells to a PyVista mesh (extra ``pyvista``).
 
@@ -676,6 +700,7 @@ class Voronoi(Stored):
         """
         return self._with_measures.to_pyvista()
 
+    @only(FLAT_OR_SOLID, "meshio has no cells of more dimensions; use `save`")
     def to_meshio(self) -> Any:
         """Convert the bounded or clipped cells to a mesh of meshio (extra ``mesh``).
 
@@ -703,8 +728,15 @@ class Voronoi(Stored):
     def _with_measures(self) -> PlaneCells | SpaceCells:
         """The cells, after a warning of thin ones."""
         _ = self._left
-        return self._cells
+        return self._measured
 
+    @property
+    def _measured(self) -> PlaneCells | SpaceCells:
+        """The cells, in 2-D and 3-D."""
+        cells: Any = self._cells
+        return cells  # type: ignore[no-any-return]
+
+    @only(FLAT_OR_SOLID, "draw two or three of the columns of its points")
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Draw with matplotlib (extra ``plot``) or, in 3-D, with PyVista (extra ``pyvista``).
 
