@@ -156,7 +156,7 @@ class ConvexHull(Complex):
     [[0.0, 0.0, 0.0], [0.0, 0.0, 2.0], [0.0, 2.0, 2.0], [0.0, 2.0, 0.0]]
     """
 
-    __slots__ = ("_duplicates", "_facet_of", "_polygons", "_starts", "_vertices")
+    __slots__ = ("_duplicates", "_facet_of", "_inside", "_polygons", "_starts", "_vertices")
 
     _ARRAYS = (
         "points",
@@ -164,6 +164,7 @@ class ConvexHull(Complex):
         "neighbors",
         "vertices",
         "facet_of",
+        "inside",
         "polygons",
         "starts",
         "duplicates",
@@ -171,6 +172,8 @@ class ConvexHull(Complex):
 
     _duplicates: Indices
     _facet_of: Indices
+    # From 4-D on, for each simplex a point that is not on its plane.
+    _inside: Indices
     _polygons: Indices
     _starts: Indices
     _vertices: Indices
@@ -186,7 +189,8 @@ class ConvexHull(Complex):
             error = InternalError("the hull of points that span a simplex is flat")
             error.points = own
             raise error
-        self._fill(arrays | {"points": own}, {}, workers)
+        without = {"inside": np.empty(0, dtype=np.int32)}
+        self._fill(without | arrays | {"points": own}, {}, workers)
         self._refer(points)
 
     def validate(self) -> HullReport:
@@ -326,7 +330,7 @@ class ConvexHull(Complex):
         if self.ndim == 2:
             normals = plane.edge_normals(self._points, corners)
         elif self.ndim > 3:
-            normals = higher.normals(self._points, corners, self._vertices)
+            normals = higher.normals(self._points, corners, self._inside[first])
         else:
             normals = space.face_normals(self._points, corners, self._workers)
         with np.errstate(all="ignore"):
@@ -369,7 +373,7 @@ class ConvexHull(Complex):
                 along = np.subtract(*self._points[self._simplices.T])
                 return plane.total(np.hypot(*along.T))
         if self.ndim > 3:
-            surface = self._points, self._simplices, self._vertices, self._workers
+            surface = self._points, self._simplices, self._inside, self._workers
             return plane.total(higher.areas(*surface))
         return plane.total(space.face_areas(self._points, self._simplices, self._workers))
 

@@ -260,7 +260,7 @@ def test_others_refuse_more_dimensions_by_name() -> None:
         lambda: delone.AlphaComplex(mesh),
         lambda: delone.concave_hull(mesh, ratio=0.5),
         lambda: delone.Dynamic(mesh),
-        lambda: delone.Voronoi(mesh.points),
+        lambda: delone.Voronoi(mesh.points, clip="box"),
         lambda: delone.interpolate.CloughTocher(mesh, np.zeros(mesh.npoints)),
         lambda: delone.interpolate.grid(mesh, np.zeros(mesh.npoints), resolution=0.1),
         lambda: delone.io.write_mesh("mesh.vtu", mesh),
