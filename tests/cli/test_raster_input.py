@@ -52,3 +52,29 @@ def test_step_is_for_rasters(survey, command):
     code, _, err = command("volume", survey, "0", "--step", "2")
     assert code == 2
     assert "--step is for rasters" in err
+
+
+def test_windows_and_values_of_empty_cells(ramp, command):
+    with rasterio.open(ramp, "r+") as file:
+        file.nodata = None
+        values = file.read(1)
+        values[0, 0] = -9999
+        file.write(values, 1)
+    code, _, err = command("volume", ramp, "0")
+    assert code == 3
+    assert "--nodata" in err
+    code, out, err = command("volume", ramp, "0", "--nodata", "-9999", "--json")
+    assert code == 0
+    assert json.loads(out)["points"] == 99
+    assert "1 cell without a height left out" in err
+    window = "1006,1984,1012,1990"
+    code, out, _ = command("volume", ramp, ramp, "--window", window, "--json", "--nodata", "nan")
+    assert json.loads(out)["points"] == 9
+    assert command("volume", ramp, "0", "--window", "1,2")[0] == 2
+
+
+def test_windows_are_for_rasters(survey, command):
+    for option, value in (("--window", "0,0,1,1"), ("--nodata", "-1")):
+        code, _, err = command("volume", survey, "0", option, value)
+        assert code == 2
+        assert f"{option} is for rasters" in err

@@ -24,6 +24,7 @@ from delone.cli.surfaces import (
     Duplicates,
     EastingFirst,
     MaxEdge,
+    Nodata,
     Retriangulate,
     SoftBreaklines,
     Step,
@@ -31,6 +32,7 @@ from delone.cli.surfaces import (
     Tolerance,
     Units,
     Voids,
+    Window,
     figures_of,
     print_figures,
     surface,
@@ -104,6 +106,8 @@ def dem(
     tolerance: Tolerance = 0.0,
     chord: Chord = None,
     step: Step = 1,
+    nodata: Nodata = None,
+    window: Window = None,
     columns: Columns = None,
     classes: Classes = None,
     layer: Layer = None,
@@ -171,7 +175,7 @@ def _refuse_for_tiles(given: dict[str, Any], what: str) -> None:
             Exit.USAGE,
         )
     lines = ("bounds", "breaklines", "soft_breaklines", "boundary", "max_edge", "columns")
-    names = (*lines, "classes", "layer", "units", "workers")
+    names = (*lines, "classes", "layer", "units", "workers", "nodata", "window")
     set_ = [name for name in names if given[name] is not None]
     set_ += [name for name in ("duplicates", "crossing") if given[name] != "raise"]
     set_ += [

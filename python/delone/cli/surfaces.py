@@ -40,6 +40,7 @@ __all__ = [
     "Duplicates",
     "EastingFirst",
     "MaxEdge",
+    "Nodata",
     "Retriangulate",
     "SoftBreaklines",
     "Step",
@@ -48,6 +49,7 @@ __all__ = [
     "Tolerance",
     "Units",
     "Voids",
+    "Window",
     "curves_of",
     "figures_of",
     "other_surface",
@@ -103,6 +105,14 @@ Retriangulate = Annotated[
 Step = Annotated[
     int, typer.Option(help="Rasters (.tif, .asc): read only every N-th row and column.")
 ]
+Nodata = Annotated[
+    float | None,
+    typer.Option(help="Rasters: the value of cells without a height; nan if there is none."),
+]
+Window = Annotated[
+    str | None,
+    typer.Option(help="Rasters: read only cells inside of left,bottom,right,top."),
+]
 EastingFirst = Annotated[
     bool, typer.Option("--easting-first", help="Take the first number of LandXML as the easting.")
 ]
@@ -114,6 +124,8 @@ class SurfaceOptions:
 
     chord: float | None
     step: int
+    nodata: float | None
+    window: str | None
     columns: str | None
     classes: str | None
     layer: str | None
@@ -169,8 +181,13 @@ def surface(
     files = (source, *options.inputs(), *others)
     if options.chord is not None and not any(map(_is_drawing, files)):
         raise Failure("--chord is for DXF files, and none is among the inputs", Exit.USAGE)
-    if options.step != 1 and not any(map(is_raster, (source, *others))):
-        raise Failure(f"{source}: --step is for rasters: .tif .tiff .asc", Exit.USAGE)
+    for option, given in (
+        ("--step", options.step != 1),
+        ("--nodata", options.nodata is not None),
+        ("--window", options.window is not None),
+    ):
+        if given and not any(map(is_raster, (source, *others))):
+            raise Failure(f"{source}: {option} is for rasters: .tif .tiff .asc", Exit.USAGE)
     if options.voids and options.max_edge is None:
         raise Failure("--voids needs --max-edge, the longest edge that spans nothing", Exit.USAGE)
     lined: dict[str, Any] = {"max_edge": options.max_edge, "voids": options.voids}
@@ -206,10 +223,9 @@ def other_surface(
     file: Path, options: SurfaceOptions, watch: Stopwatch, say: Callable[[str], None]
 ) -> TIN:
     """Read a surface that is compared with the first one; lines of other files are not for it."""
-    own: dict[str, Any] = {
-        **curves_of(file, options.chord),
-        "step": options.step if is_raster(file) else 1,
-    }
+    own: dict[str, Any] = curves_of(file, options.chord)
+    if not is_raster(file):
+        own |= {"step": 1, "nodata": None, "window": None}
     alone = replace(options, breaklines=None, soft_breaklines=None, boundary=None, **own)
     return surface(file, alone, watch, say)
 
@@ -220,7 +236,24 @@ def _read_raster(source: Path, options: SurfaceOptions) -> PointSet:
     layer = options.layer
     if layer is not None and not layer.isdecimal():
         raise Failure(f"{source}: the layer of a raster is the number of a band", Exit.USAGE)
-    return read_raster(source, band=None if layer is None else int(layer), step=options.step)
+    return read_raster(
+        source,
+        band=None if layer is None else int(layer),
+        step=options.step,
+        bounds=None if options.window is None else _four(options.window),
+        nodata=options.nodata,
+    )
+
+
+def _four(text: str) -> list[float]:
+    """Return the numbers of --window."""
+    try:
+        found = [float(part) for part in text.split(",")]
+    except ValueError:
+        found = []
+    if len(found) != 4:
+        raise Failure(f"--window takes left,bottom,right,top; got {text!r:.80}", Exit.USAGE)
+    return found
 
 
 def _read_surface(source: Path, options: SurfaceOptions) -> SurfaceFile:

@@ -1,4 +1,4 @@
-"""Rasters of heights as points, GeoTIFF and ESRI ASCII grids, with rasterio (extra ``raster``).
+"""Rasters of heights as points: GeoTIFF and ESRI ASCII grids with rasterio (extra ``raster``).
 
 Each cell with a height is a point at its center; GDAL turns rasters whose pixels are points into
 such. Only the driver of the suffix may open a file, and no file beside it is read but the .prj
@@ -11,15 +11,16 @@ import os
 import warnings
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_least
+from delone._arrays import as_least, as_number
 from delone.counting import counted
-from delone.errors import DeloneError, FileFormatError
+from delone.errors import DeloneError, FileFormatError, InputError
 from delone.extras import require
 from delone.io.companions import require_companion
+from delone.io.nodata import as_nodata, is_nodata, require_declared
 from delone.io.pointset import PointSet
 from delone.io.surfacefile import LeftOutWarning
 from delone.io.systems import check_system
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
     from delone._types import Floats
 
-__all__ = ["is_raster", "read_points", "read_raster"]
+__all__ = ["as_bounds", "is_raster", "read_points", "read_raster"]
 
 _DRIVERS = {".tif": "GTiff", ".tiff": "GTiff", ".asc": "AAIGrid"}
 # A triangulation of so many points takes some 10 GB.
@@ -66,6 +67,8 @@ def read_raster(
     *,
     band: int | None = None,
     step: int = 1,
+    bounds: Sequence[float] | None = None,
+    nodata: float | None = None,
     max_points: int = MOST_POINTS,
 ) -> PointSet:
     r"""Read the heights of a raster as points at the centers of its cells.
@@ -78,6 +81,12 @@ def read_raster(
         The band, from 1; needed if there are several.
     step : int, optional
         Read every `step`-th row and column, starting with the first.
+    bounds : sequence of four float, optional
+        Left, bottom, right and top: read only cells whose centers are inside or on the border. Only
+        this part of a file is read, and `max_points` counts its cells.
+    nodata : float, optional
+        The value of cells without a height, in addition to the one that the file declares. NaN says
+        that all values are heights, also those that look like a constant for none.
     max_points : int, optional
         Maximum number of cells to read, including those without a height.
 
@@ -94,7 +103,10 @@ def read_raster(
     FileFormatError
         The file is truncated, not what its suffix says, has no georeference, no such band, complex
         values or no cell with a height; or it has more than `max_points` cells, and the message
-        gives a `step` that is large enough.
+        gives a `step` that is large enough; or cells have a constant such as -9999 that the file
+        does not declare, farther from all other heights than these are apart.
+    InputError
+        `bounds` are not four finite numbers in this order, or contain no cell.
     MissingExtraError
         rasterio is not installed (extra ``raster``).
 
@@ -125,14 +137,18 @@ def read_raster(
     file = Path(path)
     step = as_least(step, 1, name="step")
     most = as_least(max_points, 1, name="max_points")
+    box, empty_value = as_bounds(bounds), as_nodata(nodata)
     wanted = None if band is None else as_least(band, 1, name="band")
     with _opened(file) as raster:
         number = _band(raster, wanted, file)
-        _check_size(raster, number, step, most, file)
-        points, z, empty = _cells(raster, number, step)
+        window = _window(raster, box, step)
+        _check_size(raster, number, window, most, file)
+        points, z, empty = _cells(raster, number, window, box, empty_value)
         crs = None if raster.crs is None else str(raster.crs.to_string())
     check_system(crs, str(file))
     if not len(points):
+        if box is not None and not empty:
+            raise InputError(f"{file}: no center of a cell is inside of bounds={box}")
         raise FileFormatError(f"{file}: no cell has a height")
     if empty:
         message = f"{file}: {counted(empty, 'cell')} without a height left out"
@@ -199,39 +215,107 @@ def _band(raster: Any, band: int | None, path: Path) -> int:
     return number
 
 
-def _check_size(raster: Any, band: int, step: int, most: int, path: Path) -> None:
+def as_bounds(given: Any) -> tuple[float, float, float, float] | None:
+    """Return left, bottom, right and top; None for everything."""
+    if given is None:
+        return None
+    try:
+        left, bottom, right, top = (as_number(each, name="bounds") for each in given)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"bounds must be four numbers: left, bottom, right, top; got {given!r:.60}"
+        ) from None
+    if not (np.isfinite((left, bottom, right, top)).all() and left <= right and bottom <= top):
+        raise InputError(
+            f"bounds must be finite, and left, bottom, right, top in this order; got {given!r:.60}"
+        )
+    return left, bottom, right, top
+
+
+class _Window(NamedTuple):
+    """The rows and columns of a raster that are read."""
+
+    rows: range
+    columns: range
+
+
+def _window(raster: Any, box: tuple[float, ...] | None, step: int) -> _Window:
+    """Return the rows and columns in which centers can be inside of a box."""
+    shape = raster.height, raster.width
+    if box is None:
+        return _Window(*(range(0, count, step) for count in shape))
+    left, bottom, right, top = box
+    a, b, c, d, e, f = (~raster.transform)[:6]
+    corners = [(x, y) for x in (left, right) for y in (bottom, top)]
+    # The places of the corners of the box, along rows and columns.
+    along = [d * x + e * y + f for x, y in corners], [a * x + b * y + c for x, y in corners]
+    found = []
+    for count, places in zip(shape, along, strict=True):
+        # One more on each side: the centers decide. Numbers are cut before they become integers.
+        first, last = (min(max(each, -2.0), count + 2.0) for each in (min(places), max(places)))
+        start, stop = max(0, int(first) - 1), max(0, min(count, int(last) + 2))
+        # The rows and columns of a window are some of those that are read without one.
+        found.append(range(start + -start % step, stop, step))
+    rows, columns = found
+    a, b, c, d, e, f = raster.transform[:6]
+    if b == 0 and d == 0:
+        rows = _inside(rows, e, f, bottom, top)
+        columns = _inside(columns, a, c, left, right)
+    return _Window(rows, columns)
+
+
+def _inside(numbers: range, size: float, origin: float, low: float, high: float) -> range:
+    """Return the rows or columns of an upright raster whose centers are from `low` to `high`."""
+    nodes = size * (np.array(numbers) + 0.5) + origin
+    at = np.flatnonzero((nodes >= low) & (nodes <= high))
+    return numbers[at[0] : at[-1] + 1] if len(at) else numbers[:0]
+
+
+def _check_size(raster: Any, band: int, window: _Window, most: int, path: Path) -> None:
     """Reject what would not fit into memory, before anything is read."""
-    rows, columns = raster.height, raster.width
-    count = -(-rows // step) * -(-columns // step)
+    step = window.rows.step
+    rows, columns = (step * len(each) for each in window)
+    count = len(window.rows) * len(window.columns)
     if count > most:
         least = max(step, int((rows * columns / most) ** 0.5))
         while -(-rows // least) * -(-columns // least) > most:  # ends: one cell is few enough
             least += 1 + least // 1000
         raise FileFormatError(
-            f"{path} has {columns} x {rows} cells, {count} to read, and at most {most} are read "
-            f"(max_points): read every {least}th row and column with step={least} (--step)"
+            f"{path} has {raster.width} x {raster.height} cells, {count} to read, and at most "
+            f"{most} are read (max_points): leave out rows and columns with step={least} "
+            "(--step), or read a part with bounds (--window)"
         )
     high, wide = raster.block_shapes[band - 1]
     size = np.dtype(raster.dtypes[band - 1]).itemsize
-    if max(high * wide, columns) * size > _LARGEST_BLOCK:
+    if max(high * wide, raster.width) * size > _LARGEST_BLOCK:
         raise FileFormatError(f"{path} has blocks of {wide} x {high} cells, too large to read")
 
 
-def _cells(raster: Any, band: int, step: int) -> tuple[Floats, Floats, int]:
+def _cells(
+    raster: Any, band: int, window: _Window, box: tuple[float, ...] | None, nodata: float | None
+) -> tuple[Floats, Floats, int]:
     """Return centers and heights of cells, and the number of cells without a height."""
     scale, offset = raster.scales[band - 1], raster.offsets[band - 1]
     a, b, c, d, e, f = raster.transform[:6]
-    columns = np.arange(0, raster.width, step)
+    columns = np.array(window.columns, dtype=np.int64)
     points, heights, empty = [np.empty((0, 2))], [np.empty(0)], 0
+    across = columns + 0.5
     # Row by row: GDAL keeps the blocks of a row of blocks until it is done.
-    for row in range(0, raster.height, step):
-        read = raster.read(band, window=((row, row + 1), (0, raster.width)), masked=True)
-        values = np.ma.getdata(read)[0, ::step].astype(np.float64)
-        there = ~np.ma.getmaskarray(read)[0, ::step] & np.isfinite(values)
-        across, down = columns[there] + 0.5, row + 0.5
+    for row in window.rows if len(columns) else ():
+        part = (row, row + 1), (int(columns[0]), int(columns[-1]) + 1)
+        read = raster.read(band, window=part, masked=True)
+        values = np.ma.getdata(read)[0, :: window.columns.step]
+        without = np.ma.getmaskarray(read)[0, :: window.columns.step]
+        there = ~without & np.isfinite(values) & ~is_nodata(values, nodata)
+        down = row + 0.5
         x, y = a * across + (b * down + c), d * across + (e * down + f)
-        points.append(np.column_stack((x, y)))
-        known = values[there]
-        heights.append(known if (scale, offset) == (1, 0) else known * scale + offset)
+        if box is not None:
+            inside = (x >= box[0]) & (x <= box[2]) & (y >= box[1]) & (y <= box[3])
+            there, x, y = there[inside], x[inside], y[inside]
+            values = values[inside]
+        points.append(np.column_stack((x, y))[there])
+        heights.append(values[there].astype(np.float64))
         empty += int(len(there) - there.sum())
-    return np.concatenate(points), np.concatenate(heights), empty
+    z = np.concatenate(heights)
+    require_declared(z, nodata, str(raster.name))
+    return np.concatenate(points), z if (scale, offset) == (1, 0) else z * scale + offset, empty

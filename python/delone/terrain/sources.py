@@ -16,6 +16,8 @@ from delone.triangulation import HullTiling
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from delone._types import Floats
+
 __all__ = ["Sources"]
 
 
@@ -43,6 +45,8 @@ class Sources(HullTiling):
         max_triangles: int | None = None,
         band: int | None = None,
         step: int = 1,
+        bounds: Sequence[float] | None = None,
+        nodata: float | None = None,
         crs: Any = None,
         **options: Any,
     ) -> Self:
@@ -57,6 +61,11 @@ class Sources(HullTiling):
             As for `simplify`; without lines, the points that are left out are never triangulated.
         band, step : int, optional
             Of a file: as for `delone.io.read_raster`.
+        bounds : sequence of four float, optional
+            Left, bottom, right and top: only cells whose centers are inside or on the border.
+        nodata : float, optional
+            The value of cells without a height, besides NaN and the one that a file declares; NaN
+            if all values are heights.
         crs : optional
             As for `from_points`.
         **options
@@ -71,7 +80,9 @@ class Sources(HullTiling):
         ------
         InputError
             `dem` is not a raster with one height in each cell, or `band` or `step` are given for
-            one that is not a file; otherwise as for `from_points` and `simplify`.
+            one that is not a file; or cells have a constant such as -9999, farther from all other
+            heights than these are apart, and `nodata` is not given; otherwise as for `from_points`
+            and `simplify`.
         FileFormatError, MissingExtraError, OSError
             As for `delone.io.read_raster`.
 
@@ -91,13 +102,13 @@ class Sources(HullTiling):
         if isinstance(dem, str | os.PathLike):
             from delone.io import read_raster
 
-            nodes = read_raster(dem, band=band, step=step)
+            nodes = read_raster(dem, band=band, step=step, bounds=bounds, nodata=nodata)
         else:
             if band is not None or step != 1:
                 raise InputError("band and step are for files of rasters: give a path, or a slice")
             values, x, y = slopes.cells_of(dem)
             grid = np.stack((*np.meshgrid(x, y), values), axis=-1).reshape(-1, 3)
-            nodes = grid[~np.isnan(grid[:, 2])]
+            nodes = _known(grid, bounds, nodata)
             distinct = len(np.unique(x)) == len(x) and len(np.unique(y)) == len(y)
         if max_error is None and max_triangles is None:
             return cls._of_points(nodes, crs, options)
@@ -221,3 +232,19 @@ class Sources(HullTiling):
             surface.source,
         )
         return cls._of_points(surface.points, options.pop("crs", None), options)
+
+
+def _known(grid: Floats, bounds: Any, nodata: Any) -> Floats:
+    """Return the nodes with a height, (n, 3), inside of bounds."""
+    from delone.io.dem import as_bounds
+    from delone.io.nodata import as_nodata, is_nodata, require_declared
+
+    box, empty = as_bounds(bounds), as_nodata(nodata)
+    if box is not None:
+        x, y = grid[:, 0], grid[:, 1]
+        grid = grid[(x >= box[0]) & (x <= box[2]) & (y >= box[1]) & (y <= box[3])]
+        if not len(grid):
+            raise InputError(f"no node of the raster is inside of bounds={box}")
+    found = grid[~(np.isnan(grid[:, 2]) | is_nodata(grid[:, 2], empty))]
+    require_declared(found[:, 2], empty, "the raster", file=False)
+    return found
