@@ -78,3 +78,18 @@ def test_windows_are_for_rasters(survey, command):
         code, _, err = command("volume", survey, "0", option, value)
         assert code == 2
         assert f"{option} is for rasters" in err
+
+
+def test_netcdf(ramp, command, tmp_path):
+    from delone.interpolate import Grid
+    from delone.io import write_raster
+
+    path = tmp_path / "ramp.nc"
+    nodes = np.arange(10.0)
+    write_raster(path, Grid(np.tile(nodes, (10, 1)), nodes, nodes), crs="EPSG:28992", name="h")
+    for more in ((), ("--layer", "h"), ("--window", "0,0,9,9")):
+        code, out, err = command("volume", path, "0", "--json", *more)
+        assert code == 0, err
+        assert json.loads(out)["cut"] == pytest.approx(81 * 4.5)
+    code, out, _ = command("volume", path, path, "--json", "--step", "3")
+    assert (code, json.loads(out)["points"]) == (0, 16)

@@ -26,6 +26,7 @@ from delone.io import (
     read_surface,
 )
 from delone.io.dem import is_raster
+from delone.io.netcdf import is_netcdf
 from delone.io.registry import holds_surface
 from delone.terrain import TIN
 
@@ -103,7 +104,7 @@ Retriangulate = Annotated[
     ),
 ]
 Step = Annotated[
-    int, typer.Option(help="Rasters (.tif, .asc): read only every N-th row and column.")
+    int, typer.Option(help="Rasters (.tif, .asc, .nc): read only every N-th row and column.")
 ]
 Nodata = Annotated[
     float | None,
@@ -187,7 +188,7 @@ def surface(
         ("--window", options.window is not None),
     ):
         if given and not any(map(is_raster, (source, *others))):
-            raise Failure(f"{source}: {option} is for rasters: .tif .tiff .asc", Exit.USAGE)
+            raise Failure(f"{source}: {option} is for rasters: .tif .tiff .asc .nc", Exit.USAGE)
     if options.voids and options.max_edge is None:
         raise Failure("--voids needs --max-edge, the longest edge that spans nothing", Exit.USAGE)
     lined: dict[str, Any] = {"max_edge": options.max_edge, "voids": options.voids}
@@ -234,11 +235,12 @@ def _read_raster(source: Path, options: SurfaceOptions) -> PointSet:
     if options.columns is not None or options.classes is not None:
         raise Failure(f"{source}: rasters have neither columns nor classes", Exit.USAGE)
     layer = options.layer
-    if layer is not None and not layer.isdecimal():
+    named = is_netcdf(source)
+    if layer is not None and not (named or layer.isdecimal()):
         raise Failure(f"{source}: the layer of a raster is the number of a band", Exit.USAGE)
     return read_raster(
         source,
-        band=None if layer is None else int(layer),
+        band=layer if layer is None or named else int(layer),
         step=options.step,
         bounds=None if options.window is None else _four(options.window),
         nodata=options.nodata,

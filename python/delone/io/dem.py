@@ -1,4 +1,4 @@
-"""Rasters of heights as points: GeoTIFF and ESRI ASCII grids with rasterio (extra ``raster``).
+"""Rasters of heights as points: GeoTIFF and ESRI ASCII grids with rasterio, NetCDF with xarray.
 
 Each cell with a height is a point at its center; GDAL turns rasters whose pixels are points into
 such. Only the driver of the suffix may open a file, and no file beside it is read but the .prj
@@ -19,7 +19,9 @@ from delone._arrays import as_least, as_number
 from delone.counting import counted
 from delone.errors import DeloneError, FileFormatError, InputError
 from delone.extras import require
+from delone.georeference import caller_level
 from delone.io.companions import require_companion
+from delone.io.netcdf import is_netcdf, read_heights
 from delone.io.nodata import as_nodata, is_nodata, require_declared
 from delone.io.pointset import PointSet
 from delone.io.surfacefile import LeftOutWarning
@@ -48,7 +50,7 @@ _OPTIONS = {
 
 def is_raster(path: Path) -> bool:
     """Return whether the suffix is that of a raster which `read_raster` reads."""
-    return path.suffix.lower() in _DRIVERS
+    return path.suffix.lower() in _DRIVERS or is_netcdf(path)
 
 
 def read_points(
@@ -57,15 +59,17 @@ def read_points(
     """Read the cells of a raster; see `delone.io.read_points`. A layer is a band."""
     if columns is not None or attributes:
         raise FileFormatError(f"{path}: rasters have heights of cells, and no columns to choose")
-    if layer is not None and not (layer.isascii() and layer.isdecimal() and len(layer) < 6):
+    if layer is None or is_netcdf(path):
+        return read_raster(path, band=layer)
+    if not (layer.isascii() and layer.isdecimal() and len(layer) < 6):
         raise FileFormatError(f"{path}: the layers of a raster are bands: 1, 2, ...")
-    return read_raster(path, band=None if layer is None else int(layer))
+    return read_raster(path, band=int(layer))
 
 
 def read_raster(
     path: str | os.PathLike[str],
     *,
-    band: int | None = None,
+    band: int | str | None = None,
     step: int = 1,
     bounds: Sequence[float] | None = None,
     nodata: float | None = None,
@@ -76,9 +80,10 @@ def read_raster(
     Parameters
     ----------
     path : str or path-like
-        GeoTIFF (.tif, .tiff) or ESRI ASCII grid (.asc).
-    band : int, optional
-        The band, from 1; needed if there are several.
+        GeoTIFF (.tif, .tiff), ESRI ASCII grid (.asc), or NetCDF (.nc) with coordinates of rows and
+        of columns.
+    band : int or str, optional
+        The band, from 1, or the name of the variable of a NetCDF file; needed if there are several.
     step : int, optional
         Read every `step`-th row and column, starting with the first.
     bounds : sequence of four float, optional
@@ -93,7 +98,8 @@ def read_raster(
     Returns
     -------
     PointSet
-        Points row by row from the top, with heights `z` and the reference system of the file.
+        Points row by row in the order of the file, in GeoTIFF and ASCII grids from the top, with
+        heights `z` and the reference system of the file.
         Scale and offset of the band, if any, are applied.
 
     Raises
@@ -108,7 +114,8 @@ def read_raster(
     InputError
         `bounds` are not four finite numbers in this order, or contain no cell.
     MissingExtraError
-        rasterio is not installed (extra ``raster``).
+        rasterio (extra ``raster``) or, for NetCDF, xarray and netCDF4 (extra ``xarray``) are not
+        installed.
 
     Warns
     -----
@@ -138,6 +145,10 @@ def read_raster(
     step = as_least(step, 1, name="step")
     most = as_least(max_points, 1, name="max_points")
     box, empty_value = as_bounds(bounds), as_nodata(nodata)
+    if is_netcdf(file):
+        return _of_netcdf(file, band, step, box, empty_value, most)
+    if isinstance(band, str):
+        raise InputError(f"{file}: names of variables are for NetCDF; band is a number from 1 on")
     wanted = None if band is None else as_least(band, 1, name="band")
     with _opened(file) as raster:
         number = _band(raster, wanted, file)
@@ -150,10 +161,35 @@ def read_raster(
         if box is not None and not empty:
             raise InputError(f"{file}: no center of a cell is inside of bounds={box}")
         raise FileFormatError(f"{file}: no cell has a height")
-    if empty:
-        message = f"{file}: {counted(empty, 'cell')} without a height left out"
-        warnings.warn(message, LeftOutWarning, stacklevel=3)
+    _tell_empty(file, empty)
     return PointSet(points=points, z=z, crs=crs, source=str(file))
+
+
+def _of_netcdf(  # noqa: PLR0917
+    path: Path,
+    name: int | str | None,
+    step: int,
+    box: tuple[float, ...] | None,
+    nodata: float | None,
+    most: int,
+) -> PointSet:
+    """Read the nodes of a variable that have a height."""
+    if name is not None and not isinstance(name, str):
+        raise InputError(f"{path}: band must be the name of a variable of NetCDF, got {name!r:.40}")
+    found = read_heights(path, name, step, box, nodata, most)
+    nodes = np.stack(np.meshgrid(found.x, found.y), axis=-1).reshape(-1, 2)
+    z = found.values.ravel()
+    there = np.isfinite(z)
+    if not there.any():
+        raise FileFormatError(f"{path}: no node has a height")
+    _tell_empty(path, int(len(z) - there.sum()))
+    return PointSet(points=nodes[there], z=z[there], crs=found.crs, source=str(path))
+
+
+def _tell_empty(path: Path, empty: int) -> None:
+    if empty:
+        message = f"{path}: {counted(empty, 'cell')} without a height left out"
+        warnings.warn(message, LeftOutWarning, stacklevel=caller_level())
 
 
 @contextmanager

@@ -67,7 +67,7 @@ _READERS = {
     **dict.fromkeys(_LANDXML, "landxml"),
     ".dxf": "dxf",
     ".off": "off",
-    **dict.fromkeys((".tif", ".tiff", ".asc"), "dem"),
+    **dict.fromkeys((".tif", ".tiff", ".asc", ".nc"), "dem"),
 }
 _WRITERS = {
     **dict.fromkeys(_MESHES, "mesh"),
@@ -182,7 +182,7 @@ def read_points(
     path : str or path-like
         CSV, TSV, TXT, XYZ, PTS, DAT or GeoJSON (these also .gz, .xz, .bz2), npy, npz, LAS, LAZ,
         GeoPackage, Shapefile, FlatGeobuf, Parquet, GeoParquet, Arrow, Feather, LandXML, DXF, the
-        cells of GeoTIFF and ESRI ASCII grids (`read_raster`), or the vertices of a mesh.
+        cells of GeoTIFF, ESRI ASCII grids and NetCDF (`read_raster`), or the vertices of a mesh.
     columns : sequence of str or int, optional
         Columns of x, y and (optionally) z, by name or by number from 0. By default columns are
         recognized by their names; without names the first two or three are used, unless the first

@@ -43,7 +43,7 @@ class Sources(HullTiling):
         *,
         max_error: float | None = None,
         max_triangles: int | None = None,
-        band: int | None = None,
+        band: int | str | None = None,
         step: int = 1,
         bounds: Sequence[float] | None = None,
         nodata: float | None = None,
@@ -55,11 +55,13 @@ class Sources(HullTiling):
         Parameters
         ----------
         dem : delone.interpolate.Grid, xarray.DataArray, str or path-like
-            Heights at the centers of cells, or a file of them: GeoTIFF or ESRI ASCII grid. Cells
-            without a value (NaN, in files nodata) are left out.
+            Heights at the centers of cells, or a file of them: GeoTIFF, ESRI ASCII grid or NetCDF.
+            Cells without a value (NaN, in files nodata) are left out. Of a DataArray the two
+            dimensions are x and y, by the conventions of CF, in either order, and its reference
+            system is that of its grid mapping.
         max_error, max_triangles : optional
             As for `simplify`; without lines, the points that are left out are never triangulated.
-        band, step : int, optional
+        band, step : optional
             Of a file: as for `delone.io.read_raster`.
         bounds : sequence of four float, optional
             Left, bottom, right and top: only cells whose centers are inside or on the border.
@@ -106,10 +108,8 @@ class Sources(HullTiling):
         else:
             if band is not None or step != 1:
                 raise InputError("band and step are for files of rasters: give a path, or a slice")
-            values, x, y = slopes.cells_of(dem)
-            grid = np.stack((*np.meshgrid(x, y), values), axis=-1).reshape(-1, 3)
-            nodes = _known(grid, bounds, nodata)
-            distinct = len(np.unique(x)) == len(x) and len(np.unique(y)) == len(y)
+            nodes, distinct, declared = _nodes_of(dem, bounds, nodata)
+            crs = building.system_of(crs, declared)
         if max_error is None and max_triangles is None:
             return cls._of_points(nodes, crs, options)
         goal: dict[str, Any] = {"max_error": max_error, "max_triangles": max_triangles}
@@ -234,17 +234,25 @@ class Sources(HullTiling):
         return cls._of_points(surface.points, options.pop("crs", None), options)
 
 
-def _known(grid: Floats, bounds: Any, nodata: Any) -> Floats:
-    """Return the nodes with a height, (n, 3), inside of bounds."""
+def _nodes_of(dem: Any, bounds: Any, nodata: Any) -> tuple[Floats, bool, str | None]:
+    """Return the nodes with a height, (n, 3), whether they are distinct, and their system."""
     from delone.io.dem import as_bounds
+    from delone.io.netcdf import heights_of_array, is_array
     from delone.io.nodata import as_nodata, is_nodata, require_declared
 
-    box, empty = as_bounds(bounds), as_nodata(nodata)
+    box, empty, crs = as_bounds(bounds), as_nodata(nodata), None
+    if is_array(dem):
+        values, x, y, crs = heights_of_array(dem, box, empty)
+    else:
+        values, x, y = slopes.cells_of(dem)
+    grid = np.stack((*np.meshgrid(x, y), values), axis=-1).reshape(-1, 3)
     if box is not None:
-        x, y = grid[:, 0], grid[:, 1]
-        grid = grid[(x >= box[0]) & (x <= box[2]) & (y >= box[1]) & (y <= box[3])]
+        left, bottom, right, top = box
+        grid = grid[(grid[:, 0] >= left) & (grid[:, 0] <= right)]
+        grid = grid[(grid[:, 1] >= bottom) & (grid[:, 1] <= top)]
         if not len(grid):
             raise InputError(f"no node of the raster is inside of bounds={box}")
     found = grid[~(np.isnan(grid[:, 2]) | is_nodata(grid[:, 2], empty))]
-    require_declared(found[:, 2], empty, "the raster", file=False)
-    return found
+    if not is_array(dem):
+        require_declared(found[:, 2], empty, "the raster", file=False)
+    return found, len(np.unique(x)) == len(x) and len(np.unique(y)) == len(y), crs
