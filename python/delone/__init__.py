@@ -53,6 +53,7 @@ from delone.errors import (
     ShapeError,
 )
 from delone.georeference import CRSWarning, GeographicWarning
+from delone.memory import TooLargeError
 from delone.plane.quality import Quality
 from delone.space.quality import TetQuality
 from delone.units import UnitsWarning
@@ -159,6 +160,7 @@ __all__ = [
     "TetMesh",
     "TetMeshReport",
     "TetQuality",
+    "TooLargeError",
     "UnitsWarning",
     "ValidationReport",
     "Voronoi",

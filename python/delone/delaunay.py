@@ -14,6 +14,7 @@ from delone.counting import counted
 from delone.errors import DegenerateInputError, DtypeError, InputError, InternalError
 from delone.georeference import warn_of_degrees
 from delone.higher.dimension import MOST
+from delone.higher.size import require_room
 from delone.immutable import own_copy
 from delone.space.plane import plane_of
 from delone.triangulation import PointTriangulation
@@ -76,6 +77,9 @@ class Delaunay(PointTriangulation):
     planar : bool, optional
         Treat longitudes and latitudes as coordinates of a plane; otherwise points known to be in
         degrees (from a reference system or column names) cause a warning.
+    max_bytes : int, optional
+        From 4-D on: the most memory that the triangulation may take; by default what is free. If
+        samples predict more, `TooLargeError` is raised before the work. See Notes.
 
     Attributes
     ----------
@@ -111,6 +115,8 @@ class Delaunay(PointTriangulation):
     LimitError
         There are more than 2**28 points in 2-D or 2**27 in 3-D, more than 2**30 tetrahedra, or more
         than 2**28 simplices in higher dimensions. `delone.distributed` has no such limit in 2-D.
+    TooLargeError
+        From 4-D on: the simplices would not fit into memory, or `max_bytes`; it is a MemoryError.
     MemoryError
         There is not enough memory.
     KeyboardInterrupt
@@ -133,7 +139,10 @@ class Delaunay(PointTriangulation):
 
     The number of simplices grows fast with the number of dimensions: uniform points have 2
     triangles each, 6.8 tetrahedra, and about 30, 150 and 600 simplices in 4-D, 5-D and 6-D, and
-    3,700 in 8-D. From 4-D on there are no pictures, exports or measures of shape.
+    3,700 in 8-D. From 4-D on there are no pictures, exports or measures of shape. If uniform points
+    would take more than an eighth of the memory, samples of up to half of the points are
+    triangulated first, in a few seconds, and their sizes extrapolated. The prediction may be off
+    by a factor of two. `delone.estimate` predicts any triangulation more precisely.
 
     Names, dtypes and meanings are those of ``scipy.spatial.Delaunay``. All arrays are read-only,
     attributes cannot be set, and ``copy.copy`` and ``copy.deepcopy`` return the object itself.
@@ -198,6 +207,7 @@ class Delaunay(PointTriangulation):
         method: str = "auto",
         workers: int | None = None,
         planar: bool = False,
+        max_bytes: int | None = None,
         **unknown: Unpack[_Elsewhere],
     ) -> None:
         if unknown:
@@ -206,6 +216,7 @@ class Delaunay(PointTriangulation):
         warn_of_degrees(points, own, planar=planar)
         # Few points are one task, and to count cores takes as long as some of them.
         threads = 1 if workers is None and len(own) < _FEW else as_workers(workers)
+        _require_room(own, max_bytes)
         methods = _METHODS[own.shape[1] > 2]
         if not isinstance(method, str) or method not in methods:
             names = ", ".join(map(repr, methods))
@@ -269,6 +280,13 @@ def _refuse_options(unknown: Mapping[str, Any]) -> None:
         if name in _INSTEAD:
             raise DtypeError(f"delone.Delaunay does not accept {name}: {_INSTEAD[name]}")
         raise TypeError(f"Delaunay() got an unexpected keyword argument {name!r:.80}")
+
+
+def _require_room(points: NDArray[np.float64], max_bytes: int | None) -> None:
+    if points.shape[1] > 3:
+        require_room(points, max_bytes)
+    elif max_bytes is not None:
+        raise InputError("max_bytes is only available from 4-D on, where simplices are many")
 
 
 def _triangles(points: NDArray[np.float64], method: str, workers: int) -> _core.Triangulation:

@@ -14,6 +14,7 @@ from delone.counting import grouped
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError
 from delone.higher.dimension import MOST
+from delone.higher.size import peak_bytes, sample_size
 from delone.immutable import own_copy
 
 if TYPE_CHECKING:
@@ -29,8 +30,6 @@ _SHARES = 64, 8
 _FEW = 8
 # Bytes of a row number, and of a coordinate.
 _ROW, _COORDINATE = 4, 8
-# In the core a simplex has a record, and the array of records doubles.
-_GROWTH = 2.5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,10 +97,10 @@ def estimate(points: ArrayLike, *, seed: int = 0) -> Estimate:
     Notes
     -----
     Two random samples are triangulated, of a 64th and an eighth of the points, which takes less
-    than an eighth of the time of all. The number of simplices for each point is a - b n^(-1/d), as
-    points at the hull have fewer; a and b fit the samples. Points on a surface or in clusters may
-    follow another law: then the estimate is off by a factor, not by an order of magnitude. Time is
-    that of the larger sample for each simplex.
+    than an eighth of the time of all, or of fewer if these would take seconds. The number of
+    simplices for each point is a - b n^(-1/d), as points at the hull have fewer; a and b fit the
+    samples. Points on a surface or in clusters may follow another law: then the estimate is off by
+    a factor, not by an order of magnitude. Time is that of the larger sample for each simplex.
 
     Examples
     --------
@@ -122,6 +121,7 @@ def estimate(points: ArrayLike, *, seed: int = 0) -> Estimate:
     for share in _SHARES:
         least = _FEW * (d + 1)
         size = min(n, max(n // share, least * (1 if share == _SHARES[0] else 4)))
+        size = size if size == n else sample_size(size, d)
         start = time.perf_counter()
         made = _sampled(own, order, size)
         # Time follows the simplices; a call takes some by itself, which the sample outweighs.
@@ -129,8 +129,7 @@ def estimate(points: ArrayLike, *, seed: int = 0) -> Estimate:
         counts.append((size, made.nsimplex / size))
     simplices = _extrapolated(counts, n, d)
     result = simplices * 2 * _ROW * (d + 1) + n * d * _COORDINATE
-    record = _COORDINATE * (d + 2) + 2 * _ROW * (d + 2)
-    peak = result + int(_GROWTH * simplices * record)
+    peak = peak_bytes(simplices, d) + n * d * _COORDINATE
     return Estimate(
         npoints=n,
         ndim=d,

@@ -14,11 +14,12 @@ from delone.complex import Complex
 from delone.counting import counted
 from delone.delaunay import Delaunay
 from delone.dimension import only
-from delone.errors import InternalError
+from delone.errors import InputError, InternalError
 from delone.extras import require
 from delone.higher import hull as higher
 from delone.higher.dimension import MOST
 from delone.higher.hull import hull_arrays
+from delone.higher.size import require_room
 from delone.immutable import kept, own_copy, sealed
 from delone.plane import geometry as plane
 from delone.plane.topology import vertex_to_simplex
@@ -92,6 +93,9 @@ class ConvexHull(Complex):
     workers : int, optional
         Maximum number of threads for measures; by default one per core. The hull itself uses one
         thread.
+    max_bytes : int, optional
+        From 4-D on: the most memory that the hull may take, as for `Delaunay`; by default what is
+        free.
 
     Attributes
     ----------
@@ -122,6 +126,8 @@ class ConvexHull(Complex):
         A coordinate is NaN or infinite.
     ShapeError, DtypeError
         `points` is not a real array of shape (n, d), with d from 2 to 8.
+    TooLargeError
+        From 4-D on: the facets would not fit into memory, or `max_bytes`; it is a MemoryError.
     MemoryError
         There is not enough memory.
     KeyboardInterrupt
@@ -178,9 +184,15 @@ class ConvexHull(Complex):
     _starts: Indices
     _vertices: Indices
 
-    def __init__(self, points: ArrayLike, *, workers: int | None = None) -> None:
+    def __init__(
+        self, points: ArrayLike, *, workers: int | None = None, max_bytes: int | None = None
+    ) -> None:
         own = own_copy(points, ndim=None, most=MOST)
         require_finite(own)
+        if own.shape[1] > 3:
+            require_room(own, max_bytes, hull=True)
+        elif max_bytes is not None:
+            raise InputError("max_bytes is only available from 4-D on, where facets are many")
         if workers is not None:
             as_workers(workers)
         arrays = _ARRAYS_OF.get(own.shape[1], hull_arrays)(own)

@@ -31,6 +31,7 @@ CASES = [
     errors.BudgetExceededError("m", limit=10, found=12, segments=[3, 1], place=(0.5, 2.0)),
     errors.BusyError("m", pid=7, host="here"),
     errors.LimitError("m"),
+    delone.TooLargeError("m", simplices=5, nbytes=700, limit=600),
     errors.InternalError("m"),
     errors.OutputError("m"),
     errors.OutsideError("m", place=(1.0, 2.5)),
@@ -42,7 +43,7 @@ CASES = [
 
 
 def test_every_public_class_is_among_the_cases() -> None:
-    assert {type(error).__name__ for error in CASES} == set(errors.__all__)
+    assert {type(error).__name__ for error in CASES} == {*errors.__all__, "TooLargeError"}
 
 
 @pytest.mark.parametrize("error", CASES, ids=lambda error: type(error).__name__)
@@ -75,6 +76,7 @@ def test_constructs_from_a_message_alone(error: errors.DeloneError) -> None:
         (errors.BudgetExceededError, RuntimeError),
         (errors.BusyError, RuntimeError),
         (errors.LimitError, ValueError),
+        (delone.TooLargeError, MemoryError),
         (errors.InternalError, RuntimeError),
         (errors.OutputError, OSError),
         (errors.OutsideError, ValueError),

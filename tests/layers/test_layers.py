@@ -29,7 +29,7 @@ CRATES = ROOT / "crates"
 # the import is and whatever it is for.
 PYTHON: tuple[set[str], ...] = (
     {"_core", "_types", "errors", "blocks", "counting", "decimals", "duplicates", "renames"},
-    {"_masks", "atomic", "bounded", "extras"},
+    {"_masks", "atomic", "bounded", "extras", "memory"},
     {"georeference"},
     {"_arrays", "units"},
     {"_values", "immutable", "predicates"},

@@ -1,0 +1,149 @@
+"""How large triangulations and hulls in four to eight dimensions become, before they are made.
+
+Two bounds need nothing but the number of points. Uniform points have a known number of simplices
+each (J. Møller, "Lectures on random Voronoi tessellations", 1994), and no points have more facets
+than those of a cyclic polytope (P. McMullen, "The maximum numbers of faces of a convex polytope",
+1970). If the smaller of them is a small share of the memory, nothing else happens. Otherwise two
+samples are triangulated, and their sizes are extrapolated.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_number
+from delone.counting import gigabytes, grouped
+from delone.errors import DegenerateInputError, InputError
+from delone.memory import TooLargeError, free_memory
+
+if TYPE_CHECKING:
+    from typing import Any
+
+    from delone._types import Floats
+
+__all__ = ["peak_bytes", "require_room", "sample_size"]
+
+# Bytes of a row number, and of a coordinate.
+_ROW, _COORDINATE = 4, 8
+# In the core a simplex has a record, and the array of records doubles.
+_GROWTH = 2.5
+# Work that is expected to take less of the limit is not looked at.
+_SMALL = 1 / 8
+# Samples have up to half of the points, and end with one of so many simplices: in a few seconds.
+_MOST = 100_000
+# Samples of which more are expected are not made.
+_PREDICTED = 1_000_000
+# The fewest points of a sample for each corner of a simplex.
+_FEW = 3
+
+
+def peak_bytes(simplices: int, d: int) -> int:
+    """Return the memory of so many simplices while they are made, with the result."""
+    record = _COORDINATE * (d + 2) + 2 * _ROW * (d + 2)
+    return int(simplices * (_GROWTH * record + 2 * _ROW * (d + 1)))
+
+
+def require_room(points: Floats, max_bytes: int | None, *, hull: bool = False) -> None:
+    """Raise TooLargeError if a triangulation, or a hull, would take more than `max_bytes`.
+
+    By default that is the free memory.
+    """
+    n, d = points.shape
+    limit = free_memory() if max_bytes is None else _as_bytes(max_bytes)
+    if limit is None or peak_bytes(_expected(n, d, hull=hull), d) <= _SMALL * limit:
+        return
+    found = _extrapolated(points, hull=hull)
+    if found is None or peak_bytes(found, d) <= limit:
+        return
+    what = ("facets", "hull") if hull else ("simplices", "triangulation")
+    needed = peak_bytes(found, d)
+    known = f"max_bytes is {gigabytes(limit)}" if max_bytes else f"{gigabytes(limit)} is free"
+    advice = (
+        "use fewer points or coordinates"
+        if hull
+        else "use fewer points or coordinates, or a method that needs no simplices, such as "
+        "delone.interpolate.Nearest"
+    )
+    raise TooLargeError(
+        f"the {what[1]} of {grouped(n)} points in {d}-D would have about {grouped(found)} "
+        f"{what[0]} and take {gigabytes(needed)}, but {known}; {advice}, or pass max_bytes",
+        simplices=found,
+        nbytes=needed,
+        limit=limit,
+    )
+
+
+def _as_bytes(max_bytes: Any) -> int:
+    value = as_number(max_bytes, name="max_bytes")
+    if not value > 0:
+        raise InputError(f"max_bytes must be positive, got {max_bytes!r:.80}")
+    return int(min(value, 2.0**63))
+
+
+def sample_size(size: int, d: int, *, hull: bool = False) -> int:
+    """Return a number of points, at most `size`, that are triangulated in some seconds."""
+    # Ends: few points have few simplices.
+    while size > _FEW * (d + 1) and _expected(size, d, hull=hull) > _PREDICTED:
+        size = size * 3 // 4
+    return size
+
+
+def _expected(n: int, d: int, *, hull: bool) -> int:
+    """Return the number of simplices of uniform points, or that of any points if it is smaller."""
+    # Points on a sphere have as many facets as points in one dimension less have simplices.
+    typical = n * _per_point(d - 1 if hull else d)
+    return int(min(typical, _cyclic(n, d if hull else d + 1)))
+
+
+def _per_point(d: int) -> float:
+    """Return the simplices for each of many uniform points in d dimensions."""
+    logarithm = (
+        (d + 1) * math.log(2)
+        + (d - 1) / 2 * math.log(math.pi)
+        + math.lgamma((d * d + 1) / 2)
+        - math.lgamma(d * d / 2)
+        + d * (math.lgamma((d + 2) / 2) - math.lgamma((d + 1) / 2))
+    )
+    return math.exp(logarithm) / (d * d * (d + 1))
+
+
+def _cyclic(n: int, d: int) -> int:
+    """Return the number of facets of a cyclic polytope."""
+    if d % 2:
+        return 2 * math.comb(max(0, n - (d + 1) // 2), d // 2)
+    return math.comb(n - d // 2, d // 2) + math.comb(max(0, n - d // 2 - 1), d // 2 - 1)
+
+
+def _extrapolated(points: Floats, *, hull: bool) -> int | None:
+    """Return the number of simplices by those of samples; None if there are few points, or flat.
+
+    From a sample of half as many points to a sample, numbers grow by a power of two. It falls
+    toward one with the share of points near the boundary, which is n^(-1/d).
+    """
+    n, d = points.shape
+    order = np.random.default_rng(0).permutation(n)
+    # Half of the points, a quarter and so on, as long as these are enough: the last first.
+    sizes = [n // 2**k for k in range(1, n.bit_length()) if n // 2**k >= _FEW * (d + 1)][::-1]
+    counts: list[int] = []
+    for size in sizes:
+        sample = points[order[:size]]
+        try:
+            made = _core.hull_n(sample) if hull else _core.triangulate_n(sample)
+        except DegenerateInputError:
+            return None
+        counts.append(len(made.simplices))
+        if counts[-1] > _MOST and len(counts) > 1:
+            break
+    if len(counts) < 2:
+        return None
+    size, counts = sizes[len(counts) - 1], counts[-2:]
+    power = math.log2(counts[1] / counts[0])
+    share, doublings = 2 ** (-1 / d), math.log2(n / size)
+    excess = (power - 1) * (1 - share**doublings) / (1 - share)
+    # No set of points has more.
+    most = _cyclic(n, d if hull else d + 1)
+    return int(min(counts[1] * 2.0 ** max(0.0, doublings + excess), float(min(most, 10**300))))
