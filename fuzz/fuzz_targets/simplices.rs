@@ -2,7 +2,8 @@
 //! of the rows.
 //!
 //! Simplices are judged by the validator of the core, which decides each facet exactly; hulls by the
-//! triangulation of their vertices, of which they must be the boundary.
+//! triangulation of their vertices, of which they must be the boundary; single queries without a
+//! triangulation by that triangulation; and weights by the validator again.
 
 #![no_main]
 
@@ -11,7 +12,9 @@ use std::collections::BTreeSet;
 use delone_core::arrays::Given;
 use delone_core::error::Error;
 use delone_core::locate::{Batch, Cache, Locator};
-use delone_core::ndim::{Findings, Hyper, Weighed, hull, triangulate, validate, within};
+use delone_core::ndim::{
+    Findings, Hyper, Lazy, Weighed, hull, regular, triangulate, validate, validate_regular, within,
+};
 use delone_core::watch::Watch;
 use delone_fuzz::Coordinates;
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
@@ -105,6 +108,8 @@ where
         "{points:?}"
     );
     locate::<D, V>(given, &watch);
+    alone::<D, V>(given, &watch);
+    weighted::<D, V, P>(points, &watch);
     // The hull is the boundary of the triangulation of its vertices.
     let hull = hull::<D, V, P>(points, &watch).unwrap();
     let vertices: BTreeSet<u32> = hull.simplices.iter().flatten().copied().collect();
@@ -145,4 +150,52 @@ where
             q.map(|x| x + 0.0)
         );
     }
+}
+
+/// Simplices that are found without the others are among them, and so is the outside.
+fn alone<const D: usize, const V: usize>(given: Given<D, V>, watch: &Watch)
+where
+    Hyper<D>: Weighed<D, V>,
+{
+    let first = given.points[0];
+    let middle = |p: &[f64; D]| std::array::from_fn(|k| 0.5 * first[k] + 0.5 * p[k]);
+    let queries: Vec<[f64; D]> = given.points.iter().take(4).map(middle).collect();
+    let lazy = Lazy::new(given.points.as_flattened(), D, watch).unwrap();
+    let found = lazy.locate(queries.as_flattened(), 1, watch).unwrap();
+    let kept = Cache::<Hyper<D>, D, V>::of(&given, watch).unwrap();
+    let batch = Batch {
+        locator: Locator::new(given, &kept, watch),
+        queries: &queries,
+        workers: 1,
+        watch,
+    };
+    let expected = within(&batch).unwrap();
+    let ascending = |v: &[i32]| {
+        let mut v = v.to_vec();
+        v.sort_unstable();
+        v
+    };
+    let known: BTreeSet<Vec<i32>> = given.simplices.iter().map(|v| ascending(v)).collect();
+    for (rows, simplex) in found.rows.chunks_exact(V).zip(expected.simplex) {
+        assert_eq!(rows[0] < 0, simplex < 0, "{:?}", given.points);
+        assert!(
+            rows[0] < 0 || known.contains(&ascending(rows)),
+            "{:?}",
+            given.points
+        );
+    }
+}
+
+/// With small weights, which make ties and hide points.
+fn weighted<const D: usize, const V: usize, const P: usize>(points: &[[f64; D]], watch: &Watch) {
+    let weights: Vec<f64> = (0..points.len()).map(|i| (i * i % 3) as f64).collect();
+    let (made, _) = regular::<D, V, P>(points, &weights, watch).unwrap();
+    let simplices: Vec<[i32; V]> = made.simplices.iter().map(|v| v.map(|i| i as i32)).collect();
+    let given = Given {
+        points,
+        simplices: &simplices,
+        neighbors: &made.neighbors,
+    };
+    let (found, _) = validate_regular::<D, V, P>(given, &weights, watch).unwrap();
+    assert_eq!(found, Findings::default(), "{points:?}");
 }

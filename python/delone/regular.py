@@ -16,6 +16,7 @@ from delone.counting import agreed, counted
 from delone.errors import DegenerateInputError, InternalError, NonFiniteError, ShapeError
 from delone.georeference import warn_of_degrees
 from delone.higher.dimension import MOST
+from delone.higher.size import require_room
 from delone.immutable import kept, own_copy, sealed
 from delone.regular_validation import validate_regular
 from delone.space.plane import plane_of, repeated_rows
@@ -71,6 +72,8 @@ class RegularTriangulation(PointTriangulation):
         There are not as many weights as points.
     InputError
         `workers` is not a positive integer.
+    TooLargeError
+        From 4-D on, it would not fit into the free memory.
     MemoryError
         There is not enough memory.
     KeyboardInterrupt
@@ -128,6 +131,8 @@ class RegularTriangulation(PointTriangulation):
         own_weights = as_weights(weights, len(own))
         if workers is not None:
             as_workers(workers)
+        if own.shape[1] > _SPACE:
+            require_room(own, None)
         arrays, chain = triangulated(own, own_weights, workers)
         if not len(arrays["simplices"]):
             raise _degenerate(own, chain)

@@ -131,3 +131,16 @@ def test_what_cannot_be_lazy_is_refused() -> None:
         Linear(flat, values)
     with pytest.raises(delone.ShapeError):
         _core.LazyN(points).within(np.zeros((2, 4)), 1)
+
+
+def test_what_does_not_fit_into_memory_is_lazy(monkeypatch: pytest.MonkeyPatch) -> None:
+    random = np.random.default_rng(0)
+    points = random.random((3000, 6))
+    monkeypatch.setattr("delone.higher.size.free_memory", lambda: 10**8)
+    field = Linear(points, points.sum(axis=1))
+    assert repr(field) == "<Linear on 3000 points in 6-D>"
+    assert field(np.full(6, 0.5)) == pytest.approx(3, rel=1e-12)
+    with pytest.raises(delone.TooLargeError, match=r'Linear\(method="lazy"\)'):
+        Linear(points, points.sum(axis=1), method="mesh")
+    with pytest.raises(delone.TooLargeError):
+        delone.RegularTriangulation(points, points[:, 0])

@@ -65,8 +65,8 @@ def require_room(points: Floats, max_bytes: int | None, *, hull: bool = False) -
     advice = (
         "use fewer points or coordinates"
         if hull
-        else "use fewer points or coordinates, or a method that needs no simplices, such as "
-        "delone.interpolate.Nearest"
+        else "use fewer points or coordinates, or for interpolation "
+        'delone.interpolate.Linear(method="lazy"), which makes no simplices'
     )
     raise TooLargeError(
         f"the {what[1]} of {grouped(n)} points in {d}-D would have about {grouped(found)} "

@@ -17,6 +17,7 @@ from delone.interpolate.space import SPACE, face_terms, hull_gradients, slopes
 from delone.interpolate.values import chosen
 from delone.interpolate.weights import Weights, rectangular
 from delone.location import Location
+from delone.memory import TooLargeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -55,7 +56,8 @@ class Linear(Interpolator):
         and a query takes longer than in a mesh. ``"grid"`` requires all points of a rectilinear
         grid, in any order and with even or uneven steps, and sorts the coordinates of a query
         within its cell. The values are the same up to rounding. ``"auto"`` uses grids from 4-D on,
-        triangulates other points with up to eight coordinates, and is lazy with more.
+        triangulates other points with up to eight coordinates, and is lazy with more, or where the
+        triangulation would not fit into memory.
     extrapolate : {"nan", "nearest", "linear", "raise"}, optional
         Behavior outside the hull: NaN; the value at the nearest point of the hull; linear
         extrapolation from that point, with the gradients of the planes that best fit its sites and
@@ -186,7 +188,14 @@ class Linear(Interpolator):
                 f"points with {self._ndim} coordinates cannot be triangulated: triangulations have "
                 f"at most {MOST} dimensions; choose method='lazy' or 'auto'"
             )
-        return super()._tiled()
+        try:
+            return super()._tiled()
+        except TooLargeError:
+            # Only from 4-D on.
+            if self._method != "auto" or self._given is not None:
+                raise
+        self._implicit = Lazily(np.ascontiguousarray(sites), as_workers(self._workers))
+        return None
 
     def _without_mesh(self, sites: Floats) -> Rectilinear | Lazily | None:
         """What finds the simplices of queries by itself; None if the method is another one."""
