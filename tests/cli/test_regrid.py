@@ -73,6 +73,15 @@ def test_a_file_to_a_file(model, tmp_path, figures):
     assert found["outputs"] == [str(out)]
 
 
+def test_weights_of_second_order(model, tmp_path, figures):
+    out = tmp_path / "out.nc"
+    figures("regrid", model, "7.5x7.5", "--order", "2", "--limiter", "-o", out)
+    expected = opened(model).delone.regrid("7.5x7.5", order=2, limiter=True)
+    assert np.array_equal(opened(out).rain.values, expected.rain.values, equal_nan=True)
+    first = opened(model).delone.regrid("7.5x7.5")
+    assert not np.array_equal(first.rain.values, expected.rain.values, equal_nan=True)
+
+
 def test_what_is_left_out_is_said(model, tmp_path, command):
     more = tmp_path / "more.nc"
     opened(model).assign(zonal=("lat", np.zeros(9))).to_netcdf(more)
@@ -151,6 +160,9 @@ def test_without_an_output_only_the_report(model, tmp_path, figures):
         (("{model}", "1x1", "--coords", "lon"), 2, "a longitude and a latitude"),
         (("{model}", "1x1", "--variables", "snow"), 2, "no variable 'snow'; it has rain"),
         (("{model}", "1x1", "--method", "cubic"), 2, "method"),
+        (("{model}", "1x1", "--order", "3"), 2, "order must be"),
+        (("{model}", "1x1", "--limiter"), 2, "limiter is for --order 2"),
+        (("{model}", "1x1", "--method", "sum", "--order", "2"), 2, "--order 2 is for conservative"),
         (("{bare}", "1x1"), 2, "give --infer-bounds"),
         (("{bare}", "1x1", "--infer-bounds", "--radians"), 2, "contradicts"),
         (("{model}", "1x1", "--weights", "{text}"), 3, "not a NetCDF file"),

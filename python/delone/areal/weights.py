@@ -247,25 +247,36 @@ class AreaWeights(Paired):
         none = np.isnan(part) if skipna else None
         if none is not None and none.any():
             there = np.where(none, 0.0, 1.0)
-            totals = self._combined(self.values, there)
+            totals = self._combined(self._entries()[2], there)
             share = self._combined(self._shares(), there)
         low = np.fmin.reduce(part, axis=1, initial=np.inf, keepdims=True)
         low = np.where(np.isfinite(low), low, 0.0)
         rest = part - low
         if none is not None:
             rest[none] = 0.0
-        sums = self._combined(self.values, rest)
+        sums = self._combined(self._entries()[2], rest)
+        more = self._corrections(part)
+        if more is not None:
+            sums += more
         missing = (share <= 0) | (share < least - _ROUNDING)
         if skipna and self._method in {*self._MEANS, OTHER}:
             with np.errstate(invalid="ignore", divide="ignore"):
                 return low + sums / totals, missing
         return low * totals + sums, missing
 
+    def _entries(self) -> tuple[Rows, NDArray[np.int32], Floats]:
+        """Return the entries that are areas over areas."""
+        return self._rows
+
+    def _corrections(self, part: Floats) -> Floats | None:
+        """Return what is added to sums of products with fields, (fields, ntarget)."""
+        return None
+
     def _combined(self, weights: Floats, part: Floats) -> Floats:
         """Return sums of products with fields, (fields, ntarget)."""
         columns = np.ascontiguousarray(part.T)
-        threads = as_workers(None)
-        return _core.combine2(self.indptr, self.indices, weights, columns, None, None, threads).T
+        indptr, indices, _ = self._entries()
+        return _core.combine2(indptr, indices, weights, columns, None, None, as_workers(None)).T
 
     def _totals(self) -> Floats:
         """Return the sum of the weights of each target cell."""
@@ -277,14 +288,15 @@ class AreaWeights(Paired):
 
     def _shares(self) -> Floats:
         """Return the fraction of the target cell that each entry covers."""
-        lengths = np.diff(self.indptr)
+        indptr, indices, values = self._entries()
+        lengths = np.diff(indptr)
         if self._method == "normalized":
-            return self.values * np.repeat(self.fractions, lengths)
+            return values * np.repeat(self.fractions, lengths)
         if self._method == "sum":
             with np.errstate(invalid="ignore", divide="ignore"):
-                areas = self.values * self.source_areas[self.indices]
+                areas = values * self.source_areas[indices]
                 return areas / np.repeat(self.target_areas, lengths)
-        return self.values
+        return values
 
     def _majority(
         self, given: NDArray[Any], skipna: bool, least: float

@@ -32,6 +32,7 @@ _IMAGES = (".png", ".svg", ".pdf")
 _ARGUMENTS = (
     (r"infer_bounds=True", "--infer-bounds"),
     (r"degrees=True or degrees=False", "--degrees or --radians"),
+    (r"\border=(\d)", r"--order \1"),
     (r"\b(dims|coords|name|fill)=", r"--\1"),
 )
 
@@ -58,6 +59,16 @@ def regrid(
             "linear, bilinear, sibson, laplace, nearest, binned, inverse_distance."
         ),
     ] = "conservative",
+    order: Annotated[
+        int,
+        typer.Option(
+            help="Of conservative and normalized: 1 takes cells as constant, 2 gives them slopes."
+        ),
+    ] = 1,
+    limiter: Annotated[
+        bool,
+        typer.Option("--limiter", help="With --order 2: no values beyond those of neighbors."),
+    ] = False,
     grid: Annotated[
         Path | None,
         typer.Option(help="File with the grid of INPUT, if it is not in INPUT itself."),
@@ -133,6 +144,8 @@ def regrid(
                 own,
                 wanted,
                 method=method,
+                order=order,
+                limiter=limiter,
                 weights=table,
                 dims=split(dims),
                 coords=pair,

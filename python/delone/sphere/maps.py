@@ -70,6 +70,11 @@ def write_map(
         raise InputError(
             "a map file cannot hold weights of the method majority, which are not sums"
         )
+    if weights.limited:
+        raise InputError(
+            "a map file cannot hold limited slopes, which depend on the field: make weights "
+            "without limiter=True"
+        )
     netcdf = require("netCDF4", extra="xarray", what="writing NetCDF files")
     for name, grid, areas in zip(
         ("source", "target"), grids, (weights.source_areas, weights.target_areas), strict=True
@@ -114,7 +119,9 @@ def _write_heads(file: Any, weights: Any, layout: str) -> None:
     file.normalization = _NORMALIZATION.get(weights.method, "none")
     file.map_method = _MAP.get(weights.method, "Conservative remapping")
     if esmf:
-        file.ESMF_regrid_method = _ESMF.get(weights.method, "First-order Conservative")
+        file.ESMF_regrid_method = _ESMF.get(
+            weights.method, ("First", "Second")[weights.order - 1] + "-order Conservative"
+        )
         file.domain_a = file.domain_b = file.grid_file_src = file.grid_file_dst = "not given"
     else:
         file.source_grid = file.dest_grid = "not given"

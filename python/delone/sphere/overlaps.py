@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Self
 
-from delone._arrays import as_workers
+from delone._arrays import as_choice, as_flag, as_workers
 from delone.areal.shared import OverlapReport, SharedAreas
+from delone.areal.weights import as_mask
 from delone.complex import Stored
-from delone.errors import DtypeError
+from delone.errors import DtypeError, InputError
 from delone.sphere.grid import Grid
 from delone.sphere.weights import Weights
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
 
 __all__ = ["OverlapReport", "Overlaps"]
@@ -118,6 +119,109 @@ class Overlaps(SharedAreas[Weights], Stored):
     @classmethod
     def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
         return cls._again(*cls._parts(arrays), None, None)
+
+    def to_weights(
+        self,
+        method: str = "conservative",
+        *,
+        source_mask: ArrayLike | None = None,
+        target_mask: ArrayLike | None = None,
+        order: int = 1,
+        limiter: bool = False,
+    ) -> Weights:
+        """Return the contribution of each source cell to each target cell.
+
+        Parameters
+        ----------
+        method : {"conservative", "normalized", "sum", "majority"}, optional
+            How values are combined:
+
+            - "conservative": integrals over the target cell, divided by its area ("destarea" in map
+              files). This preserves the sum of values times areas. A partly covered cell gets
+              proportionally less.
+            - "normalized": means over the covered part ("fracarea"). A constant stays constant.
+            - "sum": amounts, such as numbers of inhabitants: each source cell gives its value to
+              target cells by the share of its area.
+            - "majority": categories: the value that covers most of the target cell.
+        source_mask, target_mask : array_like of bool, optional
+            True, or 1, for the cells to use, as in files; in the shape of fields or of cells. By
+            default all.
+        order : {1, 2}, optional
+            1 takes source cells as constant. 2 gives them slopes, for "conservative" and
+            "normalized": errors of smooth fields decrease with the square of the size of cells.
+        limiter : bool, optional
+            For ``order=2``, whether slopes are limited so that results are within the range of the
+            source cells and their neighbors. By default results can exceed it a little near jumps.
+
+        Returns
+        -------
+        Weights
+            The weights, without the cells. Masked target cells have no entries.
+
+        Raises
+        ------
+        InputError
+            `method` or `order` is unknown; ``order=2`` has another method, areas loaded from a
+            file, or a single source cell; or `limiter` has ``order=1``.
+        ShapeError, DtypeError
+            A mask has another shape, or is not boolean.
+
+        Notes
+        -----
+        Use "conservative" for fluxes and densities, and "normalized" for states such as
+        temperatures.
+
+        With ``order=2``, a source cell has the slope that fits its neighbors in the Delaunay
+        triangulation of the centroids of the source cells, by least squares. Target cells get the
+        mean of that plane over the part that they share. Slopes cancel over a source cell, so the
+        sum of values times areas is preserved as with ``order=1``, with the limiter, too. A source
+        cell that is covered in part gives the integral of its plane over that part. Neighbors that
+        are masked or missing give no slope. The moments of the parts take some 30 microseconds a
+        pair.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from delone import sphere
+        >>> source = sphere.Grid.from_lonlat([0, 1, 2, 3], [0, 1])
+        >>> target = sphere.Grid.from_lonlat([0, 2, 4], [0, 1])
+        >>> overlaps = sphere.Overlaps(source, target)
+        >>> for method in ("conservative", "normalized", "sum", "majority"):
+        ...     weights = overlaps.to_weights(method)
+        ...     print(method, weights.apply([[6.0, 6.0, 3.0]]).round(9).tolist())
+        conservative [[6.0, 1.5]]
+        normalized [[6.0, 3.0]]
+        sum [[12.0, 3.0]]
+        majority [[6.0, 3.0]]
+
+        Of second order:
+
+        >>> coarse = sphere.Grid.from_healpix(8)
+        >>> fine = sphere.Grid.from_lonlat(np.arange(0, 361, 5), np.arange(-90, 91, 5))
+        >>> overlaps = sphere.Overlaps(coarse, fine)
+        >>> field = np.sin(np.radians(coarse.centers_lonlat[:, 1]))
+        >>> wanted = np.sin(np.radians(fine.centers_lonlat[:, 1])).reshape(36, 72)
+        >>> for order in (1, 2):
+        ...     found = overlaps.to_weights(order=order).apply(field)
+        ...     print(order, bool(abs(found - wanted).max() < 0.01))
+        1 False
+        2 True
+        """
+        degree = as_choice(str(order), ("1", "2"), name="order")
+        limited = as_flag(limiter, name="limiter")
+        first = super().to_weights(method, source_mask=source_mask, target_mask=target_mask)
+        if degree == "1":
+            if limited:
+                raise InputError("limiter is for order=2: with order=1 there are no slopes")
+            return first
+        if method not in {"conservative", "normalized"}:
+            raise InputError(f"order=2 is for conservative and normalized, got {method!r:.60}")
+        if self._grids is None:
+            raise InputError("order=2 needs the grids, which files do not have: make new Overlaps")
+        from delone.sphere.second_order import second_order
+
+        used = as_mask(source_mask, self.source_shape, "source_mask")
+        return second_order(first, self._grids, used, limited=limited, workers=self._workers)
 
     @property
     def source(self) -> Grid | None:

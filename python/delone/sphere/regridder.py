@@ -48,6 +48,8 @@ class Regridder(Immutable):
     method : {"conservative", "normalized", "sum", "majority"} or str, optional
         As for `Overlaps.to_weights`; or for `Weights.between`: "linear", "bilinear", "sibson",
         "laplace", "nearest", "binned", "inverse_distance".
+    order, limiter : optional
+        As for `Overlaps.to_weights`: ``order=2`` gives source cells slopes.
     source_mask, target_mask : array_like of bool, optional
         True for cells that take part. By default the masks of the datasets, if they have some.
     dims : sequence of str, optional
@@ -119,6 +121,8 @@ class Regridder(Immutable):
         target: Any,
         *,
         method: str = "conservative",
+        order: int = 1,
+        limiter: bool = False,
         source_mask: ArrayLike | None = None,
         target_mask: ArrayLike | None = None,
         extrapolate: str = "nan",
@@ -147,11 +151,16 @@ class Regridder(Immutable):
             ]
             given: dict[str, Any] = {"source_mask": masks[0], "target_mask": masks[1]}
             if method in POINTWISE:
+                if order != 1 or limiter:
+                    raise InputError(
+                        f"order and limiter are for conservative and normalized, got {method!r:.60}"
+                    )
                 weights = Weights.between(
                     *grids, method, extrapolate=extrapolate, workers=workers, **given
                 )
             else:
-                weights = Overlaps(*grids, workers=workers).to_weights(method, **given)
+                shared = Overlaps(*grids, workers=workers)
+                weights = shared.to_weights(method, order=order, limiter=limiter, **given)
         else:
             _require_fit(weights, grids)
         own = sides[0].dims if dims is None else tuple(dims)

@@ -48,6 +48,11 @@ class Weights(AreaWeights):
         Areas of the cells in steradians.
     source_shape, target_shape : tuple of int
         Shapes of fields.
+    order : int
+        2 if source cells have slopes, else 1.
+    limited : bool
+        Whether slopes are limited. Then `values` are the weights without a limiter, which depends
+        on the field.
 
     Notes
     -----
@@ -79,6 +84,16 @@ class Weights(AreaWeights):
 
     def __init__(self) -> None:
         raise InputError("make Weights by Overlaps.to_weights, Weights.between or .from_netcdf")
+
+    @property
+    def order(self) -> int:
+        """2 if source cells have slopes, else 1; 1 of files."""
+        return 1
+
+    @property
+    def limited(self) -> bool:
+        """Whether slopes are limited, so that there are no new extremes."""
+        return False
 
     @classmethod
     def between(
@@ -199,8 +214,8 @@ class Weights(AreaWeights):
         Raises
         ------
         InputError
-            `layout` or `format` is unknown, the weights are those of "majority", or a grid has
-            another number of cells.
+            `layout` or `format` is unknown, the weights are those of "majority" or limited, or a
+            grid has another number of cells.
         MissingExtraError
             netCDF4 is not installed.
         OutputError
