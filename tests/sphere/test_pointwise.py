@@ -91,6 +91,33 @@ def test_inverse_distances_by_their_definition() -> None:
             Weights.between(SOURCE, TARGET, "inverse_distance", power=power)
 
 
+@pytest.mark.parametrize("most", [1, 2, 4, 30])
+@pytest.mark.parametrize("regional", [False, True])
+def test_the_nearest_centers_by_all_distances(most: int, regional: bool) -> None:
+    xyz = np.random.default_rng(9).normal(size=(400, 3))
+    source = Grid.from_voronoi(sphere.Voronoi(xyz=xyz))
+    there = vectors(source)[:, 2] > 0.2 if regional else np.ones(400, bool)
+    angles = np.arccos(np.clip(vectors(TARGET) @ vectors(source).T, -1, 1))
+    angles[:, ~there] = 9
+    table = Weights.between(
+        source, TARGET, "inverse_distance", neighbors=most, power=1, source_mask=there
+    ).matrix.toarray()
+    # Targets within a right angle of the centers.
+    for row in np.flatnonzero(vectors(TARGET)[:, 2] > -0.1)[::7]:
+        near = np.argsort(angles[row])[:most]
+        assert np.array_equal(np.flatnonzero(table[row]), np.sort(near))
+        expected = 1 / angles[row, near]
+        assert np.allclose(table[row, near], expected / expected.sum(), rtol=1e-9)
+
+
+def test_equal_distances_all_count() -> None:
+    # The middle of four centers, which are equally far.
+    source, target = Grid.from_lonlat([-2, 0, 2], [-2, 0, 2]), Grid.from_lonlat([-1, 1], [-1, 1])
+    for most in (1, 3, 4):
+        made = Weights.between(source, target, "inverse_distance", neighbors=most)
+        assert np.allclose(made.matrix.toarray(), 0.25, rtol=1e-12)
+
+
 @pytest.mark.parametrize(("across", "up"), [(1, 1), (-1, 1), (1, -1), (-1, -1)])
 def test_bilinear_is_exact_in_degrees_and_at_poles(across: int, up: int) -> None:
     lon, lat = np.arange(0, 361, 10)[::across], np.arange(-90, 91, 10)[::up]
@@ -198,6 +225,8 @@ def test_what_is_refused() -> None:
     for options, error, message in (
         ({"method": "cubic"}, delone.InputError, "method"),
         ({"extrapolate": "linear"}, delone.InputError, "extrapolate"),
+        ({"method": "inverse_distance", "neighbors": 0}, delone.InputError, "at least 1"),
+        ({"method": "linear", "neighbors": 4}, delone.InputError, "is for inverse_distance"),
         ({"source_mask": [1]}, delone.ShapeError, "source_mask"),
         ({"workers": 0}, delone.InputError, "workers"),
     ):

@@ -69,6 +69,10 @@ def regrid(
         bool,
         typer.Option("--limiter", help="With --order 2: no values beyond those of neighbors."),
     ] = False,
+    neighbors: Annotated[
+        int | None,
+        typer.Option(help="Of inverse_distance: the number of nearest cells; CDO takes 4."),
+    ] = None,
     grid: Annotated[
         Path | None,
         typer.Option(help="File with the grid of INPUT, if it is not in INPUT itself."),
@@ -146,6 +150,7 @@ def regrid(
                 method=method,
                 order=order,
                 limiter=limiter,
+                neighbors=neighbors,
                 weights=table,
                 dims=split(dims),
                 coords=pair,

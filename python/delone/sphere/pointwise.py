@@ -24,6 +24,10 @@ POINTWISE = (
 )  # fmt: skip
 
 
+# Distances that differ by less, as a fraction, are equal.
+_EQUAL = 1e-12
+
+
 class Entries(NamedTuple):
     """Weights, one by one: target cells, source cells, and values."""
 
@@ -50,6 +54,7 @@ def pointwise(
     *,
     extrapolate: str,
     power: float,
+    neighbors: int | None,
     workers: int | None,
 ) -> Entries:
     """Return the weights of a method of `POINTWISE` between the cells that are used."""
@@ -62,7 +67,7 @@ def pointwise(
         found = _bilinear(pair, used[0])
     elif method in {"nearest", "inverse_distance"}:
         # They have values everywhere.
-        return _nearest(pair, None if method == "nearest" else power)
+        return _nearest(pair, None if method == "nearest" else power, neighbors)
     else:
         found = _triangles(pair, method)
     if extrapolate == "nearest":
@@ -101,11 +106,12 @@ def _binned(pair: _Pair) -> Entries:
     return Entries(rows, pair.sources, 1.0 / number[rows])
 
 
-def _nearest(pair: _Pair, power: float | None) -> Entries:
-    """Return the nearest centers; with a power, also their neighbors, weighted by distance.
+def _nearest(pair: _Pair, power: float | None, most: int | None = None) -> Entries:
+    """Return the nearest centers; with a power, also others, weighted by distance.
 
-    The neighbors are those in the Delaunay triangulation, so that no number of them cuts through
-    equal distances. A target at a center has its value.
+    The others are the neighbors in the Delaunay triangulation, or the `most` nearest centers and
+    all that are as far as the last of them, so that no number of them cuts through equal distances.
+    A target at a center has its value.
     """
     sites = pair.source.centers_lonlat[pair.sources]
     queries = pair.target.centers_lonlat[pair.targets]
@@ -114,27 +120,58 @@ def _nearest(pair: _Pair, power: float | None) -> Entries:
         return Entries(pair.targets, pair.sources[near], np.ones(len(near)))
     mesh = Delaunay(lonlat=sites, workers=pair.workers)
     near = mesh.nearest(queries).astype(np.int64)
-    starts, neighbors = vertex_neighbor_vertices(mesh.edges, mesh.npoints)
-    counts = np.diff(starts)[near].astype(np.int64)
-    row = np.repeat(np.arange(len(near)), counts + 1)
-    first = np.cumsum(counts + 1) - (counts + 1)
-    # The nearest one, then its neighbors.
-    every = np.empty(len(row), dtype=np.int64)
-    every[first] = near
-    others = np.ones(len(row), dtype=bool)
-    others[first] = False
-    within = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
-    every[others] = neighbors[np.repeat(starts[near].astype(np.int64), counts) + within]
-    chords = np.linalg.norm(mesh.points[every] - units_of(_vectors(queries), None)[row], axis=1)
-    angles = 2 * np.arcsin(np.minimum(chords / 2, 1.0))
+    graph = vertex_neighbor_vertices(mesh.edges, mesh.npoints)
+    places = units_of(_vectors(queries), None)
+    row, every, angles = _several(mesh.points, graph, places, near, most)
+    least = np.full(len(near), np.inf)
+    np.minimum.at(least, row, angles)
+    least = least[row]
+    same = (least == 0) & (every == near[row])
     # Relative to the nearest one, so that no power overflows.
-    least = angles[first][row]
-    same = (least == 0) & ~others
     with np.errstate(divide="ignore", invalid="ignore"):
         weights = np.where(least == 0, same, (least / angles) ** power)
     used = weights > 0
     sums = np.bincount(row, weights, len(near))
     return Entries(pair.targets[row[used]], pair.sources[every[used]], (weights / sums[row])[used])
+
+
+def _several(
+    sites: Floats, graph: tuple[Any, Any], places: Floats, near: Any, most: int | None
+) -> tuple[Rows, Rows, Floats]:
+    """Return for each place its nearest site and others: rows, sites and angles.
+
+    The site after the j nearest ones is a neighbor of one of them in the Delaunay triangulation:
+    so each step finds at least one more of the nearest, and after as many steps as are wanted,
+    nothing changes. This holds for places within 90 degrees of their sites.
+    """
+    starts, neighbors = graph
+    count = len(sites)
+    row, every = np.arange(len(near), dtype=np.int64), near.astype(np.int64)
+    for _ in range(1 if most is None else most):
+        numbers = np.diff(starts)[every].astype(np.int64)
+        within = np.arange(numbers.sum()) - np.repeat(np.cumsum(numbers) - numbers, numbers)
+        others = neighbors[np.repeat(starts[every].astype(np.int64), numbers) + within]
+        pairs = np.concatenate((row * count + every, np.repeat(row, numbers) * count + others))
+        found_row, found = np.divmod(np.unique(pairs), count)
+        angles = _angles(sites[found], places[found_row])
+        if most is not None:
+            # The nearest of each place, with those that are as far as the last but for rounding.
+            order = np.lexsort((angles, found_row))
+            found_row, found, angles = found_row[order], found[order], angles[order]
+            first = np.searchsorted(found_row, np.arange(len(near)))
+            last = np.minimum(first + most, np.append(first[1:], len(found))) - 1
+            kept = angles <= (angles[last] * (1 + _EQUAL))[found_row]
+            found_row, found, angles = found_row[kept], found[kept], angles[kept]
+        if len(found) == len(every) and np.array_equal(found, every):
+            break
+        row, every = found_row, found
+    return row, every, angles
+
+
+def _angles(one: Floats, other: Floats) -> Floats:
+    chords = np.linalg.norm(one - other, axis=1)
+    found: Floats = 2 * np.arcsin(np.minimum(chords / 2, 1.0))
+    return found
 
 
 def _vectors(lonlat: Floats) -> Floats:

@@ -55,7 +55,7 @@ class Regridder(Immutable):
     dims : sequence of str, optional
         Dimensions of fields on the source, in the order of its shape. By default those of the
         dataset; of a `Grid`, the last dimensions of each field that have its shape.
-    extrapolate : {"nan", "nearest"}, optional
+    extrapolate, power, neighbors : optional
         As for `Weights.between`, for its methods.
     weights : Weights, optional
         Use these, such as those of a map file, instead of computing some. `method` and masks
@@ -126,6 +126,8 @@ class Regridder(Immutable):
         source_mask: ArrayLike | None = None,
         target_mask: ArrayLike | None = None,
         extrapolate: str = "nan",
+        power: float = 2.0,
+        neighbors: int | None = None,
         dims: Sequence[Any] | None = None,
         weights: Weights | None = None,
         coords: tuple[str, str] | None = None,
@@ -155,9 +157,10 @@ class Regridder(Immutable):
                     raise InputError(
                         f"order and limiter are for conservative and normalized, got {method!r:.60}"
                     )
-                weights = Weights.between(
-                    *grids, method, extrapolate=extrapolate, workers=workers, **given
-                )
+                given |= {"extrapolate": extrapolate, "power": power, "neighbors": neighbors}
+                weights = Weights.between(*grids, method, workers=workers, **given)
+            elif neighbors is not None:
+                raise InputError(f"neighbors is for inverse_distance, got {method!r:.60}")
             else:
                 shared = Overlaps(*grids, workers=workers)
                 weights = shared.to_weights(method, order=order, limiter=limiter, **given)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
-from delone._arrays import as_choice, as_number
+from delone._arrays import as_choice, as_least, as_number
 from delone.areal.paired import added
 from delone.areal.weights import AreaWeights, as_mask
 from delone.errors import InputError
@@ -106,6 +106,7 @@ class Weights(AreaWeights):
         target_mask: ArrayLike | None = None,
         extrapolate: str = "nan",
         power: float = 2.0,
+        neighbors: int | None = None,
         workers: int | None = None,
     ) -> Self:
         """Return weights of an interpolation between the centers of cells.
@@ -126,13 +127,17 @@ class Weights(AreaWeights):
             - "binned": the mean over the source cells whose centers are nearest to that of the
               target cell; none for others
             - "inverse_distance": the nearest center and its neighbors in the Delaunay
-              triangulation, weighted by distances to the power of minus `power`
+              triangulation, or the nearest `neighbors`, weighted by distances to the power of minus
+              `power`
         source_mask, target_mask : array_like of bool, optional
             True, or 1, for the cells to use.
         extrapolate : {"nan", "nearest"}, optional
             The values of target cells outside the centers.
         power : float, optional
             Of "inverse_distance".
+        neighbors : int, optional
+            Of "inverse_distance": the number of centers, nearest first, with all that are as far as
+            the last of them, if they are within 90 degrees. By default those that the method names.
         workers : int, optional
             Maximum number of threads; by default one per core.
 
@@ -145,7 +150,8 @@ class Weights(AreaWeights):
         Raises
         ------
         InputError
-            An option is unknown, `power` is not positive, or "bilinear" has another source.
+            An option is unknown, `power` or `neighbors` is not positive, `neighbors` has another
+            method, or "bilinear" has another source.
         ShapeError, DtypeError
             A mask has another shape, or is not boolean.
 
@@ -171,12 +177,22 @@ class Weights(AreaWeights):
         exponent = as_number(power, name="power")
         if not 0 < exponent < np.inf:
             raise InputError(f"power must be positive and finite, got {power!r:.60}")
+        most = None if neighbors is None else as_least(neighbors, 1, name="neighbors")
+        if most is not None and kind != "inverse_distance":
+            raise InputError(f"neighbors is for inverse_distance, got {kind!r}")
         used = (
             as_mask(source_mask, source.grid_shape, "source_mask"),
             as_mask(target_mask, target.grid_shape, "target_mask"),
         )
         found = pointwise(
-            source, target, kind, used, extrapolate=beyond, power=exponent, workers=workers
+            source,
+            target,
+            kind,
+            used,
+            extrapolate=beyond,
+            power=exponent,
+            neighbors=most,
+            workers=workers,
         )
         indptr, indices, values = added(found.rows, found.columns, found.values, target.ncells)
         counts = np.diff(indptr)
