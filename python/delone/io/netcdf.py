@@ -139,14 +139,14 @@ def _variable(file: Any, name: str | None, path: Path) -> Any:
     if name is None or name not in file.data_vars:
         names = ", ".join(map(str, grids[:20])) or "none"
         raise FileFormatError(
-            f"{path} has no variable {name!r}; on grids are {names}"
+            f"{path} has no variable {name!r:.80}; on grids are {names}"
             if name is not None
             else f"{path}: choose a variable with band (--layer); on grids are {names}"
         )
     found = file[name]
     if not _is_grid(found):
         raise FileFormatError(
-            f"{path}: {name!r} has no rows and columns with coordinates of their own, so it is "
+            f"{path}: {name!r:.80} has no rows and columns with coordinates of their own, so it is "
             "not a raster; points of other grids are for delone.sphere.Grid"
         )
     longer = [str(each) for each in found.dims[:-2] if found.sizes[each] > 1]
@@ -154,8 +154,8 @@ def _variable(file: Any, name: str | None, path: Path) -> Any:
         sizes = ", ".join(f"{found.sizes[each]} of {each}" for each in longer)
         chosen = ", ".join(f"{each}=0" for each in longer)
         raise FileFormatError(
-            f"{path}: {name!r} has {sizes}: choose one with xarray, and pass "
-            f"xarray.open_dataset(path)[{name!r}].isel({chosen}) to TIN.from_raster"
+            f"{path}: {name!r:.80} has {sizes}: choose one with xarray, and pass "
+            f"xarray.open_dataset(path)[{name!r:.80}].isel({chosen}) to TIN.from_raster"
         )
     return found.isel(dict.fromkeys(found.dims[:-2], 0), drop=True)
 

@@ -179,7 +179,7 @@ class Weights(AreaWeights):
             raise InputError(f"power must be positive and finite, got {power!r:.60}")
         most = None if neighbors is None else as_least(neighbors, 1, name="neighbors")
         if most is not None and kind != "inverse_distance":
-            raise InputError(f"neighbors is for inverse_distance, got {kind!r}")
+            raise InputError(f"neighbors is for inverse_distance, got {kind!r:.40}")
         used = (
             as_mask(source_mask, source.grid_shape, "source_mask"),
             as_mask(target_mask, target.grid_shape, "target_mask"),
