@@ -61,6 +61,6 @@ def require_declared(
         error = FileFormatError if file else InputError
         raise error(
             f"{where}: {counted(int(count), 'cell')} of {number:.10g}, which programs write where "
-            f"there is no height, and {others}: give nodata={number!r:.30} (--nodata) to leave these "
-            "cells out, or nodata=nan if all values are heights"
+            f"there is no height, and {others}: give nodata={number!r:.30} (--nodata) to leave "
+            "these cells out, or nodata=nan if all values are heights"
         )
