@@ -25,6 +25,7 @@ import numpy as np
 from delone import _core, predicates
 from delone.errors import DegenerateInputError
 from delone.higher.rational import kernel
+from delone.higher.topology import distinct
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -182,7 +183,7 @@ def _hull(points: Floats) -> tuple[Indices, Indices, Indices]:
 def _vectors_of(simplices: Indices, plane: Indices, count: int) -> list[list[int]]:
     """Return the vectors in each plane, ascending, without the origin."""
     width = int(simplices.max()) + 1
-    keys = np.unique(np.repeat(plane, simplices.shape[1]) * width + simplices.reshape(-1))
+    keys = distinct(np.repeat(plane, simplices.shape[1]) * width + simplices.reshape(-1))
     owner, vector = np.divmod(keys, width)
     owner, vector = owner[vector > 0], vector[vector > 0]
     ends = np.searchsorted(owner, np.arange(count + 1)).tolist()

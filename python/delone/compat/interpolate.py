@@ -1,12 +1,12 @@
-"""Drop-in replacements for SciPy's interpolators of scattered points, in 2-D and 3-D.
+"""Drop-in replacements for SciPy's interpolators of scattered points, in two to eight dimensions.
 
 `delone.compat.scipy` exports these names. Signatures, attributes, shapes and errors are SciPy's.
 Differences:
 
 * At a site the value is reproduced bit for bit, and on the hull it is never the fill value; a query
 outside by a rounding error is outside, because there is no tolerance.
-* Only 2-D and 3-D points; other dimensions raise a `DimensionError` that names SciPy. In 3-D `tri`
-is a `delone.Delaunay`.
+* Points with more than eight coordinates raise a `DimensionError` that names SciPy. From 3-D on
+`tri` is a `delone.Delaunay`.
 * Of equally near sites, the one with the smallest row is used.
 * Norms other than the Euclidean one (`p`) are left to SciPy's tree; `eps` and `tree_options` have
 no effect.
@@ -153,7 +153,7 @@ class LinearNDInterpolator(_Triangulated):
     Parameters
     ----------
     points : array_like, shape (npoints, d), tuple of d arrays, or Delaunay
-        2-D or 3-D sites, or a triangulation of them.
+        Sites with two to eight coordinates, or a triangulation of them.
     values : array_like, shape (npoints, ...)
         Real or complex values.
     fill_value : float, optional
@@ -280,7 +280,7 @@ class NearestNDInterpolator:
     Parameters
     ----------
     x : array_like, shape (npoints, d), or tuple of d arrays
-        2-D or 3-D sites.
+        Sites with two to eight coordinates.
     y : array_like, shape (npoints, ...)
         Real or complex values.
     rescale : bool, optional
@@ -397,7 +397,7 @@ def griddata(  # noqa: PLR0917 (as in SciPy)
     Parameters
     ----------
     points : array_like, shape (n, d), or tuple of d arrays
-        2-D or 3-D sites; or 1-D sites of shape (n,) or (n, 1).
+        Sites with two to eight coordinates; or 1-D sites of shape (n,) or (n, 1).
     values : array_like, shape (n, ...)
         Real or complex values.
     xi : array_like, shape (..., d), or tuple of d arrays
@@ -420,7 +420,7 @@ def griddata(  # noqa: PLR0917 (as in SciPy)
     ValueError
         The method is unknown; array shapes do not match.
     DimensionError
-        The points have more than three coordinates.
+        The points have more than eight coordinates.
     MissingExtraError
         The points are 1-D, and SciPy is not installed.
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from delone import _core
 from delone.higher.spheres import components, cospherical
-from delone.higher.topology import boundary_facets, neighbors
+from delone.higher.topology import boundary_facets, distinct, neighbors
 
 if TYPE_CHECKING:
     from delone._types import Floats, Indices, Rows
@@ -171,7 +171,7 @@ def _are_edges(
 def _rows(owner: Rows, entry: Rows, count: int) -> tuple[Indices, Indices]:
     """Return distinct pairs as compressed rows, entries from -1 ascending."""
     width = int(entry.max(initial=0)) + 2
-    keys = np.unique(owner * width + entry + 1)
+    keys = distinct(owner * width + entry + 1)
     owners, entries = np.divmod(keys, width)
     starts = np.searchsorted(owners, np.arange(count + 1))
     return starts.astype(np.int32), (entries - 1).astype(np.int32)

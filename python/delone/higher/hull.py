@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core, measures
+from delone.higher.topology import distinct
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,7 +24,7 @@ def hull_arrays(points: Floats) -> dict[str, NDArray[Any]]:
     d = found.simplices.shape[1]
     # Each corner once for each facet, as one number.
     owner = np.repeat(found.facet_of, d).astype(np.int64)
-    keys = np.unique(owner * len(points) + found.simplices.reshape(-1))
+    keys = distinct(owner * len(points) + found.simplices.reshape(-1))
     facet, polygons = np.divmod(keys, len(points))
     starts = np.searchsorted(facet, np.arange(int(found.facet_of.max(initial=-1)) + 2))
     vertices = np.unique(found.simplices).astype(np.int32)

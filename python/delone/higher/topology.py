@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from delone._types import Indices
+    from delone._types import Indices, Rows
 
-__all__ = ["boundary_facets", "neighbors"]
+__all__ = ["boundary_facets", "distinct", "neighbors"]
 
 
 def boundary_facets(simplices: Indices, neighbors: Indices) -> Indices:
@@ -28,6 +28,14 @@ def boundary_facets(simplices: Indices, neighbors: Indices) -> Indices:
     order[1::2, -2:] = order[1::2, :-3:-1]
     found: Indices = np.take_along_axis(simplices[simplex], order[corner], axis=1)
     return found
+
+
+def distinct(numbers: Rows) -> Rows:
+    """Return numbers once each, ascending; ``np.unique`` may hash them, which takes longer."""
+    ascending = np.sort(numbers)
+    kept = np.ones(len(ascending), dtype=bool)
+    np.not_equal(ascending[1:], ascending[:-1], out=kept[1:])
+    return ascending[kept]
 
 
 def neighbors(simplices: Indices) -> Indices:
