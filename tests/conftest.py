@@ -85,6 +85,7 @@ EXPECTED_SKIPS = {
     ("tests/surface/*", "needs public surfaces"): "data that are not shipped",
     ("tests/tetrahedra/*", "needs public surfaces"): "data that are not shipped",
     ("tests/terrain/test_delft.py*", "needs lidar and the map*"): "data that are not shipped",
+    ("tests/terrain/test_ground.py*", "needs lidar of Delft*"): "data that are not shipped",
     ("tests/explore/*", "no Chromium is installed"): "a browser is not a package of Python",
     ("tests/learn/*", "no Chromium is installed"): "a browser is not a package of Python",
     ("tests/learn/*", "points do not move without the core"): "stored steps cannot be dragged",

@@ -140,6 +140,13 @@ ALLOWED: dict[str, dict[str, str]] = {
     "terrain/deviations.py": {
         "_distance(part.points[k], part.corners[k]) > Fraction(limit)": EXACT,
     },
+    "terrain/filtering.py": {
+        "np.hypot(*surface.gradients.T) > limits.tangent": WANTED,
+        "seen.away <= limits.distance": WANTED,
+        "other.away <= limits.distance": WANTED,
+        "length < shortest": WANTED,
+        "length > 0": CHECK,
+    },
     "terrain/overlay.py": {
         "mesh.areas[off].sum() <= closeness(tin.points, pad.points) * length": DRAWN,
         "np.hypot(*normal.T) > limit": DRAWN,

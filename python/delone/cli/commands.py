@@ -88,6 +88,12 @@ COMMANDS = {
         "dem",
         "Make a raster of the surface of points: its heights, slope, aspect or hillshade.",
     ),
+    "ground": Listed(
+        "ground",
+        "find_ground",
+        "Find the ground among lidar points, and write their classes.",
+        on_rows=False,
+    ),
     "contours": Listed(
         "terrain",
         "contours",
@@ -135,7 +141,7 @@ TASKS = {
     "Triangulate": ("triangulate", "sphere", "tile", "check"),
     "Outlines, cells, neighbors": ("hull", "voronoi", "graph", "cluster"),
     "Interpolate": ("interpolate", "crossval", "regrid"),
-    "Terrain": ("dem", "contours", "profile", "volume", "simplify"),
+    "Terrain": ("ground", "dem", "contours", "profile", "volume", "simplify"),
     "Mesh": ("mesh", "tetrahedralize"),
 }
 

@@ -1,4 +1,4 @@
-"""Terrain: triangulated surfaces with breaklines; contours, profiles, volumes, levels of detail.
+"""Terrain: ground points, surfaces with breaklines, contours, profiles, volumes, detail.
 
 >>> from delone.terrain import TIN
 >>> tin = TIN.from_points([(0, 0, 1), (8, 0, 5), (8, 6, 9), (0, 6, 3)])
@@ -8,8 +8,10 @@
 
 from __future__ import annotations
 
+from delone.terrain.agreement import Agreement
 from delone.terrain.contouring import Bands, Contours
 from delone.terrain.deviations import Deviations
+from delone.terrain.filtering import Ground, ground
 from delone.terrain.labeling import Labels
 from delone.terrain.profiles import Profile, Sight
 from delone.terrain.regions import Volumes
@@ -20,10 +22,12 @@ from delone.terrain.volumes import Volume
 
 __all__ = [
     "TIN",
+    "Agreement",
     "Bands",
     "Contours",
     "CrossSections",
     "Deviations",
+    "Ground",
     "Labels",
     "Profile",
     "Profiles",
@@ -31,4 +35,5 @@ __all__ = [
     "Simplification",
     "Volume",
     "Volumes",
+    "ground",
 ]

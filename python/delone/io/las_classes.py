@@ -1,0 +1,46 @@
+"""LAS and LAZ files with other classes: all else of the points and of the header stays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone.errors import FileFormatError
+from delone.extras import require
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+__all__ = ["write_classes"]
+
+# Points that are copied at once.
+_BLOCK = 1 << 19
+
+
+def write_classes(source: Path, target: Path, classes: NDArray[np.uint8], *, packed: bool) -> None:
+    """Copy a file that has been read, with these classes; `packed` for LAZ.
+
+    `target` may have another suffix, as a temporary file has.
+    """
+    laspy = require("laspy", extra="las", what="writing LAS")
+    if packed:
+        require("lazrs", extra="las", what="writing LAZ")
+    end = 0
+    with laspy.open(source) as file:
+        if len(classes) != file.header.point_count:
+            raise FileFormatError(
+                f"{source} has {file.header.point_count} points, not {len(classes)}: it has changed"
+            )
+        with (
+            target.open("wb") as stream,
+            laspy.open(
+                stream, mode="w", header=file.header, do_compress=packed, closefd=False
+            ) as copy,
+        ):
+            for block in file.chunk_iterator(_BLOCK):
+                start, end = end, end + len(block)
+                block["classification"] = classes[start:end]
+                copy.write_points(block)
