@@ -9,6 +9,7 @@ import numpy as np
 from delone._arrays import as_choice, as_flag, as_number, as_workers
 from delone.errors import InputError
 from delone.sphere import rings as rings_of
+from delone.sphere.fesom import median_dual, read_text
 from delone.sphere.formats import Choices, read_cells
 from delone.sphere.gaussian import gaussian_bounds
 from delone.sphere.grid_cells import GridCells
@@ -16,6 +17,7 @@ from delone.sphere.healpix import healpix_corners
 from delone.sphere.rings import as_bounds, as_corners, as_starts, merged_corners
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike
@@ -40,6 +42,7 @@ class Grid(GridCells):
     - `from_voronoi`: the cells of a `delone.sphere.Voronoi` diagram
     - `from_healpix`: the pixels of HEALPix
     - `from_gaussian`: a Gaussian grid, full or reduced
+    - `from_fesom`: a mesh of FESOM in text files
 
     Attributes
     ----------
@@ -88,7 +91,7 @@ class Grid(GridCells):
     def __init__(self) -> None:
         raise InputError(
             "make a Grid with a class method: Grid.from_dataset, from_lonlat, from_curvilinear, "
-            "from_mesh, from_polygons, from_voronoi, from_healpix or from_gaussian"
+            "from_mesh, from_polygons, from_voronoi, from_healpix, from_gaussian or from_fesom"
         )
 
     @classmethod
@@ -520,6 +523,63 @@ class Grid(GridCells):
         vectors = healpix_corners(nside, nested=kind == "nested", workers=as_workers(workers))
         starts = np.arange(len(vectors) + 1, dtype=np.int64) * 4
         return cls._polygons(vectors.reshape(-1, 3), starts, (len(vectors),), 0.0, workers)
+
+    @classmethod
+    def from_fesom(
+        cls, folder: str | os.PathLike[str], cells: str = "nodes", *, workers: int | None = None
+    ) -> Self:
+        r"""Return the cells of a mesh of FESOM by its text files.
+
+        Parameters
+        ----------
+        folder : str or path-like
+            Has ``nod2d.out`` and ``elem2d.out``, with longitudes and latitudes in degrees.
+        cells : {"nodes", "triangles"}, optional
+            What fields belong to. Around nodes, a cell has its corners in the middle of triangles
+            and edges: the median dual.
+        workers : int, optional
+            Maximum number of threads; by default one per core.
+
+        Returns
+        -------
+        Grid
+            Sides are arcs of great circles. Nodes without triangles are empty cells.
+
+        Raises
+        ------
+        FileFormatError
+            A file is not a table with as many rows as it says.
+        InputError
+            `cells` is unknown, or triangles overlap.
+        DirectionError
+            As for `from_curvilinear`.
+
+        Notes
+        -----
+        FESOM computes with angles in a plane around each triangle, so its own areas differ by the
+        square of the size of triangles. Coordinates of a rotated mesh are taken as they are.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> from delone import sphere
+        >>> nodes = "4\n1 0 0 1\n2 2 0 1\n3 2 2 1\n4 0 2 1\n"
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     _ = (Path(folder) / "nod2d.out").write_text(nodes)
+        ...     _ = (Path(folder) / "elem2d.out").write_text("2\n1 2 3\n1 3 4\n")
+        ...     print(sphere.Grid.from_fesom(folder))
+        <Grid of 4 cells, arcs of great circles>
+        """
+        kind = as_choice(cells, ("nodes", "triangles"), name="cells")
+        lonlat, triangles = read_text(folder)
+        made = cls.from_mesh(lonlat=lonlat[triangles], merge=0.0, workers=workers)
+        if kind == "triangles":
+            return made
+        turned = np.zeros(len(triangles), dtype=bool)
+        turned[made.report.turned] = True
+        arrays = median_dual(lonlat, triangles, turned)
+        return cls._of("arc", arrays, (len(lonlat),), 0, workers)
 
     @classmethod
     def _polygons(
