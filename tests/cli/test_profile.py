@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 
 import numpy as np
 import pytest
@@ -102,3 +103,21 @@ def test_text_and_exaggeration_of_drawings(folder, figures):
 def test_what_does_not_go_together_is_refused(folder, command, options, words):
     code, _, message = command("profile", "the ground.csv", "axis.gpkg", *options)
     assert code != 0 and words in message
+
+
+def test_chords_of_alignments(survey, command, tmp_path):
+    path = tmp_path / "road.xml"
+    path.write_text(
+        '<LandXML xmlns="http://www.landxml.org/schema/LandXML-1.2" version="1.2">'
+        '<Units><Metric linearUnit="meter"/></Units>'
+        '<Alignments><Alignment name="axis" staStart="0" length="1"><CoordGeom>'
+        '<Curve rot="ccw"><Start>500 600</Start><Center>500 500</Center><End>600 500</End></Curve>'
+        "</CoordGeom></Alignment></Alignments></LandXML>"
+    )
+    counts = []
+    for chord in ("20", "0.001"):
+        code, out, err = command("profile", survey, path, "--chord", chord, "--json")
+        assert code == 0, err
+        counts.append(json.loads(out)["length"])
+    assert counts[0] < counts[1]
+    assert command("contours", survey, "--interval", "9", "--chord", "1")[0] == 2

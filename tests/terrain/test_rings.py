@@ -210,3 +210,39 @@ def test_a_pad_of_many_edges_is_compared_with_what_is_near(monkeypatch):
     )
     # Each with each would be 400 edges with all vertices, and all edges with 400 corners.
     assert sum(compared) < 400 * 3000 / 20
+
+
+@pytest.mark.parametrize("form", ["shape", "list", "frame", "mapping", "collection"])
+@pytest.mark.parametrize("call", ["volume_to", "volumes_to"])
+def test_open_lines_are_no_regions(form, call):
+    geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
+    tin = TIN.from_points(BOX)
+
+    def measure(regions):
+        if call == "volumes_to":
+            return tin.volumes_to(0.0, regions)
+        return tin.volume_to(0.0, region=regions)
+
+    for geometry, right in (
+        (shapely.LineString([(1, 1), (5, 1), (5, 5)]), False),
+        (shapely.Point(1, 1), False),
+        (shapely.LineString([(1, 1), (5, 1), (5, 5), (1, 1)]), True),
+    ):
+        frame = geopandas.GeoDataFrame(geometry=[geometry])
+        given = {
+            "shape": geometry, "list": [geometry], "frame": frame,
+            "mapping": shapely.geometry.mapping(geometry), "collection": frame.__geo_interface__,
+        }[form]  # fmt: skip
+        if right:
+            found = measure(given)
+            assert float(np.sum(found.area)) == 8
+        else:
+            with pytest.raises(InputError, match=r"contains a|is not a line"):
+                measure(given)
+
+
+def test_open_lines_in_lists_of_tables_are_no_region():
+    geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
+    line = geopandas.GeoDataFrame(geometry=[shapely.LineString([(1, 1), (5, 1), (5, 5)])])
+    with pytest.raises(InputError, match="LineString"):
+        TIN.from_points(BOX).volume_to(0.0, region=[line])

@@ -54,7 +54,7 @@ Input = Annotated[
 ]
 Chord = Annotated[
     float | None,
-    typer.Option(help="DXF files: how far chords may be from arcs and other curves."),
+    typer.Option(help="DXF, LandXML alignments: how far chords may be from arcs and other curves."),
 ]
 Columns = Annotated[
     str | None,

@@ -53,6 +53,7 @@ __all__ = [
     "Window",
     "curves_of",
     "figures_of",
+    "is_landxml",
     "other_surface",
     "print_figures",
     "surface",
@@ -157,9 +158,17 @@ class SurfaceOptions:
         return [path for path in lines if path is not None]
 
 
-def curves_of(path: Path, chord: float | None) -> dict[str, Any]:
-    """Return --chord as an option of readers for a DXF file, which has curves; none for others."""
-    return {"chord": chord} if _is_drawing(path) else {}
+def curves_of(path: Path, chord: float | None, *, aligned: bool = False) -> dict[str, Any]:
+    """Return --chord as an option of readers for a DXF file, which has curves; none for others.
+
+    LandXML has curves where it is read for its alignments.
+    """
+    return {"chord": chord} if _is_drawing(path) or (aligned and is_landxml(path)) else {}
+
+
+def is_landxml(path: Path) -> bool:
+    """Return whether the suffix is that of LandXML."""
+    return path.suffix.lower() in (".xml", ".landxml")
 
 
 def _is_drawing(path: Path) -> bool:
@@ -173,15 +182,19 @@ def surface(
     say: Callable[[str], None],
     *,
     others: Sequence[Path] = (),
+    aligned: bool = False,
 ) -> TIN:
     """Read points and lines, or a surface, and triangulate them.
 
-    Options for formats may be for `others`, which will be read with them, too.
+    Options for formats may be for `others`, which will be read with them, too; `aligned` says that
+    one of these has alignments with curves.
     """
     say(f"reading {source.name}")
     files = (source, *options.inputs(), *others)
-    if options.chord is not None and not any(map(_is_drawing, files)):
-        raise Failure("--chord is for DXF files, and none is among the inputs", Exit.USAGE)
+    if options.chord is not None and not (aligned or any(map(_is_drawing, files))):
+        raise Failure(
+            "--chord is for DXF files and for alignments, and none is among the inputs", Exit.USAGE
+        )
     for option, given in (
         ("--step", options.step != 1),
         ("--nodata", options.nodata is not None),
@@ -224,7 +237,7 @@ def other_surface(
     file: Path, options: SurfaceOptions, watch: Stopwatch, say: Callable[[str], None]
 ) -> TIN:
     """Read a surface that is compared with the first one; lines of other files are not for it."""
-    own: dict[str, Any] = curves_of(file, options.chord)
+    own: dict[str, Any] = {"chord": options.chord if _is_drawing(file) else None}
     if not is_raster(file):
         own |= {"step": 1, "nodata": None, "window": None}
     alone = replace(options, breaklines=None, soft_breaklines=None, boundary=None, **own)

@@ -54,6 +54,7 @@ from delone.cli.surfaces import (
     Window,
     curves_of,
     figures_of,
+    is_landxml,
     other_surface,
     print_figures,
     surface,
@@ -278,8 +279,9 @@ def profile(
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         with reading(quiet=quiet):
-            along = read_geometries(line, **curves_of(line, chord))
-        tin = surface(source, options, watch, say, others=[line, *(other or [])])
+            along = read_geometries(line, **curves_of(line, chord, aligned=True))
+        files, aligned = [line, *(other or [])], is_landxml(line)
+        tin = surface(source, options, watch, say, others=files, aligned=aligned)
         others = {
             name: other_surface(path, replace(options, layer=own or layer), watch, say)
             for name, path, own in named_files(source, other or [], other_layer or [])

@@ -25,7 +25,15 @@ if TYPE_CHECKING:
 
     from delone._types import Floats
 
-__all__ = ["LOOSE", "Ring", "line_of", "lines_of", "rings_by_feature", "rings_of"]
+__all__ = [
+    "LOOSE",
+    "Ring",
+    "line_of",
+    "lines_of",
+    "require_areas",
+    "rings_by_feature",
+    "rings_of",
+]
 
 # The polygon of rings that belong to none.
 LOOSE = 0
@@ -113,8 +121,26 @@ def _features(given: Any) -> list[Any]:
     return [given]
 
 
+def require_areas(given: Any, name: str) -> None:
+    """Refuse geometries that are neither polygons nor closed lines; arrays are rings."""
+    if _is_line(given) or isinstance(given, Ring):
+        return
+    features = _features(given)
+    for row, feature in enumerate(features):
+        if isinstance(feature, list | tuple) or hasattr(feature, "geometry"):
+            require_areas(feature, name)
+        else:
+            _require_areas(feature, name if len(features) == 1 else f"{name}, feature {row}")
+
+
 def _require_areas(feature: Any, name: str) -> None:
-    """Refuse geometries that are neither polygons nor closed lines."""
+    """Refuse a geometry that is neither a polygon nor a closed line."""
+    mapping = feature if isinstance(feature, dict) else None
+    if mapping is not None:
+        geometry = mapping.get("geometry") if mapping.get("type") == "Feature" else mapping
+        if not geometry:
+            return
+        feature = require("shapely.geometry", extra="geo", what="GeoJSON").shape(geometry)
     if not is_shapely(feature) or feature.is_empty:
         return
     for part in getattr(feature, "geoms", [feature]):

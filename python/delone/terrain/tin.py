@@ -573,6 +573,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
             reached.
         region : optional
             Polygons or rings, as `boundary` of `from_points`, to which the volume is limited.
+            Arrays are closed; other lines must be.
 
         Returns
         -------
@@ -583,7 +584,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         ------
         InputError
             The surfaces are in different reference systems, or their heights in different units;
-            or `other` is none of these.
+            `other` is none of these; or `region` has points or open lines.
 
         Warns
         -----

@@ -15,7 +15,7 @@ from delone.georeference import caller_level, same_crs
 from delone.immutable import ReadOnly, sealed
 from delone.plane.geometry import total
 from delone.terrain.extent import inside_of_rings
-from delone.terrain.lines import rings_of
+from delone.terrain.lines import require_areas, rings_of
 from delone.units import area_units, require_same_units, volume_units
 
 if TYPE_CHECKING:
@@ -157,6 +157,7 @@ def _plane(other: Any) -> list[float]:
 def _region(region: Any, crs: str | None) -> Region | None:
     if region is None:
         return None
+    require_areas(region, "region")
     rings = rings_of(region, name="region", crs=crs)
     if not rings:
         raise InputError("region has no polygon or ring")
