@@ -91,7 +91,13 @@ def test_arrays_are_checked_as_well():
 
 @pytest.mark.parametrize("step", [1, 2, 3])
 @pytest.mark.parametrize(
-    "bounds", [(1003, 1991, 1009, 1997), (1002.5, 1990, 1012, 1996.5), (-1e9, -1e9, 1e9, 1e9)]
+    "bounds",
+    [
+        (1003, 1991, 1009, 1997),
+        (1002.5, 1990, 1012, 1996.5),
+        (-1e9, -1e9, 1e9, 1e9),
+        (1009, 1989, 1015, 1993),
+    ],
 )
 def test_windows_are_the_cells_of_the_whole(bounds, step, tmp_path):
     path = tif(tmp_path / "a.tif", ramp() / 7)
