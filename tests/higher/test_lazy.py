@@ -9,6 +9,7 @@ import pytest
 
 import delone
 from delone import Delaunay, _core
+from delone.compat import scipy
 from delone.interpolate import Linear
 
 
@@ -144,3 +145,21 @@ def test_what_does_not_fit_into_memory_is_lazy(monkeypatch: pytest.MonkeyPatch) 
         Linear(points, points.sum(axis=1), method="mesh")
     with pytest.raises(delone.TooLargeError):
         delone.RegularTriangulation(points, points[:, 0])
+
+
+def test_drop_ins_need_no_triangulation() -> None:
+    random = np.random.default_rng(6)
+    points = random.random((120, 10))
+    values = points @ np.arange(10.0)
+    inside = random.dirichlet(np.ones(120), 4) @ points
+    queries = np.vstack((inside, [np.full(10, 2.0)]))
+    found = scipy.LinearNDInterpolator(points, values, fill_value=-1)
+    assert found.tri is None
+    assert found(queries) == pytest.approx([*(inside @ np.arange(10.0)), -1], rel=1e-12)
+    scaled = scipy.LinearNDInterpolator(points * np.arange(1.0, 11), values, rescale=True)
+    assert scaled(inside * np.arange(1.0, 11)) == pytest.approx(found(inside), rel=1e-9)
+    assert np.isnan(scipy.griddata(points, values, queries)[-1])
+    with pytest.raises(scipy.QhullError, match="flat of dimension"):
+        scipy.LinearNDInterpolator(points * np.append(np.ones(9), 0), values)
+    with pytest.raises(scipy.DimensionError, match="up to 64"):
+        scipy.LinearNDInterpolator(random.random((80, 65)), np.zeros(80))

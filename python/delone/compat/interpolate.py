@@ -1,12 +1,13 @@
-"""Drop-in replacements for SciPy's interpolators of scattered points, in two to eight dimensions.
+"""Drop-in replacements for SciPy's interpolators of scattered points, in two and more dimensions.
 
 `delone.compat.scipy` exports these names. Signatures, attributes, shapes and errors are SciPy's.
 Differences:
 
 * At a site the value is reproduced bit for bit, and on the hull it is never the fill value; a query
 outside by a rounding error is outside, because there is no tolerance.
-* Points with more than eight coordinates raise a `DimensionError` that names SciPy. From 3-D on
-`tri` is a `delone.Delaunay`.
+* From 3-D on `tri` is a `delone.Delaunay`. With more than eight coordinates, or where the simplices
+would not fit into memory, there is no triangulation: `tri` is None, and linear interpolation finds
+the simplex of each query by itself. More than 64 coordinates raise a `DimensionError`.
 * Of equally near sites, the one with the smallest row is used.
 * Norms other than the Euclidean one (`p`) are left to SciPy's tree; `eps` and `tree_options` have
 no effect.
@@ -29,6 +30,7 @@ from delone.extras import require
 from delone.higher.dimension import MOST
 from delone.interpolate import CloughTocher, Linear
 from delone.interpolate.values import as_field
+from delone.memory import TooLargeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -44,6 +46,8 @@ __all__ = [
 ]
 
 _SPACE = 3
+# The most coordinates that are interpolated.
+_MOST = 64
 # Distances compared at a time if all points lie on one line.
 _BLOCK = 1 << 22
 
@@ -88,7 +92,7 @@ class _Triangulated:
             self.points = _coordinates(points)
         self._scale = _Scale(self.points, rescale)
         if self.points.shape[1] >= _SPACE:
-            self._mesh: delaunay.Delaunay = self._in_space()
+            self._mesh: delaunay.Delaunay | None = self._in_space()
         else:
             own = self.tri if isinstance(self.tri, Delaunay) else None
             if own is None:
@@ -102,12 +106,19 @@ class _Triangulated:
         self.is_complex = self.values.dtype.kind == "c"
         self.fill_value = (complex if self.is_complex else float)(fill_value)
 
-    def _in_space(self) -> delaunay.Delaunay:
-        """The triangulation of points in 3-D or more, stored as `tri` unless one was given."""
+    def _in_space(self) -> delaunay.Delaunay | None:
+        """The triangulation of points in 3-D or more, stored as `tri` unless one was given.
+
+        None if it has too many dimensions, or would not fit into memory.
+        """
         if isinstance(self.tri, delaunay.Delaunay):
             return self.tri
+        if self.points.shape[1] > MOST:
+            return None
         try:
             mesh = delaunay.Delaunay(self._scale(self.points))
+        except TooLargeError:
+            return None
         except DegenerateInputError as error:
             raise QhullError(str(error)) from error
         if self.tri is None:
@@ -143,8 +154,17 @@ class _Triangulated:
         found = self._interpolator(queries)
         # A complex NaN fills both parts, as in SciPy.
         if self.is_complex or not np.isnan(self.fill_value):
-            found[self._mesh.find_simplex(queries) < 0] = self.fill_value
+            found[self._outside(queries)] = self.fill_value
         return found
+
+    def _outside(self, queries: Floats) -> NDArray[np.bool_]:
+        """Whether queries are outside the hull."""
+        if self._mesh is not None:
+            found: NDArray[np.bool_] = self._mesh.find_simplex(queries) < 0
+            return found
+        table = self._interpolator.weights_at(queries)
+        empty: NDArray[np.bool_] = np.diff(table.indptr) == 0
+        return empty.reshape(queries.shape[:-1])
 
 
 class LinearNDInterpolator(_Triangulated):
@@ -153,7 +173,7 @@ class LinearNDInterpolator(_Triangulated):
     Parameters
     ----------
     points : array_like, shape (npoints, d), tuple of d arrays, or Delaunay
-        Sites with two to eight coordinates, or a triangulation of them.
+        Sites with two to 64 coordinates, or a triangulation of them.
     values : array_like, shape (npoints, ...)
         Real or complex values.
     fill_value : float, optional
@@ -188,7 +208,15 @@ class LinearNDInterpolator(_Triangulated):
         rescale: bool = False,
     ) -> None:
         self._set(points, values, fill_value, rescale)
-        self._interpolator = Linear(self._mesh, self.values, duplicates="first", nan="propagate")
+        policies: Any = {"duplicates": "first", "nan": "propagate"}
+        if self._mesh is not None:
+            self._interpolator = Linear(self._mesh, self.values, **policies)
+            return
+        sites = self._scale(self.points)
+        try:
+            self._interpolator = Linear(sites, self.values, method="lazy", **policies)
+        except DegenerateInputError as error:
+            raise QhullError(str(error)) from error
 
 
 class CloughTocher2DInterpolator(_Triangulated):
@@ -246,8 +274,9 @@ class CloughTocher2DInterpolator(_Triangulated):
         rescale: bool = False,
     ) -> None:
         self._set(points, values, fill_value, rescale)
+        mesh: Any = self._mesh
         self._interpolator = _GivenGradients(
-            self._mesh, self.values, tol=tol, max_iter=maxiter, duplicates="first", nan="propagate"
+            mesh, self.values, tol=tol, max_iter=maxiter, duplicates="first", nan="propagate"
         )
         found = self._interpolator.site_gradients()
         self.grad = np.ascontiguousarray(found.reshape(len(found), -1, 2))
@@ -512,9 +541,9 @@ def _coordinates(points: Any) -> Floats:
     shape = np.shape(points)
     if len(shape) == 1 or (len(shape) == 2 and shape[1] == 1):
         raise DimensionError(
-            "delone interpolates in 2 to 8 dimensions; in 1-D use griddata or scipy.interpolate"
+            "delone interpolates in 2 and more dimensions; in 1-D use griddata or scipy.interpolate"
         )
-    return as_low_points(_real_points(points), MOST)
+    return as_low_points(_real_points(points), _MOST)
 
 
 def _real_points(points: ArrayLike) -> NDArray[Any]:
