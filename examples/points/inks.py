@@ -2,8 +2,8 @@
 Compute the gamut of a printer: inks within limits, and the colors that they print
 ==================================================================================
 
-A printer mixes four inks, each from 0 to 1. Paper takes only so much ink in all, so the recipes that can be printed are
-a part of a cube in 4-D: an intersection of half-spaces. The colors of these recipes fill a solid in 3-D, the gamut.
+A printer mixes four inks, each from 0 to 1. Paper absorbs only a limited total amount of ink, so the printable recipes are
+part of a cube in 4-D: an intersection of half-spaces. The colors of these recipes fill a solid in 3-D, the gamut.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -15,8 +15,8 @@ from delone import ConvexHull
 from delone.compat.scipy import HalfspaceIntersection
 
 inks = "cyan", "magenta", "yellow", "black"
-# Rows a, b for a @ recipe + b <= 0: no ink below 0 or above 1, at most 2.4 in all, 1.8 without black,
-# and 2 of cyan and yellow, which is true anyway.
+# Rows a, b for a @ recipe + b <= 0: each ink between 0 and 1, at most 2.4 in total, at most 1.8 without black,
+# and at most 2 of cyan and yellow, which the first limits already imply.
 sides = np.vstack((np.eye(4), -np.eye(4)))
 limits = np.vstack(
     (
@@ -31,8 +31,9 @@ print(f"{len(allowed.intersections)} corners")
 print("redundant limits:", np.setdiff1d(np.arange(len(limits)), allowed.dual_vertices).tolist())
 
 # %%
-# Which limits meet in a corner is exact, although 2.4 and 1.8 are rounded: four in most corners. ``dual_facets`` lists
-# them. The hull of the corners has the share of all recipes that is left, and tells whether a recipe can be printed.
+# ``dual_facets`` lists the limits that meet at each corner: four at most corners. This is decided exactly for the given
+# doubles 2.4 and 1.8. The volume of the hull of the corners is the share of all recipes that are printable, and
+# ``contains`` tests whether a recipe is one of them.
 
 print("limits at each corner:", np.unique([len(facet) for facet in allowed.dual_facets]).tolist())
 recipes = ConvexHull(allowed.intersections)
@@ -42,8 +43,8 @@ print(dict(zip(dark, recipes.contains(dark).tolist(), strict=True)))
 
 
 # %%
-# A model of the print: each ink absorbs most of one third of the spectrum, and some of the others. The result is in the
-# CIELAB space, in which equal distances look alike.
+# A simple model of printing: each colored ink absorbs most of one third of the spectrum and some of the other two, and
+# black absorbs nearly everything. The result is in CIELAB, a color space in which equal distances look about equal.
 
 absorbed = np.array([(0.92, 0.35, 0.12), (0.18, 0.9, 0.3), (0.03, 0.12, 0.92), (0.96, 0.96, 0.96)])
 to_xyz = np.array([(0.4124, 0.3576, 0.1805), (0.2126, 0.7152, 0.0722), (0.0193, 0.1192, 0.9505)])
@@ -63,15 +64,16 @@ with_limits, without = ConvexHull(lab(printable)), ConvexHull(lab(steps))
 print(f"the limits cost {100 * (1 - with_limits.volume / without.volume):.0f} % of the gamut")
 
 # %%
-# Which colors of a picture can be printed? A common mistake is to test each of the three numbers against its range: that
-# accepts many colors outside, as the gamut is far from a box.
+# Which colors of an image can be printed? A common mistake is to test each of the three coordinates against its range. This
+# accepts many colors that cannot be printed, because the gamut is far from a box.
 
 low, high = with_limits.min_bound, with_limits.max_bound
 colors = rng.uniform(low, high, (20_000, 3))
 print(f"{100 * with_limits.contains(colors).mean():.0f} % of the colors in the box are printable")
 
 # %%
-# Sections at three lightnesses: the colors that all inks print, and in color those that remain within the limits.
+# Plot sections at three values of lightness: in color, the gamut within the limits; as an outline, the gamut without
+# limits.
 
 figure, axes = plt.subplots(1, 3, figsize=(9.4, 3.9), layout="constrained", sharey=True)
 a, b = np.meshgrid(np.linspace(-75, 90, 180), np.linspace(-75, 100, 180))

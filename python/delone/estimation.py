@@ -1,4 +1,4 @@
-"""What a triangulation will cost, from triangulations of samples."""
+"""Predict the cost of a triangulation from triangulations of samples."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Estimate", "estimate"]
 
-# Samples have one point in so many, if that is enough of them.
+# Each sample has one point in this many, if that is enough.
 _SHARES = 64, 8
-# The fewest points of a sample for each corner of a simplex; so few rows are triangulated whole.
+# Minimum number of sample points per corner of a simplex; inputs this small are not sampled.
 _FEW = 8
 # Bytes of a row number, and of a coordinate.
 _ROW, _COORDINATE = 4, 8
@@ -34,20 +34,20 @@ _ROW, _COORDINATE = 4, 8
 
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
-    """What a triangulation will cost.
+    """The predicted size, memory and time of a triangulation.
 
     Parameters
     ----------
     npoints, ndim : int
-        The numbers of points and of their coordinates.
+        The number of points and the dimension.
     simplices : int
-        The number of simplices.
+        The predicted number of simplices.
     nbytes : int
         Memory of the result, in bytes: points, simplices and neighbors.
     peak : int
-        The most memory while it is made, in bytes.
+        Peak memory during the computation, in bytes.
     seconds : float
-        Time on this machine.
+        Time on this machine, in seconds.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def estimate(points: ArrayLike, *, seed: int = 0) -> Estimate:
     Parameters
     ----------
     points : array_like, shape (n, d)
-        Finite coordinates, two to eight of each point.
+        Finite coordinates, two to eight for each point.
     seed : int, optional
         Seed of the random samples.
 
@@ -92,15 +92,16 @@ def estimate(points: ArrayLike, *, seed: int = 0) -> Estimate:
     NonFiniteError, ShapeError, DtypeError
         As for `Delaunay`.
     DegenerateInputError
-        The points span no simplex.
+        The points do not span a simplex.
 
     Notes
     -----
-    Two random samples are triangulated, of a 64th and an eighth of the points, which takes less
-    than an eighth of the time of all, or of fewer if these would take seconds. The number of
-    simplices for each point is a - b n^(-1/d), as points at the hull have fewer; a and b fit the
-    samples. Points on a surface or in clusters may follow another law: then the estimate is off by
-    a factor, not by an order of magnitude. Time is that of the larger sample for each simplex.
+    Two random samples are triangulated, with 1/64 and 1/8 of the points, or with fewer if these
+    would take more than a few seconds. The number of simplices per point is modeled as
+    a - b n^(-1/d), because points near the hull have fewer simplices; a and b are fitted to the
+    samples. Points on a surface or in clusters may not follow this model. The estimate can then be
+    off by a factor, but not by an order of magnitude. The time per simplex is that of the larger
+    sample.
 
     Examples
     --------
@@ -124,7 +125,7 @@ def estimate(points: ArrayLike, *, seed: int = 0) -> Estimate:
         size = size if size == n else sample_size(size, d)
         start = time.perf_counter()
         made = _sampled(own, order, size)
-        # Time follows the simplices; a call takes some by itself, which the sample outweighs.
+        # Time is proportional to the number of simplices; the overhead of a call is negligible.
         seconds = (time.perf_counter() - start) / made.nsimplex
         counts.append((size, made.nsimplex / size))
     simplices = _extrapolated(counts, n, d)
@@ -141,7 +142,7 @@ def estimate(points: ArrayLike, *, seed: int = 0) -> Estimate:
 
 
 def _sampled(points: Floats, order: np.ndarray, size: int) -> Delaunay:
-    """Return the triangulation of the first points of an order, more if they span no simplex."""
+    """Triangulate the first `size` points of an order, or more if these do not span a simplex."""
     while True:
         try:
             return Delaunay(points[order[:size]], workers=1, planar=True)
@@ -152,11 +153,11 @@ def _sampled(points: Floats, order: np.ndarray, size: int) -> Delaunay:
 
 
 def _extrapolated(counts: list[tuple[int, float]], n: int, d: int) -> int:
-    """Return the number of simplices of n points, from numbers per point of samples."""
+    """Predict the number of simplices of n points from the simplices per point of two samples."""
     (few, low), (many, high) = counts
     if many in (n, few):
         return round(high * n)
-    # a - b m^(-1/d) through both, which a fall from the first to the second does not extend.
+    # Fit a - b m^(-1/d) to both; if the number decreases from one to the other, b is 0.
     b = max(0.0, (high - low) / (math.pow(few, -1 / d) - math.pow(many, -1 / d)))
     return round((high + b * (math.pow(many, -1 / d) - math.pow(n, -1 / d))) * n)
 

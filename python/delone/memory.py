@@ -1,4 +1,4 @@
-"""How much memory is free, and the error that says that a result would not fit."""
+"""The free memory, and the error for results that would not fit into it."""
 
 from __future__ import annotations
 
@@ -11,29 +11,30 @@ __all__ = ["TooLargeError", "free_memory"]
 
 
 class TooLargeError(DeloneError, MemoryError):
-    """The result would take more memory than is free, or than `max_bytes`; also a MemoryError.
+    """The result would need more than the free memory, or more than `max_bytes`.
 
-    It is raised before the work, from numbers of simplices of samples.
+    The error is raised before the computation starts. The size is predicted from samples. It is
+    also a MemoryError.
 
     Parameters
     ----------
     message : str
-        The message.
+        The error message.
     simplices : int, optional
         The predicted number of simplices.
     nbytes : int, optional
-        The predicted bytes.
+        The predicted memory, in bytes.
     limit : int, optional
-        The bytes that are free, or `max_bytes`.
+        The free memory in bytes, or `max_bytes`.
 
     Attributes
     ----------
     simplices : int
         The predicted number of simplices.
     nbytes : int
-        The predicted bytes.
+        The predicted memory, in bytes.
     limit : int
-        The bytes that are free, or `max_bytes`.
+        The free memory in bytes, or `max_bytes`.
 
     Examples
     --------
@@ -65,7 +66,10 @@ class TooLargeError(DeloneError, MemoryError):
 
 
 def free_memory() -> int | None:
-    """Return the bytes that are available without swapping, or None if the system does not say."""
+    """Return the bytes that are available without swapping, or None if the system does not say.
+
+    On systems without /proc/meminfo, this is the total physical memory.
+    """
     try:
         for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
             if line.startswith("MemAvailable:"):

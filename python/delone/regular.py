@@ -1,7 +1,7 @@
 """The class RegularTriangulation: triangulations of weighted points, dual to power diagrams.
 
-Sites are lifted by their weights, and the core takes the lower side of their convex hull. What
-follows from the simplices is in `triangulation`.
+The core computes the lower convex hull of the sites, lifted by their weights. Properties that
+follow from the simplices are in `triangulation`.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class RegularTriangulation(PointTriangulation):
     Parameters
     ----------
     points : array_like, shape (n, d)
-        Finite coordinates, two to eight of each point; results are exact for the given doubles.
+        Finite coordinates, two to eight for each point. Results are exact for the given doubles.
     weights : array_like, shape (n,)
         Finite weights, in squared units of the points: squared radii, if points represent circles
         or spheres. Adding a constant to all weights does not change the result.
@@ -63,17 +63,17 @@ class RegularTriangulation(PointTriangulation):
     Raises
     ------
     DegenerateInputError
-        Fewer than d + 1 points are distinct, or all lie on one line; ``error.chain`` has them in
-        order, in 2-D without the hidden ones. Or 3-D points lie in one plane; ``error.plane`` is
-        its regular triangulation.
+        Fewer than d + 1 points are distinct, or all points lie in a flat of lower dimension. On a
+        line, ``error.chain`` lists them in order, in 2-D without the hidden ones. If 3-D points lie
+        in one plane, ``error.plane`` is their regular triangulation.
     NonFiniteError
-        A coordinate or weight is NaN or infinite; ``error.rows`` has the first such rows.
+        A coordinate or weight is NaN or infinite; ``error.rows`` lists the first such rows.
     ShapeError
-        There are not as many weights as points.
+        The number of weights differs from the number of points.
     InputError
         `workers` is not a positive integer.
     TooLargeError
-        From 4-D on, it would not fit into the free memory.
+        From 4-D on: the triangulation would not fit into the free memory.
     MemoryError
         There is not enough memory.
     KeyboardInterrupt
@@ -81,18 +81,18 @@ class RegularTriangulation(PointTriangulation):
 
     Notes
     -----
-    The simplices are the lower side of the convex hull of the points lifted to ``x**2 + y**2 - w``,
-    in 3-D to ``x**2 + y**2 + z**2 - w``. A point whose lift lies above it is *hidden*: its power is
-    not the smallest anywhere, so it is not a vertex. With equal weights this is the Delaunay
-    triangulation.
+    The simplices are the projection of the lower convex hull of the points, each lifted to its
+    squared distance from the origin minus its weight: in 2-D, to ``x**2 + y**2 - w``. A point whose
+    lift lies above the hull is *hidden*: its power is not the smallest anywhere, so it is not a
+    vertex. With equal weights, the result is the Delaunay triangulation.
 
-    The result is exact and unique: ties are broken as in `delone.Delaunay`, so a point whose lift
-    lies on the hull but is not a corner of it is hidden. Of points with the same coordinates, the
-    one with the greatest weight is used, and the others are hidden; of equal weights, the first row
-    is the vertex, and the others are its duplicates.
+    The result is exact and unique. Ties are broken as in `delone.Delaunay`, so a point whose lift
+    lies on the hull but is not a corner of it is hidden. If points have the same coordinates, the
+    one with the greatest weight is used, and the others are hidden. If their weights are also
+    equal, the first row is the vertex, and the others are its duplicates.
 
-    The method is cavity insertion along a Hilbert curve (Bowyer; Watson, both 1981), in
-    O(n log n) on typical inputs.
+    The method is cavity insertion along a Hilbert curve (Bowyer; Watson, both 1981). It takes
+    O(n log n) time on typical inputs.
 
     References
     ----------
@@ -165,8 +165,8 @@ class RegularTriangulation(PointTriangulation):
 
         Notes
         -----
-        Exact. Linear in the number of simplices, after a sort of the points and with short walks
-        to the hidden points.
+        The proof is exact. It sorts the points, and takes linear time in the number of simplices,
+        with a short walk to each hidden point.
 
         Examples
         --------
@@ -217,10 +217,10 @@ def as_weights(weights: ArrayLike, npoints: int) -> Floats:
 def triangulated(
     points: Floats, weights: Floats, workers: int | None
 ) -> tuple[dict[str, NDArray[Any]], Indices]:
-    """Return what a `RegularTriangulation` holds, also if there is no triangle, and the chain.
+    """Return the arrays of a `RegularTriangulation`, even without triangles, and the chain.
 
-    If all 2-D points lie on one line, the chain has those that are not hidden, in order. The error
-    for coplanar 3-D points has their triangulation as ``error.plane``.
+    If all 2-D points lie on one line, the chain lists those that are not hidden, in order. The
+    error for coplanar 3-D points contains their triangulation as ``error.plane``.
     """
     threads = as_workers(workers)
     try:

@@ -71,7 +71,18 @@ ABSENCES: dict[tuple[str, str], str] = {
         "coming_from/matlab.rst",
         "no class;",
     ): "a triangulation is computed from points; validate checks others",
-    ("guide/higher.rst", "do not exist from 4-D on"): "no library draws or stores such simplices",
+    (
+        "guide/higher.rst",
+        "plot, export, or measure angles",
+    ): "no library plots or stores simplices of 4-D or more",
+    (
+        "guide/higher.rst",
+        "cell volumes, clipping and weights",
+    ): "cells from 4-D on have no measures, and Voronoi rejects a clip and weights there",
+    (
+        "guide/higher.rst",
+        "Alpha complexes, graphs and ``Dynamic``",
+    ): "their classes accept two or three coordinates",
     ("coming_from/matlab.rst", '"v4"'): "there are no radial basis functions",
     ("coming_from/scipy.rst", "``RBFInterpolator``"): "they need no triangulation",
     (

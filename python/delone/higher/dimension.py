@@ -17,21 +17,21 @@ if TYPE_CHECKING:
 
 __all__ = ["HIGHER", "MOST"]
 
-# The most coordinates of a triangulation.
+# Maximum number of coordinates of a triangulation.
 MOST = 8
 
 
 def _hull(_: Floats, boundary: Indices) -> NDArray[np.int64]:
-    """Return the vertices of a boundary, ascending."""
+    """Return the vertices of a boundary in ascending order."""
     return np.unique(boundary).astype(np.int64)
 
 
 def _located(
     index: Any, xi: Floats, workers: int
 ) -> tuple[Indices, Floats, Indices, Indices, Floats]:
-    """Locate points, (k, d): the fields of `delone.location.Location` except `closest`.
+    """Locate points, (k, d). Return the fields of `delone.location.Location` except `closest`.
 
-    The nearest facets of queries outside are not sought.
+    For queries outside the hull, the nearest facets are not computed.
     """
     simplex, weights = index.within(xi, workers)
     count, d = xi.shape
@@ -40,7 +40,7 @@ def _located(
 
 
 def _on_facets(points: Floats, facet: Indices, weights: Floats) -> Floats:
-    """Return points on facets, as `located` names none."""
+    """Return points on facets; all are NaN, because `located` does not return facets."""
     found: Floats = (weights[..., None] * points[facet]).sum(axis=1)
     return found
 

@@ -1,11 +1,12 @@
 """The Voronoi diagram in four to eight dimensions: the dual of a Delaunay triangulation.
 
-Simplices on one sphere share a vertex. A ridge belongs to two sites p and q that are the ends of an
-edge of the Delaunay *cells*, which are the hulls of the points on each empty sphere. The lower hull
-of the lifted points has these cells as facets, and the facets of the convex hull stand for vertices
-at infinity. The smallest face of it that contains p and q is the intersection of all facets that
-do: there is a ridge if no other point is in all cells and all facets of the convex hull that
-contain p and q. An edge of a cell that is a simplex, or of a facet that is one, needs no look.
+Simplices with the same circumsphere share a Voronoi vertex. Two sites p and q have a ridge if they
+are the ends of an edge of a Delaunay *cell*: the hull of the points on one empty sphere. These
+cells are the facets of the lower hull of the lifted points, and the facets of the convex hull
+correspond to vertices at infinity. The smallest face that contains p and q is the intersection of
+all facets that contain both. So p and q have a ridge if no other point belongs to all cells and all
+facets of the convex hull that contain p and q. An edge of a cell or facet that is a simplex always
+has a ridge, and is not checked.
 """
 
 from __future__ import annotations
@@ -28,19 +29,19 @@ __all__ = ["DiagramN", "dual"]
 
 @dataclass(frozen=True, eq=False)
 class DiagramN:
-    """A Voronoi diagram in four to eight dimensions; the meanings are those of `Diagram3`."""
+    """A Voronoi diagram in four to eight dimensions; the fields are those of `Diagram3`."""
 
     vertices: Floats
-    # The vertex of each simplex, -1 beyond the range of doubles.
+    # The Voronoi vertex of each simplex; -1 if it is beyond the range of doubles.
     simplex_vertex: Indices
     # The two sites of each ridge.
     sites: Indices
-    # The vertices of each ridge, ascending; -1, which comes first, if it is unbounded.
+    # The vertices of each ridge, ascending; -1 comes first if the ridge is unbounded.
     ridge_starts: Indices
     ridge_entries: Indices
     region: Indices
     site: Indices
-    # The vertices of each cell, in the same way.
+    # The vertices of each cell, in the same format.
     region_starts: Indices
     region_vertices: Indices
 
@@ -52,7 +53,7 @@ class DiagramN:
 def dual(
     points: Floats, simplices: Indices, neighbor: Indices, centers: Floats, workers: int
 ) -> DiagramN:
-    """Return the diagram of a Delaunay triangulation; `centers` are the core's circumcenters."""
+    """Return the dual of a Delaunay triangulation; `centers` are the core's circumcenters."""
     cell = cospherical(points, simplices, neighbor, centers)
     first = np.unique(cell)
     there = np.isfinite(centers[first]).all(axis=1)
@@ -83,11 +84,11 @@ def dual(
 
 
 def _planes(points: Floats, facets: Indices, workers: int) -> Rows:
-    """Return the plane of each facet of the boundary: the first facet that is in it."""
+    """Return for each boundary facet the first facet that lies in the same plane."""
     beside = neighbors(facets)
     t, k = np.nonzero(beside > np.arange(len(facets))[:, None])
     u = beside[t, k]
-    # The corner of the second that the first does not have.
+    # The corner of the second facet that the first does not share.
     others = facets[u]
     apart = (others[:, :, None] != facets[t][:, None, :]).all(axis=2)
     apex = others[np.arange(len(others)), apart.argmax(axis=1)]
@@ -104,7 +105,7 @@ def _ridges(
     outer, of_outer = _pairs(facets, count)
     keys, owner = np.unique(np.concatenate((inner, outer)), return_inverse=True)
     owner = owner.reshape(-1)
-    # Cells and planes by one number each.
+    # Number cells and planes consecutively.
     group = np.concatenate((cell[of_inner], len(cell) + plane[of_outer]))
     corners = np.concatenate((np.bincount(cell, minlength=len(cell)), np.bincount(plane)))
     simple = np.zeros(len(keys), dtype=bool)
@@ -133,7 +134,7 @@ def _pairs(simplices: Indices, count: int) -> tuple[Rows, Rows]:
 
 
 def _among(owner: Rows, group: Rows, chosen: Rows) -> tuple[Rows, Rows]:
-    """Return pairs of owners and groups where the owner is chosen, numbered as there."""
+    """Return pairs of owners and groups, for chosen owners, numbered by position in `chosen`."""
     number = np.full(int(owner.max()) + 1, -1)
     number[chosen] = np.arange(len(chosen))
     own = number[owner] >= 0
@@ -141,7 +142,7 @@ def _among(owner: Rows, group: Rows, chosen: Rows) -> tuple[Rows, Rows]:
 
 
 def _members(simplices: Indices, label: Rows) -> dict[int, frozenset[int]]:
-    """Return the corners of all simplices with one label, of labels that several have."""
+    """Return the corners of all simplices with each label that several simplices share."""
     order = np.argsort(label, kind="stable")
     starts = np.flatnonzero(np.append(True, np.diff(label[order]) > 0))
     ends = np.append(starts[1:], len(order))
@@ -155,7 +156,7 @@ def _members(simplices: Indices, label: Rows) -> dict[int, frozenset[int]]:
 def _are_edges(
     pairs: Rows, starts: Indices, groups: Indices, members: dict[int, frozenset[int]]
 ) -> list[bool]:
-    """Return which pairs of points are all that the cells and planes that contain both share."""
+    """Return for which pairs of points their cells and planes have no other common point."""
     found = []
     for pair, (start, end) in zip(pairs.tolist(), pairwise(starts.tolist()), strict=True):
         sets = sorted((members[k] for k in groups[start:end].tolist()), key=len)
@@ -169,7 +170,7 @@ def _are_edges(
 
 
 def _rows(owner: Rows, entry: Rows, count: int) -> tuple[Indices, Indices]:
-    """Return distinct pairs as compressed rows, entries from -1 ascending."""
+    """Return distinct pairs as compressed rows, with entries from -1 in ascending order."""
     width = int(entry.max(initial=0)) + 2
     keys = distinct(owner * width + entry + 1)
     owners, entries = np.divmod(keys, width)

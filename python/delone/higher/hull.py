@@ -19,10 +19,10 @@ __all__ = ["areas", "hull_arrays", "normals"]
 
 
 def hull_arrays(points: Floats) -> dict[str, NDArray[Any]]:
-    """Return the arrays of a hull; `polygons` are the vertices of facets, ascending."""
+    """Return the arrays of a hull; `polygons` lists the vertices of each facet, ascending."""
     found = _core.hull_n(points)
     d = found.simplices.shape[1]
-    # Each corner once for each facet, as one number.
+    # Encode each distinct pair of facet and corner as one number.
     owner = np.repeat(found.facet_of, d).astype(np.int64)
     keys = distinct(owner * len(points) + found.simplices.reshape(-1))
     facet, polygons = np.divmod(keys, len(points))
@@ -44,10 +44,10 @@ def hull_arrays(points: Floats) -> dict[str, NDArray[Any]]:
 def normals(points: Floats, facets: Indices, inside: Indices) -> Floats:
     """Return outer unit normals of facets, (k, d), with errors below 1e-12.
 
-    `inside` has for each facet the row of a point of the hull that is not on its plane.
+    `inside` is, for each facet, the row of a point of the hull that is not in its plane.
     """
     maps = measures.transform(points, np.column_stack((inside, facets)))
-    # The coordinate of the point inside falls toward the facet.
+    # The coordinate of the interior point decreases toward the facet.
     inward = maps[:, 0]
     with np.errstate(all="ignore"):
         scaled = inward / np.abs(inward).max(axis=1, keepdims=True)
@@ -58,7 +58,7 @@ def normals(points: Floats, facets: Indices, inside: Indices) -> Floats:
 def areas(points: Floats, facets: Indices, inside: Indices, workers: int | None) -> Floats:
     """Return the (d - 1)-dimensional areas of facets, with a relative error below 1e-12."""
     cones = np.column_stack((inside, facets))
-    # The volume of a cone is its base times its height over d; the height is 1 over the slope.
+    # The volume of a cone is base times height divided by d; the height is 1 / slope.
     slope = _lengths(measures.transform(points, cones)[:, 0])
     volumes = np.abs(measures.sizes(points, cones, workers))
     found: Floats = volumes * points.shape[1] * slope

@@ -1,4 +1,4 @@
-"""Linear algebra in fractions, for what rounding does not decide."""
+"""Linear algebra with fractions, for decisions that need exact arithmetic."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ __all__ = ["kernel"]
 
 
 def kernel(rows: Sequence[Sequence[Fraction]]) -> list[Fraction]:
-    """Return a vector that is orthogonal to others, one for which it exists, by Gauss and Jordan.
+    """Return a nonzero vector that is orthogonal to all rows, by Gauss-Jordan elimination.
 
-    The last of its components that are free is 1.
+    Such a vector must exist. Its last free component is 1, and the other free ones are 0.
     """
     left, width = [list(row) for row in rows], len(rows[0])
     pivots: list[int] = []

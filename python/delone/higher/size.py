@@ -1,10 +1,11 @@
-"""How large triangulations and hulls in four to eight dimensions become, before they are made.
+"""Predict the size of triangulations and hulls in four to eight dimensions.
 
-Two bounds need nothing but the number of points. Uniform points have a known number of simplices
-each (J. Møller, "Lectures on random Voronoi tessellations", 1994), and no points have more facets
-than those of a cyclic polytope (P. McMullen, "The maximum numbers of faces of a convex polytope",
-1970). If the smaller of them is a small share of the memory, nothing else happens. Otherwise two
-samples are triangulated, and their sizes are extrapolated.
+Two estimates need only the number of points. For uniform points, the expected number of simplices
+per point is known (J. Møller, "Lectures on random Voronoi tessellations", 1994). The number of
+facets is at most that of a cyclic polytope (P. McMullen, "The maximum numbers of faces of a convex
+polytope", 1970). If the smaller of the two needs only a small share of the memory, no sample is
+needed. Otherwise samples of increasing size are triangulated, and the sizes of the last two are
+extrapolated.
 """
 
 from __future__ import annotations
@@ -29,28 +30,28 @@ __all__ = ["peak_bytes", "require_room", "sample_size"]
 
 # Bytes of a row number, and of a coordinate.
 _ROW, _COORDINATE = 4, 8
-# In the core a simplex has a record, and the array of records doubles.
+# The core keeps a record per simplex, and the array of records grows by doubling.
 _GROWTH = 2.5
-# Work that is expected to take less of the limit is not looked at.
+# Inputs that are expected to need less than this share of the limit are not sampled.
 _SMALL = 1 / 8
-# Samples have up to half of the points, and end with one of so many simplices: in a few seconds.
+# Samples have up to half of the points, and the last has this many simplices: a few seconds.
 _MOST = 100_000
-# Samples of which more are expected are not made.
+# A sample is made smaller if more simplices than this are expected.
 _PREDICTED = 1_000_000
-# The fewest points of a sample for each corner of a simplex.
+# Minimum number of sample points per corner of a simplex.
 _FEW = 3
 
 
 def peak_bytes(simplices: int, d: int) -> int:
-    """Return the memory of so many simplices while they are made, with the result."""
+    """Return the peak memory of computing this many simplices, including the result."""
     record = _COORDINATE * (d + 2) + 2 * _ROW * (d + 2)
     return int(simplices * (_GROWTH * record + 2 * _ROW * (d + 1)))
 
 
 def require_room(points: Floats, max_bytes: int | None, *, hull: bool = False) -> None:
-    """Raise TooLargeError if a triangulation, or a hull, would take more than `max_bytes`.
+    """Raise TooLargeError if a triangulation, or a hull, would need more than `max_bytes`.
 
-    By default that is the free memory.
+    The default is the free memory.
     """
     n, d = points.shape
     limit = free_memory() if max_bytes is None else _as_bytes(max_bytes)
@@ -85,22 +86,22 @@ def _as_bytes(max_bytes: Any) -> int:
 
 
 def sample_size(size: int, d: int, *, hull: bool = False) -> int:
-    """Return a number of points, at most `size`, that are triangulated in some seconds."""
-    # Ends: few points have few simplices.
+    """Return a number of points, at most `size`, that takes a few seconds to triangulate."""
+    # Terminates, because few points have few simplices.
     while size > _FEW * (d + 1) and _expected(size, d, hull=hull) > _PREDICTED:
         size = size * 3 // 4
     return size
 
 
 def _expected(n: int, d: int, *, hull: bool) -> int:
-    """Return the number of simplices of uniform points, or that of any points if it is smaller."""
-    # Points on a sphere have as many facets as points in one dimension less have simplices.
+    """Return the expected number for uniform points, or the maximum for any points if smaller."""
+    # A hull of points on a sphere has as many facets as a triangulation in d - 1 has simplices.
     typical = n * _per_point(d - 1 if hull else d)
     return int(min(typical, _cyclic(n, d if hull else d + 1)))
 
 
 def _per_point(d: int) -> float:
-    """Return the simplices for each of many uniform points in d dimensions."""
+    """Return the number of simplices per point of many uniform points in d dimensions."""
     logarithm = (
         (d + 1) * math.log(2)
         + (d - 1) / 2 * math.log(math.pi)
@@ -119,14 +120,14 @@ def _cyclic(n: int, d: int) -> int:
 
 
 def _extrapolated(points: Floats, *, hull: bool) -> int | None:
-    """Return the number of simplices by those of samples; None if there are few points, or flat.
+    """Predict the number of simplices from samples; None if points are too few or degenerate.
 
-    From a sample of half as many points to a sample, numbers grow by a power of two. It falls
-    toward one with the share of points near the boundary, which is n^(-1/d).
+    If the number of points doubles, the number of simplices grows by a power of two. The exponent
+    decreases toward 1 with the share of points near the boundary, which is n^(-1/d).
     """
     n, d = points.shape
     order = np.random.default_rng(0).permutation(n)
-    # Half of the points, a quarter and so on, as long as these are enough: the last first.
+    # Half of the points, a quarter and so on, as long as these are enough; smallest first.
     sizes = [n // 2**k for k in range(1, n.bit_length()) if n // 2**k >= _FEW * (d + 1)][::-1]
     counts: list[int] = []
     for size in sizes:
@@ -144,6 +145,6 @@ def _extrapolated(points: Floats, *, hull: bool) -> int | None:
     power = math.log2(counts[1] / counts[0])
     share, doublings = 2 ** (-1 / d), math.log2(n / size)
     excess = (power - 1) * (1 - share**doublings) / (1 - share)
-    # No set of points has more.
+    # The maximum for any set of points.
     most = _cyclic(n, d if hull else d + 1)
     return int(min(counts[1] * 2.0 ** max(0.0, doublings + excess), float(min(most, 10**300))))

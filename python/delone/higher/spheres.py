@@ -1,9 +1,9 @@
-"""Which simplices of a triangulation have one circumsphere, exactly.
+"""Find the simplices of a triangulation that share a circumsphere, exactly.
 
-The core's circumcenters are within 4 units in the last place of the true ones. So adjacent
-simplices with centers further apart have different spheres. Others are compared in fractions: one
-sphere is computed for all simplices that are connected by close centers, and their corners are put
-in.
+The core's circumcenters are within 4 units in the last place of the exact ones. So if the centers
+of adjacent simplices are farther apart, their spheres are different. The other simplices are
+compared with exact arithmetic: for each group of simplices that are connected by close centers, one
+sphere is computed, and the corners of the group are tested against it.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ if TYPE_CHECKING:
 
 __all__ = ["components", "cospherical"]
 
-# Centers that are the same differ by at most 8 units in the last place, each at most 2^-52 of a
-# coordinate, or the smallest double.
+# Computed centers of the same sphere differ by at most 8 units in the last place. Each unit is at
+# most 2^-52 of a coordinate, or the smallest double.
 _APART, _LEAST = 2.0**-48, 2.0**-1070
 
 
 def cospherical(points: Floats, simplices: Indices, neighbors: Indices, centers: Floats) -> Rows:
     """Return for each simplex the first one with the same circumsphere, (m,).
 
-    The triangulation is Delaunay, so that simplices on one sphere are connected.
+    The triangulation is Delaunay, so simplices with the same circumsphere are connected.
     """
     t, k = np.nonzero(neighbors > np.arange(len(simplices))[:, None])
     u = neighbors[t, k]
@@ -44,7 +44,7 @@ def cospherical(points: Floats, simplices: Indices, neighbors: Indices, centers:
     sizes = np.diff(np.append(starts, len(order)))
     for start, count in zip(starts[sizes > 1].tolist(), sizes[sizes > 1].tolist(), strict=True):
         left = order[start : start + count]
-        # Ends: the first is on its own sphere.
+        # Terminates: each pass removes at least the first, which is on its own sphere.
         while len(left):
             corners = np.unique(simplices[left])
             on = corners[_on_sphere(points[simplices[left[0]]], points[corners])]
@@ -55,9 +55,9 @@ def cospherical(points: Floats, simplices: Indices, neighbors: Indices, centers:
 
 
 def components(count: int, a: Rows, b: Rows) -> Rows:
-    """Return for each of so many numbers the smallest to which pairs connect it."""
+    """Return for each number below `count` the smallest one in its connected component."""
     label = np.arange(count)
-    # Ends: labels only fall.
+    # Terminates, because labels only decrease.
     while True:
         low = np.minimum(label[a], label[b])
         new = label.copy()
@@ -75,7 +75,7 @@ def _on_sphere(simplex: Floats, points: Floats) -> NDArray[np.bool_]:
     steps = [[x - y for x, y in zip(point, origin, strict=True)] for point in others]
     lifted = [(step, sum(x * x for x in step)) for step in steps]
     d = len(origin)
-    # Twice the center is c with c . a = |a|^2 for all corners.
+    # Twice the center is the c with c . a = |a|^2 for all corners a.
     center = kernel([[*map(Fraction, step), Fraction(-size)] for step, size in lifted[:d]])[:-1]
     unit = int(np.lcm.reduce([x.denominator for x in center], dtype=object))
     whole = [int(x * unit) for x in center]
@@ -87,7 +87,7 @@ def _on_sphere(simplex: Floats, points: Floats) -> NDArray[np.bool_]:
 
 
 def _integers(points: Floats) -> list[list[int]]:
-    """Return coordinates as integers, in a unit that all have in common."""
+    """Return coordinates as integer multiples of a common unit."""
     pairs = [[x.as_integer_ratio() for x in point] for point in points.tolist()]
     # Denominators are powers of two.
     unit = max(below for point in pairs for _, below in point)

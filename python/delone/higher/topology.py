@@ -1,7 +1,7 @@
 """Topology of simplices with any number of corners: the facets of the boundary.
 
-Needs neither coordinates nor predicates. Simplices are positively oriented, and
-``neighbors[t, k]`` is across the facet opposite vertex k, -1 outside.
+This module needs neither coordinates nor predicates. Simplices are positively oriented, and
+``neighbors[t, k]`` is the simplex across the facet opposite vertex k, or -1 outside.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ __all__ = ["boundary_facets", "distinct", "neighbors"]
 def boundary_facets(simplices: Indices, neighbors: Indices) -> Indices:
     """Return the facets with a simplex on one side only, (h, d), in the order of the simplices.
 
-    A facet with a point on its inner side in front of it is positively oriented, as in 2-D and 3-D.
+    An interior point followed by the corners of a facet is positively oriented, as in 2-D and 3-D.
     """
     simplex, corner = np.nonzero(neighbors < 0)
     count = simplices.shape[1]
-    # The corners but one; two exchanged where that one has an odd number.
+    # All corners but one; swap the last two if the number of that corner is odd.
     order = np.array([[k for k in range(count) if k != left] for left in range(count)])
     order[1::2, -2:] = order[1::2, :-3:-1]
     found: Indices = np.take_along_axis(simplices[simplex], order[corner], axis=1)
@@ -31,7 +31,7 @@ def boundary_facets(simplices: Indices, neighbors: Indices) -> Indices:
 
 
 def distinct(numbers: Rows) -> Rows:
-    """Return numbers once each, ascending; ``np.unique`` may hash them, which takes longer."""
+    """Return the distinct numbers, sorted; ``np.unique`` may hash them, which takes longer."""
     ascending = np.sort(numbers)
     kept = np.ones(len(ascending), dtype=bool)
     np.not_equal(ascending[1:], ascending[:-1], out=kept[1:])
@@ -39,9 +39,9 @@ def distinct(numbers: Rows) -> Rows:
 
 
 def neighbors(simplices: Indices) -> Indices:
-    """Return the simplex opposite each vertex, -1 if there is none. O(m log m).
+    """Return the simplex opposite each vertex, or -1. O(m log m).
 
-    A facet that more than two simplices have joins none of them.
+    Simplices are not neighbors across a facet that more than two of them share.
     """
     count, width = simplices.shape
     left = [[k for k in range(width) if k != corner] for corner in range(width)]

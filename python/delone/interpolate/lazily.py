@@ -1,8 +1,8 @@
 """Linear interpolation in the simplices that contain the queries, without the other simplices.
 
-The core finds the simplex of the canonical Delaunay triangulation that contains a query by linear
-programming and proves it, so the values are those of the triangulation up to rounding, in any
-number of dimensions.
+The core uses linear programming to find the simplex of the canonical Delaunay triangulation that
+contains a query, and proves that it is correct. So the values equal those of the triangulation up
+to rounding, in any dimension.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ __all__ = ["Lazily"]
 
 
 class Lazily:
-    """Sites whose triangulation is not made."""
+    """Sites that are interpolated without a triangulation."""
 
     def __init__(self, points: Floats, workers: int) -> None:
         self.points = points
         self.workers = workers
-        # Degenerate sites are refused now.
+        # Reject degenerate sites now.
         self._sites  # noqa: B018
 
     @cached_property
@@ -59,7 +59,7 @@ class Lazily:
             sums = np.zeros((len(rows), columns.shape[1]))
             for k in range(corners.shape[1]):
                 weight = weights[rows, k, None]
-                # What has no weight has no effect, not even as NaN.
+                # A corner with weight 0 has no effect, even if its value is NaN.
                 sums += np.where(weight == 0, 0.0, weight * columns[corners[rows, k]])
             found[rows] = sums
         return found
@@ -71,7 +71,7 @@ class Lazily:
         found = np.full((count, columns.shape[1], d), np.nan)
         inside = np.flatnonzero(corners[:, 0] >= 0)
         of = slopes if d <= MOST else _slopes
-        # Matrices of a block take as much memory as one of its columns elsewhere.
+        # The matrices of a block take as much memory as one column of a block elsewhere.
         step = max(1, ROWS // d**2)
         for start in range(0, len(inside), step):
             rows = inside[start : start + step]
@@ -79,7 +79,7 @@ class Lazily:
         return found
 
     def __getstate__(self) -> dict[str, Any]:
-        # The core's index is built again.
+        # The core's index is rebuilt when it is needed.
         return {"points": self.points, "workers": self.workers}
 
     def __str__(self) -> str:
@@ -88,11 +88,11 @@ class Lazily:
 
 
 def _slopes(points: Floats, corners: Indices, columns: Floats) -> Floats:
-    """The gradients, (k, c, d), of linear functions on simplices, (k, d + 1), none flat."""
+    """Return gradients, (k, c, d), of linear functions on nondegenerate simplices, (k, d + 1)."""
     last = points[corners[:, -1:]]
     sides = points[corners[:, :-1]] - last
     rise = columns[corners[:, :-1]] - columns[corners[:, -1:]]
-    # Each side has the length 1, so that thin simplices are not lost to the scale of one axis.
+    # Scale each side to length 1, so that pinv does not treat thin simplices as flat.
     length = np.linalg.norm(sides, axis=2, keepdims=True)
     found: Floats = (np.linalg.pinv(sides / length) @ (rise / length)).transpose(0, 2, 1)
     return found

@@ -39,36 +39,37 @@ _NEEDED = {
 
 
 class Linear(Interpolator):
-    """Piecewise linear interpolation on triangles, tetrahedra, or simplices of more dimensions.
+    """Piecewise linear interpolation on triangles, tetrahedra, or simplices of higher dimension.
 
     Parameters
     ----------
     points : array_like, shape (n, d), or a triangulation
-        Sites with two to eight coordinates, or with up to 64 without a mesh. A triangulation of
-        delone is used directly, including constrained and regular ones and, in 3-D, a `TetMesh`;
-        its own boundary replaces the hull. A periodic one,
-        ``PeriodicDelaunay(points, (360, None))``, makes the interpolant periodic as well.
+        Sites with two to eight coordinates, or up to 64 if no mesh is needed (see `method`). A
+        triangulation of delone is used directly, including constrained and regular ones and, in
+        3-D, a `TetMesh`; its own boundary replaces the hull. With a periodic triangulation, such as
+        ``PeriodicDelaunay(points, (360, None))``, the interpolant is periodic as well.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. Optional if each call passes its own values.
     method : {"auto", "mesh", "lazy", "grid"}, optional
-        ``"mesh"`` triangulates the points. ``"lazy"`` finds the simplex that contains each query
-        by itself, with a proof, and needs no triangulation: memory follows the number of points,
-        and a query takes longer than in a mesh. ``"grid"`` requires all points of a rectilinear
-        grid, in any order and with even or uneven steps, and sorts the coordinates of a query
-        within its cell. The values are the same up to rounding. ``"auto"`` uses grids from 4-D on,
-        triangulates other points with up to eight coordinates, and is lazy with more, or where the
-        triangulation would not fit into memory.
+        ``"mesh"`` triangulates the points. ``"lazy"`` finds only the simplex that contains each
+        query, with a proof, and does not triangulate: memory is proportional to the number of
+        points, and a query takes longer than in a mesh. ``"grid"`` requires all points of a
+        rectilinear grid, in any order and with even or uneven spacing, and sorts the local
+        coordinates of a query within its cell. The values are the same up to rounding. ``"auto"``
+        selects ``"grid"`` for grids from 4-D on. For other points, it selects ``"mesh"`` with up to
+        eight coordinates, and ``"lazy"`` with more, or if the triangulation would not fit into
+        memory.
     extrapolate : {"nan", "nearest", "linear", "raise"}, optional
         Behavior outside the hull: NaN; the value at the nearest point of the hull; linear
         extrapolation from that point, with the gradients of the planes that best fit its sites and
-        their neighbors; an error. From 4-D on, NaN or an error.
+        their neighbors; or an error. From 4-D on, only ``"nan"`` and ``"raise"`` are available.
     tolerance : float, optional
-        Queries outside at most this far from the hull, in the unit of the points, are inside: they
-        have the value at the nearest point of the hull. By default 0. Half of the points on a side
-        that is not parallel to an axis are outside by a rounding error. The distance is compared
-        exactly. Only in 2-D and 3-D.
+        Queries outside the hull, but at most this far from it, in the unit of the points, count as
+        inside and have the value at the nearest point of the hull. The default is 0. About half of
+        the points on a side that is not parallel to an axis are outside by a rounding error. The
+        distance is compared exactly. Only in 2-D and 3-D.
     duplicates : {"raise", "mean", "first", "last", "min", "max"}, optional
-        The value of points that coincide but have different values.
+        Which value to use if points coincide but have different values.
     nan : {"raise", "drop", "propagate"}, optional
         How to treat sites whose value is NaN or infinite: raise an error that names them; remove
         them from the triangulation (an error if a constraint needs them, or if a regular
@@ -89,7 +90,7 @@ class Linear(Interpolator):
     NonFiniteError
         A coordinate, or with ``nan="raise"`` a value, is NaN or infinite.
     DegenerateInputError
-        The sites span no area.
+        The sites do not span a simplex.
     ShapeError, DtypeError
         Arrays have the wrong shape, or are not numeric.
 
@@ -98,12 +99,12 @@ class Linear(Interpolator):
     At a site the value is reproduced exactly, bit for bit; linear functions are reproduced up to
     rounding. Inside the hull, including its boundary, the result is NaN only if a value is. The
     time of a query is that of its point location: O(1) in a mesh, because the core sorts queries
-    along a space-filling curve. Lazily it is that of a linear program of d + 1 rows, some 0.1 ms in
-    4-D, 1 ms in 20-D and 10 ms in 50-D for 2,000 points; a query in the simplex of the one before
-    takes microseconds.
+    along a space-filling curve. With ``method="lazy"``, each query solves a linear program with
+    d + 1 rows: about 0.1 ms in 4-D, 1 ms in 20-D and 10 ms in 50-D for 2,000 points. A query in the
+    same simplex as the previous one takes microseconds.
 
     On a periodic triangulation, queries are moved into one period, and the sites are copied as
-    often as needed, at least twice on each side. In a periodic direction, there is no outside.
+    often as needed, at least twice on each side. In a periodic direction, no query is outside.
 
     See Also
     --------
@@ -123,7 +124,7 @@ class Linear(Interpolator):
     >>> Linear(sites, [0.0, 4.0, 7.0, 3.0, 5.0], extrapolate="nearest")((9, 9))
     array(7.)
 
-    A table of four columns, here of a function that is linear in each cell:
+    A table with four columns, here of a function that is linear in each cell:
 
     >>> axes = np.meshgrid([0, 1, 4], [0, 2], [5, 6], [1, 2, 3])
     >>> table = np.stack(axes, axis=-1).reshape(-1, 4)
@@ -198,7 +199,7 @@ class Linear(Interpolator):
         return None
 
     def _without_mesh(self, sites: Floats) -> Rectilinear | Lazily | None:
-        """What finds the simplices of queries by itself; None if the method is another one."""
+        """Return the grid or the lazy sites that evaluate queries; None if a mesh is needed."""
         grid = rectilinear(sites) if self._method != "lazy" else None
         if grid is not None or self._method == "grid":
             return grid
@@ -206,7 +207,7 @@ class Linear(Interpolator):
         return Lazily(np.ascontiguousarray(sites), as_workers(self._workers)) if is_lazy else None
 
     def _wants_no_mesh(self) -> bool:
-        """Whether there may be no triangles; in 2-D and 3-D only on request."""
+        """Whether a mesh can be avoided; in 2-D and 3-D, only on request."""
         if self._method == "auto":
             return self._ndim > SPACE
         if self._method != "mesh" and (self._tolerance or self._extrapolate in _BEYOND):

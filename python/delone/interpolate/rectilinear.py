@@ -1,10 +1,10 @@
 """Linear interpolation on a rectilinear grid, without its triangulation.
 
-All points of a grid cell lie on one sphere, and the canonical choice among its simplices is that
-of Kuhn: each follows a path from the lowest corner to the highest, adding one axis at a time, also
-where steps are uneven. A query is in the simplex whose path takes the axes by falling fractions of
-the query within the cell. So its corners are found by sorting d numbers, and the values are those
-of the Delaunay triangulation up to rounding.
+The corners of a grid cell are cospherical, and its canonical triangulation is Kuhn's, even if the
+spacing is uneven: each simplex follows a path from the lowest corner to the highest, one axis at a
+time. The simplex that contains a query takes the axes in descending order of the query's local
+coordinates within the cell. So sorting d numbers finds its corners, and the values equal those of
+the Delaunay triangulation up to rounding.
 
 H. W. Kuhn, "Some combinatorial lemmas in topology" (1960).
 """
@@ -26,14 +26,14 @@ __all__ = ["Rectilinear", "rectilinear"]
 
 
 class Cells(NamedTuple):
-    """The simplices of queries, of which some are outside."""
+    """The simplices that contain queries; some queries are outside the grid."""
 
-    # Whether they are in the grid; the rest are for those that are.
+    # Whether each query is in the grid; the other fields describe only those that are.
     inside: Bools
     # Axes in the order of the path, (k, d), and the rows along it, (k, d + 1).
     axes: NDArray[np.intp]
     corners: Indices
-    # Weights of these rows, (k, d + 1), and lengths of the cell, (k, d).
+    # Weights of these rows, (k, d + 1), and side lengths of the cells, (k, d).
     weights: Floats
     steps: Floats
 
@@ -57,7 +57,7 @@ class Rectilinear(NamedTuple):
             low = np.clip(np.searchsorted(axis, at[:, k], side="right") - 1, 0, len(axis) - 2)
             node[:, k] = low
             share[:, k], steps[:, k] = _share(at[:, k], axis[low], axis[low + 1])
-        # The order of equal shares does not matter: what is between them has the weight 0.
+        # The order of equal shares does not matter: the corner between them has weight 0.
         order = np.argsort(-share, axis=1, kind="stable")
         strides = np.cumprod([1, *(len(axis) for axis in self.axes[:0:-1])])[::-1]
         number = np.empty((len(at), d + 1), dtype=np.intp)
@@ -91,7 +91,7 @@ class Rectilinear(NamedTuple):
             sums = np.zeros((len(cells.corners), columns.shape[1]))
             for k in range(cells.corners.shape[1]):
                 weight = cells.weights[:, k, None]
-                # What has no weight has no effect, not even as NaN.
+                # A corner with weight 0 has no effect, even if its value is NaN.
                 sums += np.where(weight == 0, 0.0, weight * columns[cells.corners[:, k]])
             found[block][cells.inside] = sums
         return found
@@ -102,7 +102,7 @@ class Rectilinear(NamedTuple):
         found = np.full((count, columns.shape[1], d), np.nan)
         for block in blocks(count):
             cells = self.find(queries[block])
-            # Each part of a path changes one coordinate.
+            # Each step of a path changes one coordinate.
             rise = np.diff(columns[cells.corners], axis=1)
             slopes = np.empty((len(rise), columns.shape[1], d))
             axes = np.broadcast_to(cells.axes[:, None, :], slopes.shape)
@@ -116,18 +116,18 @@ class Rectilinear(NamedTuple):
 
 
 def _share(at: Floats, low: Floats, high: Floats) -> tuple[Floats, Floats]:
-    """Return where coordinates are between two others, from 0 to 1, and the distance of these."""
+    """Return the positions between two coordinates, from 0 to 1, and the distance of the two."""
     with np.errstate(over="ignore", invalid="ignore"):
         step = high - low
         share = (at - low) / step
-        # By halves, as a step may be longer than any double.
+        # Halve the numbers, because a step can exceed the largest double.
         far = ~np.isfinite(step)
         share[far] = (at[far] / 2 - low[far] / 2) / (high[far] / 2 - low[far] / 2)
     return share, step
 
 
 def rectilinear(points: Floats) -> Rectilinear | None:
-    """Return the grid that points, (n, d), are in any order; None if they are not a whole grid."""
+    """Return the grid of points, (n, d), in any order; None if they are not a complete grid."""
     count, d = points.shape
     if count < 2**d or not np.isfinite(points).all():
         return None
@@ -135,7 +135,7 @@ def rectilinear(points: Floats) -> Rectilinear | None:
     for k in range(d):
         axis, at = np.unique(points[:, k], return_inverse=True)
         shape *= len(axis)
-        # The nodes of a grid are as many as the product of the lengths of its axes.
+        # The number of nodes of a grid is the product of the lengths of its axes.
         if len(axis) < 2 or shape > count:
             return None
         axes.append(axis)

@@ -1,7 +1,7 @@
 """The cells of a diagram in four to eight dimensions: their vertices, without measures.
 
-`delone.higher.dual` has the arrays. Vertices of ridges are not in an order around them, as they
-have none.
+`delone.higher.dual` computes the arrays. The vertices of a ridge have no cyclic order from 4-D on,
+so they are in ascending order.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ __all__ = ["HigherCells", "of_mesh"]
 
 
 def of_mesh(mesh: Delaunay) -> DiagramN:
-    """Return the dual of a triangulation; rows that repeat others have no cell."""
+    """Return the dual of a triangulation; duplicate rows do not have a cell."""
     arrays = mesh.points, mesh.simplices, mesh.neighbors, mesh.circumcenters
     return dual(*arrays, as_workers(mesh._workers))
 
@@ -47,7 +47,7 @@ class HigherCells(Cells):
         periods: Any,
         workers: int | None,
     ) -> Self:
-        """Return the cells of sites, for the arguments of `delone.Voronoi`."""
+        """Return the cells of sites, given the arguments of `delone.Voronoi`."""
         if clip is not None:
             raise InputError("a clip is only available in 2-D and 3-D")
         if weights is not None:
@@ -61,17 +61,17 @@ class HigherCells(Cells):
         return cls(points=points, weights=None, mesh=mesh, dual=arrays, workers=workers)
 
     def saved_clip(self) -> dict[str, NDArray[Any]]:
-        """Return the clip as arrays of a file: none."""
+        """Return an empty dictionary: a clip is only available in 2-D and 3-D."""
         return {}
 
     @classmethod
     def loaded_clip(cls, arrays: dict[str, NDArray[Any]]) -> Any:
-        """Return the clip of the arrays that `saved_clip` has returned."""
+        """Return None: a clip is only available in 2-D and 3-D."""
         return None
 
     @property
     def public_clip(self) -> None:
-        """None."""
+        """Always None."""
         return
 
     def ridge_rows(self) -> tuple[Indices, Indices]:
