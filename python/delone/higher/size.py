@@ -95,7 +95,7 @@ def sample_size(size: int, d: int, *, hull: bool = False) -> int:
 
 def _expected(n: int, d: int, *, hull: bool) -> int:
     """Return the expected number for uniform points, or the maximum for any points if smaller."""
-    # A hull of points on a sphere has as many facets as a triangulation in d - 1 has simplices.
+    # Points on a sphere have as many hull facets as points in (d - 1)-D have simplices.
     typical = n * _per_point(d - 1 if hull else d)
     return int(min(typical, _cyclic(n, d if hull else d + 1)))
 

@@ -281,7 +281,7 @@ class Linear(Interpolator):
             return Weights(*rectangular(*self._implicit.within(queries)), shape, self)
         place = self._located(queries)
         weights, simplices = place.barycentric, self._sheet.simplices
-        # Without triangles there is no row to use for queries outside.
+        # If there are no triangles, `simplices` cannot be indexed, and all queries are outside.
         corners = (
             simplices[place.simplex] if len(simplices) else np.full(weights.shape, -1, np.int32)
         )
