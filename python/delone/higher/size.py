@@ -67,7 +67,7 @@ def require_room(points: Floats, max_bytes: int | None, *, hull: bool = False) -
         "use fewer points or coordinates"
         if hull
         else "use fewer points or coordinates, or for interpolation "
-        'delone.interpolate.Linear(method="lazy"), which makes no simplices'
+        'delone.interpolate.Linear(method="lazy"), which needs no triangulation'
     )
     raise TooLargeError(
         f"the {what[1]} of {grouped(n)} points in {d}-D would have about {grouped(found)} "

@@ -34,7 +34,7 @@ _BEYOND = ("nearest", "linear")
 # What the methods without a mesh need.
 _NEEDED = {
     "grid": "the points of a rectilinear grid, all of them",
-    "lazy": "points, which are not periodic",
+    "lazy": "points that are not periodic",
 }
 
 
