@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Self
 
 from delone.errors import DeloneError
 
@@ -50,6 +51,11 @@ class TooLargeError(DeloneError, MemoryError):
     simplices: int
     nbytes: int
     limit: int
+
+    def __new__(cls, *args: object, **kwargs: object) -> Self:
+        """Create an error; libraries that copy errors, such as tblib, call this alone."""
+        # The one of MemoryError refuses classes with another base.
+        return Exception.__new__(cls, *args)
 
     def __init__(
         self,

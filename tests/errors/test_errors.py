@@ -58,6 +58,13 @@ def test_survives_pickle_and_copy(error: errors.DeloneError, duplicate: object) 
 
 
 @pytest.mark.parametrize("error", CASES, ids=lambda error: type(error).__name__)
+def test_is_made_by_the_method_that_tblib_calls(error: errors.DeloneError) -> None:
+    # Dask copies errors with tblib, which sets the attributes afterwards.
+    made = type(error).__new__(type(error))
+    assert type(made) is type(error)
+
+
+@pytest.mark.parametrize("error", CASES, ids=lambda error: type(error).__name__)
 def test_constructs_from_a_message_alone(error: errors.DeloneError) -> None:
     assert "something" in str(type(error)("something"))
 

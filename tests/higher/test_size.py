@@ -41,7 +41,9 @@ def test_predictions(d: int, n: int, kind: str) -> None:
     found = size._extrapolated(points, hull=hull)
     whole = ConvexHull(points).nsimplex if hull else Delaunay(points).nsimplex
     assert found is not None
-    assert whole / 1.5 < found < whole * 1.5
+    # Samples of a hundred points say less.
+    factor = 1.5 if d < 8 else 2
+    assert whole / factor < found < whole * factor
 
 
 @pytest.mark.slow("the samples have as many simplices as it takes to predict 8-D")
