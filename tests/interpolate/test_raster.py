@@ -64,7 +64,7 @@ def test_huge_rasters_are_refused_before_anything_is_computed(
         grid(SQUARE, VALUES, shape=(10**7, 10**7))
     with pytest.raises(MemoryError, match="choose larger cells"):
         grid(SQUARE, VALUES, resolution=1e-9)
-    monkeypatch.setattr(module, "_free_memory", lambda: (1 << 26) + 8 * 99)
+    monkeypatch.setattr(module, "free_memory", lambda: (1 << 26) + 8 * 99)
     with pytest.raises(MemoryError):
         grid(SQUARE, VALUES, shape=(10, 10))
 
@@ -190,7 +190,7 @@ def test_what_is_no_list_of_numbers(options: dict[str, Any]) -> None:
 def test_more_cells_than_any_memory_has(
     options: dict[str, Any], free: int | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(module, "_free_memory", lambda: free)
+    monkeypatch.setattr(module, "free_memory", lambda: free)
     with pytest.raises(MemoryError, match="choose larger cells") as caught:
         grid(SQUARE, VALUES, **options)
     assert len(str(caught.value)) < 200

@@ -90,7 +90,7 @@ def test_dask_computes_no_more_than_is_asked_for() -> None:
 
 
 def test_huge_rasters_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(raster, "_free_memory", lambda: raster._SPARE + (1 << 21))
+    monkeypatch.setattr(raster, "free_memory", lambda: raster._SPARE + (1 << 21))
     one = stations().height.isel(time=0)
     assert one.delone.grid(shape=(400, 400)).shape == (400, 400)
     with pytest.raises(MemoryError, match="400 x 400 cells needs"):

@@ -8,12 +8,10 @@ anything is computed.
 from __future__ import annotations
 
 import math
-import os
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +23,7 @@ from delone.errors import DtypeError, InputError, ShapeError
 from delone.interpolate.base import Interpolator, as_max_distance
 from delone.interpolate.methods import interpolator
 from delone.interpolate.space import SPACE, refuse
+from delone.memory import free_memory
 from delone.renames import renamed
 
 if TYPE_CHECKING:
@@ -383,24 +382,10 @@ def _ascending(nodes: ArrayLike, name: str) -> Floats:
 def require_memory(columns: int, rows: int, values: int) -> None:
     """Raise MemoryError if cells with `values` numbers of 8 bytes do not fit into free memory."""
     needed = 8 * columns * rows * max(1, values)
-    free = _free_memory()
+    free = free_memory()
     if needed > sys.maxsize or (free is not None and needed + _SPARE > free):
         known = "" if free is None else f", and {gigabytes(free)} is free"
         raise MemoryError(
             f"a raster of {grouped(columns)} x {grouped(rows)} cells needs {gigabytes(needed)}"
             f"{known}; choose larger cells, or a part with bounds"
         )
-
-
-def _free_memory() -> int | None:
-    """Bytes available without swapping, or None if the system does not say."""
-    try:
-        for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
-            if line.startswith("MemAvailable:"):
-                return 1024 * int(line.split()[1])
-    except (OSError, ValueError):
-        pass
-    try:
-        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    except (AttributeError, OSError, ValueError):
-        return None

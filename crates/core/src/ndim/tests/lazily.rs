@@ -153,6 +153,14 @@ fn check_large<const D: usize, const V: usize, const P: usize>(
         let mut v: Vec<u32> = rows.iter().map(|&row| row as u32).collect();
         v.sort_unstable();
         assert!(known.contains(&v), "query {i}");
+        // More queries than one task has: each with the simplex and the weights of its own.
+        let weights = &found.weights[i * V..][..V];
+        for k in 0..D {
+            let mean: f64 = (0..V)
+                .map(|j| weights[j] * points[rows[j] as usize][k])
+                .sum();
+            assert!((mean - asked[i][k]).abs() < 1e-13, "query {i}");
+        }
     }
     // The number of threads does not matter.
     let again = lazy.locate(asked.as_flattened(), 3, &IDLE).unwrap();
