@@ -82,6 +82,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "points": ("delaunay",),
     "proof": ("validation",),
     "recover": ("tetrahedra",),
+    "refine3": ("tetrahedra",),
     "regular3": ("regular",),
     "voronoi3": ("voronoi",),
     "watch": ("delaunay",),

@@ -55,7 +55,9 @@ __all__ = [
     "RecoveredFaces",
     "RecoveryCounts",
     "RefinedMesh",
+    "RefinedTetrahedra",
     "Refinement2",
+    "Refinement3",
     "RegularFaults2",
     "RegularFaults3",
     "RegularFaultsN",
@@ -1429,6 +1431,44 @@ class RefinedMesh:
         """Whether the limit on vertices was reached."""
 
 @final
+class RefinedTetrahedra:
+    """Refined tetrahedra."""
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Coordinates: the input points, then the added ones, (n, 3)."""
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the tetrahedra, (m, 4)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The tetrahedron opposite each vertex, -1 outside, (m, 4)."""
+    @property
+    def labels(self) -> NDArray[np.int32]:
+        """The label of each tetrahedron, (m,)."""
+    @property
+    def sizes(self) -> NDArray[np.float64]:
+        """The size that was asked for at each, infinite for none, (m,)."""
+    @property
+    def faces(self) -> NDArray[np.int32]:
+        """The faces that stayed, oriented as given, (k, 3)."""
+    @property
+    def face_rows(self) -> NDArray[np.int32]:
+        """The row of the given face that each of these is, or lies in the facet of, (k,)."""
+    @property
+    def on_segments(self) -> int:
+        """Number of points added on segments."""
+    @property
+    def on_facets(self) -> int:
+        """Number of points added on facets."""
+    @property
+    def for_shapes(self) -> int:
+        """Number of points added inside for shapes."""
+    @property
+    def for_sizes(self) -> int:
+        """Number of points added inside for sizes."""
+
+@final
 class Refinement2:
     """A refinement in rounds, between which areas are sampled."""
 
@@ -1465,6 +1505,35 @@ class Refinement2:
         """
     def export(self) -> RefinedMesh:
         """The triangulation, with the vertices of all rounds."""
+
+@final
+class Refinement3:
+    """A refinement of tetrahedra in rounds, between which sizes are asked for."""
+
+    def __new__(
+        cls,
+        points: NDArray[np.float64],
+        simplices: NDArray[np.int32],
+        labels: NDArray[np.int32],
+        faces: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
+        split: bool,
+        radius_edge: float,
+    ) -> Refinement3:
+        """Tetrahedra with labels, and the faces `(faces, sources, markers)` that stay. With
+        `split`, points may be put on faces.
+        """
+    def fresh(self) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+        """The corners, (k, 12), and the labels, (k,), of tetrahedra whose sizes are not known."""
+    def comply(self, sizes: NDArray[np.float64], gradual: bool) -> bool:
+        """Sets the sizes of these; returns whether none is too large. With `gradual`, edges
+        are at most halved in the next round.
+        """
+    def refine(self, max_points: int, progress: Callable[[int], object] | None) -> tuple[bool, int]:
+        """One round; returns whether `max_points`, the number of points to add, was enough,
+        and the number of points added in all rounds.
+        """
+    def export(self) -> RefinedTetrahedra:
+        """The mesh, with the points of all rounds."""
 
 @final
 class RegularFaults2:

@@ -121,6 +121,7 @@ CORE: dict[str, set[str]] = {
     "locate3": {"locate", "points", "wide", "delone_predicates"} | GROUND,
     "wide": {"delone_predicates"},
     "distributed": {"locate", "points", "parallel", "delone_predicates"} | GROUND,
+    "refine3": {"improve", "graphs", "delone_predicates"} | GROUND,
     "regular": {"parallel", "delaunay2", "order", "points", "proof", "wide", "delone_predicates"}
     | GROUND,
     "voronoi": {

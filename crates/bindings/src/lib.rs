@@ -29,6 +29,7 @@ mod overlap;
 mod predicates;
 mod recover;
 mod refine;
+mod refine3;
 mod regular;
 mod regular_faults;
 mod results;
@@ -118,6 +119,8 @@ mod _core {
     use super::refine::{
         JudgedTriangles, RefinedMesh, Refinement2, SmoothedMesh, judge2, refine2, smooth2,
     };
+    #[pymodule_export]
+    use super::refine3::{RefinedTetrahedra, Refinement3};
     #[pymodule_export]
     use super::regular::{
         PeriodicTriangulation, RegularTriangulation, periodic_centers2, periodic2, regular,

@@ -17,6 +17,9 @@ pub type Stages = Py<PyTuple>;
 /// `Callable[[int, float], object]`: called with the number of vertices added and the smallest angle.
 pub type Progress = Py<PyAny>;
 
+/// `Callable[[int], object]`: called with the number of points added.
+pub type Added = Py<PyAny>;
+
 /// `Callable[[int, int], object]`: called with the pass and the number of poor tetrahedra.
 pub type Passes = Py<PyAny>;
 

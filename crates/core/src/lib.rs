@@ -36,6 +36,7 @@ pub mod points;
 pub mod proof;
 pub mod recover;
 pub mod refine;
+pub mod refine3;
 pub mod regular;
 pub mod regular3;
 pub mod simplify;

@@ -36,6 +36,7 @@ mod store;
 mod task;
 mod work;
 
+pub(crate) use order::{Imported, import, rotated};
 pub use task::{Counts, Improved, Task, Tell};
 
 use crate::error::{Error, Result};
@@ -51,7 +52,7 @@ pub fn improve(task: Task, watch: &Watch, tell: Tell) -> Result<Improved> {
             return Err(Error::Shape(format!("{name} has {given} entries, not {n}")));
         }
     }
-    let imported = order::import(task)?;
+    let imported = import(task)?;
     let mut work = work::Work::new(imported.store, task)?;
     let exhausted = !work.run(watch, tell)?;
     order::export(work, task, imported.rows, imported.scale, exhausted)

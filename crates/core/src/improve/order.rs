@@ -33,7 +33,7 @@ fn scale(points: &[Point3]) -> f64 {
 }
 
 /// The even permutation of corners with the smallest vertex first and the next one second.
-fn rotated(v: Corners) -> Corners {
+pub fn rotated(v: Corners) -> Corners {
     const EVEN: [[usize; 4]; 12] = [
         [0, 1, 2, 3],
         [0, 2, 3, 1],
