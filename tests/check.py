@@ -57,6 +57,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "measures": ("measure",),
     "plane": ("delaunay", "measure"),
     "regular_validation": ("validation", "regular"),
+    "sizes": ("refine", "tetrahedra"),
     "tetmesh": ("improve", "tetrahedra"),
     "triangulation": ("delaunay", "classes"),
     "units": ("cli",),

@@ -108,3 +108,25 @@ def schoenhardt() -> None:
     _frame(right, points * 1.7 - (0, 0, 0.5), zoom=1.3, elev=14, azim=-40)
     left.set_title("8 triangles, and the one point that they need", fontsize="medium")
     right.set_title(f"{mesh.nsimplex} tetrahedra around it, moved apart", fontsize="medium")
+
+
+def sizes() -> None:
+    """Draw a box with tetrahedra of one size, and with small ones near a corner."""
+    corners = np.stack(np.meshgrid((0, 4), (0, 3), (0, 2), indexing="ij"), axis=-1).reshape(-1, 3)
+    hull = delone.ConvexHull(corners)
+
+    def near(positions: np.ndarray) -> np.ndarray:
+        return 0.15 + 0.25 * np.linalg.norm(positions - (0, 0, 2), axis=1)
+
+    for ax, size in zip(_axes(2, (11, 4.0)), (0.5, near), strict=True):
+        mesh = delone.tetrahedralize(hull.points, hull.simplices, boundary="surface", size=size)
+        behind = mesh.points[mesh.simplices].mean(axis=1)[:, 1] > 1
+        shown = mesh.simplices[behind][:, _FACES].reshape(-1, 3)
+        _, first, count = np.unique(
+            np.sort(shown, axis=1), axis=0, return_index=True, return_counts=True
+        )
+        outer = shown[first[count == 1]]
+        skin = {tuple(sorted(face)) for face in mesh.input_faces.tolist()}
+        own = np.array([tuple(sorted(face)) in skin for face in outer.tolist()])
+        _draw(ax, mesh.points, outer, facecolors=np.where(own, _SKIN, _CUT), linewidths=0.3)
+        _frame(ax, mesh.points, elev=22, azim=-70)

@@ -98,6 +98,7 @@ if TYPE_CHECKING:
     from delone.surface.resolve import resolve_touches
     from delone.tetmesh.improvement import improve
     from delone.tetmesh.recovery import RecoveryReport
+    from delone.tetmesh.refinement import RefinementReport
     from delone.tetmesh.report import ImproveReport
     from delone.tetmesh.tetmesh import TetMesh
     from delone.tetmesh.validation import TetMeshReport
@@ -153,6 +154,7 @@ __all__ = [
     "PolygonTriangles",
     "Quality",
     "RecoveryReport",
+    "RefinementReport",
     "RegularTriangulation",
     "SegmentReport",
     "ShapeError",
@@ -242,6 +244,7 @@ _HOMES = {
     "PeriodicDelaunay": "periodic",
     "PolygonTriangles": "constrained.polygons",
     "RecoveryReport": "tetmesh.recovery",
+    "RefinementReport": "tetmesh.refinement",
     "RegularTriangulation": "regular",
     "SegmentReport": "constrained.segments",
     "SurfaceCheck": "surface.report",

@@ -187,25 +187,16 @@ def test_make_manifold(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({}, "quality=False"),
-        ({"order": 1, "mindihedral": 20, "minratio": 1.5}, "bounded quality"),
-        ({"quality": False, "mindihedral": 20}, "mindihedral has an effect with quality=True"),
-        ({"quality": False, "minratio": 1.1}, "minratio has an effect with quality=True"),
         ({"quality": False, "order": 3}, "order must be 1 or 2"),
         ({"quality": False, "plc": False}, "plc must be True"),
-        ({"quality": False, "bgmesh": object()}, "bgmesh: no sizes"),
-        ({"quality": False, "bgmeshfilename": "a.b"}, "bgmeshfilename is not supported: no sizes"),
-        ({"quality": False, "fixedvolume": True}, "fixedvolume is not supported: tetrahedra of"),
-        ({"quality": False, "maxvolume": 0.1}, "maxvolume is not supported: tetrahedra of"),
+        ({"quality": False, "bgmesh": object()}, "bgmesh: sizes are read from no other"),
+        ({"quality": False, "bgmeshfilename": "a.b"}, "bgmeshfilename is not supported: sizes"),
+        ({"quality": False, "fixedvolume": True}, "needs maxvolume"),
         ({"quality": False, "insertaddpoints": True}, "insertaddpoints is not supported"),
         ({"quality": False, "refine": True}, "refine is not supported"),
         ({"quality": False, "reversetetori": 1}, "positively oriented"),
         ({"quality": False, "qualtiy": True}, "no argument qualtiy"),
-        ({"switches": "pq1.2"}, "quality=False"),
-        ({"switches": "pq1.1/10Y"}, "switch q"),
-        ({"switches": "pYa0.1"}, "switch a"),
-        ({"switches": "pzq1.4Aa"}, "switch q"),
-        ({"switches": "pm"}, "no sizes are read"),
+        ({"switches": "pm"}, "sizes are read from no other"),
         ({"switches": "po3"}, "o1 or o2"),
         ({"switches": "Y"}, "must contain p"),
         ({"switches": "p-"}, "'-'"),
@@ -243,7 +234,45 @@ def test_bad_arguments() -> None:
     with pytest.raises(delone.ShapeError):
         tetgen.TetGen(*CUBE).add_hole((1, 2))
     with pytest.raises(delone.InputError, match="max_vol"):
-        tetgen.TetGen(*CUBE).add_region(1, (1, 1, 1), 0.5)
+        tetgen.TetGen(*CUBE).add_region(1, (1, 1, 1), -0.5)
+
+
+@pytest.mark.parametrize(
+    ("options", "most"),
+    [
+        ({"order": 1, "mindihedral": 20, "minratio": 1.5}, 64.0),
+        ({"maxvolume": 0.5}, 0.5),
+        ({"quality": False, "fixedvolume": True, "maxvolume": 0.5}, 0.5),
+        ({"nobisect": True, "maxvolume": 12.0}, 12.0),
+        ({"switches": "pq1.4/15a0.5"}, 0.5),
+        ({"switches": "pa2"}, 2.0),
+        ({"switches": "pqY"}, 64.0),
+    ],
+    ids=str,
+)
+def test_quality_and_volumes(options: dict[str, Any], most: float) -> None:
+    tet = tetgen.TetGen(*CUBE)
+    tet.tetrahedralize(**options)
+    assert tet.tetmesh is not None
+    assert tet.tetmesh.volumes.max() <= most * (1 + 1e-9)
+    assert abs(tet.tetmesh.volumes.sum() - 64) < 1e-9
+    if most < 12:
+        assert tet.tetmesh.report.on_facets > 0
+    else:
+        assert len(tet.tetmesh.input_faces) == 12
+
+
+@pytest.mark.parametrize("options", [{}, {"switches": "pA"}, {"switches": "pAa"}], ids=str)
+def test_volumes_of_regions(options: dict[str, Any]) -> None:
+    tet = tetgen.TetGen(*solids.joined(CUBE, solids.box((4, 0, 0), (8, 4, 4))))
+    tet.add_region(1, (1, 1, 1))
+    tet.add_region(2, (5, 1, 1), 0.5)
+    tet.tetrahedralize(**options)
+    assert tet.tetmesh is not None
+    own = tet.tetmesh.region == 2
+    bounded = options != {"switches": "pA"}
+    assert (tet.tetmesh.volumes[own].max() <= 0.5 * (1 + 1e-9)) == bounded
+    assert tet.tetmesh.volumes[~own].max() > 0.5
 
 
 # Calls of the package without quality, on which both agree in all but the tetrahedra.

@@ -43,6 +43,7 @@ PYTHON: tuple[set[str], ...] = (
     {"archive", "validation"},
     {"complex"},
     {"triangulation", "regular_validation"},
+    {"sizes"},
     {"delaunay", "constrained", "regular", "tetmesh"},
     {"dynamic", "estimation", "hull", "periodic", "refine"},
     {"alpha", "graphs", "io"},

@@ -108,8 +108,12 @@ def check_tetrahedra(**arrays: NDArray[Any]) -> None:
     _check_closed(boundary_faces(simplices, neighbors), len(points))
     require(len(arrays["region"]) == len(simplices), "regions and tetrahedra do not match")
     _check_faces(**arrays)
+    added = int(arrays["added"][0])
+    if len(arrays["refinement"]):
+        added -= _check_refinement(**arrays)
     if len(arrays["recovery"]):
-        _check_recovery(**arrays)
+        _check_recovery(most=added, **arrays)
+    if not len(arrays["counts"]) and (len(arrays["recovery"]) or len(arrays["refinement"])):
         return
     require(len(arrays["weights"]) == len(points), "weights and points do not match")
     require((arrays["weights"] >= 0).all(), "weights are not numbers of at least 0")
@@ -130,11 +134,26 @@ def _check_faces(**arrays: NDArray[Any]) -> None:
     require(len(np.unique(found[found >= 0])) == len(faces), "an input face is not in the mesh")
 
 
-def _check_recovery(**arrays: NDArray[Any]) -> None:
-    """Check the report of a recovery, with which there is none of an improvement."""
+def _check_refinement(**arrays: NDArray[Any]) -> int:
+    """Check the report of a refinement, and return how many points it added."""
+    counts, bounds = arrays["refinement"], arrays["refinement_bounds"]
+    require(len(counts) == 5 and len(bounds) == 4, "the report is incomplete")
+    check_range("refinement", counts, 0, 2**31)
+    require(counts[4] <= 1, "refinement does not end with a flag")
+    require((bounds >= 0).all(), "refinement_bounds has one below 0")
+    for name in ("too_large", "above_ratio"):
+        check_range(name, arrays[name], 0, len(arrays["simplices"]))
+        require((np.diff(arrays[name]) > 0).all(), f"{name} is out of order")
+    added = int(counts[:4].sum())
+    require(added <= arrays["added"][0], "the report counts other added points")
+    return added
+
+
+def _check_recovery(*, most: int, **arrays: NDArray[Any]) -> None:
+    """Check the report of a recovery, which added so many points at most."""
     require(len(arrays["recovery"]) == 11, "the report is incomplete")
     check_range("recovery", arrays["recovery"], 0, 2**63)
-    require(arrays["recovery"][0] == arrays["added"][0], "the report counts other added points")
+    require(arrays["recovery"][0] <= most, "the report counts other added points")
     check_range("duplicate_points", arrays["duplicate_points"], 0, len(arrays["points"]))
     check_range("recut", arrays["recut"], 0, len(arrays["points"]))
     check_range("recut_source", arrays["recut_source"], 0, 2**31)

@@ -114,7 +114,7 @@ _TET_MESH = Kind(
         "face_markers": ("<i4", 0),
         "holes": ("<f8", 3),
         "added": ("<i8", 0),
-        # The report of the recovery of faces, or else of the improvement; the other one is empty.
+        # The reports of the recovery of faces, the improvement and the refinement, or nothing.
         "recovery": ("<i8", 0),
         "duplicate_points": ("<i8", 2),
         "subdivided": ("<i8", 0),
@@ -132,6 +132,10 @@ _TET_MESH = Kind(
         "weights": ("<f8", 0),
         "below": ("<i8", 0),
         "cause": ("<i8", 0),
+        "refinement": ("<i8", 0),
+        "refinement_bounds": ("<f8", 0),
+        "too_large": ("<i8", 0),
+        "above_ratio": ("<i8", 0),
     },
     checks.check_tetrahedra,
 )

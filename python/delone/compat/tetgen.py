@@ -14,7 +14,7 @@ import numpy as np
 
 from delone._arrays import as_count, as_flag, as_number, as_plain_array, as_points
 from delone.atomic import replacing
-from delone.compat.tetgen_switches import QUALITY, of_arguments, of_switches
+from delone.compat.tetgen_switches import Wishes, of_arguments, of_switches
 from delone.errors import DtypeError, FileFormatError, InputError, ShapeError
 from delone.exchange.parts import Parts
 from delone.exchange.pyvista import to_pyvista
@@ -94,6 +94,8 @@ class TetGen:
         self._markers = found.markers
         self._holes: list[Floats] = [] if found.holes is None else list(np.asarray(found.holes))
         self._regions: list[tuple[int, Floats]] = []
+        # The largest volume in regions, by their labels.
+        self._volumes: dict[int, float] = {}
         for x, y, z, number in () if found.regions is None else np.asarray(found.regions).tolist():
             self.add_region(int(number), (x, y, z))
         self._attributes = np.empty((0, 0))
@@ -115,12 +117,13 @@ class TetGen:
         point_in_region : array_like of float, shape (3,)
             The point.
         max_vol : float, optional
-            The largest volume of a tetrahedron: not supported, only 0.
+            The largest volume of a tetrahedron in the region; 0 for none. It has an effect with
+            ``quality=True``, or with the switch ``a`` without a number.
 
         Raises
         ------
         InputError
-            `max_vol` is not 0, or the label is negative.
+            `max_vol` or the label is negative.
         ShapeError, DtypeError
             `point_in_region` is not a point.
 
@@ -128,9 +131,13 @@ class TetGen:
         --------
         See `TetGen`.
         """
-        if as_number(max_vol, name="max_vol") != 0:
-            raise InputError(f"max_vol: {QUALITY}")
-        self._regions.append((as_count(id, name="id"), _place(point_in_region)))
+        volume = as_number(max_vol, name="max_vol")
+        if not volume >= 0:
+            raise InputError(f"max_vol must be at least 0, got {max_vol!r:.80}")
+        label = as_count(id, name="id")
+        self._regions.append((label, _place(point_in_region)))
+        if volume:
+            self._volumes[label] = min(volume, self._volumes.get(label, volume))
 
     def add_hole(self, point: ArrayLike) -> None:
         """Leave the region around a point empty.
@@ -200,17 +207,17 @@ class TetGen:
         plc : bool, optional
             Must be True: the triangles are faces of the result.
         quality : bool, optional
-            Must be False. True, the default of the package ``tetgen``, is refused: quality is not
-            supported.
+            Whether points are added for shapes, and slivers are removed.
         minratio, mindihedral : float, optional
-            Must be 2 and 0: they bound quality.
+            With `quality`, the bound on the circumradius divided by the shortest edge, and the goal
+            for the smallest dihedral angle in degrees; 0 for 20 degrees.
         nobisect : bool, optional
             Whether all triangles are faces of the result. Otherwise, triangles in one plane may be
-            cut again, as with ``boundary="surface"`` of `delone.tetrahedralize`; no point is ever
-            added on the surface.
+            cut again, as with ``boundary="surface"`` of `delone.tetrahedralize`, and points are
+            added on the surface if volumes are bounded.
         steinerleft : int, optional
-            The maximum number of points that exist besides those of the input at any time; -1 for
-            no limit of one's own.
+            The maximum number of points that are added for shapes and volumes, and of those that
+            exist besides the input at any time before; -1 for no limit of one's own.
         order : {1, 2}, optional
             With 2, `node` has the middle of each edge as well, and `elem` has ten nodes, in
             TetGen's order; those of `grid` are in the order of VTK.
@@ -221,14 +228,16 @@ class TetGen:
         edgesout : bool, optional
             Whether `edges` has all edges, instead of those of faces of the input.
         switches : str, optional
-            TetGen's switches, which replace all other arguments: p is necessary; ``Y A S M O o2 f
-            e Q`` and those of output are accepted; q, a and m are refused.
+            TetGen's switches, which replace all other arguments: p is necessary; ``q1.4/20 a0.1 Y
+            A S M O o2 f e Q`` and those of output are accepted; m and r are refused.
         bgmesh : optional
-            Must be None: no sizes are read.
+            Must be None: sizes are read from no other mesh.
         nomergefacet : bool, optional
             As `nobisect`: no triangles are joined.
         **others
-            Further arguments of the package ``tetgen``. Those for output, silence and checks, and
+            Further arguments of the package ``tetgen``: `fixedvolume` and `maxvolume`, the largest
+            volume of a tetrahedron, and `varvolume`, whether those of regions hold without
+            `quality`. Those for output, silence and checks, and
             those that choose between algorithms, have no effect; others must have their defaults.
 
         Returns
@@ -284,6 +293,7 @@ class TetGen:
             holes=self._holes or None,
             regions=regions or None,
             face_markers=self._markers,
+            **self._bounds(wishes),
             max_points=wishes.limit,
         )
         made = self.tetmesh
@@ -295,12 +305,26 @@ class TetGen:
         self._trifaces, self._triface_markers = _faces(made, wishes.faces, unmarked)
         return self.node, self.elem, self._attributes, self._triface_markers
 
+    def _bounds(self, wishes: Wishes) -> dict[str, Any]:
+        """Return the bounds on shapes and volumes, as arguments of `delone.tetrahedralize`."""
+        volumes: Any = wishes.volume or None
+        if self._volumes and (wishes.quality or wishes.by_region):
+            labels = {label for label, _ in self._regions}
+            every = dict.fromkeys(labels, wishes.volume) if wishes.volume else {}
+            volumes = every | {
+                label: min(volume, every.get(label, volume))
+                for label, volume in self._volumes.items()
+            }
+        if not wishes.quality:
+            # Volumes alone: shapes are as good as they come.
+            return {} if volumes is None else {"max_volume": volumes}
+        angle = {"min_angle": wishes.angle} if wishes.angle else {}
+        return {"max_volume": volumes, "radius_edge": max(wishes.ratio, 1.0)} | angle
+
     @property
     def _made(self) -> TetMesh:
         if self.tetmesh is None:
-            raise MeshNotTetrahedralizedError(
-                "there is no mesh yet: call tetrahedralize(quality=False)"
-            )
+            raise MeshNotTetrahedralizedError("there is no mesh yet: call tetrahedralize()")
         return self.tetmesh
 
     @property

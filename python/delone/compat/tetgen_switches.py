@@ -12,25 +12,22 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_count, as_flag
+from delone._arrays import as_count, as_flag, as_number
 from delone.errors import DtypeError, InputError
 
-__all__ = ["QUALITY", "Wishes", "of_arguments", "of_switches"]
+__all__ = ["Wishes", "of_arguments", "of_switches"]
 
-QUALITY = (
-    "tetrahedra of bounded quality or size are not made: pass quality=False, or leave q and a out "
-    "of the switches. Then delone.improve(tet.tetmesh) removes slivers, and extra_points of "
-    "delone.tetrahedralize are vertices inside"
+_SIZES = (
+    "sizes are read from no other mesh: tet.tetmesh.refine(size=(mesh, values)) takes a "
+    "triangulation with a length for each point"
 )
 _SWITCH = re.compile(r"([a-zA-Z])((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/[\d.]*)*|/[\d./]+)?")
 # Numbers from zero, silence, checks, files, neighbors, unused vertices, the tolerance of coplanar
 # points, and what TetGen does to tetrahedra afterwards: they change nothing that is promised.
 _WITHOUT_EFFECT = "zQVCFIJNEgkBOnTWxbUX"
 _REFUSED = {
-    "q": QUALITY,
-    "a": QUALITY,
-    "m": f"no sizes are read. {QUALITY}",
-    "r": "tetrahedra cannot be reconstructed or refined",
+    "m": _SIZES,
+    "r": "use tet.tetmesh.refine, or delone.improve for other tetrahedra",
     "i": "use extra_points of delone.tetrahedralize",
     "c": "the convex hull is not kept: use delone.Delaunay(points)",
     "D": "segments are not split to make tetrahedra Delaunay",
@@ -49,9 +46,9 @@ _REFUSED = {
 _FURTHER: dict[str, tuple[Any, str]] = {
     **{"psc": (False, "s"), "refine": (False, "r"), "cdt": (False, "D"), "cdtrefine": (7, "")},
     **{"coarsen": (False, "R"), "weighted": (False, "w"), "flipinsert": (False, "L")},
-    **{"metric": (False, "m"), "varvolume": (False, "a"), "fixedvolume": (False, "a")},
+    **{"metric": (False, "m")},
     **{"insertaddpoints": (False, "i"), "diagnose": (False, "d"), "convex": (False, "c")},
-    **{"voroout": (False, "v"), "maxvolume": (-1.0, "a"), "maxvolume_length": (-1.0, "a")},
+    **{"voroout": (False, "v"), "maxvolume_length": (None, "")},
     **{"bgmeshfilename": ("", "m"), "metric_scale": (1.0, "m"), "elem_growth_ratio": (0.0, "r")},
     **{"reversetetori": (0, "o"), "coarsen_param": (0, ""), "coarsen_percent": (1.0, "")},
     **dict.fromkeys(
@@ -83,6 +80,11 @@ class Wishes(NamedTuple):
     faces: bool  # all faces, besides those of the input
     edges: bool  # all edges
     whole: bool  # all triangles as they are
+    quality: bool  # bounds on shapes
+    ratio: float  # of the circumradius and the shortest edge
+    angle: float  # the goal for dihedral angles, 0 for the default
+    volume: float  # the largest volume, 0 for none
+    by_region: bool  # largest volumes of regions
     second: bool  # elements of second order
 
 
@@ -103,14 +105,16 @@ def of_arguments(
     others: dict[str, Any],
 ) -> Wishes:
     """Return what arguments ask for, or refuse them."""
-    if as_flag(quality, name="quality"):
-        raise InputError(QUALITY)
-    if minratio != 2.0 or mindihedral != 0.0:
-        name = "minratio" if minratio != 2.0 else "mindihedral"
-        raise InputError(f"{name} has an effect with quality=True alone, and {QUALITY}")
+    wanted = as_flag(quality, name="quality")
     if bgmesh is not None:
-        raise InputError(f"bgmesh: no sizes are read. {QUALITY}")
-    for name, value in others.items():
+        raise InputError(f"bgmesh: {_SIZES}")
+    rest = dict(others)
+    fixed = as_flag(rest.pop("fixedvolume", False), name="fixedvolume")
+    by_region = as_flag(rest.pop("varvolume", False), name="varvolume")
+    volume = as_number(rest.pop("maxvolume", -1.0), name="maxvolume")
+    if fixed and volume <= 0:
+        raise InputError("fixedvolume=True needs maxvolume, the largest volume, above 0")
+    for name, value in rest.items():
         _check(name, value)
     if not as_flag(plc, name="plc"):
         raise InputError("plc must be True: delone.Delaunay triangulates points alone")
@@ -123,6 +127,11 @@ def of_arguments(
         faces=as_flag(facesout, name="facesout"),
         edges=as_flag(edgesout, name="edgesout"),
         whole=kept,
+        quality=wanted,
+        ratio=as_number(minratio, name="minratio"),
+        angle=as_number(mindihedral, name="mindihedral"),
+        volume=max(volume, 0.0),
+        by_region=by_region,
         second=order == 2,
     )
 
@@ -148,10 +157,12 @@ def of_switches(switches: str) -> Wishes:
             raise InputError(f"the switch {letter} is not supported: {_REFUSED[letter]}")
         if letter == "o" and number not in ("", "1", "2"):
             raise InputError(f"the switch o is o1 or o2, not o{number}: {_REVERSED}")
-        if letter not in "pYASMofe" + _WITHOUT_EFFECT:
+        if letter not in "pYASMofeqa" + _WITHOUT_EFFECT:
             raise InputError(f"the switch {letter} is not known")
     if "p" not in found:
         raise InputError("switches must contain p: delone.Delaunay triangulates points alone")
+    # q has a ratio and, behind a slash, an angle.
+    ratio, _, angle = found.get("q", "").partition("/")
     return Wishes(
         limit=as_count(int(float(found["S"] or 0)), name="S") if "S" in found else None,
         regions="A" in found,
@@ -159,5 +170,20 @@ def of_switches(switches: str) -> Wishes:
         edges="e" in found,
         # M: facets in one plane are not merged.
         whole="Y" in found or "M" in found,
+        quality="q" in found,
+        ratio=_number(ratio, 2.0, "q"),
+        angle=_number(angle.split("/")[0], 0.0, "q"),
+        volume=_number(found.get("a", ""), 0.0, "a"),
+        by_region="a" in found and not found["a"],
         second=found.get("o") == "2",
     )
+
+
+def _number(text: str, default: float, letter: str) -> float:
+    """Return the number behind a switch, or the default if there is none."""
+    if not text:
+        return default
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f"the switch {letter} has {text!r:.80}, which is not a number") from None

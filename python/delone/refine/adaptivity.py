@@ -14,7 +14,7 @@ import numpy as np
 
 from delone import measures
 from delone._arrays import as_callback, as_limit, as_number
-from delone.errors import DtypeError, InputError, InternalError, ShapeError
+from delone.errors import InputError, InternalError
 from delone.plane import topology
 from delone.refine import domains
 from delone.refine.domains import Counts
@@ -22,6 +22,7 @@ from delone.refine.rounds import MOST_ADDED, Limits, as_min_angle, rounds
 from delone.refine.sizing import EQUILATERAL
 from delone.refine.smoothing import rebuilt, worse
 from delone.refine.state import MeshState
+from delone.sizes import chosen
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -55,7 +56,7 @@ def finer(
     limits = Limits(bound, budget, False, as_callback(progress, name="progress"), mesh._workers)
     domain, counts = mesh._domain(), Counts(*mesh._counts[:3].tolist())
     if marked is not None:
-        size_at = _size_function(mesh, _chosen(marked, mesh.nsimplex), ratio)
+        size_at = _size_function(mesh, chosen(marked, mesh.nsimplex, "triangles"), ratio)
         domain, more = rounds(domain, (None, size_at), limits)
         counts = counts.plus(more)
         limits = limits._replace(max_points=budget - more.total)
@@ -65,32 +66,14 @@ def finer(
     return type(mesh)._of(domain, counts, bound, mesh.stages, mesh._workers)
 
 
-def _chosen(marked: ArrayLike, count: int) -> NDArray[np.intp]:
-    """Return the numbers of triangles that are given as a mask or as numbers."""
-    array = np.asarray(marked)
-    if array.dtype.kind == "b":
-        if array.shape != (count,):
-            raise ShapeError(f"marked must have shape ({count},), got {array.shape}")
-        return np.flatnonzero(array)
-    if array.size == 0:
-        return np.empty(0, dtype=np.intp)
-    if array.ndim != 1:
-        raise ShapeError(f"marked must be 1-D, got shape {array.shape}")
-    if array.dtype.kind not in "iu":
-        raise DtypeError(f"marked must be a mask or numbers of triangles, got dtype {array.dtype}")
-    if int(array.min()) < 0 or int(array.max()) >= count:
-        raise InputError(f"marked must be numbers of triangles, from 0 to {count - 1}")
-    return np.unique(array).astype(np.intp)
-
-
 def _size_function(
-    mesh: MeshState, chosen: NDArray[np.intp], ratio: float
+    mesh: MeshState, rows: NDArray[np.intp], ratio: float
 ) -> Callable[[Floats], Floats]:
     """Return a size function that makes chosen triangles smaller."""
     sizes = np.full(mesh.nsimplex, math.inf)
     unit = domains.unit_of(mesh.points)
-    areas = measures.sizes(mesh.points / unit, mesh.simplices[chosen])
-    sizes[chosen] = np.sqrt(ratio * areas / EQUILATERAL) * unit
+    areas = measures.sizes(mesh.points / unit, mesh.simplices[rows])
+    sizes[rows] = np.sqrt(ratio * areas / EQUILATERAL) * unit
 
     def size(positions: Floats) -> Floats:
         found = mesh.locate(positions)
@@ -102,9 +85,9 @@ def _size_function(
 
 def coarsened(mesh: M, marked: ArrayLike | None) -> M:
     """Return a coarser mesh; see ``Mesh.coarsen``."""
-    chosen = slice(None) if marked is None else _chosen(marked, mesh.nsimplex)
+    rows = slice(None) if marked is None else chosen(marked, mesh.nsimplex, "triangles")
     free = np.zeros(mesh.npoints, dtype=bool)
-    free[mesh.simplices[chosen]] = True
+    free[mesh.simplices[rows]] = True
     free &= mesh._inner
     free[mesh.simplices[mesh._below]] = False
     removed = _independent(mesh, free)

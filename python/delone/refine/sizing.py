@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core, measures
-from delone._arrays import as_number, as_workers
-from delone.errors import BudgetExceededError, DtypeError, InputError, LimitError
-from delone.triangulation import Triangulation
+from delone._arrays import as_workers
+from delone.errors import BudgetExceededError, InputError, LimitError
+from delone.sizes import checked, evaluator, formatted, is_number, positive, rounded
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,10 +49,10 @@ class Sizing:
         self._evaluate: Callable[[Floats], Floats] | None = None
         self._unit = unit
         self._set(max_area, regions, "max_area", lambda area: area / unit / unit)
-        if isinstance(size, Mapping) or size is None or _is_number(size):
+        if isinstance(size, Mapping) or size is None or is_number(size):
             self._set(size, regions, "size", lambda length: _equilateral(length / unit))
         else:
-            self._evaluate = _evaluator(size)
+            self._evaluate = evaluator(size)
 
     def _set(self, given: Any, regions: Indices, name: str, area: Callable[[float], float]) -> None:
         if given is None:
@@ -72,7 +72,7 @@ class Sizing:
             self._by_region[at] = np.minimum(self._by_region[at], cap)
 
     def _cap(self, value: Any, name: str, area: Callable[[float], float]) -> float:
-        number = _positive(value, name)
+        number = positive(value, name)
         cap = area(number)
         if cap == 0 or (self._unit == 1 and math.isinf(cap) and math.isfinite(number)):
             raise LimitError(_out_of_range(f"{name} {value!r:.80}"))
@@ -89,7 +89,7 @@ class Sizing:
         if self._evaluate is None or not len(positions):
             return caps
         scaled = positions * self._unit
-        sizes = _checked(self._evaluate(scaled), scaled)
+        sizes = checked(self._evaluate(scaled), scaled)
         with np.errstate(over="ignore", under="ignore"):
             areas = _equilateral(sizes / self._unit)
         # With a unit, no triangle is as large as an area that overflows, so it may be infinite.
@@ -97,7 +97,7 @@ class Sizing:
         lost = np.flatnonzero((areas == 0) | large)
         if lost.size:
             raise LimitError(
-                _out_of_range(f"size {sizes[lost[0]]} at {_formatted(scaled[lost[0]])}")
+                _out_of_range(f"size {sizes[lost[0]]} at {formatted(scaled[lost[0]])}")
             )
         found: Floats = np.minimum(caps, areas)
         return found
@@ -136,8 +136,8 @@ class Sizing:
         if least > max_points:
             about = max(triangles / 2 - len(domain.points), 0)
             raise BudgetExceededError(
-                f"the sizes require about {_rounded(triangles)} triangles, that is about "
-                f"{_rounded(about)} added points, more than max_points={max_points:,}",
+                f"the sizes require about {rounded(triangles)} triangles, that is about "
+                f"{rounded(about)} added points, more than max_points={max_points:,}",
                 limit=max_points,
                 found=int(min(least, 2**62)),
             )
@@ -187,127 +187,5 @@ def _equilateral(length: Any) -> Any:
     return EQUILATERAL * length * length
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float | np.integer | np.floating)
-
-
-def _positive(value: Any, name: str) -> float:
-    number = as_number(value, name=name)
-    if not number > 0:
-        raise InputError(f"{name} must be above 0, got {value!r:.80}")
-    return number
-
-
 def _out_of_range(what: str) -> str:
     return f"{what}: its square is beyond the range of doubles; scale the coordinates"
-
-
-def _formatted(position: Floats) -> str:
-    x, y = position.tolist()
-    return f"({x!r}, {y!r})"
-
-
-def _checked(sizes: Any, positions: Floats) -> Floats:
-    given = np.asarray(sizes)
-    if given.dtype.kind not in "iuf":
-        raise DtypeError(f"size must return real numbers, got dtype {given.dtype}")
-    found = given.astype(np.float64)
-    if found.ndim == 0:
-        found = np.full(len(positions), float(found))
-    if found.shape != (len(positions),):
-        raise InputError(
-            f"size must return one length for each of {len(positions)} positions, got shape "
-            f"{found.shape}"
-        )
-    wrong = np.flatnonzero(~(found > 0))
-    if wrong.size:
-        raise InputError(
-            f"size is {found[wrong[0]]} at {_formatted(positions[wrong[0]])}, but must be above 0; "
-            f"{len(wrong)} of {len(positions)} values are wrong"
-        )
-    return found
-
-
-def _evaluator(size: Any) -> Callable[[Floats], Floats]:
-    """Return a function from positions to lengths."""
-    if hasattr(size, "dims") and hasattr(size, "coords"):
-        return _of_raster(size)
-    if isinstance(size, tuple) and len(size) == 2 and isinstance(size[0], Triangulation):
-        return _of_background(*size)
-    if callable(size):
-        function: Callable[[Floats], Floats] = size
-        return function
-    raise InputError(
-        "size must be a number, a mapping from regions, a function of positions, a pair of a "
-        f"triangulation and its values, or a DataArray, got {size!r:.60}"
-    )
-
-
-def _of_background(mesh: Triangulation, values: Any) -> Callable[[Floats], Floats]:
-    """Interpolate linearly on a triangulation; outside, use its nearest point."""
-    lengths = np.array(values, dtype=np.float64)
-    if lengths.shape != (mesh.npoints,):
-        raise InputError(
-            f"size has values of shape {lengths.shape} for the {mesh.npoints} points of its mesh"
-        )
-    if not mesh.nsimplex:
-        raise InputError("size is given on a triangulation without triangles")
-    _checked(lengths, mesh.points)
-
-    def at(positions: Floats) -> Floats:
-        place = mesh.locate(positions)
-        corners = mesh.simplices[place.simplex]
-        found: Floats = (lengths[corners] * place.barycentric).sum(axis=-1)
-        outside = np.flatnonzero(place.simplex < 0)
-        if outside.size:
-            a, b = place.facet[outside].T
-            share = place.weights[outside, 1]
-            found[outside] = lengths[a] * (1 - share) + lengths[b] * share
-        return found
-
-    return at
-
-
-def _of_raster(raster: Any) -> Callable[[Floats], Floats]:
-    """Interpolate linearly between the centers of cells; outside, use the nearest cell."""
-    if len(raster.dims) != 2:
-        raise InputError(f"size must have the dimensions y and x, got {raster.dims}")
-    axes = [np.asarray(raster[name].values, dtype=np.float64) for name in raster.dims]
-    values = np.asarray(raster.values, dtype=np.float64)
-    for axis in (0, 1):
-        if len(axes[axis]) > 1 and axes[axis][0] > axes[axis][-1]:
-            axes[axis], values = axes[axis][::-1], np.flip(values, axis)
-        if not (np.diff(axes[axis]) > 0).all():
-            raise InputError(f"the coordinates {raster.dims[axis]} of size are not monotonic")
-
-    def at(positions: Floats) -> Floats:
-        # The last dimension is x, as rasters have it.
-        (i, s), (j, t) = (_between(axes[k], positions[:, 1 - k]) for k in (0, 1))
-        k, m = np.minimum(i + 1, len(axes[0]) - 1), np.minimum(j + 1, len(axes[1]) - 1)
-        upper = values[i, j] * (1 - t) + values[i, m] * t
-        lower = values[k, j] * (1 - t) + values[k, m] * t
-        found: Floats = upper * (1 - s) + lower * s
-        gap = np.flatnonzero(np.isnan(found))
-        if gap.size:
-            # Next to a cell without a value, use the nearest cell.
-            found[gap] = values[np.where(s < 0.5, i, k), np.where(t < 0.5, j, m)][gap]
-        return found
-
-    return at
-
-
-def _between(axis: Floats, at: Floats) -> tuple[NDArray[np.intp], Floats]:
-    """Return the index of the coordinate below, and the fraction of the interval to the next."""
-    if len(axis) == 1:
-        return np.zeros(len(at), dtype=np.intp), np.zeros(len(at))
-    i = np.clip(np.searchsorted(axis, at, side="right") - 1, 0, len(axis) - 2)
-    share: Floats = np.clip((at - axis[i]) / (axis[i + 1] - axis[i]), 0, 1)
-    return i, share
-
-
-def _rounded(number: float) -> str:
-    """Return a large number with two digits: more would overstate the accuracy of an estimate."""
-    if number < 1000:
-        return f"{number:.0f}"
-    scale = 10 ** (int(math.log10(number)) - 1) if number < 1e15 else 1
-    return f"{round(number / scale) * scale:,}" if number < 1e15 else f"{number:.1e}"

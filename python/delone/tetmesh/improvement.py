@@ -15,7 +15,6 @@ from delone._arrays import (
     as_choice,
     as_flag,
     as_limit,
-    as_number,
     as_plain_array,
     as_points,
     as_simplices,
@@ -23,8 +22,7 @@ from delone._arrays import (
 )
 from delone.counting import agreed, counted
 from delone.errors import DtypeError, InputError, ShapeError
-from delone.space import quality
-from delone.tetmesh import report, walls
+from delone.tetmesh import improving, walls
 from delone.tetmesh.tetmesh import TetMesh
 
 if TYPE_CHECKING:
@@ -37,8 +35,6 @@ if TYPE_CHECKING:
 __all__ = ["BOUNDARIES", "improve"]
 
 BOUNDARIES = ("faces", "surface")
-# The dihedral angle of the regular tetrahedron, acos(1/3).
-_LARGEST_GOAL = 70.528
 _INDEX_MAX = int(np.iinfo(np.int32).max)
 
 
@@ -150,9 +146,9 @@ def improve(
     points, simplices, own = _given(mesh)
     labels = _labels(region, own, len(simplices))
     walled = isinstance(mesh, TetMesh) and len(mesh.input_faces) > 0 and boundary == "faces"
-    kept = walls.Kept.of(mesh, labels) if walled else None
+    kept = walls.Kept.of(simplices, mesh.neighbors, mesh.input_faces, labels) if walled else None
     held = _mask(fixed, len(points))
-    goal = _angle(min_angle)
+    goal = improving.as_goal(min_angle)
     kinds = (
         as_flag(flips, name="flips"),
         as_flag(smooth, name="smooth"),
@@ -161,24 +157,10 @@ def improve(
     flips_boundary = as_choice(boundary, BOUNDARIES, name="boundary") == "surface"
     passes = as_limit(max_iter, name="max_iter")
     as_callback(progress, name="progress")
-    try:
-        made = _core.improve3(
-            points,
-            simplices,
-            labels if kept is None else kept.labels,
-            held,
-            goal,
-            *kinds,
-            flips_boundary,
-            passes,
-            progress,
-        )
-    except ShapeError as error:
-        raise InputError(*error.args) from None
-    before = quality.measured(points, simplices)
-    if not len(held):
-        held = np.zeros(len(points), dtype=bool)
-    judged, after = report.report(before, made, held, goal)
+    given = points, simplices, labels if kept is None else kept.labels
+    made, judged, after = improving.improved(
+        given, held, goal, kinds=kinds, limits=(flips_boundary, passes), progress=progress
+    )
     arrays: dict[str, NDArray[Any]] = {
         "points": made.points,
         "simplices": made.simplices,
@@ -186,7 +168,8 @@ def improve(
         "region": made.labels,
     }
     if kept is not None:
-        arrays |= kept.arrays(made.labels)
+        names = "input_faces", "face_source", "face_markers"
+        arrays |= {"region": kept.own[made.labels]} | {name: getattr(mesh, name) for name in names}
     nadded = 0
     if isinstance(mesh, TetMesh):
         # The boundary is the same set, and so is what it leaves empty.
@@ -261,10 +244,3 @@ def _mask(fixed: ArrayLike | None, count: int) -> Bools:
         raise InputError(f"fixed must be rows of points, from 0 to {count - 1}")
     held[array] = True
     return held
-
-
-def _angle(value: float) -> float:
-    goal = as_number(value, name="min_angle")
-    if not 0 <= goal <= _LARGEST_GOAL:
-        raise InputError(f"min_angle must be from 0 to {_LARGEST_GOAL}, got {value!r:.80}")
-    return goal

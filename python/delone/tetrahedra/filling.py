@@ -27,6 +27,7 @@ from delone.errors import (
 )
 from delone.space.locking import Sides, cells, directions
 from delone.surface import check_surface
+from delone.tetmesh.refinement import as_bounds, refined
 from delone.tetmesh.tetmesh import TetMesh
 from delone.tetrahedra import arguments, seeds, sources
 from delone.tetrahedra.covering import counts_of, parts_of, reported
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from delone._core import RecoveryCounts
     from delone._types import Bools, Floats, Indices
     from delone.surface import SurfaceCheck
+    from delone.tetmesh.refinement import Bounds
     from delone.tetrahedra.arguments import Task
     from delone.tetrahedra.covering import Parts
     from delone.tetrahedra.recutting import Recut
@@ -63,13 +65,18 @@ def tetrahedralize(
     regions: ArrayLike | None = None,
     face_markers: ArrayLike | None = None,
     extra_points: ArrayLike | None = None,
+    size: Any = None,
+    max_volume: Any = None,
+    radius_edge: float | None = None,
+    min_angle: float | None = None,
     max_points: int | None = None,
     progress: Callable[[str, float], object] | None = None,
     workers: int | None = None,
 ) -> TetMesh:
     """Fill a closed surface with tetrahedra; its triangles are kept exactly.
 
-    No point of the input moves, and points are added only strictly between the faces.
+    No point of the input moves, and points are added only strictly between the faces, unless sizes
+    are given and ``boundary="surface"``.
 
     Parameters
     ----------
@@ -102,9 +109,18 @@ def tetrahedralize(
         ``marker`` or ``gmsh:physical``.
     extra_points : array_like of float, shape (k, 3), optional
         Further vertices strictly inside regions; in the mesh their rows follow `points`.
+    size, max_volume : float, mapping, callable or tuple, optional
+        Target edge length, and largest volume of a tetrahedron, as for ``TetMesh.refine``: by
+        number, by region, by position, or by another mesh. With ``boundary="surface"``, faces are
+        divided where sizes ask for it.
+    radius_edge, min_angle : float, optional
+        Bounds on shapes, as for ``TetMesh.refine``. If one of these four arguments is given, the
+        mesh is refined, with 2.0 and 20 degrees by default; otherwise points are added only where
+        faces need them.
     max_points : int, optional
         Maximum number of points that exist besides those of the input at any time; by default a
-        million, or ten per face if that is more.
+        million, or ten per face if that is more. For sizes and shapes, the maximum number of
+        points that are added for them; by default 2,000,000.
     progress : callable, optional
         Called before each stage with its name and the fraction of stages done.
     workers : int, optional
@@ -130,7 +146,7 @@ def tetrahedralize(
         Faces with an edge that is not part of any other face are not in the mesh without points on
         them; with these faces.
     BudgetExceededError
-        More than `max_points` are needed.
+        More than `max_points` are needed for the faces, or by an estimate for the sizes.
     InputError
         Regions are not inside by the rule, or that is not defined; seeds or extra points are
         outside or on a face; an argument is invalid.
@@ -142,6 +158,7 @@ def tetrahedralize(
     See Also
     --------
     check_surface : Check the surface alone.
+    TetMesh.refine : Add points for sizes and shapes later.
     improve : Remove slivers from the mesh.
 
     Notes
@@ -187,14 +204,32 @@ def tetrahedralize(
     >>> mesh = delone.tetrahedralize(cube.points, cube.simplices)
     >>> mesh.nsimplex, mesh.nadded, len(mesh.input_faces), bool(mesh.validate())
     (6, 0, 12, True)
+
+    For a simulation, with edges of about 0.2:
+
+    >>> mesh = delone.tetrahedralize(cube.points, cube.simplices, boundary="surface", size=0.2)
+    >>> 1500 < mesh.nsimplex < 2500, bool(mesh.report)
+    (True, True)
     """
     as_choice(boundary, _BOUNDARIES, name="boundary")
     if inside is not None:
         as_choice(inside, RULES, name="inside")
     as_callback(progress, name="progress")
+    bounds = None
+    if not all(bound is None for bound in (size, max_volume, radius_edge, min_angle)):
+        bounds = as_bounds(
+            ratio=1.0,
+            radius_edge=2.0 if radius_edge is None else radius_edge,
+            size=size,
+            max_volume=max_volume,
+            min_angle=min_angle,
+            boundary=boundary,
+            max_points=max_points,
+            progress=None,
+        )
     surface = sources.given(points, faces, face_markers, holes, regions)
     task = arguments.task(surface, extra_points, max_points, workers)
-    stages = _Stages(task, boundary, inside or surface.rule, progress)
+    stages = _Stages(task, boundary, inside or surface.rule, progress, bounds)
     return stages.filled()
 
 
@@ -228,6 +263,8 @@ class _Stages(NamedTuple):
     boundary: str
     rule: str
     progress: Callable[[str, float], object] | None
+    # What the mesh is refined for, if it is.
+    bounds: Bounds | None
 
     def _tell(self, stage: str, done: float) -> None:
         if self.progress is not None:
@@ -249,6 +286,9 @@ class _Stages(NamedTuple):
         kept = self._inside(found.tiling, solid, parts)
         self._require_kept(found.tiling, kept)
         made = self._mesh(found, solid, kept, cut, check)
+        if self.bounds is not None:
+            self._tell("refine", 0.8)
+            made = refined(made, None, self.bounds)
         self._tell("done", 1.0)
         return made
 

@@ -13,25 +13,24 @@ use crate::memory::push;
 
 /// Segments longer than this many sizes are split.
 const LONG_SEGMENT: f64 = 1.5;
+/// The edges of a tetrahedron.
+const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
 impl Work {
-    /// Splits the longest segment or the largest wall of a tetrahedron if it is too large.
+    /// Splits the longest segment or the largest wall of a tetrahedron if it is too large. Segments
+    /// are split however near others are: they become short by that alone.
     pub fn split_border(&mut self, t: u32, size: f64, least: f64) -> Result<bool> {
         let v = self.mesh.corners[t as usize];
         let mut longest = (LONG_SEGMENT * size, None);
-        for i in 0..4 {
-            for j in i + 1..4 {
-                let length = distance(
-                    self.mesh.points[v[i] as usize],
-                    self.mesh.points[v[j] as usize],
-                );
-                if length > longest.0 && self.mesh.is_segment(v[i], v[j]) {
-                    longest = (length, Some([v[i], v[j]]));
-                }
+        for [i, j] in EDGES {
+            let [p, q] = self.mesh.places_of([v[i], v[j]]);
+            let length = distance(p, q);
+            if length > longest.0 && self.mesh.is_segment(v[i], v[j]) {
+                longest = (length, Some([v[i], v[j]]));
             }
         }
         if let Some(ends) = longest.1
-            && self.split_segment(t, ends, least)?
+            && self.split_segment(t, ends, 0.0)?
         {
             return Ok(true);
         }
@@ -47,7 +46,7 @@ impl Work {
         Ok(false)
     }
 
-    /// Puts a point on a segment of a tetrahedron.
+    /// Puts a point on a segment of a tetrahedron, at least so far from vertices.
     pub fn split_segment(&mut self, t: u32, ends: [u32; 2], least: f64) -> Result<bool> {
         let [a, b] = edge(ends[0], ends[1]);
         let [p, q] = self.mesh.places_of([a, b]);
@@ -63,12 +62,19 @@ impl Work {
             (false, true) => 1.0 - shell(length),
             _ => 0.5,
         };
-        let place = plus(p, share, minus(q, p));
+        let done = self.split_at(t, [a, b], plus(p, share, minus(q, p)), least)?;
+        self.counts.on_segments += usize::from(done);
+        Ok(done)
+    }
+
+    /// Puts a point on an edge of a tetrahedron, at least so far from vertices.
+    fn split_at(&mut self, t: u32, ends: [u32; 2], p: Point3, least: f64) -> Result<bool> {
+        let [a, b] = ends;
         let mut start = Start {
-            segment: Some([a, b]),
+            edge: Some(ends),
             ..Start::default()
         };
-        self.mesh.around(t, [a, b], &mut start.cells)?;
+        self.mesh.around(t, ends, &mut start.cells)?;
         for &t in &start.cells {
             for k in 0..4 {
                 let v = self.mesh.corners[t as usize][k];
@@ -77,14 +83,9 @@ impl Work {
                 }
             }
         }
-        if !self.cavity.build(&self.mesh, place, &start)?
-            || self.cavity.clearance(&self.mesh, place) < least
-        {
-            return Ok(false);
-        }
-        let done = self.insert(place, &start)?;
-        self.counts.on_segments += usize::from(done);
-        Ok(done)
+        Ok(self.cavity.build(&self.mesh, p, &start)?
+            && self.cavity.clearance(&self.mesh, p) >= least
+            && self.insert(p, &start)?)
     }
 
     /// Puts a point on the facet of a wall: at the circumcenter of the wall, or of the one nearest

@@ -30,12 +30,12 @@ const FLAT: f64 = 1e-6;
 /// Where the point is.
 #[derive(Debug, Default)]
 pub struct Start {
-    /// The tetrahedra that contain it: one, those beside a wall, or those around a segment.
+    /// The tetrahedra that contain it: one, those beside a wall, or those around an edge.
     pub cells: Vec<u32>,
     /// The walls that contain it, from each side that has a tetrahedron.
     pub walls: Vec<Side>,
-    /// The segment that contains it.
-    pub segment: Option<[u32; 2]>,
+    /// The edge that contains it.
+    pub edge: Option<[u32; 2]>,
 }
 
 /// What a point would be too near to.
@@ -337,7 +337,9 @@ impl Cavity {
             return Ok(false);
         }
         push(&mut mesh.points, p)?;
-        if let Some([a, b]) = start.segment {
+        if let Some([a, b]) = start.edge
+            && mesh.is_segment(a, b)
+        {
             insert(&mut mesh.segments, edge(a, vertex))?;
             insert(&mut mesh.segments, edge(vertex, b))?;
             mesh.segments.remove(&edge(a, b));
@@ -455,7 +457,7 @@ impl Cavity {
             }
             let [a, b, c] = mesh.face(side);
             for [x, y] in [[a, b], [b, c], [c, a]] {
-                if start.segment != Some(edge(x, y)) {
+                if start.edge != Some(edge(x, y)) {
                     push(
                         &mut self.rim,
                         (edge(x, y), mesh.wall[side.0 as usize][side.1]),

@@ -180,10 +180,10 @@ impl Work {
                 return Ok(true);
             }
         }
-        match cause {
-            Cause::Size => self.insert_inside(t, t, middle(places), (least, cause)),
-            Cause::Shape => Ok(false),
+        if cause == Cause::Shape {
+            return Ok(false);
         }
+        self.insert_inside(t, t, middle(places), (least, cause))
     }
 
     /// Inserts a point inside for a tetrahedron; for the sake of a size, one that is too near to a
