@@ -51,7 +51,7 @@ ABSENCES: dict[tuple[str, str], str] = {
     (
         "coming_from/cgal.rst",
         "Meshes from images or implicit functions",
-    ): "tetrahedralize adds points only where faces need them",
+    ): "surfaces are given as triangles, and divided, not remeshed",
     (
         "coming_from/cgal.rst",
         "More than eight dimensions",
