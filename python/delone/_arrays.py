@@ -22,7 +22,7 @@ import numpy as np
 from delone._masks import is_masked, refuse_masks
 from delone.counting import agreed, counted
 from delone.errors import DtypeError, InputError, LimitError, NonFiniteError, ShapeError
-from delone.georeference import column_words
+from delone.georeference import column_words, transformed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -179,6 +179,20 @@ def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np
         array = as_points([values], ndim=d, name=name)
         return array.reshape(d)
     return as_points(array.reshape(-1, d), ndim=d, name=name).reshape(array.shape)
+
+
+def as_queries(
+    xi: ArrayLike, d: int, crs: str | None, *, name: str = "xi", to: str = "the points"
+) -> NDArray[np.float64]:
+    """Return queries, (..., d), in the reference system of the data that they are about.
+
+    `crs` is that system, and `to` describes the data; see `transformed`.
+    """
+    queries = as_vectors(xi, d, name=name)
+    if type(xi) is np.ndarray or not hasattr(xi, "crs"):
+        return queries
+    flat = queries.reshape(-1, d)
+    return transformed(xi, flat, crs, name=name, to=to).reshape(queries.shape)
 
 
 def require_finite(points: NDArray[np.float64], *, name: str = "points") -> None:

@@ -162,8 +162,9 @@ def transformed(
     convert = pyproj.Transformer.from_crs(source, target, always_xy=True)
     moved = points.copy()
     moved[:, 0], moved[:, 1] = convert.transform(points[:, 0], points[:, 1])
-    if not np.isfinite(moved[:, :2]).all():
-        x, y = points[~np.isfinite(moved[:, :2]).all(axis=1)][0, :2]
+    lost = np.isfinite(points[:, :2]).all(axis=1) & ~np.isfinite(moved[:, :2]).all(axis=1)
+    if lost.any():
+        x, y = points[lost][0, :2]
         raise InputError(
             f"{name}: ({x:.10g}, {y:.10g}) has no place in {_short(target)}: it is not in "
             f"{_short(source)}, which the data declare"

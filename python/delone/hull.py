@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from delone import _core, measures, predicates
-from delone._arrays import as_workers, require_finite
+from delone._arrays import as_queries, as_workers, require_finite
 from delone.complex import Complex
 from delone.counting import counted
 from delone.delaunay import Delaunay
@@ -417,7 +417,8 @@ class ConvexHull(Complex):
         >>> ConvexHull([(0, 0), (2, 0), (0, 2)]).contains([(1, 1), (1.5, 1)]).tolist()
         [True, False]
         """
-        found: Bools = self._tiling.find_simplex(xi) >= 0
+        queries = as_queries(xi, self.ndim, self.crs)
+        found: Bools = self._tiling.find_simplex(queries) >= 0
         return found
 
     @property

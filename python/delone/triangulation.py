@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from delone import location, measures
-from delone._arrays import as_workers
+from delone._arrays import as_queries, as_workers
 from delone.complex import Complex
 from delone.dimension import FLAT_OR_SOLID, only
 from delone.duplicates import vertices_of
@@ -274,7 +274,8 @@ class Triangulation(Complex):
         """
         if tolerance != 0:
             return self.locate(xi, tolerance=tolerance).simplex
-        return location.find(self._dimension, self._locator, xi, self._workers)
+        queries = as_queries(xi, self._dimension.ndim, self.crs)
+        return location.find(self._dimension, self._locator, queries, self._workers)
 
     def nearest(self, xi: ArrayLike) -> Indices:
         """Find the vertices that are nearest to points.
@@ -308,7 +309,8 @@ class Triangulation(Complex):
         >>> Delaunay([(0, 0), (1, 0), (0, 1)]).nearest([(0.9, 0.2), (5, 6), (0.5, 0.5)])
         array([1, 2, 0], dtype=int32)
         """
-        return location.nearest(self._dimension, self._sites, xi, self._workers)
+        queries = as_queries(xi, self._dimension.ndim, self.crs)
+        return location.nearest(self._dimension, self._sites, queries, self._workers)
 
     def locate(self, xi: ArrayLike, *, tolerance: float = 0.0) -> location.Location:
         """Locate points: simplices, barycentric weights, nearest points of the boundary.
@@ -364,7 +366,7 @@ class Triangulation(Complex):
             self._locator,
             self._points,
             self._simplices,
-            xi,
+            as_queries(xi, self._dimension.ndim, self.crs),
             tolerance=tolerance,
             workers=self._workers,
         )

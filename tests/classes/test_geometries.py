@@ -80,6 +80,7 @@ def test_the_reference_system_is_carried_on(name: str, tmp_path: Path) -> None:
                 assert pickle.loads(pickle.dumps(each)).crs == each.crs
 
 
+@pytest.mark.filterwarnings("ignore::delone.CRSWarning")
 @pytest.mark.parametrize("name", OTHERS)
 def test_points_are_those_of_arrays(name: str) -> None:
     expected = OTHERS[name](PLACES)

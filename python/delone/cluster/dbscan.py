@@ -45,6 +45,8 @@ class DBSCAN(Clusterer):
         The rows of core points, ascending.
     components_ : ndarray of float64, shape (m, d)
         The core points.
+    crs_ : str or None
+        The reference system that the points declared, as a GeoDataFrame does.
     n_features_in_ : int
         Number of coordinates, 2 or 3.
 

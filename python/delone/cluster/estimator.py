@@ -13,7 +13,7 @@ from delone._arrays import (
     require_finite,
 )
 from delone.errors import DtypeError, InputError, ShapeError
-from delone.georeference import warn_of_degrees
+from delone.georeference import crs_of, warn_of_degrees
 from delone.immutable import own_copy
 
 if TYPE_CHECKING:
@@ -36,6 +36,7 @@ class Clusterer:
     _estimator_type = "clusterer"
 
     labels_: Indices
+    crs_: str | None
     metric: str
     planar: bool
 
@@ -203,6 +204,7 @@ class Clusterer:
         warn_of_degrees(points, own, planar=self.planar)
         require_finite(own)
         self.n_features_in_ = own.shape[1]
+        self.crs_ = crs_of(points)
         names = getattr(points, "columns", None)
         if names is not None and all(isinstance(name, str) for name in names):
             self.feature_names_in_ = np.array(list(names), dtype=object)

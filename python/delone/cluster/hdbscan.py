@@ -57,6 +57,8 @@ class HDBSCAN(Clusterer):
     condensed_tree_ : ndarray, shape (m,)
         A structured array with ``parent``, ``child``, ``lambda_val`` and ``child_size``: the rows
         (children below n) and clusters (from n on, n being the root) that leave each cluster.
+    crs_ : str or None
+        The reference system that the points declared, as a GeoDataFrame does.
     n_features_in_ : int
         Number of coordinates, 2 or 3.
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, overload
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_choice, as_limit, as_points, as_workers
+from delone._arrays import as_choice, as_limit, as_workers
 from delone.constrained import ConstrainedDelaunay
 from delone.counting import counted
 from delone.delaunay import Delaunay
@@ -18,7 +18,7 @@ from delone.dynamic.results import Changes, Snapshot
 from delone.dynamic.saving import State, require_few_handles
 from delone.dynamic.segments import FEW, as_handles, given_segments, refuse
 from delone.errors import DtypeError, EditConflictError, InputError, ShapeError
-from delone.georeference import warn_of_degrees
+from delone.georeference import crs_of, warn_of_degrees
 from delone.immutable import own_copy
 
 if TYPE_CHECKING:
@@ -133,6 +133,11 @@ class Dynamic(Measured):
     # Whether degrees cause no warning.
     _planar: bool
 
+    @property
+    def crs(self) -> str | None:
+        """The reference system of the points, if the first ones declared one."""
+        return self._system
+
     def __init__(
         self,
         points: ArrayLike | Delaunay | ConstrainedDelaunay | None = None,
@@ -160,13 +165,18 @@ class Dynamic(Measured):
             given_segments(core, () if segments is None else segments, as_workers(workers))
         elif segments is not None:
             raise InputError("segments are for 2-D points; these are 3-D")
-        self._begin(core, workers, bool(planar))
+        self._begin(core, workers, bool(planar), crs_of(points))
 
     def _begin(
-        self, core: _core.Live2 | _core.Live3, workers: int | None, planar: bool = False
+        self,
+        core: _core.Live2 | _core.Live3,
+        workers: int | None,
+        planar: bool = False,
+        system: str | None = None,
     ) -> None:
         self._live = core
         self._planar = planar
+        self._system = system
         self._workers = workers
         self._edit = object()
         self._present = None
@@ -176,28 +186,37 @@ class Dynamic(Measured):
 
     @classmethod
     def _of(
-        cls, core: _core.Live2 | _core.Live3, workers: int | None, planar: bool = False
+        cls,
+        core: _core.Live2 | _core.Live3,
+        workers: int | None,
+        planar: bool = False,
+        system: str | None = None,
     ) -> Self:
         made = cls.__new__(cls)
-        made._begin(core, workers, planar)
+        made._begin(core, workers, planar, system)
         return made
 
     @classmethod
-    def _again(cls, saved: tuple[Any, ...], options: tuple[int | None, bool]) -> Self:
-        """Return the triangulation of a pickle; options are `workers` and `planar`."""
-        workers, planar = options
+    def _again(cls, saved: tuple[Any, ...], options: tuple[Any, ...]) -> Self:
+        """Return the triangulation of a pickle; options are as for `_of`."""
+        workers, planar, *system = options
         core = State.unpickled(saved).opened(as_workers(workers))
-        return cls._of(core, workers, bool(planar))
+        return cls._of(core, workers, bool(planar), *system)
+
+    @property
+    def _options(self) -> tuple[int | None, bool, str | None]:
+        """The options of a copy, as for `_of`."""
+        return self._workers, self._planar, self._system
 
     def _state(self) -> State:
         """Return the present state, one whatever other threads do."""
         return State.of(self._live.state().open())
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self)._again, (tuple(self._state().pickled()), (self._workers, self._planar))
+        return type(self)._again, (tuple(self._state().pickled()), self._options)
 
     def __copy__(self) -> Self:
-        return self._of(self._live.state().open(), self._workers, self._planar)
+        return self._of(self._live.state().open(), *self._options)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         return self.__copy__()
@@ -233,7 +252,9 @@ class Dynamic(Measured):
         Parameters
         ----------
         points : array_like, shape (k, d)
-            Finite coordinates. A point at an existing position becomes a duplicate.
+            Finite coordinates. A point at an existing position becomes a duplicate. Points that
+            declare another reference system than `crs` are transformed, with pyproj (extra
+            ``geo``).
 
         Returns
         -------
@@ -249,6 +270,8 @@ class Dynamic(Measured):
         -----
         GeographicWarning
             As for the constructor.
+        CRSWarning
+            `crs` or the reference system of `points` is known, and the other one is not.
 
         Examples
         --------
@@ -259,11 +282,14 @@ class Dynamic(Measured):
         >>> live.duplicates
         array([[4, 0]])
         """
-        array, threads = as_points(points, ndim=self.ndim), 1
-        if len(array) > FEW:
-            array, threads = own_copy(array, ndim=self.ndim), as_workers(self._workers)
+        # The first points of all decide the reference system.
+        system = self._system if self._live.counts()[3] else crs_of(points)
+        array = own_points(points, self.ndim, system)
         warn_of_degrees(points, array, planar=self._planar)
-        return self._edited(self._live.insert, array, threads)
+        threads = 1 if len(array) <= FEW else as_workers(self._workers)
+        found = self._edited(self._live.insert, array, threads)
+        self._system = system
+        return found
 
     @overload
     def remove(self, handles: ArrayLike, *, segments: Literal["raise"] = "raise") -> None: ...
@@ -333,7 +359,7 @@ class Dynamic(Measured):
         handles : array_like of int, shape (k,)
             Their handles, each once.
         points : array_like, shape (k, d)
-            The new positions. Points that coincide with others become duplicates.
+            The new positions, as for `insert`. Points that coincide with others become duplicates.
 
         Raises
         ------
@@ -353,7 +379,7 @@ class Dynamic(Measured):
         >>> live.points[0]
         array([1., 1.])
         """
-        own, places = as_handles(handles), own_points(points, self.ndim)
+        own, places = as_handles(handles), own_points(points, self.ndim, self._system)
         try:
             self._edited(self._live.relocate, own, places, self._threads(own))
         except ShapeError:
@@ -419,11 +445,14 @@ class Dynamic(Measured):
             state = self._live.state()
             # Otherwise an edit of another thread is complete.
             if self._live.edits == known:
-                return known, self._of(state.open(), self._workers, self._planar)
+                return known, self._of(state.open(), *self._options)
 
     def _take(self, draft: Self, known: int) -> bool:
         """Take the state of a draft, unless there has been another edit than those known."""
-        return self._edited(_restore, self._live, draft._live.state(), known)
+        taken: bool = self._edited(_restore, self._live, draft._live.state(), known)
+        if taken:
+            self._system = draft._system
+        return taken
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the current state to an .npz file, atomically.
@@ -463,7 +492,8 @@ class Dynamic(Measured):
         """
         from delone import archive
 
-        archive.write(path, self._state().arrays(), Dynamic.__name__)
+        system = {} if self._system is None else {"crs": np.array(self._system)}
+        archive.write(path, self._state().arrays() | system, Dynamic.__name__)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], *, max_handles: int | None = None) -> Self:
@@ -500,10 +530,12 @@ class Dynamic(Measured):
         from delone import archive
 
         most = None if max_handles is None else as_limit(max_handles, name="max_handles")
-        state = State.from_arrays(archive.read(path, Dynamic.__name__))
+        arrays = archive.read(path, Dynamic.__name__)
+        state, system = State.from_arrays(arrays), arrays.get("crs")
         require_few_handles(path, state, most)
         try:
-            return cls._of(state.opened(as_workers(None)), None)
+            core = state.opened(as_workers(None))
+            return cls._of(core, None, system=None if system is None else str(system) or None)
         except InputError as error:
             raise archive.refusal(path, error) from error
 
@@ -534,7 +566,7 @@ class Dynamic(Measured):
         >>> len(live)
         2
         """
-        return Snapshot(self._live.state())
+        return Snapshot(self._live.state(), self._system)
 
     def restore(self, snapshot: Snapshot) -> None:
         """Return to a state.
@@ -562,6 +594,7 @@ class Dynamic(Measured):
         if not isinstance(snapshot, Snapshot):
             raise DtypeError(f"snapshot must be a Snapshot, got {type(snapshot).__name__}")
         self._edited(_restore, self._live, snapshot._state, None)
+        self._system = snapshot._system
 
     def changes(self) -> Changes:
         """Return the simplices that were removed and added since the last call.
@@ -610,7 +643,7 @@ class Dynamic(Measured):
         """
         made = self._arrays()
         if isinstance(made, _core.LiveArrays2) and made.constrained is not None:
-            return self._frozen_segments()
+            return self._frozen_segments()._with_crs(self._system)
         return self._frozen(made)
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
@@ -654,14 +687,14 @@ class Dynamic(Measured):
     def _frozen(self, made: _core.LiveArrays2 | _core.LiveArrays3) -> Delaunay:
         """Return arrays without segments as a triangulation that never changes."""
         if not len(made.simplices):
-            return Delaunay(made.points, workers=self._workers, planar=True)
+            return Delaunay(made.points, workers=self._workers, planar=True)._refer(self)
         arrays: dict[str, NDArray[Any]] = {
             "points": made.points,
             "simplices": made.simplices,
             "neighbors": made.neighbors,
             "duplicates": made.duplicates,
         }
-        return Delaunay._from_arrays(arrays, (), self._workers)
+        return Delaunay._from_arrays(arrays, (), self._workers)._refer(self)
 
     def validate(self) -> ValidationReport:
         """Prove that this is the canonical Delaunay triangulation, or list the faults.

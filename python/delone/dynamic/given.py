@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_plain_array, as_points
+from delone._arrays import as_plain_array, as_points, as_queries
 from delone._masks import hides
 from delone.complex import Stored
 from delone.constrained import ConstrainedDelaunay
@@ -45,10 +45,12 @@ def as_ndim(ndim: int | None) -> int | None:
     return ndim
 
 
-def own_points(points: ArrayLike, ndim: int) -> Floats:
-    """Return points that nobody changes while the core runs."""
+def own_points(points: ArrayLike, ndim: int, crs: str | None) -> Floats:
+    """Return points that nobody changes while the core runs, in a reference system."""
     array = as_points(points, ndim=ndim)
-    return array if len(array) <= FEW else own_copy(points, ndim=ndim)
+    if type(points) is not np.ndarray and hasattr(points, "crs"):
+        array = as_queries(points, ndim, crs, name="points", to="the triangulation")
+    return array if len(array) <= FEW else own_copy(array, ndim=ndim)
 
 
 def as_any_values(values: ArrayLike) -> NDArray[Any]:

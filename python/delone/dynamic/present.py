@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core, location
-from delone._arrays import as_vectors
+from delone._arrays import as_queries
 from delone.delaunay import Delaunay
 from delone.dynamic.given import as_any_values, as_values
 from delone.dynamic.results import DynamicArrays
@@ -34,7 +34,10 @@ __all__ = ["Present"]
 class Present(Segmented):
     """What a `Dynamic` tells about its present state."""
 
-    __slots__ = ("_index", "_known", "_present")
+    __slots__ = ("_index", "_known", "_present", "_system")
+
+    # The reference system of the points.
+    _system: str | None
 
     # The arrays of a state, and the object that stands for it.
     _present: tuple[object, _core.LiveArrays2 | _core.LiveArrays3] | None
@@ -133,7 +136,7 @@ class Present(Segmented):
         >>> Dynamic([(0, 0), (1, 0), (0, 1)]).find_simplex([(0.25, 0.25), (2, 2)])
         array([ 0, -1], dtype=int32)
         """
-        queries = as_vectors(xi, self.ndim, name="xi")
+        queries = as_queries(xi, self.ndim, self._system)
         if self.nsimplex == 0:
             return np.full(queries.shape[:-1], -1, dtype=np.int32)
         if tolerance != 0:
@@ -174,7 +177,7 @@ class Present(Segmented):
             index,
             made.points,
             made.simplices,
-            xi,
+            as_queries(xi, self.ndim, self._system),
             tolerance=tolerance,
             workers=self._workers,
         )
@@ -218,7 +221,7 @@ class Present(Segmented):
         >>> sorted(zip(handles.tolist(), weights.tolist(), strict=True))
         [(0, 0.25), (1, 0.25), (2, 0.5)]
         """
-        queries = as_vectors(xi, self.ndim, name="xi")
+        queries = as_queries(xi, self.ndim, self._system)
         flat = np.ascontiguousarray(queries.reshape(-1, self.ndim))
         handles, weights = self._live.corners(flat)
         shape = (*queries.shape[:-1], self.ndim + 1)
@@ -248,7 +251,7 @@ class Present(Segmented):
         >>> Dynamic([(0, 0), (1, 0), (0, 1)]).nearest([(0.9, 0.2), (0.5, 0.5)])
         array([1, 0])
         """
-        queries = as_vectors(xi, self.ndim, name="xi")
+        queries = as_queries(xi, self.ndim, self._system)
         flat = np.ascontiguousarray(queries.reshape(-1, self.ndim))
         return self._live.nearest(flat).reshape(queries.shape[:-1])
 
@@ -364,7 +367,7 @@ class Present(Segmented):
         array(6.)
         """
         given = as_values(values)
-        queries = as_vectors(xi, self.ndim, name="xi")
+        queries = as_queries(xi, self.ndim, self._system)
         flat = np.ascontiguousarray(queries.reshape(-1, self.ndim))
         # One call for all that must be of one state, whatever other threads do.
         edit, own = self._known

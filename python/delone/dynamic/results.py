@@ -83,6 +83,8 @@ class Snapshot:
     ----------
     state : object
         What the core returns; snapshots are made by `Dynamic.snapshot`.
+    crs : str, optional
+        The reference system of the points.
 
     Notes
     -----
@@ -100,18 +102,19 @@ class Snapshot:
     <Dynamic of 3 points: 1 triangle>
     """
 
-    __slots__ = ("_state",)
+    __slots__ = ("_state", "_system")
 
     @classmethod
-    def _again(cls, saved: tuple[Any, ...]) -> Snapshot:
+    def _again(cls, saved: tuple[Any, ...], crs: str | None = None) -> Snapshot:
         """Return the snapshot of a pickle."""
-        return cls(State.unpickled(saved).opened(as_workers(None)).state())
+        return cls(State.unpickled(saved).opened(as_workers(None)).state(), crs)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self)._again, (tuple(State.of(self._state.open()).pickled()),)
+        return type(self)._again, (tuple(State.of(self._state.open()).pickled()), self._system)
 
-    def __init__(self, state: _core.LiveState2 | _core.LiveState3) -> None:
+    def __init__(self, state: _core.LiveState2 | _core.LiveState3, crs: str | None = None) -> None:
         self._state = state
+        self._system = crs
 
     def bytes_beyond(self, other: Snapshot) -> int:
         """Return how much memory this snapshot needs in addition to another one.

@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 import numpy as np
 
 from delone import location, measures
-from delone._arrays import as_flag, as_number, as_vectors, as_workers
+from delone._arrays import as_flag, as_number, as_queries, as_workers
 from delone.counting import agreed
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
-from delone.georeference import warn_of_degrees
+from delone.georeference import crs_of, warn_of_degrees
 from delone.higher.dimension import MOST
 from delone.immutable import own_copy
 from delone.interpolate.hull import summed
@@ -131,6 +131,7 @@ class Interpolator:
         self._repeated: Repeated | None = None
         known = given if self._periodic is None else self._periodic
         self._sites: Floats = _own(points) if known is None else known.points
+        self._crs = crs_of(points) if known is None else known.crs
         if known is None:
             warn_of_degrees(points, self._sites, planar=planar)
         if self._ndim > SPACE:
@@ -408,9 +409,14 @@ class Interpolator:
 
     def _queries(self, xi: ArrayLike) -> tuple[Floats, tuple[int, ...]]:
         """Flattened queries, moved into the period of the sites, and their leading axes."""
-        queries = as_vectors(xi, self._ndim, name="xi")
+        queries = as_queries(xi, self._ndim, self._crs)
         flat = queries.reshape(-1, self._ndim)
         return flat if self._repeated is None else self._repeated.wrapped(flat), queries.shape[:-1]
+
+    @property
+    def crs(self) -> str | None:
+        """The reference system of the sites, if they declared one, as a GeoDataFrame does."""
+        return self._crs
 
     @property
     def workers(self) -> int | None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import measures
-from delone._arrays import as_callback, as_choice, as_number, as_vectors
+from delone._arrays import as_callback, as_choice, as_number, as_queries
 from delone.errors import InputError
 from delone.interpolate.raster import Grid, raster_nodes, require_memory
 from delone.location import as_tolerance
@@ -107,7 +107,8 @@ def hillshade(slopes: Floats, azimuth: float, altitude: float, z_factor: float) 
 
 def heights(tin: Surface, xy: ArrayLike, tolerance: float) -> Floats:
     """Return heights at positions, NaN outside."""
-    place = tin.locate(as_vectors(xy, 2, name="xy"), tolerance=tolerance)
+    queries = as_queries(xy, 2, tin.crs, name="xy", to="the surface")
+    place = tin.locate(queries, tolerance=tolerance)
     inside = place.simplex >= 0
     corners = tin.z[tin.simplices[np.where(inside, place.simplex, 0)]]
     found = np.where(inside, (place.barycentric * corners).sum(axis=-1), np.nan)

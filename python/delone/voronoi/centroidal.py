@@ -198,10 +198,13 @@ def lloyd(
             else lambda step, away, energy: progress(step, away / unit, float(_back(energy, unit))),
             workers=workers,
         )
-        return _scaled_back(found_in_units, domain, unit, workers)
-    return _iterated(
-        diagram, max_iter, tol, density=density, quasi_newton=quasi_newton, progress=progress
-    )
+        found = _scaled_back(found_in_units, domain, unit, workers)
+    else:
+        found = _iterated(
+            diagram, max_iter, tol, density=density, quasi_newton=quasi_newton, progress=progress
+        )
+    found.diagram._refer(diagram)
+    return found
 
 
 def _iterated(

@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._arrays import as_flag, as_workers
+from delone._arrays import as_flag, as_queries, as_workers
 from delone.complex import Stored
 from delone.counting import counted
 from delone.dimension import FLAT_OR_SOLID, only
 from delone.errors import InputError
-from delone.georeference import warn_of_degrees
+from delone.georeference import crs_of, warn_of_degrees
 from delone.higher.dimension import MOST
 from delone.immutable import kept, own_copy, sealed
 from delone.regular import as_weights
 from delone.validation import ValidationReport
-from delone.voronoi import line, thin
+from delone.voronoi import line, outline, thin
 from delone.voronoi.higher import HigherCells
 from delone.voronoi.plane import PlaneCells
 from delone.voronoi.results import Neighbors, Rays, as_site
@@ -59,7 +59,9 @@ class Voronoi(Stored):
 
         In 2-D: a box ``(xmin, ymin, xmax, ymax)``; a shapely polygon or multipolygon, with or
         without holes, or a GeoJSON-like mapping; one or more rings of coordinates (k, 2), by the
-        even-odd rule; or a GeoDataFrame or GeoSeries, for the union of its polygons.
+        even-odd rule; or a GeoDataFrame, GeoSeries or `delone.io.GeometrySet`, for the union of its
+        polygons. Its corners are transformed if it declares another reference system than the
+        points, with pyproj (extra ``geo``).
 
         In 3-D, a convex region: a box ``((xmin, ymin, zmin), (xmax, ymax, zmax))`` of shape (2, 3);
         half-spaces of shape (k, 4) with a bounded intersection, each ``(a, b, c, d)`` for ``a x + b
@@ -129,6 +131,10 @@ class Voronoi(Stored):
 
     Warns
     -----
+    GeographicWarning
+        The points are longitudes and latitudes; `delone.sphere` has diagrams of them.
+    CRSWarning
+        The reference system of the points or of `clip` is known, and that of the other is not.
     ThinCellWarning
         When measures or polygons are computed: cells are only a few units in the last place wide,
         so rounding makes their areas or volumes meaningless; ``warning.rows`` has their rows.
@@ -233,6 +239,8 @@ class Voronoi(Stored):
         if periods is None:
             warn_of_degrees(points, own, planar=planar)
         own_weights = None if weights is None else as_weights(weights, len(own))
+        if own.shape[1] == 2:
+            clip = outline.in_system(clip, crs_of(points))
         cells = _CELLS[own.shape[1]].made(
             own, own_weights, clip=clip, fix=repair, periods=periods, workers=workers
         )
@@ -585,10 +593,11 @@ class Voronoi(Stored):
         """
         if self.weights is not None or self.periods is not None:
             raise InputError("nearest is only available without weights and periods")
+        queries = as_queries(xi, self.ndim, self.crs)
         if self.triangulation is None:
-            return line.nearest(self.points, self._cells.dual.site, xi)
+            return line.nearest(self.points, self._cells.dual.site, queries)
         mesh: Any = self.triangulation
-        found: Indices = mesh.nearest(xi)
+        found: Indices = mesh.nearest(queries)
         return found
 
     def validate(self) -> ValidationReport:

@@ -16,6 +16,7 @@ import numpy as np
 from delone.constrained.geodata import is_shapely, rings_of_numbers
 from delone.errors import InputError
 from delone.exchange.geopandas import shapely_or_say
+from delone.georeference import transformed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,6 +28,7 @@ __all__ = [
     "areal_parts",
     "as_clip",
     "as_scaled",
+    "in_system",
     "next_corner",
     "of_wkb",
     "times",
@@ -89,6 +91,16 @@ class Clip:
         sizes = np.bincount(ring[kept], minlength=len(rings))
         starts = np.concatenate(([0], np.cumsum(sizes))).astype(np.int32)
         return starts, np.ascontiguousarray(corners[kept])
+
+
+def in_system(clip: Any, crs: str | None) -> Any:
+    """Return a clip in the reference system of the sites, if it declares one."""
+    if isinstance(clip, np.ndarray | str | list | tuple) or not hasattr(clip, "crs"):
+        return clip
+    geometry, shapely = _geometry(clip), shapely_or_say()
+    places = shapely.get_coordinates(geometry)
+    moved = transformed(clip, places, crs, name="clip", to="the sites")
+    return geometry if moved is places else shapely.transform(geometry, lambda _: moved)
 
 
 def as_clip(
@@ -177,6 +189,8 @@ def _geometry(clip: Any) -> Any:
         return _together(clip.geometry.values)
     if hasattr(clip, "geom_type"):
         return clip
+    if hasattr(clip, "geometries"):  # a GeometrySet
+        return _together(clip.geometries)
     if isinstance(clip, dict) or hasattr(clip, "__geo_interface__"):
         return _of_mapping(clip)
     return None

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_vectors
+from delone._arrays import as_queries
 from delone.distributed.read.dem import write_dem
 from delone.distributed.read.folder import TileFolder
 from delone.distributed.read.proof import prove
@@ -166,7 +166,7 @@ class TiledDelaunay(TileFolder):
         ...     (tin.find_simplex([(3.2, 4.5), (-1, 0)]) >= 0).tolist()
         [True, False]
         """
-        queries, shape = _queries(xi)
+        queries, shape = _queries(xi, self.crs)
         found = np.full(len(queries), -1, dtype=np.int64)
         for number, rows in self._near(queries):
             left = rows[found[rows] < 0]
@@ -214,7 +214,7 @@ class TiledDelaunay(TileFolder):
         array([7.75,  nan])
         """
         self._require(values)
-        queries, shape = _queries(xi)
+        queries, shape = _queries(xi, self.crs)
         found = np.full(len(queries), np.nan)
         left = np.ones(len(queries), dtype=bool)
         for number, rows in self._near(queries):
@@ -359,8 +359,8 @@ class TiledDelaunay(TileFolder):
         return write_dem(self, resolution, out, values, as_crs(crs) or self.crs)
 
 
-def _queries(xi: ArrayLike) -> tuple[Floats, tuple[int, ...]]:
-    queries = as_vectors(xi, 2, name="xi")
+def _queries(xi: ArrayLike, crs: str | None) -> tuple[Floats, tuple[int, ...]]:
+    queries = as_queries(xi, 2, crs)
     return np.ascontiguousarray(queries.reshape(-1, 2)), queries.shape[:-1]
 
 
