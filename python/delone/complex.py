@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     # Names and seconds; a dictionary is made when it is asked for.
     Stages = dict[str, float] | tuple[tuple[str, float], ...]
 
-__all__ = ["Complex", "Exchanged", "Referenced", "Stored", "points_alone"]
+__all__ = ["Complex", "Exchanged", "Filed", "Referenced", "Stored", "points_alone"]
 
 
 def points_alone(
@@ -191,19 +191,13 @@ class Exchanged(Referenced):
         return to_pyvista(self._parts(), order=order)
 
 
-class Stored(Referenced):
-    """An immutable object that can be saved, loaded and pickled."""
+class Filed:
+    """An object that can be saved and loaded."""
 
-    __slots__ = ("_workers",)
+    __slots__ = ()
 
-    _workers: int | None
     # Whether the arrays of a file have the reference system.
     _SAVES_CRS: ClassVar[bool] = False
-
-    @property
-    def workers(self) -> int | None:
-        """Maximum number of threads; None for one per core. The result does not depend on it."""
-        return self._workers
 
     def _saved(self) -> dict[str, NDArray[Any]]:
         """Return the arrays of a file."""
@@ -283,7 +277,7 @@ class Stored(Referenced):
         -----
         Shapes, dtypes, ranges, duplicates, mutual neighbors and orientations are checked in linear
         time; `validate` proves the rest. A `ConvexHull`, `RegularTriangulation`,
-        `PeriodicDelaunay` and `Voronoi` are computed again from their input.
+        `PeriodicDelaunay`, `AlphaShape` and `Voronoi` are computed again from their input.
 
         Examples
         --------
@@ -298,7 +292,7 @@ class Stored(Referenced):
         except InputError as error:
             # Arrays that are the input of a constructor.
             raise archive.refusal(path, error) from error
-        if system is not None:
+        if isinstance(made, Referenced) and system is not None:
             made.__setstate__(str(system))
         return made
 
@@ -308,6 +302,19 @@ class Stored(Referenced):
         from delone.archive.kinds import KINDS
 
         return next(each.__name__ for each in cls.__mro__ if each.__name__ in KINDS)
+
+
+class Stored(Referenced, Filed):
+    """An immutable object that can be saved, loaded and pickled."""
+
+    __slots__ = ("_workers",)
+
+    _workers: int | None
+
+    @property
+    def workers(self) -> int | None:
+        """Maximum number of threads; None for one per core. The result does not depend on it."""
+        return self._workers
 
     def _described(self) -> str:
         """Return what `repr` says after "of"."""

@@ -10,14 +10,14 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_flag, as_least, as_number, as_workers, require_finite
 from delone.alpha.shape import AlphaShape
-from delone.alpha.values import Valued, known_mesh, of_periodic, of_points, simplices_of
+from delone.alpha.values import Given, Valued, known_mesh, of_periodic, of_points, simplices_of
 from delone.complex import Stored, points_alone
 from delone.counting import counted
 from delone.errors import InputError
 from delone.extras import require
 from delone.georeference import warn_of_degrees
 from delone.immutable import kept, own_copy, sealed
-from delone.periodic import PeriodicDelaunay, as_periods
+from delone.periodic import PeriodicDelaunay
 from delone.regular import RegularTriangulation, as_weights
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ class AlphaComplex(Stored):
             warn_of_degrees(plain, own, planar=planar)
             require_finite(own)
             own_weights = None if weights is None else sealed(as_weights(weights, len(own)))
-            valued = _valued(own, own_weights, periodic, threads)
+            valued = Given(own, own_weights, periodic).valued(threads)
         self._fill(own, own_weights, valued, workers)
         self._refer(given)
 
@@ -156,27 +156,18 @@ class AlphaComplex(Stored):
         self._hold(points=sealed(points), weights=weights, valued=valued, workers=workers)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        arrays = self._points, self._weights, self.periods
-        return _again, (type(self), *arrays, self._workers)
+        return _again, (type(self), *self._given, self._workers)
 
     def _saved(self) -> dict[str, NDArray[Any]]:
-        nothing = np.empty(0)
-        found = {
-            "points": self._points,
-            "weights": nothing if self._weights is None else self._weights,
-        }
-        if self.ndim == 2:
-            periods = self.periods
-            lengths = () if periods is None else periods
-            found["periods"] = np.array([np.nan if each is None else each for each in lengths])
-        return found
+        return self._given.saved()
 
     @classmethod
     def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
-        weights = arrays["weights"] if len(arrays["weights"]) else None
-        lengths = arrays.get("periods", np.empty(0)).tolist()
-        periodic = [None if math.isnan(each) else each for each in lengths] or None
-        return cls(arrays["points"], weights, periodic, planar=True)
+        return cls(*Given.loaded(arrays), planar=True)
+
+    @property
+    def _given(self) -> Given:
+        return Given(self._points, self._weights, self.periods)
 
     @property
     def points(self) -> Floats:
@@ -332,7 +323,8 @@ class AlphaComplex(Stored):
         if math.isnan(limit) or (limit < 0 and self._weights is None):
             least = "not NaN" if self._weights is not None else "at least 0"
             raise InputError(f"alpha is a squared radius and must be {least}, got {alpha!r:.60}")
-        return AlphaShape._made(self._points, self._valued, limit, self._workers)._refer(self)
+        made = AlphaShape._made(self._given, self._valued, limit, self._workers)
+        return made._refer(self)
 
     def optimal(self, components: int = 1, *, holes: bool = False) -> float:
         """Return the smallest alpha whose shape contains all points in few parts.
@@ -448,20 +440,6 @@ class AlphaComplex(Stored):
             for k, rows in enumerate(self._valued.simplices)
         )
         return f"{counted(self.npoints, 'point')}: {', '.join(listed)}"
-
-
-def _valued(
-    points: Floats,
-    weights: Floats | None,
-    periodic: Sequence[float | None] | None,
-    workers: int,
-) -> Valued:
-    if periodic is None:
-        return of_points(points, weights, workers)
-    if points.shape[1] != 2:
-        raise InputError("periodic complexes are only available in 2-D: points are 3-D")
-    mesh = PeriodicDelaunay(points, as_periods(periodic), weights=weights, workers=workers)
-    return of_periodic(mesh, workers)
 
 
 def _again(

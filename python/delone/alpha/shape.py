@@ -9,8 +9,8 @@ import numpy as np
 from delone import _core, measures
 from delone._arrays import as_workers
 from delone.alpha.outline import rings_of
-from delone.alpha.values import simplices_of
-from delone.complex import Exchanged
+from delone.alpha.values import Given, Valued, simplices_of
+from delone.complex import Exchanged, Filed
 from delone.counting import counted
 from delone.errors import InputError
 from delone.immutable import kept, made_by, sealed
@@ -22,13 +22,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone._types import Bools, Floats, Indices
-    from delone.alpha.values import Valued
     from delone.exchange.parts import Parts
 
 __all__ = ["AlphaShape", "ConcaveHull", "Kept"]
 
 
-class Kept(Exchanged):
+class Kept(Exchanged, Filed):
     """Triangles or tetrahedra that are kept of a triangulation, and their boundary."""
 
     __slots__ = ("_flags", "_neighbors", "_points", "_tops", "_workers")
@@ -38,11 +37,6 @@ class Kept(Exchanged):
     _points: Floats
     _tops: Indices
     _workers: int | None
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        raise TypeError(
-            f"a {type(self).__name__} is not pickled: pickle what it was made of, and make it again"
-        )
 
     @property
     def points(self) -> Floats:
@@ -280,24 +274,41 @@ class AlphaShape(Kept):
     (12.0, 14.0, 1, (2, 0))
     """
 
-    __slots__ = ("_alpha", "_valued")
+    __slots__ = ("_alpha", "_given", "_valued")
 
     _alpha: float
+    _given: Given
     _valued: Valued
 
     @classmethod
-    def _made(cls, points: Floats, valued: Valued, alpha: float, workers: int | None) -> Self:
+    def _made(cls, given: Given, valued: Valued, alpha: float, workers: int | None) -> Self:
         found = cls.__new__(cls)
         found._hold(
             alpha=alpha,
             flags=sealed(valued.values[-1] <= alpha),
+            given=given,
             neighbors=valued.neighbors,
-            points=points,
+            points=sealed(given.points),
             tops=valued.simplices[-1],
             valued=valued,
             workers=workers,
         )
         return found
+
+    @classmethod
+    def _again(cls, given: Given, alpha: float, workers: int | None) -> Self:
+        """Return the shape of points, computed again."""
+        return cls._made(given, given.valued(as_workers(workers)), alpha, workers)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return self._again, (self._given, self._alpha, self._workers)
+
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        return self._given.saved() | {"alpha": np.array([self._alpha])}
+
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        return cls._again(Given.loaded(arrays), float(arrays["alpha"][0]), None)
 
     @property
     def alpha(self) -> float:
@@ -457,12 +468,31 @@ class ConcaveHull(Kept):
         found = cls.__new__(cls)
         found._hold(
             flags=sealed(flags),
-            neighbors=neighbors,
-            points=points,
-            tops=tops,
+            neighbors=sealed(neighbors),
+            points=sealed(points),
+            tops=sealed(tops),
             workers=None if workers is None else as_workers(workers),
         )
         return found
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        arrays = self._points, self._tops, self._neighbors, self._flags
+        return self._made, (*arrays, self._workers)
+
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        return {
+            "points": self._points,
+            "simplices": self._tops,
+            "neighbors": self._neighbors,
+            "kept": self._flags,
+        }
+
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        points, tops, neighbors = (
+            sealed(arrays[name]) for name in ("points", "simplices", "neighbors")
+        )
+        return cls._made(points, tops, neighbors, arrays["kept"], None)
 
     def polygon(self) -> Any:
         """Return the hull as one shapely polygon (extra ``geo``); 2-D only.

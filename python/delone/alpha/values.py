@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
@@ -14,15 +15,25 @@ from delone.delaunay import Delaunay
 from delone.duplicates import first_rows
 from delone.errors import DegenerateInputError, InputError
 from delone.immutable import sealed
-from delone.periodic import PeriodicDelaunay
-from delone.regular import RegularTriangulation, triangulated
+from delone.periodic import PeriodicDelaunay, as_periods
+from delone.regular import RegularTriangulation, as_weights, triangulated
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from delone._types import Floats, Indices
 
-__all__ = ["Valued", "edge_slots", "known_mesh", "of_periodic", "of_points", "simplices_of"]
+__all__ = [
+    "Given",
+    "Valued",
+    "edge_slots",
+    "known_mesh",
+    "of_periodic",
+    "of_points",
+    "simplices_of",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +45,44 @@ class Valued:
     neighbors: Indices
     # The periodic triangulation, and the edge opposite each corner of its triangles.
     periodic: PeriodicDelaunay | None = None
+
+
+class Given(NamedTuple):
+    """What a complex is computed from."""
+
+    points: Floats
+    weights: Floats | None
+    periods: Sequence[float | None] | None
+
+    def valued(self, workers: int) -> Valued:
+        """Return the simplices and their values."""
+        if self.periods is None:
+            return of_points(self.points, self.weights, workers)
+        if self.points.shape[1] != 2:
+            raise InputError("periodic complexes are only available in 2-D: points are 3-D")
+        periods = as_periods(self.periods)
+        mesh = PeriodicDelaunay(self.points, periods, weights=self.weights, workers=workers)
+        return of_periodic(mesh, workers)
+
+    def saved(self) -> dict[str, NDArray[Any]]:
+        """Return the arrays of a file."""
+        weights = np.empty(0) if self.weights is None else self.weights
+        found = {"points": self.points, "weights": weights}
+        if self.points.shape[1] == 2:
+            lengths = self.periods or ()
+            found["periods"] = np.array([np.nan if each is None else each for each in lengths])
+        return found
+
+    @classmethod
+    def loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        """Return what the arrays of a file hold."""
+        points, weights = sealed(arrays["points"]), None
+        if len(arrays["weights"]):
+            weights = sealed(as_weights(arrays["weights"], len(points)))
+        lengths = arrays.get("periods", np.empty(0)).tolist()
+        return cls(
+            points, weights, [None if math.isnan(each) else each for each in lengths] or None
+        )
 
 
 def of_points(points: Floats, weights: Floats | None, workers: int, mesh: Any = None) -> Valued:

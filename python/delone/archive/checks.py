@@ -32,15 +32,19 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ContradictionError",
+    "check_bands",
     "check_constrained",
+    "check_contours",
     "check_delaunay",
     "check_diagram",
     "check_graph",
     "check_input",
+    "check_kept",
     "check_live",
     "check_mesh",
     "check_range",
     "check_segments",
+    "check_shape",
     "check_surface",
     "check_tetrahedra",
     "require",
@@ -189,6 +193,69 @@ def check_input(**arrays: NDArray[Any]) -> None:
     """Check input that is computed again."""
     require(len(arrays["points"]) > 0, "it has no points")
     require(np.isfinite(arrays["points"]).all(), "a coordinate is not finite")
+
+
+def check_shape(**arrays: NDArray[Any]) -> None:
+    """Check the input of a shape that is computed again."""
+    check_input(**arrays)
+    alpha = arrays["alpha"]
+    require(len(alpha) == 1 and not np.isnan(alpha).any(), "alpha is not one number")
+    negative = bool(alpha[0] < 0)
+    require(
+        not negative or len(arrays["weights"]) > 0, "alpha is negative, and there are no weights"
+    )
+
+
+def check_kept(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    kept: NDArray[np.bool_],
+) -> None:
+    """Check simplices of which some are kept; points that span nothing have none."""
+    require(len(kept) == len(simplices), "kept and simplices do not match")
+    if len(simplices):
+        _check_simplices(points, simplices, neighbors)
+        _check_joined(simplices, neighbors)
+    else:
+        require(np.isfinite(points).all(), "a coordinate is not finite")
+        require(not len(neighbors), "it has neighbors of no simplices")
+
+
+def check_contours(**arrays: NDArray[Any]) -> None:
+    """Check lines with levels."""
+    points, level, levels = arrays["points"], arrays["level"], arrays["levels"]
+    _check_starts("starts", arrays["starts"], len(points), len(level), 2)
+    require(len(arrays["index"]) == len(level), "index and lines do not match")
+    require(np.isfinite(levels).all() and (np.diff(levels) > 0).all(), "levels are out of order")
+    require(np.isin(level, levels).all(), "a line has a level that is not there")
+    _check_counts(points, arrays["counts"], 3)
+
+
+def check_bands(**arrays: NDArray[Any]) -> None:
+    """Check polygons between heights."""
+    points, rings, polygons = (arrays[name] for name in ("points", "ring_starts", "polygon_starts"))
+    low, high = arrays["low"], arrays["high"]
+    _check_starts("ring_starts", rings, len(points), len(rings) - 1, 4)
+    _check_starts("polygon_starts", polygons, len(rings) - 1, len(low), 1)
+    require((points[rings[:-1]] == points[rings[1:] - 1]).all(), "a ring is not closed")
+    require(len(high) == len(low), "low and high do not match")
+    require(np.isfinite(low).all() and np.isfinite(high).all(), "a height is not finite")
+    require((low <= high).all(), "a range is empty")
+    _check_counts(points, arrays["counts"], 2)
+
+
+def _check_starts(name: str, starts: NDArray[np.int64], end: int, count: int, least: int) -> None:
+    """Check the starts of parts, each of which has at least so many entries."""
+    require(len(starts) == count + 1 and count >= 0, f"{name} has not one start for each part")
+    require(starts[0] == 0 and starts[-1] == end, f"{name} does not run from 0 to {end}")
+    require((np.diff(starts) >= least).all(), f"{name} has a part of fewer than {least}")
+
+
+def _check_counts(points: NDArray[np.float64], counts: NDArray[np.int64], length: int) -> None:
+    """Check that points are finite, and the numbers of what is left out."""
+    require(np.isfinite(points).all(), "a coordinate is not finite")
+    require(len(counts) == length and (counts >= 0).all(), f"counts is not {length} numbers")
 
 
 def check_live(**arrays: NDArray[Any]) -> None:

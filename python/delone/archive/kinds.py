@@ -191,7 +191,7 @@ _CELLS = {
     "shape": ("<i8", 0),
     "merged": ("<i8", 0),
 }
-_WEIGHTS, _PERIODS = ("<f8", 0), ("<f8", 0)
+_WEIGHTS, _PERIODS, _ALPHA = ("<f8", 0), ("<f8", 0), ("<f8", 0)
 KINDS: Mapping[str, tuple[Kind, ...]] = {
     "Delaunay": (
         Kind("delone.Delaunay", _delaunay(2), checks.check_delaunay),
@@ -256,8 +256,50 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
         _input("AlphaComplex", 2, weights=_WEIGHTS, periods=_PERIODS),
         _input("AlphaComplex", 3, weights=_WEIGHTS),
     ),
+    "AlphaShape": (
+        _input(
+            "AlphaShape", 2, checks.check_shape, weights=_WEIGHTS, periods=_PERIODS, alpha=_ALPHA
+        ),
+        _input("AlphaShape", 3, checks.check_shape, weights=_WEIGHTS, alpha=_ALPHA),
+    ),
+    "ConcaveHull": tuple(
+        Kind(f"delone.ConcaveHull {d}-D", _simplices(d) | {"kept": ("|b1", 0)}, checks.check_kept)
+        for d in (2, 3)
+    ),
     "ConvexHull": tuple(_input("ConvexHull", ndim) for ndim in (2, 3, *HIGHER)),
     "TIN": (_TIN,),
+    "Contours": (
+        Kind(
+            "delone.terrain.Contours",
+            {
+                "points": ("<f8", 2),
+                "starts": ("<i8", 0),
+                "level": ("<f8", 0),
+                "index": ("|b1", 0),
+                "levels": ("<f8", 0),
+                # Triangles, short lines and small lines that are left out.
+                "counts": ("<i8", 0),
+            },
+            checks.check_contours,
+            ("crs", "units"),
+        ),
+    ),
+    "Bands": (
+        Kind(
+            "delone.terrain.Bands",
+            {
+                "points": ("<f8", 2),
+                "ring_starts": ("<i8", 0),
+                "polygon_starts": ("<i8", 0),
+                "low": ("<f8", 0),
+                "high": ("<f8", 0),
+                # Triangles and small polygons that are left out.
+                "counts": ("<i8", 0),
+            },
+            checks.check_bands,
+            ("crs", "units"),
+        ),
+    ),
     "sphere.Delaunay": (
         Kind(
             "delone.sphere.Delaunay",

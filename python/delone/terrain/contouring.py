@@ -6,12 +6,13 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
 from delone import _core
 from delone._arrays import LARGEST_LIMIT, as_count, as_number, as_plain_array
+from delone.complex import Filed
 from delone.counting import counted
 from delone.decimals import exact, multiples
 from delone.errors import BudgetExceededError, DtypeError, InputError
@@ -36,12 +37,15 @@ __all__ = ["MOST", "Bands", "Contours", "bands", "levels_of", "lines"]
 MOST = 50_000_000
 # Rounds of smoothing that are possible; `smoothing` refuses more.
 _MOST_ROUNDS = 5
+# The arrays of lines and of areas in files.
+_LINES = ("points", "starts", "level", "index", "levels")
+_AREAS = ("points", "ring_starts", "polygon_starts", "low", "high")
 # Levels that an interval may give.
 _LEVELS = 1_000_000
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Contours(ReadOnly):
+class Contours(ReadOnly, Filed):
     """Contour lines, in the order of their levels.
 
     Parameters
@@ -87,6 +91,15 @@ class Contours(ReadOnly):
     small: int = 0
     crs: str | None = None
     units: str | None = None
+
+    _SAVES_CRS: ClassVar[bool] = True
+
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        return _arrays_of(self, _LINES, ("left_out", "short", "small"))
+
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        return cls(**_arguments_of(arrays, _LINES, ("left_out", "short", "small")))
 
     def __len__(self) -> int:
         return len(self.level)
@@ -329,7 +342,7 @@ class Contours(ReadOnly):
 
 @renamed(rings="ring_starts", polygons="polygon_starts")
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Bands(ReadOnly):
+class Bands(ReadOnly, Filed):
     """The areas between contours, in the order of their heights.
 
     Parameters
@@ -372,6 +385,15 @@ class Bands(ReadOnly):
     small: int = 0
     crs: str | None = None
     units: str | None = None
+
+    _SAVES_CRS: ClassVar[bool] = True
+
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        return _arrays_of(self, _AREAS, ("left_out", "small"))
+
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        return cls(**_arguments_of(arrays, _AREAS, ("left_out", "small")))
 
     def __len__(self) -> int:
         return len(self.low)
@@ -476,6 +498,25 @@ class Bands(ReadOnly):
         own = self.crs if crs is None else crs
         columns = {"low": self.low, "high": self.high}
         return beside(self.to_shapely(), data, own, columns=columns, of="polygons")
+
+
+def _arrays_of(
+    made: Any, names: tuple[str, ...], counts: tuple[str, ...]
+) -> dict[str, NDArray[Any]]:
+    """Return the arrays of a file, with counts as one array."""
+    found = {name: np.asarray(getattr(made, name)) for name in names}
+    numbers = np.array([getattr(made, name) for name in counts], dtype=np.int64)
+    texts = {name: np.array(getattr(made, name) or "") for name in ("crs", "units")}
+    return found | {"counts": numbers} | texts
+
+
+def _arguments_of(
+    arrays: dict[str, NDArray[Any]], names: tuple[str, ...], counts: tuple[str, ...]
+) -> dict[str, Any]:
+    """Return the arguments of a constructor from the arrays of a file."""
+    found: dict[str, Any] = {name: arrays[name] for name in names}
+    found |= dict(zip(counts, arrays["counts"].tolist(), strict=True))
+    return found | {name: str(arrays.get(name, "")) or None for name in ("crs", "units")}
 
 
 def levels_of(
