@@ -3,12 +3,25 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 from typing import Self
 
 from delone.errors import DeloneError
 
 __all__ = ["TooLargeError", "free_memory"]
+
+# Limit, use and statistics of the control group of a process, in version 2 and 1 of Linux.
+_GROUPS = (
+    ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current", "/sys/fs/cgroup/memory.stat"),
+    (
+        "/sys/fs/cgroup/memory/memory.limit_in_bytes",
+        "/sys/fs/cgroup/memory/memory.usage_in_bytes",
+        "/sys/fs/cgroup/memory/memory.stat",
+    ),
+)
+# The numbers of MEMORYSTATUSEX, of which only one is needed.
+_OF_WINDOWS = ("all", "free", "all_pages", "free_pages", "all_virtual", "free_virtual", "extended")
 
 
 class TooLargeError(DeloneError, MemoryError):
@@ -74,15 +87,62 @@ class TooLargeError(DeloneError, MemoryError):
 def free_memory() -> int | None:
     """Return the bytes that are available without swapping, or None if the system does not say.
 
-    On systems without /proc/meminfo, this is the total physical memory.
+    On Linux, at most what the control group of the process, such as that of a container, leaves; on
+    Windows, the free physical memory; on other systems, all physical memory.
     """
+    free = _available() or _available_on_windows()
+    if free is None:
+        try:
+            free = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+        except (AttributeError, OSError, ValueError):
+            return None
+    left = _left_in_group()
+    return free if left is None else min(free, left)
+
+
+def _available() -> int | None:
+    """Return what Linux says to be available."""
+    for line in _lines("/proc/meminfo"):
+        if line.startswith("MemAvailable:"):
+            return 1024 * int(line.split()[1])
+    return None
+
+
+def _left_in_group() -> int | None:
+    """Return how much more the control group of this process may use; None without a limit."""
+    for limit, used, cache in _GROUPS:
+        found, now = _lines(limit), _lines(used)
+        # Without a limit it is "max", or a number beyond any memory.
+        if found and now and found[0].isdigit() and now[0].isdigit():
+            names = dict(line.split()[:2] for line in _lines(cache) if " " in line)
+            # Files that are cached are dropped where memory is needed.
+            dropped = int(names.get("total_inactive_file", names.get("inactive_file", 0)))
+            return max(0, int(found[0]) - int(now[0]) + dropped)
+    return None
+
+
+def _lines(path: str) -> list[str]:
+    """Return the lines of a file of the system; none if it is not there."""
     try:
-        for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
-            if line.startswith("MemAvailable:"):
-                return 1024 * int(line.split()[1])
+        return Path(path).read_text(encoding="ascii").splitlines()
     except (OSError, ValueError):
-        pass
-    try:
-        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    except (AttributeError, OSError, ValueError):
+        return []
+
+
+def _available_on_windows() -> int | None:
+    """Return the free physical memory on Windows."""
+    if sys.platform != "win32":
         return None
+    import ctypes
+
+    class Status(ctypes.Structure):
+        _fields_ = (
+            ("length", ctypes.c_ulong),
+            ("load", ctypes.c_ulong),
+            *((name, ctypes.c_ulonglong) for name in _OF_WINDOWS),
+        )
+
+    status = Status(length=ctypes.sizeof(Status))
+    if not ctypes.windll.kernel32.GlobalMemoryStatusEx(ctypes.byref(status)):
+        return None
+    return int(status.free)

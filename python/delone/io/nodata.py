@@ -50,7 +50,8 @@ def require_declared(
     if not odd.any():
         return
     rest = values[~odd]
-    for number, count in zip(*np.unique(values[odd], return_counts=True), strict=True):
+    found = np.unique(values[odd], return_counts=True)
+    for number, count in zip(*(each.tolist() for each in found), strict=True):
         if len(rest):
             low, high = float(rest.min()), float(rest.max())
             if max(low - number, number - high) <= high - low:
@@ -60,7 +61,7 @@ def require_declared(
             others = "no other value is there"
         error = FileFormatError if file else InputError
         raise error(
-            f"{where}: {counted(int(count), 'cell')} of {number:.10g}, which programs write where "
+            f"{where}: {counted(count, 'cell')} of {number:.10g}, which programs write where "
             f"there is no height, and {others}: give nodata={number!r:.30} (--nodata) to leave "
             "these cells out, or nodata=nan if all values are heights"
         )
