@@ -125,12 +125,17 @@ def crs_of(data: Any) -> str | None:
 
 
 def common_crs(geometries: Any) -> str | None:
-    """Return the one system of geometries, or of all tables in a list or tuple; None without."""
+    """Return the one system of geometries, or of all tables in a list or tuple; None without.
+
+    Tables without one are taken to be in the same, with a warning.
+    """
     parts = geometries if isinstance(geometries, list | tuple) else [geometries]
     found: str | None = None
+    is_unknown = False
     for part in parts:
         crs = crs_of(part)
         if crs is None:
+            is_unknown = is_unknown or hasattr(part, "crs")
             continue
         if found is not None and not same_crs(found, crs):
             raise InputError(
@@ -138,6 +143,8 @@ def common_crs(geometries: Any) -> str | None:
                 "reference system, for example with geopandas to_crs"
             )
         found = found or crs
+    if is_unknown and found is not None:
+        warn_of_unknown(found, known="some geometries", unknown="others")
     return found
 
 

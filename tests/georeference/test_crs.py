@@ -60,6 +60,8 @@ def test_two_systems_are_refused(file: Path) -> None:
     frame = geopandas.read_file(file)
     with pytest.raises(InputError, match=r"EPSG:28992 and in EPSG:32631.*to_crs"):
         delone.from_geometry([frame, frame.to_crs(32631)])
+    with pytest.warns(CRSWarning, match="some geometries is EPSG:28992; that of others is unknown"):
+        assert delone.from_geometry([frame, frame.set_crs(None, allow_override=True)]).crs == DUTCH
     same = frame.set_crs(pyproj.CRS(DUTCH).to_wkt(), allow_override=True)
     assert delone.from_geometry([frame, same]).crs == DUTCH
 
