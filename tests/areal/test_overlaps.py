@@ -228,11 +228,11 @@ def test_what_is_refused() -> None:
 def test_files_and_pickles(tmp_path: Path) -> None:
     clockwise = [np.array([(0, 0), (0, 2), (2, 2), (2, 0)])]
     overlaps = Overlaps(clockwise, boxes(np.arange(0.0, 4), np.arange(0.0, 4)))
-    assert overlaps.source_turned.tolist() == [0]
+    assert overlaps.source_reversed.tolist() == [0]
     overlaps.save(tmp_path / "shared.npz")
     for again in (Overlaps.load(tmp_path / "shared.npz"), pickle.loads(pickle.dumps(overlaps))):
         assert repr(again) == repr(overlaps)
-        for name in ("indptr", "indices", "areas", "source_turned", "covered_target"):
+        for name in ("indptr", "indices", "areas", "source_reversed", "covered_target"):
             assert getattr(again, name).tobytes() == getattr(overlaps, name).tobytes()
     weights: Any = pickle.loads(pickle.dumps(overlaps.to_weights("sum")))
     assert np.nansum(weights.apply([9.0])) == pytest.approx(9.0)

@@ -44,7 +44,7 @@ def test_cells_tile_the_sphere(name: str) -> None:
     faults = grid.validate()
     assert faults
     assert abs(faults.covered - 1) < 4e-15
-    assert not len(grid.report.turned)
+    assert not len(grid.report.reversed)
     assert grid.ncells == np.prod(grid.grid_shape) == len(grid) == len(grid.areas)
     again = pickle.loads(pickle.dumps(grid))
     assert np.array_equal(again.areas, grid.areas)
@@ -117,7 +117,7 @@ def test_the_report_names_cells() -> None:
         [(0, 0), (10, 0), (4, 4), (0, 10)],
     ]
     report = Grid.from_mesh(lonlat=cells).report
-    assert report.turned.tolist() == [1]
+    assert report.reversed.tolist() == [1]
     assert report.empty.tolist() == [3]
     assert report.concave.tolist() == [4]
     assert report.repeated == 1

@@ -345,8 +345,8 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
             | {
                 "source_shape": ("<i8", 0),
                 "target_shape": ("<i8", 0),
-                "source_turned": ("<i8", 0),
-                "target_turned": ("<i8", 0),
+                "source_reversed": ("<i8", 0),
+                "target_reversed": ("<i8", 0),
             },
             directions.check_overlaps,
         ),

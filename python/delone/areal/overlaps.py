@@ -14,6 +14,7 @@ from delone.areal.weights import AreaWeights
 from delone.complex import Stored
 from delone.errors import InputError, ShapeError
 from delone.immutable import sealed
+from delone.renames import renamed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,9 +26,10 @@ if TYPE_CHECKING:
 __all__ = ["AreaWeights", "OverlapReport", "Overlaps"]
 
 # Names of arrays in files that those on the sphere do not have.
-_ROWS = "source_turned", "target_turned"
+_ROWS = "source_reversed", "target_reversed"
 
 
+@renamed(source_turned="source_reversed", target_turned="target_reversed")
 class Overlaps(SharedAreas[AreaWeights], Stored):
     """The areas that cells of two layers in the plane share: the basis of areal interpolation.
 
@@ -51,7 +53,7 @@ class Overlaps(SharedAreas[AreaWeights], Stored):
         Areas of the shared parts, in squared units of the coordinates.
     source_areas, target_areas : ndarray of float64
         Areas of the cells.
-    source_turned, target_turned : ndarray of int64
+    source_reversed, target_reversed : ndarray of int64
         Cells with a clockwise outer ring, which count as if it were counterclockwise.
 
     Raises
@@ -148,12 +150,12 @@ class Overlaps(SharedAreas[AreaWeights], Stored):
         return cls._again(rows, sums, (p, q), None)
 
     @property
-    def source_turned(self) -> Rows:
+    def source_reversed(self) -> Rows:
         """Source cells with a clockwise outer ring."""
         return self._turned[0]
 
     @property
-    def target_turned(self) -> Rows:
+    def target_reversed(self) -> Rows:
         """Target cells with a clockwise outer ring."""
         return self._turned[1]
 

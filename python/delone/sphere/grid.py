@@ -577,7 +577,7 @@ class Grid(GridCells):
         if kind == "triangles":
             return made
         turned = np.zeros(len(triangles), dtype=bool)
-        turned[made.report.turned] = True
+        turned[made.report.reversed] = True
         arrays = median_dual(lonlat, triangles, turned)
         return cls._of("arc", arrays, (len(lonlat),), 0, workers)
 

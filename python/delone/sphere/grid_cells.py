@@ -192,7 +192,7 @@ class GridCells(Stored):
         return GridReport(
             merged=self._merged,
             repeated=known.repeated,
-            turned=np.flatnonzero(known.turned),
+            reversed=np.flatnonzero(known.turned),
             empty=np.flatnonzero(known.faults == 1),
             concave=np.flatnonzero(known.concave),
             masked=np.flatnonzero(~self._mask) if self._mask is not None else _NONE,

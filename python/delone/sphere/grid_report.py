@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from delone.counting import counted
 from delone.immutable import ReadOnly
+from delone.renames import renamed
 
 if TYPE_CHECKING:
     from delone._types import Rows
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["GridFaults", "GridReport"]
 
 
+@renamed(turned="reversed")
 @dataclass(frozen=True, repr=False, eq=False)
 class GridReport(ReadOnly):
     """The changes to the corners of a grid, and its special cells.
@@ -25,8 +27,8 @@ class GridReport(ReadOnly):
         that were moved to those of a neighbor; for meshes, of nodes.
     repeated : int
         Corners that repeat the one before in their cell, and are ignored.
-    turned : ndarray of int64
-        Cells with clockwise corners, whose direction is reversed.
+    reversed : ndarray of int64
+        Cells with clockwise corners, which are used in the opposite direction.
     empty : ndarray of int64
         Cells with fewer than three distinct corners, or without area; they share nothing.
     concave : ndarray of int64
@@ -39,12 +41,12 @@ class GridReport(ReadOnly):
     >>> from delone import sphere
     >>> corners = [(1, 0, 0), (0, 0, 1), (0, 1, 0)]
     >>> sphere.Grid.from_mesh(corners, [0, 3]).report
-    <GridReport: 1 cell turned>
+    <GridReport: 1 cell reversed>
     """
 
     merged: int
     repeated: int
-    turned: Rows
+    reversed: Rows
     empty: Rows
     concave: Rows
     masked: Rows
@@ -53,7 +55,7 @@ class GridReport(ReadOnly):
         parts = [f"{counted(self.merged, 'corner')} merged"] if self.merged else []
         if self.repeated:
             parts.append(f"{counted(self.repeated, 'repeated corner')} ignored")
-        for name in ("turned", "empty", "concave", "masked"):
+        for name in ("reversed", "empty", "concave", "masked"):
             if count := len(getattr(self, name)):
                 parts.append(f"{counted(count, 'cell')} {name}")
         return f"<GridReport: {', '.join(parts) or 'nothing special'}>"
