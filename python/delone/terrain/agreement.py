@@ -25,12 +25,12 @@ class Agreement(ReadOnly):
     Parameters
     ----------
     kappa : float
-        Cohen's kappa: 1 if both are the same, 0 if they agree as by chance; NaN if all points are
-        of one class in both.
+        Cohen's kappa: 1 if both are the same, 0 if they agree no more than by chance; NaN if all
+        points have the same class in both.
     type_1 : float
-        The share of ground that is taken as something else; NaN if there is no ground.
+        The share of ground points that are classified as something else; NaN if there are none.
     type_2 : float
-        The share of all else that is taken as ground; NaN if all is ground.
+        The share of other points that are classified as ground; NaN if there are none.
 
     Notes
     -----

@@ -2,9 +2,9 @@
 
 With weights w of the corners of a triangle, which are areas between the point and its edges, the
 surface is n / w above the point: n is the sum of the weights times the heights above the point, and
-w that of the weights. Each term of n has at most 7 rounded operations on its way, each of w at most
-5, so that 16 units of rounding of the sums of absolute values bound the errors of both. Where that
-decides nothing, fractions do.
+w that of the weights. Each term of n results from at most 7 rounded operations, each of w from at
+most 5, so 16 units of rounding of the sums of absolute values bound the errors of both. Where that
+is not enough to decide, fractions do.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ class Deviations(ReadOnly):
     limit : float
         The largest vertical distance that is allowed.
     distances : ndarray of float64, shape (n,)
-        The vertical distances, rounded; NaN outside of the surface.
+        The vertical distances, rounded; NaN outside the surface.
     above : ndarray of int64
         The points that are farther than `limit`, exactly.
     outside : ndarray of int64
-        The points outside of the surface.
+        The points outside the surface.
 
     Examples
     --------

@@ -25,15 +25,15 @@ class Earthworks(HullTiling):
         raise NotImplementedError
 
     def flatten(self, polygon: Any, z: Any) -> Self:
-        """Return a surface that is a plane inside of a polygon.
+        """Return a surface that is a plane inside a polygon.
 
         Parameters
         ----------
         polygon : array_like, shape (k, 2), list of rings, or shapely polygons
-            Where the plane is. Each polygon has its own holes, and several are a union; of arrays,
-            inside is what an odd number of rings contain. Heights of it are not used.
+            Where the plane is. Each polygon has its own holes, and several polygons are a union;
+            rings given as arrays follow the even-odd rule. Their heights are not used.
         z : float or triple of float
-            The height, or a plane (a, b, c) of the heights c + a x + b y.
+            The height, or a plane (a, b, c) with the heights c + a x + b y.
 
         Returns
         -------
@@ -44,7 +44,7 @@ class Earthworks(HullTiling):
         Raises
         ------
         OutsideError
-            The polygon leaves the surface; ``error.place`` has a point of it.
+            The polygon extends beyond the surface; ``error.place`` is such a point.
         CrossingSegmentsError
             Rings of one polygon cross.
         NonFiniteError, InputError, DegenerateInputError
@@ -58,13 +58,13 @@ class Earthworks(HullTiling):
 
         Notes
         -----
-        A TIN has no vertical walls, so the step at the border is inclined: vertices inside and on
-        the polygon are removed, all others keep their heights, and between them and the polygon the
-        triangles are new. These are inside of the triangles that the polygon meets; all others
-        remain. Breaklines end at the polygon. The step is as steep as vertices are close to the
-        border; for a defined slope use `embank`.
+        A TIN has no vertical walls, so the step at the border is inclined. Vertices inside and on
+        the polygon are removed, all others keep their heights, and new triangles connect them to
+        the polygon. The new triangles lie inside the triangles that the polygon meets; all other
+        triangles remain. Breaklines end at the polygon. The closer vertices are to the border, the
+        steeper the step; for a defined slope, use `embank`.
 
-        About linear in the number of triangles near the polygon, times its edges.
+        Time is roughly proportional to the number of triangles near the polygon, times its edges.
 
         Examples
         --------
@@ -91,31 +91,31 @@ class Earthworks(HullTiling):
         Parameters
         ----------
         polygon : array_like, shape (k, 2), list of rings, or shapely polygons
-            The pad, as for `flatten`. Heights of it are not used.
+            The pad, as for `flatten`. Its heights are not used.
         z : float or triple of float
-            The height of the pad, or its plane (a, b, c) of the heights c + a x + b y.
+            The height of the pad, or its plane (a, b, c) with the heights c + a x + b y.
         slope : float, optional
-            Slope of cut and fill: the rise for one unit of distance, 0.5 for 1 : 2.
+            Slope of cut and fill: the rise per unit of distance, such as 0.5 for 1 : 2.
         cut, fill : float, optional
             Slopes where the ground is above the pad, and where it is below; by default `slope`.
         corners : {"round", "miter"}, optional
-            What is around convex corners: a cone, of planes that differ by at most 15 degrees in
-            direction and have exactly that slope; or the planes of both edges up to their
-            intersection, with further ones only where edges turn by more than 120 degrees. At
-            reflex corners slopes always meet in a valley (or ridge).
+            The shape around convex corners: a cone, made of planes with exactly that slope whose
+            directions differ by at most 15 degrees; or the planes of both edges up to their
+            intersection, with additional planes only where edges turn by more than 120 degrees. At
+            reflex corners, slopes always meet in a valley (or ridge).
 
         Returns
         -------
         TIN
-            The new surface. Its edges at the pad, where slopes meet, and where they meet the ground
-            (the daylight line) are hard breaklines; the edges at which triangles of the ground are
-            cut are soft ones. Cut and fill are those of ``self.volume_to(new)``.
+            The new surface. Its edges at the pad, where slopes meet, and where slopes meet the
+            ground (the daylight line) are hard breaklines; the edges where triangles of the ground
+            are cut are soft ones. Cut and fill are those of ``self.volume_to(new)``.
 
         Raises
         ------
         OutsideError
-            The pad leaves the surface, or a side slope reaches the end of the surface without
-            meeting the ground; ``error.place`` has a point where it does.
+            The pad extends beyond the surface, or a side slope reaches the end of the surface
+            without meeting the ground; ``error.place`` is such a point.
         CrossingSegmentsError
             Rings of one polygon cross.
         NonFiniteError, InputError, DegenerateInputError
@@ -130,19 +130,19 @@ class Earthworks(HullTiling):
 
         Notes
         -----
-        Where the ground at the edge of the pad is below, a slope runs down until it meets the
-        ground (fill), and where it is above, up (cut). Where slopes of several edges overlap, the
-        highest counts in fill and the lowest in cut. Ground that the slopes do not reach remains as
-        it is, also where it would lie below a slope if that went on; a hill in the way of a slope
-        remains, and behind it the slope goes on if it is connected around the hill. Where an edge
-        of the pad is on the outline of the surface, there is no slope; a slope may run along the
-        outline, not across it.
+        Where the ground at the edge of the pad is lower, a slope runs down until it meets the
+        ground (fill); where it is higher, a slope runs up (cut). Where slopes of several edges
+        overlap, the highest one counts in fill and the lowest one in cut. Ground that the slopes do
+        not reach stays as it is, even where a slope, if extended, would pass above it. A hill in
+        the way of a slope stays, and the slope continues behind it if it is connected around the
+        hill. Where an edge of the pad is on the outline of the surface, there is no slope; a slope
+        may run along the outline, but not across it.
 
-        Up to rounding, the surface is that of the planes and of the old triangles, and all
-        triangles of the ground that the design does not touch remain. Differences of heights that
-        rounding can cause count as none here; in the areas of `volume` they may count.
+        Up to rounding, the surface consists of the planes and the old triangles, and all triangles
+        of the ground that the design does not touch remain. Differences in height that rounding can
+        cause are ignored here; they may count in the areas of `volume_to`.
 
-        About linear in the number of triangles near the pad, times its edges.
+        Time is roughly proportional to the number of triangles near the pad, times its edges.
 
         Examples
         --------

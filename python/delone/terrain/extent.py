@@ -1,8 +1,8 @@
 """Where a surface is: inside of boundaries, outside of holes, or on islands.
 
 Rings are segments of the triangulation, so each triangle is inside or outside of a ring as a whole.
-Which it is follows from the segments between it and the outside, without coordinates: so rings that
-rounding has bent decide exactly, too.
+This follows from the segments between it and the outside, without coordinates, so it is exact even
+for rings that rounding has bent.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """Ground points of lidar: progressive densification of a triangulation (P. Axelsson, 2000).
 
-A coarse triangulation of the lowest points of cells is below buildings and trees. In each pass
-points join it that are close to their triangle, and seen at a small angle from its corners: of
-those that are nearest to the same corner the one with the smallest angle. So the triangulation
-climbs slopes that are gradual, and stays below what rises steeply. The mesh is live: a pass
-inserts, and triangulates nothing again.
+A coarse triangulation of the lowest points of cells is below buildings and trees. Each pass inserts
+points that are close to their triangle and form a small angle with it at its corners: of those that
+are nearest to the same corner, the one with the smallest angle. So the triangulation climbs gradual
+slopes and stays below whatever rises steeply. The mesh is live: a pass only inserts points, and
+does not triangulate again.
 
 P. Axelsson, "DEM generation from laser scanner data using adaptive TIN models", International
 Archives of Photogrammetry and Remote Sensing 33, B4, 2000.
@@ -67,7 +67,7 @@ class Ground(ReadOnly):
     mask : ndarray of bool, shape (n,)
         Which points are ground.
     outliers : ndarray of bool, shape (n,)
-        Which points are errors of measurement below the ground.
+        Which points are measurement errors below the ground.
     seeds : int
         The number of points with which the triangulation began.
     added : tuple of int
@@ -98,7 +98,7 @@ class Ground(ReadOnly):
         return f"<Ground: {found} of {counted(len(self), 'point')}{beside}; {passes}{end}>"
 
     def compare(self, reference: ArrayLike) -> Agreement:
-        """Compare with a classification that is taken as the truth.
+        """Compare with a reference classification.
 
         Parameters
         ----------
@@ -150,30 +150,30 @@ def ground(
     points : array_like, shape (n, 3), or PointSet with heights
         The points, with x, y and heights in one unit of length.
     cell : float, optional
-        Width of the cells whose lowest points are the first surface: wider than the largest
+        Width of the cells whose lowest points form the first surface: larger than the largest
         building. By default 20 m.
     angle : float, optional
-        Greatest angle, in degrees, between a triangle and the line from a corner of it to a point
-        that joins the surface.
+        Largest angle, in degrees, between a triangle and the line from one of its corners to a
+        point that is added to the surface.
     distance : float, optional
-        Greatest distance of such a point from the plane of the triangle. By default 1.4 m.
+        Largest distance of such a point from the plane of the triangle. By default 1.4 m.
     mirror : bool, optional
-        In triangles steeper than `angle`, judge a point that fails once more, at its mirror image
-        at the highest corner, with its own height: this finds edges of embankments.
+        In triangles steeper than `angle`, test a point that fails a second time at its mirror image
+        in the highest corner, with its own height: this finds edges of embankments.
     edge : float, optional
-        Triangles whose edges are all shorter get no further points. By default 1 m.
+        Triangles whose edges are all shorter than this get no more points. By default 1 m.
     thickness : float, optional
-        In the end, all points within this vertical distance of the surface are ground: the noise of
+        Finally, all points within this vertical distance of the surface are ground: the noise of
         the survey. By default 0.1 m.
     low : float, optional
-        At most five points in a cell and its neighbors that are lower than all others there by more
+        Up to five points in a cell and its neighbors that are lower than all others there by more
         than this are outliers, if there are at least 20 points. By default 1 m.
     max_iter : int, optional
-        Maximum number of passes, each of which adds at most three points in each triangle, those of
-        the smallest angles near its corners.
+        Maximum number of passes. Each adds at most three points in each triangle, those with the
+        smallest angles near its corners.
     crs : optional
-        Coordinate reference system, as for `TIN.from_points`. Where it is in feet, the defaults
-        are converted; where it is unknown, they are the numbers above.
+        Coordinate reference system, as for `TIN.from_points`. If it is in feet, the defaults are
+        converted; if it is unknown, they are the numbers above.
     planar : bool, optional
         Whether longitudes and latitudes are intentional, without a warning.
     workers : int, optional
@@ -187,7 +187,7 @@ def ground(
     Raises
     ------
     InputError
-        There are no points, or a parameter is not a number that it can be.
+        There are no points, or a parameter is out of range.
     ShapeError, DtypeError, NonFiniteError, MemoryError
         As for `TIN.from_points`.
 
@@ -198,14 +198,14 @@ def ground(
 
     Notes
     -----
-    The result does not depend on the order of the points, up to the rounding of distances and
-    angles that are at a limit. What is ground is an estimate, and no decision about the
-    triangulation depends on it: each pass inserts points into an exact `Dynamic`.
+    The result does not depend on the order of the points, except for rounding errors of distances
+    and angles that are exactly at a limit. What is ground is an estimate, but the triangulation
+    itself is exact: each pass inserts points into a `Dynamic`.
 
-    Outside of the lowest points, the surface is continued level, to four points beyond the corners
-    of the survey.
+    Outside the lowest points, the surface continues at the same height to four points beyond the
+    corners of the survey.
 
-    Each pass measures all points that are left, in time about proportional to their number.
+    Each pass tests all remaining points, in time roughly proportional to their number.
 
     References
     ----------

@@ -37,8 +37,8 @@ class Labels(ReadOnly):
     points : ndarray of float64, shape (k, 2)
         The middle of each label, on its line.
     angle : ndarray of float64, shape (k,)
-        The direction of the text in degrees, counterclockwise from that of x: above -90, at most
-        90.
+        The direction of the text in degrees, counterclockwise from the x axis: above -90 and at
+        most 90.
     text : tuple of str
         The texts.
     line : ndarray of int64, shape (k,)
@@ -48,7 +48,7 @@ class Labels(ReadOnly):
     index : ndarray of bool, shape (k,)
         Whether it is an index contour.
     length : float
-        The length of a label for which the places are made.
+        The length of a label for which the places were chosen.
     short : int
         The number of lines without a label because they are shorter than two labels.
     crs : str, optional

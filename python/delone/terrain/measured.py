@@ -1,4 +1,4 @@
-"""What is read off several surfaces, or in many places at once: volumes, profiles, sections."""
+"""Measurements of several surfaces, or in many places at once: volumes, profiles, sections."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ class Measured(HullTiling):
         Returns
         -------
         Volumes
-            Cut, fill, net and area of each region, and which share of it both surfaces cover.
+            Cut, fill, net and area of each region, and the share of it that both surfaces cover.
 
         Raises
         ------
         InputError
-            A feature is neither a polygon nor a closed line; the message has its row. Otherwise as
-            for `volume_to`.
+            A feature is neither a polygon nor a closed line; the message names its row. Otherwise
+            as for `volume_to`.
 
         Warns
         -----
@@ -56,7 +56,7 @@ class Measured(HullTiling):
         Notes
         -----
         Up to rounding, each row is ``volume_to(other, region=polygon)``. Only the triangles near a
-        region are intersected; finding them takes some milliseconds for a million.
+        region are intersected; finding them takes a few milliseconds for a million triangles.
 
         Examples
         --------
@@ -80,8 +80,8 @@ class Measured(HullTiling):
         line : array_like, shape (k, 2), or shapely.LineString
             The line.
         others : TIN, sequence of TIN, or dict of str to TIN, optional
-            The other surfaces, such as a design; with their names, by default ``"other"``, or
-            ``"other 1"`` and so on.
+            The other surfaces, such as a design, optionally by their names; default names are
+            ``"other"``, or ``"other 1"`` and so on.
         name : str, optional
             The name of this surface.
 
@@ -136,14 +136,15 @@ class Measured(HullTiling):
         line : array_like, shape (k, 2), or shapely.LineString
             The alignment.
         interval : float, optional
-            The distance of stations, from the start of the alignment; there is one at its end, too.
+            The distance between stations, from the start of the alignment; there is always one at
+            its end.
         stations : array_like, shape (k,), optional
             The stations instead of an interval.
         start : float, optional
             The station of the start of the alignment.
         left, right : float
-            How far sections reach to both sides of the alignment, as seen in its direction; `right`
-            is by default as `left`.
+            How far sections extend to each side of the alignment, as seen in its direction; `right`
+            is by default the same as `left`.
         others, name : optional
             Further surfaces, as for `profiles`.
 
@@ -162,7 +163,7 @@ class Measured(HullTiling):
 
         Notes
         -----
-        Sections are perpendicular to the alignment; at a corner of it they halve the angle.
+        Sections are perpendicular to the alignment; at a corner, they bisect the angle.
 
         Examples
         --------

@@ -38,8 +38,8 @@ class Profile(ReadOnly):
     distances : ndarray of float64, shape (k,)
         Distances from the start of the line, horizontally.
     z : ndarray of float64, shape (k,)
-        Heights there. Between two parts of the line that are on the surface there is a NaN, as
-        plots expect it. A part may be one point, where the line touches a corner of the surface.
+        Heights there. Parts of the line that are on the surface are separated by NaN, as plots
+        expect. A part may be a single point, where the line touches a corner of the surface.
     points : ndarray of float64, shape (k, 2)
         The positions.
 

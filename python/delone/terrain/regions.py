@@ -1,7 +1,7 @@
 """Volumes between surfaces in each polygon of a layer, as a table.
 
 Each polygon is computed on the triangles whose boxes meet its own: others have no area in common
-with it, so up to rounding the numbers are those of the polygon alone on the whole surfaces.
+with it. So, up to rounding, the numbers are those of the polygon alone on the whole surfaces.
 """
 
 from __future__ import annotations
@@ -49,11 +49,11 @@ class Volumes(ReadOnly):
     Parameters
     ----------
     cut, fill : ndarray of float64, shape (k,)
-        The volumes where the surface is above and below what is to be reached.
+        The volumes where the surface is above and below the other one.
     cut_area, fill_area : ndarray of float64, shape (k,)
         The horizontal areas where that is so.
     area : ndarray of float64, shape (k,)
-        The area of each polygon where both surfaces are.
+        The area of each polygon that both surfaces cover.
     region_area : ndarray of float64, shape (k,)
         The area of each polygon; 0 for features without a geometry or without an area.
     rings : tuple
@@ -107,7 +107,7 @@ class Volumes(ReadOnly):
 
     @property
     def net(self) -> Floats:
-        """Fill minus cut of each polygon: what is to be brought in, or, if negative, taken away."""
+        """Fill minus cut of each polygon: what has to be brought in or, if negative, taken away."""
         return sealed(self.fill - self.cut)
 
     @property
@@ -122,7 +122,7 @@ class Volumes(ReadOnly):
 
     @property
     def partial(self) -> Bools:
-        """Which polygons are not covered entirely, (k,): all but a billionth of their area."""
+        """Which polygons are not entirely covered, up to a billionth of their area, (k,)."""
         return sealed(~(self.coverage >= 1 - _WHOLE))
 
     def to_pandas(self, data: Any = None) -> Any:

@@ -47,7 +47,7 @@ class Profiles(ReadOnly):
         Distances from the start of the line, horizontally: wherever one of the surfaces has an edge
         or ends, and at the points of the line.
     z : ndarray of float64, shape (k, s)
-        The height of each surface there; NaN outside of it.
+        The height of each surface there; NaN outside it.
     points : ndarray of float64, shape (k, 2)
         The positions.
     names : tuple of str
@@ -223,7 +223,8 @@ class CrossSections(ReadOnly):
         Parameters
         ----------
         data : DataFrame or mapping, optional
-            Columns to include, with one row for each section; they repeat in all of its rows.
+            Columns to include, with one row for each section; its values are repeated in all rows
+            of the section.
 
         Returns
         -------
@@ -324,7 +325,7 @@ class CrossSections(ReadOnly):
         return plot_stations(self.ends, self.centers, self.stations, ax, **options)
 
     def figure(self, *, columns: int = 3) -> Any:
-        """Draw all sections beside each other, on equal scales (extra ``plot``).
+        """Draw all sections side by side, at the same scale (extra ``plot``).
 
         Parameters
         ----------

@@ -1,7 +1,8 @@
-"""Simplification: greedy insertion of points until the surface is within an error.
+"""Simplification: greedy insertion of points until the surface is within a maximum error.
 
-Vertices on lines, on the outline and at corners of the hull stay. The core inserts the others where
-the error is greatest, and returns their order; each surface is triangulated from a part of it.
+Vertices on lines, on the outline and at corners of the hull are kept. The core inserts the others
+where the error is largest, and returns their order; each surface is triangulated from the first
+part of it.
 """
 
 from __future__ import annotations
@@ -75,12 +76,12 @@ class Simplification(ReadOnly):
     points : ndarray of float64, shape (n, 3)
         The points with their heights.
     fixed : ndarray of int64, shape (f,)
-        The points that all levels have, as rows: on lines that stay, on the outline, and corners of
-        the hull.
+        The points that all levels contain, as rows: on lines that are kept, on the outline, and
+        corners of the hull.
     order : ndarray of int32, shape (k,)
-        The points that each further level adds, one each.
+        The point that each further level adds.
     errors : ndarray of float64, shape (k + 1,)
-        For each level, the greatest vertical distance of a point from its surface, rounded upwards.
+        For each level, the largest vertical distance of a point from its surface, rounded up.
     triangles : ndarray of int32, shape (k + 1,)
         The number of triangles of each level.
 
@@ -122,9 +123,10 @@ class Simplification(ReadOnly):
         Parameters
         ----------
         max_error : float, optional
-            The first level is chosen whose error is at most this.
+            Return the first level whose error is at most this.
         max_triangles : int, optional
-            Instead: the level with the least error of those with at most this many triangles.
+            Instead, return the level with the smallest error among those with at most this many
+            triangles.
 
         Returns
         -------
@@ -134,8 +136,8 @@ class Simplification(ReadOnly):
         Raises
         ------
         InputError
-            Not one of the two is given, or no level meets it: the finest one has a larger error, or
-            the coarsest one more triangles.
+            Not exactly one of the two is given, or no level meets it: the finest one has a larger
+            error, or the coarsest one has more triangles.
 
         Examples
         --------

@@ -1,4 +1,4 @@
-"""What a surface is made of, besides points and lines: rasters, files, and the faces of files."""
+"""What surfaces are made from, besides points and lines: rasters, files, and the faces in files."""
 
 from __future__ import annotations
 
@@ -50,24 +50,25 @@ class Sources(HullTiling):
         crs: Any = None,
         **options: Any,
     ) -> Self:
-        """Triangulate the nodes of a raster of heights, all or as few as an error needs.
+        """Triangulate the cells of a raster of heights: all, or as few as an error bound allows.
 
         Parameters
         ----------
         dem : delone.interpolate.Grid, xarray.DataArray, str or path-like
-            Heights at the centers of cells, or a file of them: GeoTIFF, ESRI ASCII grid or NetCDF.
-            Cells without a value (NaN, in files nodata) are left out. Of a DataArray the two
-            dimensions are x and y, by the conventions of CF, in either order, and its reference
-            system is that of its grid mapping.
+            Heights at the centers of cells, or a file: GeoTIFF, ESRI ASCII grid or NetCDF. Cells
+            without a value (NaN, or nodata in files) are left out. The two dimensions of a
+            DataArray are recognized as x and y by the CF conventions, in either order, and its
+            reference system is that of its grid mapping.
         max_error, max_triangles : optional
-            As for `simplify`; without lines, the points that are left out are never triangulated.
+            As for `simplify`; the points that are left out are never triangulated, unless there are
+            lines.
         band, step : optional
-            Of a file: as for `delone.io.read_raster`.
+            For files: as for `delone.io.read_raster`.
         bounds : sequence of four float, optional
             Left, bottom, right and top: only cells whose centers are inside or on the border.
         nodata : float, optional
-            The value of cells without a height, besides NaN and the one that a file declares; NaN
-            if all values are heights.
+            The value of cells without a height, in addition to NaN and the one that a file
+            declares; NaN if all values are heights.
         crs : optional
             As for `from_points`.
         **options
@@ -81,10 +82,10 @@ class Sources(HullTiling):
         Raises
         ------
         InputError
-            `dem` is not a raster with one height in each cell, or `band` or `step` are given for
-            one that is not a file; or cells have a constant such as -9999, farther from all other
-            heights than these are apart, and `nodata` is not given; otherwise as for `from_points`
-            and `simplify`.
+            `dem` is not a raster with one height in each cell; `band` or `step` is given, but `dem`
+            is not a file; cells have a constant such as -9999 that is farther from all other
+            heights than those are from each other, and `nodata` is not given; otherwise as for
+            `from_points` and `simplify`.
         FileFormatError, MissingExtraError, OSError
             As for `delone.io.read_raster`.
 
@@ -134,18 +135,18 @@ class Sources(HullTiling):
         chord: float | None = None,
         **options: Any,
     ) -> Self:
-        r"""Make a surface of a file: LandXML, DXF, or points in LAS, LAZ, CSV and others.
+        r"""Create a surface from a file: LandXML, DXF, or points in LAS, LAZ, CSV and others.
 
         Parameters
         ----------
         path : str or path-like
             The file, of any format of `delone.io.read_surface` or `delone.io.read_points`.
         columns : sequence of str or int, optional
-            The columns of x, y and z; by default by their names.
+            The columns of x, y and z; by default they are recognized by their names.
         layer, order : str, optional
             As for these functions: the name of a surface or layer, ``"enz"`` for eastings first.
         chord : float, optional
-            For curves of DXF, as for `delone.io.read_surface`.
+            For curves in DXF, as for `delone.io.read_surface`.
         **options
             Options of `from_surface` for LandXML and DXF, else of `from_points`.
 
@@ -187,16 +188,17 @@ class Sources(HullTiling):
 
     @classmethod
     def from_surface(cls, surface: Any, *, faces: bool = True, **options: Any) -> Self:
-        """Make a TIN of the surface of a file, with the triangles of the file.
+        """Create a TIN from the surface in a file, with the triangles of the file.
 
         Parameters
         ----------
         surface : delone.io.SurfaceFile
             The result of `delone.io.read_surface`.
         faces : bool, optional
-            Keep the faces, if there are some, as triangles. Else points and lines are triangulated.
+            Keep the faces, if there are any, as triangles. Otherwise, points and lines are
+            triangulated.
         **options
-            Options of `from_points`; those for lines and edges only where no faces are kept.
+            Options of `from_points`; those for lines and edges only if no faces are kept.
 
         Returns
         -------
@@ -206,15 +208,15 @@ class Sources(HullTiling):
         Raises
         ------
         InputError
-            Faces overlap; the message has a place. Otherwise as for `from_points`.
+            Faces overlap; the message contains a place. Otherwise as for `from_points`.
         ConflictingValuesError
             Points with the same x and y have different heights: a vertical wall.
 
         Notes
         -----
-        Vertices are the points of visible faces. Their edges on breaklines are breaklines, and
-        those that a Delaunay triangulation would not have are soft ones. Faces without an area seen
-        from above are left out.
+        Vertices are the points of visible faces. Edges on breaklines become breaklines, and edges
+        that a Delaunay triangulation would not have become soft ones. Faces that have no area as
+        seen from above are left out.
 
         Examples
         --------

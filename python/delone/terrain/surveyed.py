@@ -50,17 +50,17 @@ class Surveyed(HullTiling):
 
     @property
     def soft(self) -> Bools:
-        """Which of the breaklines are soft only, (q,)."""
+        """Which of these edges are on soft breaklines only, (q,)."""
         return self._soft
 
     @property
     def crs(self) -> str | None:
-        """Coordinate reference system, as ``"EPSG:28992"`` or WKT; None if it is unknown."""
+        """Coordinate reference system, such as ``"EPSG:28992"`` or WKT; None if it is unknown."""
         return str(self._crs) or None
 
     @property
     def units(self) -> str | None:
-        """The unit of heights, as ``"m"``, ``"ft"`` or ``"us-ft"``; None if it is unknown."""
+        """The unit of heights, such as ``"m"``, ``"ft"`` or ``"us-ft"``; None if it is unknown."""
         return str(self._units) or None
 
     def _stretches(self, a: Floats, b: Floats) -> list[Stretch]:

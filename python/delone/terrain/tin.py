@@ -39,20 +39,20 @@ class _Sheet(NamedTuple):
 @made_by("create a TIN with TIN.from_points, from_raster or from_file")
 @renamed(volume="volume_to", gradient="gradients")
 class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
-    """A triangulated irregular network: a surface over triangles, linear in each.
+    """A triangulated irregular network: a surface that is linear in each triangle.
 
     Create one with `from_points`, `from_raster` or `from_file`.
 
     Attributes
     ----------
     points : ndarray of float64, shape (n, 2)
-        Horizontal coordinates of the vertices, each once: points, then points of lines, then
-        crossings of lines.
+        Horizontal coordinates of the vertices, without repetition: points, then points of lines,
+        then crossings of lines.
     z : ndarray of float64, shape (n,)
         Heights of the vertices.
     simplices : ndarray of int32, shape (m, 3)
-        The triangles as rows of `points`, counter-clockwise seen from above, without those outside
-        of the boundary, in holes, or removed because of `max_edge`.
+        The triangles as rows of `points`, counter-clockwise as seen from above, without those
+        outside the boundary, in holes, or removed because of `max_edge`.
     neighbors : ndarray of int32, shape (m, 3)
         The triangle across the edge opposite each vertex; -1 outside.
     breaklines : ndarray of int32, shape (q, 2)
@@ -118,37 +118,39 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         Parameters
         ----------
         xyz : array_like, shape (n, 3), or PointSet with heights
-            The points, in one unit of length horizontally; heights in the unit of your choice,
-            preferably the same.
+            The points. x and y must have the same unit of length; heights may have another one, but
+            preferably have the same.
         breaklines, soft_breaklines : optional
             Lines that edges follow, such as those of roads, dikes and water: shapely geometries,
             GeoDataFrames, a `delone.io.GeometrySet`, or arrays of shape (k, 2) or (k, 3).
-            Lines without heights follow the surface of the points; single points of a line without
-            one (NaN) are on it. Both kinds are edges; contours are not smoothed at hard ones.
+            Lines without heights follow the surface of the points, and so do single points of a
+            line whose height is NaN. Both kinds become edges; contours are not smoothed where they
+            cross hard ones.
         boundary, holes : optional
-            Polygons or rings: the surface ends at the boundary, and where the points end, and does
-            not cover holes. Each polygon has its own holes, and several are a union. Rings given as
-            arrays or closed lines are one polygon: inside is what an odd number of them contain.
+            Polygons or rings: the surface ends at the boundary, or where the points end, and does
+            not cover holes. Each polygon has its own holes, and several polygons are a union. Rings
+            given as arrays or closed lines form one polygon by the even-odd rule.
         islands : optional
-            Polygons or rings in holes or outside of the boundary that belong to the surface.
+            Polygons or rings in holes or outside the boundary that belong to the surface.
         max_edge : float, optional
-            Triangles are removed from outside as long as their outer edge is longer than this, up
-            to lines; by default the surface covers the convex hull or the boundary.
+            Triangles are removed from the outside in, as long as their outer edge is longer than
+            this and not on a line; by default, the surface covers the convex hull or the boundary.
         voids : bool, optional
-            Remove all triangles with an edge above `max_edge`, up to lines: also across lakes.
+            Remove all triangles with an edge longer than `max_edge` that is not on a line, also
+            inside, such as across lakes.
         duplicates : {"raise", "min", "max", "mean"}, optional
-            The height where points, or a point and a line, have different ones at one place.
+            The height where points, or a point and a line, have different heights at one place.
         crossing : {"raise", "min", "max", "mean"}, optional
             The height where lines with different heights cross or touch.
         tolerance : float, optional
-            Heights at one place that differ by at most this are equal; by default those that differ
-            by at most the slope of a line times the rounding of its coordinates. Of equal heights
-            the most accurate remains, of several such the lowest.
+            Heights at one place that differ by at most this count as equal; by default, the limit
+            is the slope of a line times the rounding error of its coordinates. Of equal heights,
+            the most accurate is used, and of several such heights, the lowest.
         crs : optional
-            Coordinate reference system, as ``"EPSG:28992"``, an EPSG code or a pyproj.CRS; by
-            default that of the data. Lines that declare another one are transformed (pyproj).
+            Coordinate reference system, such as ``"EPSG:28992"``, an EPSG code or a pyproj.CRS; by
+            default that of the data. Lines that declare another one are transformed (with pyproj).
         units : str, optional
-            The unit of heights, as ``"m"``, ``"ft"`` or ``"us-ft"``; by default that of the
+            The unit of heights, such as ``"m"``, ``"ft"`` or ``"us-ft"``; by default that of the
             vertical axis of the reference system, if it has one.
         planar : bool, optional
             Whether longitudes and latitudes are intentional, without a warning.
@@ -163,20 +165,21 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         Raises
         ------
         ConflictingValuesError
-            Heights differ at a place, and the policy is ``"raise"``; the message has places and
+            Heights differ at a place, and the policy is ``"raise"``; the message lists places and
             heights, and ``error.rows`` rows of `points`. A vertical wall is such a conflict.
         CrossingSegmentsError
             The rings of a polygon cross themselves or each other.
         InputError
-            A line without heights leaves the points, `crs` is not the reference system of the
-            points, no triangle is left, or an option is not one of its choices.
+            A line without heights extends beyond the points, `crs` is not the reference system of
+            the points, no triangle is left, or an option is not one of its choices.
         DegenerateInputError, NonFiniteError, ShapeError, DtypeError, MemoryError
             As for `delone.Delaunay`.
 
         Warns
         -----
         GeographicWarning, UnitsWarning, CRSWarning
-            x and y are degrees or in another unit than heights; an unknown CRS is taken as known.
+            x and y are degrees or have a different unit from heights; or an unknown CRS is taken to
+            be the known one.
 
         Examples
         --------
@@ -307,7 +310,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         altitude : float, optional
             Angle of the light above the horizon, in degrees.
         z_factor : float, optional
-            Factor of heights: exaggeration, or the unit of heights in units of coordinates.
+            Factor for heights: exaggeration, or the unit of heights in units of the coordinates.
 
         Returns
         -------
@@ -340,12 +343,13 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         xy : array_like, shape (..., 2)
             Positions.
         tolerance : float, optional
-            Positions outside at most this far away are inside; as in `Delaunay.locate`.
+            Positions outside that are at most this far away count as inside, as in
+            `Delaunay.locate`.
 
         Returns
         -------
         ndarray of float64, shape (...)
-            Heights: exactly those of the vertices there; NaN outside, and at NaN.
+            Heights: at vertices, exactly theirs; NaN outside, and where a coordinate is NaN.
 
         Raises
         ------
@@ -380,15 +384,16 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         levels : array_like, shape (k,), optional
             Heights of the contours.
         interval : float, optional
-            Distance of levels, instead of `levels`: all multiples of it, from `base` on, that the
-            surface reaches, as the doubles nearest to decimal numbers: of 0.1 the third is 0.3.
+            Distance between levels, instead of `levels`: `base` plus all multiples of it within the
+            heights of the surface, as the doubles nearest to the decimal numbers, so three times
+            0.1 is 0.3.
         base : float, optional
-            A level from which `interval` counts.
+            The level at which `interval` starts to count.
         index : int, optional
-            With an interval, each `index`-th multiple is marked as an index contour.
+            With an interval, every `index`-th multiple is marked as an index contour.
         smooth : int, optional
             Rounds of corner cutting, at most 5; 0 keeps contours straight in each triangle.
-            Smoothed lines do not cross: where they would, corners remain.
+            Smoothed lines do not cross: where they would, corners are kept.
         min_length : float, optional
             Lines shorter than this, in the unit of the points, are left out and counted.
         min_area : float, optional
@@ -399,22 +404,22 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         Returns
         -------
         Contours
-            Lines that end at the outline or are closed, with higher ground to their left.
+            Lines that are closed or end at the outline, with higher ground to their left.
 
         Raises
         ------
         InputError
-            Levels or least measures are out of range, or not one of `levels` and `interval` is
-            given.
+            Levels, `min_length` or `min_area` are out of range, or not exactly one of `levels` and
+            `interval` is given.
         BudgetExceededError
             There would be more than `max_points` points; raised before they are computed.
 
         Notes
         -----
-        A vertex is above a level if its height is at least the level, exactly. So lines join, end
-        at the outline only, and enclose those of the next level, also on plateaus and saddles.
-        Loops without an area, around a vertex or ridge exactly at a level, are left out.
-        Coordinates are rounded once; where lines would cross then, points are merged.
+        A vertex is above a level if its height is at least the level, exactly. So lines are
+        continuous, end only at the outline, and enclose those of the next level, also on plateaus
+        and saddles. Loops without an area, around a vertex or ridge exactly at a level, are left
+        out. Coordinates are rounded once; where lines would then cross, points are merged.
 
         Examples
         --------
@@ -446,14 +451,14 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         levels, interval, base, max_points
             As for `contours`.
         min_area : float, optional
-            A part of less than this area that fills a hole of a polygon becomes part of it, with
-            everything inside; holes of the surface stay. The polygons are counted.
+            A part with a smaller area than this that fills a hole of a polygon becomes part of that
+            polygon, with everything inside; holes of the surface stay. The polygons are counted.
 
         Returns
         -------
         Bands
-            Valid polygons with holes that tile the surface, also below the lowest level and above
-            the highest one. Adjacent ones share their vertices bit for bit.
+            Valid polygons with holes that tile the surface, including the parts below the lowest
+            level and above the highest one. Adjacent polygons share their vertices bit for bit.
 
         Raises
         ------
@@ -499,7 +504,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         return profiles.profile(self, line)
 
     def drape(self, geometry: Any) -> Any:
-        """Put a geometry onto the surface (extra ``geo``).
+        """Drape a geometry over the surface (extra ``geo``).
 
         Parameters
         ----------
@@ -509,13 +514,13 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         Returns
         -------
         shapely geometry
-            The same with heights, and with a further point wherever an edge of the surface is
-            crossed.
+            The same geometry with heights, and with an additional point wherever it crosses an edge
+            of the surface.
 
         Raises
         ------
         InputError
-            A part of it is outside of the surface; the message has the first such point.
+            A part of it is outside the surface; the message contains the first such point.
         MissingExtraError
             shapely is not installed.
 
@@ -532,7 +537,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
     def line_of_sight(
         self, a: ArrayLike, b: ArrayLike, *, height: float = 0.0, target: float = 0.0
     ) -> profiles.Sight:
-        """Find out whether one point of the surface is visible from another.
+        """Determine whether one point of the surface is visible from another.
 
         Parameters
         ----------
@@ -544,13 +549,13 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         Returns
         -------
         Sight
-            Truthy if nothing of the surface is above the line of sight; otherwise it has the first
-            obstruction. The earth is flat.
+            Truthy if no part of the surface is above the line of sight; otherwise it contains the
+            first obstruction. The curvature of the Earth is ignored.
 
         Raises
         ------
         InputError
-            A position is outside of the surface.
+            A position is outside the surface.
 
         Examples
         --------
@@ -569,11 +574,11 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         Parameters
         ----------
         other : float, triple of float, or TIN
-            A height; a plane (a, b, c) of the heights c + a x + b y; or the surface that is to be
-            reached.
+            A height; a plane (a, b, c) with the heights c + a x + b y; or another surface: what is
+            to be reached.
         region : optional
-            Polygons or rings, as `boundary` of `from_points`, to which the volume is limited.
-            Arrays are closed; other lines must be.
+            Polygons or rings, as for `boundary` of `from_points`, to which the volume is limited.
+            Arrays are closed automatically; other lines must be closed.
 
         Returns
         -------
@@ -589,7 +594,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         Warns
         -----
         CRSWarning, UserWarning
-            One reference system is unknown; there is no area in common.
+            One reference system is unknown; or the surfaces have no area in common.
 
         See Also
         --------
@@ -624,7 +629,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         Returns
         -------
         Grid
-            Values, NaN outside of the surface.
+            Values, NaN outside the surface.
 
         Raises
         ------
@@ -649,7 +654,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         Returns
         -------
         MeshValidation
-            Truthy if there are no faults. Triangles outside of the boundary are checked as well.
+            Truthy if there are no faults. Triangles outside the boundary are checked as well.
 
         Examples
         --------

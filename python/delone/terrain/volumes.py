@@ -42,7 +42,7 @@ class Volume(ReadOnly):
     Parameters
     ----------
     cut, fill : float
-        The volumes where the surface is above and below: what is to be removed and added.
+        The volumes where the surface is above and below: what has to be removed and added.
     cut_area, fill_area : float
         The horizontal areas where that is so.
     area : float
@@ -92,7 +92,7 @@ class Volume(ReadOnly):
 
     @property
     def mean_height(self) -> Floats:
-        """The mean height of what is to be added in each triangle, negative for cut, (m,).
+        """The mean height of what has to be added in each triangle, negative for cut, (m,).
 
         NaN where a triangle has no part in the volume.
         """

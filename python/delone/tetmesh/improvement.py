@@ -60,8 +60,8 @@ def improve(
         oriented tetrahedra that do not overlap.
     min_angle : float, optional
         The goal for the smallest dihedral angle of each tetrahedron, in degrees, from 0 to 70.528.
-        Tetrahedra below the goal are processed, and those with a dihedral angle that differs from
-        180 degrees by less than half of it.
+        Tetrahedra below the goal are processed, and so are those with a dihedral angle that is
+        within half of it of 180 degrees.
     flips : bool, optional
         Whether to remove edges and faces (flips).
     smooth : bool, optional
@@ -117,20 +117,19 @@ def improve(
     Each change raises the worst quality of the tetrahedra that it affects, and does not lower the
     smallest angle among them; bounds on rounding errors prove this, and new tetrahedra are
     positively oriented by the exact predicate. So the smallest dihedral angle of a mesh never
-    becomes smaller, and the iteration terminates: no state repeats. Boundary vertices stay,
-    including those inside its sides.
+    becomes smaller, and the iteration terminates, since no state repeats. Boundary vertices never
+    move, including those inside flat sides.
 
-    Points on a side that is not parallel to an axis are off its plane by their rounding. The hull
-    is exact: its facets have such points behind them, as near as a rounding. A tetrahedron on one
-    of these facets with a vertex deeper inside would contain them, so each triangulation of the
-    same points has tetrahedra that thin. Of such, the report has the cause ``"rounding"``, and they
-    can be left out.
+    Points on a side that is not parallel to an axis are off its plane by rounding errors. The hull
+    is exact, so some of these points lie just behind its facets. A tetrahedron on such a facet with
+    a vertex deeper inside would contain them. Every triangulation of these points therefore has
+    tetrahedra this thin. The report gives them the cause ``"rounding"``, and they can be left out.
 
     The result is independent of the order of rows. One thread is used. If the goal is reached, the
     time is about 10 microseconds per tetrahedron, and up to ten times that if points are dense next
     to large boundary triangles. Memory is linear.
 
-    Neighbors are recomputed. Overlaps are detected only among the tetrahedra around a vertex.
+    Neighbors are recomputed. Overlaps are only detected among tetrahedra around a common vertex.
 
     Examples
     --------

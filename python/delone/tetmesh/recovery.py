@@ -58,18 +58,18 @@ class RecoveryReport(ReadOnly):
     flipped_edges, flipped_faces : int
         Number of edges and faces recovered by flips.
     segment_points, face_points : int
-        Number of points that were on edges and faces temporarily.
+        Number of points that were temporarily on edges and faces.
     suppressed : int
-        Number of points that took their places strictly between the faces.
+        Number of points that replaced them, strictly between the faces.
     joined : int
-        Number of places where none was needed.
+        Number of places where no point was needed.
     thinned : int
-        Number of points removed again.
+        Number of added points that were removed again.
     duplicate_points : ndarray of int64, shape (k, 2)
         Rows of points with the coordinates of earlier rows, and those rows.
     subdivided : ndarray of int64, shape (k,)
-        Input faces that are unions of faces of the mesh, because vertices or edges of others are on
-        them.
+        Input faces that are unions of faces of the mesh, because vertices or edges of other faces
+        lie on them.
     repeated : ndarray of int64, shape (k,)
         Input faces that are covered by earlier ones.
     degenerate : ndarray of int64, shape (k,)
@@ -80,11 +80,11 @@ class RecoveryReport(ReadOnly):
         Input faces without a tetrahedron on either side, at least in part: they are outside, or
         between parts that are left out.
     recut : ndarray of int64, shape (k, 3)
-        With ``boundary="surface"``, triangles that others replace in their planes: input faces, or
-        parts of them, as rows of points.
+        With ``boundary="surface"``, triangles that were replaced by others in the same plane: input
+        faces or parts of them, as rows of points.
     recut_source : ndarray of int64, shape (k, 2)
         The input face of each of these, and the `face_source` of the faces that replace them. The
-        union of all triangles with one value there is that of the faces.
+        triangles and the faces with the same value have the same union.
 
     Attributes
     ----------

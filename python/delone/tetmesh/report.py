@@ -71,9 +71,9 @@ class ImproveReport(ReadOnly):
     below : ndarray of int64, shape (j,)
         The tetrahedra below the goal, ascending.
     cause : ndarray of str, shape (j,)
-        For each of these, ``"rounding"`` (it is as thin as the rounding of coordinates: 16 times
-        the rounding of the largest), ``"angle"`` (the boundary has this angle), ``"boundary"`` (all
-        four vertices are on the boundary, or fixed), ``"budget"`` (the limit on passes) or
+        For each of these, ``"rounding"`` (it is as thin as the rounding errors of coordinates: up
+        to 16 times that of the largest), ``"angle"`` (the boundary has this angle), ``"boundary"``
+        (all four vertices are on the boundary, or fixed), ``"budget"`` (the limit on passes) or
         ``"other"`` (no single removal or move is an improvement).
 
     Attributes

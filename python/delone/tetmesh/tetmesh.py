@@ -56,12 +56,12 @@ class TetMesh(Triangulation):
     input_faces : ndarray of int32, shape (k, 3)
         The triangles of the surface, which are faces of tetrahedra, oriented as in the input.
     face_source : ndarray of int32, shape (k,)
-        The row of the input face that each of these is, or is a part of; of faces that were cut
-        again, one in the same plane part (see `RecoveryReport`).
+        The row of the input face that each of these is or is part of; for retriangulated faces, a
+        row of the same flat part (see `RecoveryReport`).
     face_markers : ndarray of int32, shape (k,)
         The marker of that input face.
     holes : ndarray of float64, shape (h, 3)
-        A point in each region that these faces enclose and that is left empty.
+        A point in each region that these faces enclose and that is empty.
     nadded : int
         The number of points that `tetrahedralize` and `refine` added; they are the last rows.
     report : RecoveryReport, ImproveReport or RefinementReport
@@ -161,7 +161,7 @@ class TetMesh(Triangulation):
 
     @property
     def holes(self) -> Floats:
-        """A point in each region that faces enclose and that is left empty, (h, 3)."""
+        """A point in each region that faces enclose and that is empty, (h, 3)."""
         return self._holes
 
     @property
@@ -181,18 +181,18 @@ class TetMesh(Triangulation):
         -------
         TetMeshReport
             Truthy if there are no faults: tetrahedra are positively oriented, no oriented face is
-            used twice, so that two tetrahedra with a common face lie on its two sides, and
-            these are neighbors of each other. If there are `input_faces`, each is a face of a
-            tetrahedron, each face of the boundary is one of them, the boundary neither crosses nor
-            touches itself, and the volume of the tetrahedra equals the volume that it encloses.
-            Faces that were cut again cover what they replace.
+            used twice, so two tetrahedra with a common face lie on opposite sides of it, and they
+            are each other's neighbors. If there are `input_faces`, each is a face of a tetrahedron,
+            each face of the boundary is one of them, the boundary neither crosses nor touches
+            itself, and the volume of the tetrahedra equals the volume that it encloses.
+            Retriangulated faces cover what they replace.
 
         Notes
         -----
-        Exact: volumes are compared as integers. With `input_faces` this is a proof that the
-        tetrahedra do not overlap and fill what the boundary encloses. Otherwise, overlaps between
-        parts of a mesh without a common face are not detected. The time is linear, up to a
-        logarithm. Tetrahedra need not be Delaunay.
+        Exact: volumes are compared as integers. With `input_faces`, this proves that the tetrahedra
+        do not overlap and fill what the boundary encloses. Otherwise, overlaps between parts of a
+        mesh without a common face are not detected. The time is O(n log n). Tetrahedra need not be
+        Delaunay.
 
         Examples
         --------

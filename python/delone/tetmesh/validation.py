@@ -39,12 +39,12 @@ class TetMeshReport(SpaceReport):
     walls : ndarray of int, shape (k,)
         Tetrahedra with a face on the boundary that is not one of `input_faces`.
     touching : ndarray of int, shape (k,)
-        Faces of the boundary, rows of ``boundary``, that cross or touch others otherwise than at
+        Faces of the boundary, as rows of ``boundary``, that cross or touch others other than at
         vertices and edges.
     volume : ndarray of int, shape (1,) or (0,)
         The sign of the volume of the tetrahedra minus that inside the boundary, if not 0.
     uncovered : ndarray of int, shape (k,)
-        Values of `face_source` whose faces do not cover what they replace in one plane.
+        Values of `face_source` whose faces do not cover the triangles that they replace.
 
     Examples
     --------

@@ -1,7 +1,7 @@
 """How often the faces of a surface cover their parts, and in which orientation.
 
 Where faces repeat others or overlap in one plane, `resolve_touches` leaves one triangle of each
-part. Winding numbers and parities need to know how many faces there were.
+part. Winding numbers and parities depend on how many faces there were.
 """
 
 from __future__ import annotations

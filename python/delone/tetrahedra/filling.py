@@ -88,15 +88,14 @@ def tetrahedralize(
     faces : array_like of int, shape (m, 3)
         The vertices of each triangle, rows of `points`.
     boundary : {"faces", "surface"}, optional
-        What is kept: all triangles, or the surface. In the second case, triangles in exactly one
-        plane are joined and cut again at the same vertices, which needs fewer points and less time
-        for parts with plane faces; see Notes.
+        What is kept: all triangles, or only the surface. In the second case, exactly coplanar
+        triangles are retriangulated with the same vertices, which takes fewer points and less time
+        for models with flat sides; see Notes.
     inside : {"winding", "parity", "enclosed"}, optional
-        What is filled: regions with a winding number other than 0; regions that an odd number of
-        faces separates from the outside, however these are oriented; or everything enclosed. By
-        default ``"winding"``, and ``"enclosed"`` for TetGen's files, whose faces have any
-        orientation.
-        For walls between regions and sheets in them, see Notes.
+        What is filled: regions with a nonzero winding number; regions that an odd number of faces
+        separates from the outside, whatever their orientation; or everything enclosed. By default
+        ``"winding"``, and ``"enclosed"`` for TetGen's files, in which faces may have any
+        orientation. For walls between regions and sheets inside them, see Notes.
     holes : array_like of float, shape (k, 3), optional
         Seeds: the region around each is left empty.
     regions : array_like, shape (k, 3) or (k, 4), optional
@@ -104,9 +103,9 @@ def tetrahedralize(
         The label is the fourth column (an integer of at least 0), or the row of the seed; it is -1
         for regions without a seed. Without seeds, regions are numbered from 0.
     face_markers : array_like of int, shape (m,), optional
-        A number for each face, inherited by the `face_markers` of the mesh. By default those of a
-        file (see `delone.io.MeshFile`), and values of cells of PyVista and meshio that are called
-        ``marker`` or ``gmsh:physical``.
+        A number for each face, inherited by the `face_markers` of the mesh. By default, the markers
+        in a file (see `delone.io.MeshFile`), or the cell data named ``marker`` or ``gmsh:physical``
+        of a PyVista or meshio object.
     extra_points : array_like of float, shape (k, 3), optional
         Further vertices strictly inside regions; in the mesh their rows follow `points`.
     size, max_volume : float, mapping, callable or tuple, optional
@@ -118,7 +117,7 @@ def tetrahedralize(
         mesh is refined, with 2.0 and 20 degrees by default; otherwise points are added only where
         faces need them.
     max_points : int, optional
-        Maximum number of points that exist besides those of the input at any time; by default a
+        Maximum number of points that may exist at any time besides those of the input; by default a
         million, or ten per face if that is more. For sizes and shapes, the maximum number of
         points that are added for them; by default 2,000,000.
     progress : callable, optional
@@ -135,21 +134,22 @@ def tetrahedralize(
     Raises
     ------
     CrossingFacesError
-        Faces cross; with pairs and kinds.
+        Faces cross; the error contains the pairs and their kinds.
     OpenSurfaceError
-        The surface encloses nothing; with its boundary edges.
+        The surface encloses nothing; the error contains its boundary edges.
     DegenerateInputError
         All faces are in one plane.
     CrowdedFacesError
-        Between some faces there is no double where a point is needed; with these faces.
+        Between some faces there is no double where a point is needed; the error contains these
+        faces.
     DanglingFacesError
-        Faces with an edge that is not part of any other face are not in the mesh without points on
-        them; with these faces.
+        Faces with an edge that belongs to no other face cannot be in the mesh without points on
+        them; the error contains these faces.
     BudgetExceededError
         More than `max_points` are needed for the faces, or by an estimate for the sizes.
     InputError
-        Regions are not inside by the rule, or that is not defined; seeds or extra points are
-        outside or on a face; an argument is invalid.
+        Nothing is inside by the rule `inside`, or the rule contradicts itself; seeds or extra
+        points are outside or on a face; or an argument is invalid.
     NonFiniteError, ShapeError, DtypeError, FileFormatError, MissingExtraError
         The input is not such arrays, or not such a file or object.
     KeyboardInterrupt
@@ -163,31 +163,31 @@ def tetrahedralize(
 
     Notes
     -----
-    Faces may touch: at T-junctions, where corners are on others, and where faces repeat others or
-    overlap in one plane, they are subdivided at existing vertices, as by `resolve_touches`, and the
-    report says so. Edges may have any number of faces: sheets inside, several shells, and walls
-    between regions are all faces of the mesh.
+    Faces may touch. Where corners lie on other faces (T-junctions), and where faces repeat others
+    or overlap in one plane, they are subdivided at existing vertices, as by `resolve_touches`, and
+    the report lists them. Edges may have any number of faces: sheets inside, several shells, and
+    walls between regions all become faces of the mesh.
 
-    With ``boundary="surface"``, edges between two triangles are flipped that are in one plane,
-    exactly, oriented alike, with equal markers, until each plane part has its constrained Delaunay
-    triangulation. Edges of other faces and all vertices are kept, and no point is put on the
-    surface, so it is the same set, exactly. In `face_source`, faces of such a part have the first
-    input face that it contains; `recut` and `recut_source` of the report have the triangles that
-    these replace, and `validate` proves that both cover the same.
+    With ``boundary="surface"``, the edge between two triangles is flipped if the triangles are
+    exactly coplanar and have the same orientation and marker, until each flat part has its
+    constrained Delaunay triangulation. Edges of other faces and all vertices are kept, and no point
+    is placed on the surface, so the surface is exactly the same set. In `face_source`, the faces of
+    such a part have the first input face that it contains; `recut` and `recut_source` of the report
+    contain the triangles that they replace, and `validate` proves that both cover the same area.
 
-    Winding numbers and parities are counted from the outside: a region gets its number through
-    faces to regions that are nearer to the outside, in the number of faces between. Walls between
-    regions that are equally near need not be consistent; they may be given once, in any
-    orientation.
+    Winding numbers and parities are counted from the outside: a region gets its number from
+    adjacent regions that are separated from the outside by fewer faces. Walls between regions that
+    are separated from it by the same number of faces need not be consistent: they may be given
+    once, in any orientation.
 
-    The Delaunay triangulation of the vertices lacks some of the edges and faces. Flips recover
-    most; for the others, points are put on them temporarily and then moved to their sides. All
+    The Delaunay triangulation of the vertices lacks some of the edges and faces. Flips recover most
+    of them; for the others, points are temporarily placed on them and then moved off them. All
     decisions are exact, and the order of points and faces does not matter. The mesh is not Delaunay
-    in general. If the surface is valid, failures have two causes: the limit on points, and places
-    so narrow that no double lies in them.
+    in general. For a valid surface, there are only two causes of failure: the limit on points, and
+    places so narrow that no double lies in them.
 
-    In practice the time is linear, up to a logarithm; for the points on faces no better bound than
-    a quadratic one is known, as polyhedra exist that need as many [1]_.
+    In practice, the time is O(n log n). The number of points on faces can be quadratic, since some
+    polyhedra need as many [1]_.
 
     References
     ----------

@@ -2,9 +2,9 @@
 
 A cell is what is connected without crossing a face. Crossing a face changes the winding number by
 the orientations of the faces there, and the parity by their number. Cells are reached from the
-outside in layers: each gets its number from cells of the layer before. Of walls between cells of
-one layer, and of faces inside of a cell, nothing is asked, so they may be given once and in any
-orientation. If faces repeat others, each counts; if that is a contradiction, they count once.
+outside in layers: each gets its number from cells of the layer before. Walls between cells of one
+layer and faces inside a cell are not checked, so they may be given once and in any orientation. If
+faces repeat others, each counts; if that leads to a contradiction, they count once.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Other triangles for what is flat: edges between triangles in one plane are flipped.
 
-In each plane part the result is its constrained Delaunay triangulation, with all vertices and all
-edges to other planes kept. Edges of Delaunay triangulations in 3-D are Delaunay in each plane, too,
-so fewer of these triangles must be recovered than of others.
+In each flat part the result is its constrained Delaunay triangulation, with all vertices and all
+edges to other planes. Edges of 3-D Delaunay triangulations are Delaunay in each plane, too, so
+fewer of these triangles have to be recovered than of others.
 """
 
 from __future__ import annotations
