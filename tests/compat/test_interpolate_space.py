@@ -10,6 +10,7 @@ import pytest
 from delone import Delaunay
 from delone.compat.scipy import (
     CloughTocher2DInterpolator,
+    DimensionError,
     LinearNDInterpolator,
     NearestNDInterpolator,
     QhullError,
@@ -56,6 +57,19 @@ def test_triangulations_and_refusals() -> None:
     flat = NearestNDInterpolator(POINTS * [1, 1, 0], VALUES)
     theirs = peer.NearestNDInterpolator(POINTS * [1, 1, 0], VALUES)
     assert np.array_equal(flat(QUERIES), theirs(QUERIES))
+
+
+def test_too_many_coordinates_are_named() -> None:
+    for d in (3, 5, 9):
+        points = np.random.default_rng(0).random((60, d))
+        with pytest.raises(
+            DimensionError, match=rf"CloughTocher2D\w+ interpolates 2-D .* {d} coord"
+        ):
+            griddata(points, points[:, 0], points[:1], method="cubic")
+    with pytest.raises(DimensionError, match=r"Nearest\w+ interpolates points with up to 8 coord"):
+        griddata(points, points[:, 0], points[:1], method="nearest")
+    with pytest.raises(DimensionError, match="2-D points"):
+        CloughTocher2DInterpolator(Delaunay(points[:, :3]), points[:, 0])
 
 
 def test_without_a_site_there_is_no_value() -> None:

@@ -1,4 +1,4 @@
-"""Facets of the cone that half-spaces span, exactly: what meets in the corners of an intersection.
+"""Facets of the cone that half-spaces span, exactly: which boundaries meet in the corners.
 
 A half-space ``a @ x + b <= 0`` is the vector (a, b) with d + 1 components. Facets of the cone of
 these vectors are corners of the intersection: the plane of a facet has a normal (x t, t), which is
@@ -9,7 +9,7 @@ not be.
 The cone is found as a convex hull in one dimension more, that of the vectors and the origin: facets
 through the origin are those of the cone. All coordinates are given doubles, times powers of two, so
 the hull of the core decides exactly which boundaries meet in one point. A redundant half-space that
-touches a corner or an edge may be a vertex of that hull. It is none of the cone: all facets that
+touches a corner or an edge may be a vertex of that hull, but not of the cone: all facets that
 contain it contain another vector as well.
 """
 

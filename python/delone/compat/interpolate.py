@@ -3,15 +3,14 @@
 `delone.compat.scipy` exports these names. Signatures, attributes, shapes and errors are SciPy's.
 Differences:
 
-* At a site the value is reproduced bit for bit, and on the hull it is never the fill value; a query
-outside by a rounding error is outside, because there is no tolerance.
-* From 3-D on `tri` is a `delone.Delaunay`. With more than eight coordinates, or where the simplices
-would not fit into memory, there is no triangulation: `tri` is None, and linear interpolation finds
-the simplex of each query by itself. More than 64 coordinates raise a `DimensionError`.
-* Of equally near sites, the one with the smallest row is used.
-* Norms other than the Euclidean one (`p`) are left to SciPy's tree; `eps` and `tree_options` have
-no effect.
-* A triangulation of ``scipy.spatial.Delaunay`` is replaced by its points.
+* At a site, the value is reproduced bit for bit, and on the hull it is never the fill value; a
+query that is outside by a rounding error is outside, because there is no tolerance. * From 3-D on
+`tri` is a `delone.Delaunay`. With more than eight coordinates, or where the simplices would not fit
+into memory, there is no triangulation: `tri` is None, and linear interpolation finds the simplex of
+each query by itself. More than 64 coordinates raise a `DimensionError`. * Of equally near sites,
+the one with the smallest row is used. * Norms other than the Euclidean one (`p`) are left to
+SciPy's tree; `eps` and `tree_options` have no effect. * A triangulation of
+``scipy.spatial.Delaunay`` is replaced by its points.
 """
 
 from __future__ import annotations
@@ -71,6 +70,8 @@ class _Scale:
 class _Triangulated:
     """Base of the interpolators on triangles."""
 
+    # The most coordinates of sites.
+    _most: int = _MOST
     points: Floats
     values: NDArray[Any]
     tri: Any
@@ -90,6 +91,7 @@ class _Triangulated:
             self.points = np.asarray(points.points)
         else:
             self.points = _coordinates(points)
+        _require_few(self, self.points, self._most)
         self._scale = _Scale(self.points, rescale)
         if self.points.shape[1] >= _SPACE:
             self._mesh: delaunay.Delaunay | None = self._in_space()
@@ -179,7 +181,7 @@ class LinearNDInterpolator(_Triangulated):
     fill_value : float, optional
         Value outside the hull.
     rescale : bool, optional
-        Triangulate the points scaled to the unit square or cube.
+        Triangulate the points after scaling them to the unit cube.
 
     Raises
     ------
@@ -236,7 +238,7 @@ class CloughTocher2DInterpolator(_Triangulated):
     maxiter : int, optional
         Maximum number of sweeps.
     rescale : bool, optional
-        Triangulate the points scaled to the unit square.
+        Triangulate the points after scaling them to the unit square.
 
     Attributes
     ----------
@@ -247,6 +249,8 @@ class CloughTocher2DInterpolator(_Triangulated):
     ------
     QhullError
         The points span no area.
+    DimensionError
+        The points do not have two coordinates.
     ValueError
         Array shapes do not match; rescaling is requested for a triangulation.
 
@@ -263,6 +267,8 @@ class CloughTocher2DInterpolator(_Triangulated):
     >>> plane(3, 1).round(4)
     np.float64(5.0)
     """
+
+    _most = 2
 
     def __init__(  # noqa: PLR0917 (as in SciPy)
         self,
@@ -313,12 +319,14 @@ class NearestNDInterpolator:
     y : array_like, shape (npoints, ...)
         Real or complex values.
     rescale : bool, optional
-        Measure distances between points scaled to the unit square.
+        Measure distances between points that are scaled to the unit cube.
     tree_options : dict, optional
         Accepted as in SciPy, without effect.
 
     Raises
     ------
+    DimensionError
+        The points have more than eight coordinates.
     ValueError
         Array shapes do not match.
 
@@ -341,6 +349,7 @@ class NearestNDInterpolator:
         tree_options: dict[str, Any] | None = None,
     ) -> None:
         self.points = _coordinates(x)
+        _require_few(self, self.points, MOST)
         self.values = _numbers(y)
         self._scale = _Scale(self.points, rescale)
         self._field = as_field(self.values, len(self.points))
@@ -426,7 +435,8 @@ def griddata(  # noqa: PLR0917 (as in SciPy)
     Parameters
     ----------
     points : array_like, shape (n, d), or tuple of d arrays
-        Sites with two to eight coordinates; or 1-D sites of shape (n,) or (n, 1).
+        Sites with two to 64 coordinates, for ``"nearest"`` two to eight; or 1-D sites of shape (n,)
+        or (n, 1).
     values : array_like, shape (n, ...)
         Real or complex values.
     xi : array_like, shape (..., d), or tuple of d arrays
@@ -437,7 +447,7 @@ def griddata(  # noqa: PLR0917 (as in SciPy)
     fill_value : float, optional
         Value outside the hull; without effect for ``"nearest"``.
     rescale : bool, optional
-        Scale the points to the unit square first.
+        Scale the points to the unit cube first.
 
     Returns
     -------
@@ -449,7 +459,7 @@ def griddata(  # noqa: PLR0917 (as in SciPy)
     ValueError
         The method is unknown; array shapes do not match.
     DimensionError
-        The points have more than eight coordinates.
+        The points have more coordinates than the method accepts.
     MissingExtraError
         The points are 1-D, and SciPy is not installed.
 
@@ -529,6 +539,16 @@ def estimate_gradients_2d_global(
     """
     made = CloughTocher2DInterpolator(tri, y, tol=tol, maxiter=maxiter)
     return made.grad.reshape((*np.shape(y), 2))
+
+
+def _require_few(owner: object, points: Floats, most: int) -> None:
+    """Refuse sites with more coordinates than an interpolator accepts."""
+    if points.shape[1] > most:
+        name = "2-D points" if most == 2 else f"points with up to {most} coordinates"
+        raise DimensionError(
+            f"{type(owner).__name__} interpolates {name}, got {points.shape[1]} coordinates: use "
+            "LinearNDInterpolator"
+        )
 
 
 def _coordinates(points: Any) -> Floats:

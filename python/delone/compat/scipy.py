@@ -12,7 +12,8 @@ Signatures, attributes, dtypes, errors and the mutability of arrays are SciPy's.
 * Every distinct point is a vertex, so `coplanar` lists only duplicates.
 * Among the triangulations of cocircular points, the result is delone's canonical one, with
 triangles in delone's order.
-* `find_simplex` is exact: `tol` has no effect, and a point outside by a rounding error is outside.
+* `find_simplex` is exact by default: a point outside by a rounding error is outside. In 2-D and
+3-D, `tol` is compared exactly; in more dimensions it has no effect.
 * `vertex_to_simplex` of a duplicate is a triangle of its first occurrence.
 * Triangles are counter-clockwise and tetrahedra positively oriented, including furthest-site ones.
 * Furthest-site triangulations are only available in 2-D.

@@ -352,12 +352,12 @@ class Delaunay(Incremental):
         tol : float, optional
             Points outside whose barycentric coordinates in the simplex at the nearest point of the
             boundary are at least ``-tol``, exactly, are in that simplex. By default 0, where SciPy
-            has 100 machine epsilons.
+            has 100 machine epsilons. Without effect in more than three dimensions.
 
         Returns
         -------
         ndarray of int32, shape (...)
-            Triangles or tetrahedra, the first one if there are several, -1 outside.
+            Simplices, the first one if there are several, -1 outside.
 
         Raises
         ------

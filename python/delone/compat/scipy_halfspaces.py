@@ -14,13 +14,12 @@ Differences from SciPy:
 
 * Facets and corners ascend by their half-spaces. In 2-D and 3-D the vertices of a dual facet are in
 order around it, counter-clockwise as seen from outside; in more dimensions they ascend.
-* Half-spaces whose boundaries meet exactly in one point have one corner there; if they miss it by
-rounding there are several corners, which SciPy merges within a tolerance.
-* If the intersection is unbounded, the dual facet that represents this has an infinite
-intersection. SciPy returns a point outside the intersection there.
-* Corners are computed from the half-spaces, not from the dual hull, and are more accurate.
-* Points with more than eight coordinates are rejected.
-* `add_halfspaces` recomputes everything.
+* Half-spaces whose boundaries meet exactly in one point have one corner there. If they miss it by
+rounding errors, there are several corners, which SciPy merges within a tolerance. * If the
+intersection is unbounded, the dual facet that represents this has an infinite intersection. SciPy
+returns a point outside the intersection there. * Corners are computed from the half-spaces, not
+from the dual hull, and are more accurate. * Points with more than eight coordinates are rejected. *
+`add_halfspaces` recomputes everything.
 """
 
 from __future__ import annotations
@@ -102,9 +101,10 @@ class HalfspaceIntersection:
     Notes
     -----
     Whether the point is inside, which half-spaces are redundant, which boundaries meet in one
-    point, and whether the intersection is bounded are decided exactly, for the given doubles; of
-    half-spaces that are multiples of each other the first counts. Corners, dual points and measures
-    are rounded. Time is that of a convex hull in one dimension more, several times that of Qhull.
+    point, and whether the intersection is bounded are decided exactly, for the given doubles; among
+    half-spaces that are multiples of each other, the first one counts. Corners, dual points and
+    measures are rounded. The time is that of a convex hull with one more dimension, several times
+    that of Qhull.
 
     Examples
     --------

@@ -8,12 +8,11 @@
 Signatures, attributes, dtypes, errors and the mutability of arrays are SciPy's. Differences:
 
 * Simplices are in delone's order, and each facet is triangulated by delone's rule.
-* Normals are those of whole facets, so that coplanar triangles have the same equation.
-* `coplanar`, with option ``Qc``, lists the rows that repeat a vertex.
-* ``QGn`` is exact: a facet is visible from point n if the point is strictly beyond its plane.
-* In 3-D the boundary is oriented: triangles are counter-clockwise seen from outside.
-* Points in more than eight dimensions are rejected.
-* `add_points` recomputes the hull.
+* Normals are those of whole facets, so coplanar triangles have the same equation. * `coplanar`,
+with option ``Qc``, lists the rows that repeat a vertex. * ``QGn`` is exact: a facet is visible from
+point n if the point is strictly beyond its plane. * In 3-D, triangles are counter-clockwise as seen
+from outside. * Points in more than eight dimensions are rejected. * `add_points` recomputes the
+hull.
 """
 
 from __future__ import annotations
@@ -44,8 +43,8 @@ class ConvexHull(Incremental):
 
     Parameters
     ----------
-    points : array_like, shape (npoints, 2) or (npoints, 3)
-        Coordinates.
+    points : array_like, shape (npoints, ndim)
+        Two to eight coordinates of each point.
     incremental : bool, optional
         Whether `add_points` may be called.
     qhull_options : str, optional
@@ -60,9 +59,9 @@ class ConvexHull(Incremental):
     points : ndarray of float64, shape (npoints, ndim)
         Coordinates; the given array itself if it has this dtype and layout, as in SciPy.
     vertices : ndarray of int32, shape (nvertices,)
-        The extreme points: counter-clockwise in 2-D, ascending in 3-D.
+        The extreme points: counter-clockwise in 2-D, otherwise ascending.
     simplices : ndarray of int32, shape (nfacet, ndim)
-        Edges or triangles.
+        The facets: edges, triangles or simplices of more dimensions.
     neighbors : ndarray of int32, shape (nfacet, ndim)
         The facet that shares all vertices but one.
     equations : ndarray of float64, shape (nfacet, ndim + 1)
@@ -86,7 +85,7 @@ class ConvexHull(Incremental):
         A coordinate is NaN, the array has a wrong shape or dtype, or an option requires a different
         hull.
     DimensionError
-        The points have more than three coordinates. (A NotImplementedError and a ValueError.)
+        The points have more than eight coordinates. (A NotImplementedError and a ValueError.)
 
     Notes
     -----
@@ -134,7 +133,7 @@ class ConvexHull(Incremental):
 
     @cached_property
     def simplices(self) -> Indices:
-        """Edges or triangles."""
+        """The facets: edges, triangles or simplices of more dimensions."""
         return self._rows[self._hull.simplices]
 
     @cached_property

@@ -9,9 +9,8 @@
 `delone.compat.scipy` exports it. Differences from SciPy:
 
 * Facets are those of the exact convex hull of the directions from the center, in delone's order, so
-that vertices are in another order; regions are sorted from the start.
-* Areas keep their bits for tiny cells.
-* Points in two dimensions or more than three are rejected.
+vertices have a different order; regions are sorted from the start. * Areas of tiny cells are
+accurate. * Points in two dimensions or more than three are rejected.
 """
 
 from __future__ import annotations
@@ -50,8 +49,8 @@ class SphericalVoronoi:
     center : array_like, shape (3,), optional
         Its center; by default the origin.
     threshold : float, optional
-        Relative to the radius: generators that are closer are duplicates, and they may miss the
-        sphere by less.
+        Relative to the radius: generators that are closer than this are duplicates, and generators
+        may be off the sphere by less than this.
 
     Attributes
     ----------
@@ -62,15 +61,15 @@ class SphericalVoronoi:
     center : ndarray of float64, shape (3,)
         Its center.
     vertices : ndarray of float64, shape (2 npoints - 4, 3)
-        The vertices, one for each facet of the hull: several may be in one place.
+        The vertices, one for each facet of the hull: several may coincide.
     regions : list of list of int
         For each generator the vertices of its region, counter-clockwise seen from outside.
 
     Raises
     ------
     ValueError
-        The generators are on one circle or fewer than four, some are duplicates, or miss the
-        sphere; `radius` is None.
+        There are fewer than four generators, or they are on one circle, or some are duplicates or
+        not on the sphere; or `radius` is None.
     DimensionError
         The generators do not have three coordinates.
     NonFiniteError
@@ -78,7 +77,7 @@ class SphericalVoronoi:
 
     See Also
     --------
-    delone.sphere.Voronoi : The diagram with one vertex for each place, and of any input.
+    delone.sphere.Voronoi : The diagram with distinct vertices, for any input.
 
     Notes
     -----

@@ -1,8 +1,9 @@
 """Drop-in replacement for the package ``tetgen``: its class, with `delone.tetrahedralize` inside.
 
 That package wraps H. Si's program TetGen. Here the names are the same, but delone does the work; no
-code of either is used. Points are added strictly between the triangles only. Triangles in one plane
-may be cut again, but not with TetGen's switch Y. Quality is not supported, and never passed over.
+code of either is used. Points are only added strictly between the triangles. Coplanar triangles may
+be retriangulated, except with TetGen's switch Y. Requests for quality are not supported, and raise
+an error.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ class TetGen:
     v, f : ndarray
         The vertices and triangles.
     tetmesh : TetMesh or None
-        The result as delone's own class, after `tetrahedralize`; it is not one of the package.
+        The result as delone's own class, after `tetrahedralize`; the package has no such attribute.
 
     Raises
     ------
@@ -200,7 +201,8 @@ class TetGen:
     ) -> tuple[Floats, Indices, Floats, Indices]:
         """Fill the surface with tetrahedra.
 
-        Everything that the triangles enclose is filled, except holes, however they are oriented.
+        Everything that the triangles enclose is filled, except holes, whatever the orientation of
+        the triangles.
 
         Parameters
         ----------
@@ -219,21 +221,21 @@ class TetGen:
             The maximum number of points that are added for shapes and volumes, and of those that
             exist besides the input at any time before; -1 for no limit of one's own.
         order : {1, 2}, optional
-            With 2, `node` has the middle of each edge as well, and `elem` has ten nodes, in
-            TetGen's order; those of `grid` are in the order of VTK.
+            With 2, `node` also contains the midpoints of edges, and rows of `elem` have ten nodes,
+            in TetGen's order; those of `grid` are in VTK's order.
         regionattrib : bool, optional
             Whether to return the label of the region of each tetrahedron.
         facesout : bool, optional
-            Whether `trifaces` has all faces of tetrahedra, instead of those of the input.
+            Whether `trifaces` contains all faces of tetrahedra, instead of those of the input.
         edgesout : bool, optional
-            Whether `edges` has all edges, instead of those of faces of the input.
+            Whether `edges` contains all edges, instead of those of input faces.
         switches : str, optional
             TetGen's switches, which replace all other arguments: p is necessary; ``q1.4/20 a0.1 Y
             A S M O o2 f e Q`` and those of output are accepted; m and r are refused.
         bgmesh : optional
             Must be None: sizes are read from no other mesh.
         nomergefacet : bool, optional
-            As `nobisect`: no triangles are joined.
+            The same as `nobisect`: coplanar triangles are not merged.
         **others
             Further arguments of the package ``tetgen``: `fixedvolume` and `maxvolume`, the largest
             volume of a tetrahedron, and `varvolume`, whether those of regions hold without
@@ -243,14 +245,15 @@ class TetGen:
         Returns
         -------
         nodes : ndarray of float64, shape (n, 3)
-            The vertices in their order, then the points added; with ``order=2`` then the middle
-            of each edge.
+            The vertices in their order, then the added points; with ``order=2``, then the midpoints
+            of edges.
         elems : ndarray of int32, shape (m, 4) or (m, 10)
             The tetrahedra.
         attributes : ndarray of float64, shape (m, 1) or (0, 0)
-            The label of the region of each; regions without a label follow the largest one.
+            The label of the region of each; regions without a label get numbers after the largest
+            one.
         triface_markers : ndarray of int32, shape (k,)
-            The marker of each triangle in `trifaces`: -1 if none were given, 0 for further faces.
+            The marker of each triangle in `trifaces`: -1 if none were given, 0 for other faces.
 
         Raises
         ------
@@ -259,7 +262,7 @@ class TetGen:
         DtypeError
             An argument is unknown.
         CrossingFacesError, OpenSurfaceError, CrowdedFacesError, BudgetExceededError
-            And others, as for `delone.tetrahedralize`.
+            These and others, as for `delone.tetrahedralize`.
 
         Examples
         --------
@@ -339,7 +342,7 @@ class TetGen:
 
     @property
     def node(self) -> Floats:
-        """The vertices, (n, 3); with ``order=2`` also the middle of each edge."""
+        """The vertices, (n, 3); with ``order=2``, also the midpoints of edges."""
         made = self._made
         return self._second_order(made).points if self._second else made.points
 
@@ -370,13 +373,13 @@ class TetGen:
 
     @property
     def trifaces(self) -> Indices:
-        """The triangles, (k, 3): those of the input, or with ``facesout`` all."""
+        """The triangles, (k, 3): those of the input, or all with ``facesout``."""
         _ = self._made
         return self._trifaces
 
     @property
     def triface_markers(self) -> Indices:
-        """The marker of each of `trifaces`, (k,): -1 without markers, 0 for further faces."""
+        """The marker of each of `trifaces`, (k,): -1 without markers, 0 for other faces."""
         _ = self._made
         return self._triface_markers
 
@@ -387,13 +390,13 @@ class TetGen:
 
     @property
     def edges(self) -> Indices:
-        """The edges of faces of the input, (e, 2), or with ``edgesout`` all."""
+        """The edges of input faces, (e, 2), or all edges with ``edgesout``."""
         found = self._made.edges
         return found if self._every_edge else found[self._of_input(found)]
 
     @property
     def edge_markers(self) -> Indices:
-        """-1 for edges of triangles of the input, else 0, (e,)."""
+        """-1 for edges of input triangles, otherwise 0, (e,)."""
         return np.where(self._of_input(self.edges), _UNMARKED, 0).astype(np.int32)
 
     def _of_input(self, edges: Indices) -> NDArray[np.bool_]:
@@ -411,14 +414,14 @@ class TetGen:
         return self._made.to_pyvista(order=2 if self._second else 1)
 
     def write(self, filename: str | os.PathLike[str], binary: bool = True) -> None:
-        """Write `grid` to a file of VTK (extra ``pyvista``).
+        """Write `grid` to a VTK file (extra ``pyvista``).
 
         Parameters
         ----------
         filename : str or path-like
             A file that ends in .vtk or .vtu.
         binary : bool, optional
-            Whether it is binary, or text.
+            Whether the file is binary instead of text.
 
         Raises
         ------

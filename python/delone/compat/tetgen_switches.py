@@ -1,8 +1,8 @@
-"""The arguments and switches of the package ``tetgen``: what each asks for, and what is refused.
+"""The arguments and switches of the package ``tetgen``: what each requests, and what is refused.
 
-Nothing that would change the result is passed over. What is accepted without an effect asks for
-output, silence or checks, chooses between algorithms with the same result, or bounds errors that
-exact arithmetic does not make.
+Nothing that would change the result is ignored. What is accepted without effect requests output,
+silence or checks, chooses between algorithms with the same result, or bounds errors that exact
+arithmetic does not make.
 """
 
 from __future__ import annotations

@@ -93,8 +93,8 @@ def triangulate(tri: Mapping[str, Any], opts: str = "") -> dict[str, Any]:
         - ``j``: omit vertices that no triangle uses.
 
         ``X i F l s C Q V v z`` are accepted and change nothing: arithmetic is always exact, and as
-        in the package ``v`` returns nothing here, see `voronoi`. All others raise an error with
-        their name.
+        in the package ``v`` returns nothing here, see `voronoi`. All others raise an error that
+        names them.
 
     Returns
     -------
@@ -331,7 +331,7 @@ def convex_hull(pts: ArrayLike) -> Indices:
     Returns
     -------
     ndarray of int32, shape (h, 2)
-        Edges, each with the points on its left; points inside a side split it.
+        Edges, each with the points on its left; a side is split at points that lie on it.
 
     Raises
     ------

@@ -243,7 +243,7 @@ def _caps(tri: Mapping[str, Any], domain: Domain, base: Given, switches: Switche
 
 
 def not_reached(tri: Mapping[str, Any], found: Mesh, base: Any, switches: Switches) -> str | None:
-    """A warning about triangles that miss bounds because segments were not split; None if none do.
+    """A warning about triangles that violate bounds because segments stay whole, or None.
 
     `base` are the triangles before points were added: ConstrainedDelaunay, or `Given`.
     """
