@@ -39,23 +39,25 @@ def find_ground(
         typer.Option("--output", "-o", metavar="OUTPUT", help="File to write: .las .laz"),
     ] = None,
     cell: Annotated[
-        float | None, typer.Option(help="Width of cells, above that of buildings; 20 m by default.")
+        float | None,
+        typer.Option(help="Width of cells, larger than any building; 20 m by default."),
     ] = None,
-    angle: Annotated[float, typer.Option(help="Greatest angle at the corners, in degrees.")] = 6.0,
+    angle: Annotated[float, typer.Option(help="Largest angle at the corners, in degrees.")] = 6.0,
     distance: Annotated[
-        float | None, typer.Option(help="Greatest distance from triangles; 1.4 m by default.")
+        float | None, typer.Option(help="Largest distance from triangles; 1.4 m by default.")
     ] = None,
     no_mirror: Annotated[
-        bool, typer.Option("--no-mirror", help="Do not look for edges at mirror images.")
+        bool, typer.Option("--no-mirror", help="Do not test points at their mirror images.")
     ] = False,
     edge: Annotated[
-        float | None, typer.Option(help="Smaller triangles get no points; 1 m by default.")
+        float | None,
+        typer.Option(help="Triangles with shorter edges get no points; 1 m by default."),
     ] = None,
     thickness: Annotated[
-        float | None, typer.Option(help="Noise of heights on the ground; 0.1 m by default.")
+        float | None, typer.Option(help="Noise of heights of the ground; 0.1 m by default.")
     ] = None,
     low: Annotated[
-        float | None, typer.Option(help="Gap above errors of measurement; 1 m by default.")
+        float | None, typer.Option(help="Gap above low outliers; 1 m by default.")
     ] = None,
     max_iter: Annotated[int, typer.Option(help="Maximum number of passes.")] = 50,
     crs: Crs = None,

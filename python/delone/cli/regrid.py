@@ -45,7 +45,7 @@ def regrid(
         str,
         typer.Argument(
             metavar="TARGET",
-            help="NetCDF file with the grid that is wanted, or its name: 1x1 (degrees of "
+            help="NetCDF file with the target grid, or the name of a grid: 1x1 (degrees of "
             "longitude and latitude), healpix:64, healpix:64:nested, n80, o80 (Gaussian).",
         ),
     ],
@@ -54,24 +54,27 @@ def regrid(
     method: Annotated[
         str,
         typer.Option(
-            help="How values are combined: conservative (integrals remain), normalized (means "
-            "over what is covered), sum (amounts), majority (categories); or between centers: "
-            "linear, bilinear, sibson, laplace, nearest, binned, inverse_distance."
+            help="How values are combined. By shared areas: conservative (preserves integrals), "
+            "normalized (means over the covered part), sum (amounts), majority (categories). "
+            "Between centers: linear, bilinear, sibson, laplace, nearest, binned, "
+            "inverse_distance."
         ),
     ] = "conservative",
     order: Annotated[
         int,
         typer.Option(
-            help="Of conservative and normalized: 1 takes cells as constant, 2 gives them slopes."
+            help="For conservative and normalized: 1 for constant cells, 2 for cells with slopes."
         ),
     ] = 1,
     limiter: Annotated[
         bool,
-        typer.Option("--limiter", help="With --order 2: no values beyond those of neighbors."),
+        typer.Option(
+            "--limiter", help="With --order 2: prevent values outside the range of neighbors."
+        ),
     ] = False,
     neighbors: Annotated[
         int | None,
-        typer.Option(help="Of inverse_distance: the number of nearest cells; CDO takes 4."),
+        typer.Option(help="For inverse_distance: the number of nearest cells; CDO uses 4."),
     ] = None,
     grid: Annotated[
         Path | None,
@@ -79,37 +82,43 @@ def regrid(
     ] = None,
     weights: Annotated[
         Path | None,
-        typer.Option(help="Map file of ESMF or SCRIP with the weights; --method is that of it."),
+        typer.Option(
+            help="Map file of ESMF or SCRIP with the weights, which also decides the method."
+        ),
     ] = None,
     save_weights: Annotated[
-        Path | None, typer.Option(help="Map file to write, in the layout of ESMF.")
+        Path | None, typer.Option(help="Map file to write, in ESMF's layout.")
     ] = None,
     variables: Annotated[
-        str | None, typer.Option(help="Variables to regrid: t2m,rain; by default all.")
+        str | None, typer.Option(help="Variables to regrid, such as t2m,rain; by default all.")
     ] = None,
     skipna: Annotated[
-        bool, typer.Option("--skipna", help="Missing values take no part; else they spread.")
+        bool,
+        typer.Option("--skipna", help="Ignore missing values; without this option they spread."),
     ] = False,
     min_fraction: Annotated[
         float,
-        typer.Option(help="Target cells of which a smaller fraction has values are missing."),
+        typer.Option(help="Smallest fraction of a target cell with values; others are missing."),
     ] = 0.0,
     fill: Annotated[
-        float | None, typer.Option(help="The value of missing cells, by default NaN.")
+        float | None, typer.Option(help="The value of missing cells; by default NaN.")
     ] = None,
     dims: Annotated[
-        str | None, typer.Option(help="Dimensions of fields on the grid of INPUT: lat,lon.")
+        str | None, typer.Option(help="Dimensions of the grid in INPUT, such as lat,lon.")
     ] = None,
     coords: Annotated[
-        str | None, typer.Option(help="Longitude and latitude of INPUT, of several: TLONG,TLAT.")
+        str | None,
+        typer.Option(
+            help="Longitude and latitude in INPUT if there are several, such as TLONG,TLAT."
+        ),
     ] = None,
     infer_bounds: Annotated[
         bool,
-        typer.Option("--infer-bounds", help="Place missing bounds halfway between centers."),
+        typer.Option("--infer-bounds", help="Infer missing cell bounds halfway between centers."),
     ] = False,
     degrees: Annotated[
         bool | None,
-        typer.Option("--degrees/--radians", help="The unit of angles that have no units."),
+        typer.Option("--degrees/--radians", help="The unit of angles without a units attribute."),
     ] = None,
     workers: Workers = None,
     as_json: Json = False,

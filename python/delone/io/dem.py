@@ -1,8 +1,8 @@
 """Rasters of heights as points: GeoTIFF and ESRI ASCII grids with rasterio, NetCDF with xarray.
 
-Each cell with a height is a point at its center; GDAL turns rasters whose pixels are points into
-such. Only the driver of the suffix may open a file, and no file beside it is read but the .prj
-of an ASCII grid. Rows are read one after the other, and sizes are checked before any of them.
+Each cell with a height becomes a point at its center; GDAL converts rasters whose pixels are
+points. Only the driver for the suffix may open a file, and no file beside it is read except the
+.prj file of an ASCII grid. Rows are read one after another, and sizes are checked before that.
 """
 
 from __future__ import annotations
@@ -80,37 +80,39 @@ def read_raster(
     Parameters
     ----------
     path : str or path-like
-        GeoTIFF (.tif, .tiff), ESRI ASCII grid (.asc), or NetCDF (.nc) with coordinates of rows and
-        of columns.
+        GeoTIFF (.tif, .tiff), ESRI ASCII grid (.asc), or NetCDF (.nc) with coordinates for rows and
+        columns.
     band : int or str, optional
-        The band, from 1, or the name of the variable of a NetCDF file; needed if there are several.
+        The band, from 1, or the name of the variable in a NetCDF file; required if there are
+        several.
     step : int, optional
         Read every `step`-th row and column, starting with the first.
     bounds : sequence of four float, optional
         Left, bottom, right and top: read only cells whose centers are inside or on the border. Only
-        this part of a file is read, and `max_points` counts its cells.
+        this part of the file is read, and `max_points` applies to its cells.
     nodata : float, optional
         The value of cells without a height, in addition to the one that the file declares. NaN says
-        that all values are heights, also those that look like a constant for none.
+        that all values are heights, even those that look like nodata.
     max_points : int, optional
         Maximum number of cells to read, including those without a height.
 
     Returns
     -------
     PointSet
-        Points row by row in the order of the file, in GeoTIFF and ASCII grids from the top, with
-        heights `z` and the reference system of the file.
-        Scale and offset of the band, if any, are applied.
+        Points row by row in the order of the file (in GeoTIFF and ASCII grids from the top), with
+        heights `z` and the reference system of the file. Scale and offset of the band, if any, are
+        applied.
 
     Raises
     ------
     FileNotFoundError
         There is no such file.
     FileFormatError
-        The file is truncated, not what its suffix says, has no georeference, no such band, complex
-        values or no cell with a height; or it has more than `max_points` cells, and the message
-        gives a `step` that is large enough; or cells have a constant such as -9999 that the file
-        does not declare, farther from all other heights than these are apart.
+        The file is truncated or not what its suffix says; it has no georeference, no such band,
+        complex values or no cell with a height; it has more than `max_points` cells, in which case
+        the message gives a `step` that is large enough; or cells have a constant such as -9999 that
+        the file does not declare as nodata and that is outside the range of all other heights by
+        more than this range.
     InputError
         `bounds` are not four finite numbers in this order, or contain no cell.
     MissingExtraError
@@ -120,11 +122,11 @@ def read_raster(
     Warns
     -----
     LeftOutWarning
-        Cells have no height: nodata, masked, NaN or infinite. The message has their number.
+        Cells have no height: nodata, masked, NaN or infinite. The message says how many.
 
     Notes
     -----
-    Rotated and sheared rasters give rotated and sheared points. Memory is that of the points and of
+    Rotated and sheared rasters give rotated and sheared points. Memory is needed for the points and
     one row of blocks. No other file is read except the .prj file of an ASCII grid, for its
     reference system: world files (.tfw) are ignored.
 

@@ -1,4 +1,4 @@
-"""Constants for cells without a height that a raster does not declare."""
+"""Constants that mark cells without a height in rasters that do not declare them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def as_nodata(given: Any) -> float | None:
 
 
 def is_nodata(values: NDArray[Any], nodata: float | None) -> Bools:
-    """Return which values are `nodata`, as the type of the values has it."""
+    """Return which values are `nodata`, after rounding to the type of the values."""
     if nodata is None or np.isnan(nodata):
         return np.zeros(values.shape, dtype=bool)
     with np.errstate(over="ignore"):
@@ -39,9 +39,10 @@ def is_nodata(values: NDArray[Any], nodata: float | None) -> Bools:
 def require_declared(
     values: NDArray[Any], nodata: float | None, where: str, *, file: bool = True
 ) -> None:
-    """Refuse heights that are a customary constant for none, far outside of all others.
+    """Refuse heights that are a customary nodata constant, far outside all others.
 
-    Far is farther than all others are apart. NaN as `nodata` says that every value is a height.
+    Far means farther than the range of all others. NaN as `nodata` says that every value is a
+    height.
     """
     if not len(values) or (nodata is not None and np.isnan(nodata)):
         return

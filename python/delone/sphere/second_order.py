@@ -1,10 +1,10 @@
 """Conservative weights of second order: values of cells with gradients, and their limiter.
 
-In each source cell the field is a plane through its mean at its centroid, so a target cell gets
-the plane's value at the centroid of what they share (Jones, "First- and second-order conservative
-remapping schemes for grids in spherical coordinates", Monthly Weather Review 127, 1999). Slopes
-are fitted to the neighbors by least squares. The limiter is that of Barth and Jespersen (AIAA paper
-89-0366, 1989), for the means of the parts instead of the corners.
+In each source cell, the field is a plane that has the mean of the cell at its centroid, so a target
+cell gets the plane's value at the centroid of the part that they share (Jones, "First- and
+second-order conservative remapping schemes for grids in spherical coordinates", Monthly Weather
+Review 127, 1999). Slopes are fitted to the neighbors by least squares. The limiter is that of Barth
+and Jespersen (AIAA paper 89-0366, 1989), for the means of the parts instead of the corners.
 """
 
 from __future__ import annotations
@@ -31,16 +31,16 @@ if TYPE_CHECKING:
 
 __all__ = ["SecondOrderWeights", "second_order"]
 
-# Cells that are covered but for a rounding of corners are whole.
+# Cells that are covered except for rounding errors of corners count as whole.
 _ROUNDING = 1e-9
-# Neighbors that lie in one line give no slope across it.
+# Neighbors on one line give no slope across it.
 _FLAT = 1e-9
 
 
 class _Slopes(NamedTuple):
     """What is added to weights of first order."""
 
-    # Of each entry of first order: how far its centroid is from that of the cell, and its weight.
+    # For each first-order entry: the offset of its centroid from that of the cell, by weight.
     offsets: Floats
     # Neighbors of each source cell, and their contributions to its slope.
     starts: Rows
@@ -76,7 +76,7 @@ class SecondOrderWeights(Weights):
 
     @classmethod
     def _with(cls, first: Weights, slopes: _Slopes) -> Self:
-        """Return weights of those of first order."""
+        """Return second-order weights from those of first order."""
         held = [sealed(a) for a in slopes[:4]]
         slopes = _Slopes(held[0], held[1], held[2], held[3], slopes.limited)
         a, b, c = (sealed(x) for x in _expanded(first, slopes))
@@ -118,7 +118,7 @@ class SecondOrderWeights(Weights):
         return self._first
 
     def _corrections(self, part: Floats) -> Floats:
-        """Return what slopes add to the target cells, (fields, ntarget)."""
+        """Return what the slopes add to target cells, (fields, ntarget)."""
         indptr, indices, values = self._first
         offsets, starts, neighbors, slopes, limited = self._slopes
         row = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))

@@ -40,8 +40,8 @@ class Weights(AreaWeights):
     values : ndarray of float64, shape (k,)
         The weights.
     fractions : ndarray of float64, shape (ntarget,)
-        The fraction of each target cell that source cells cover, without those that are masked;
-        0 for masked target cells.
+        The fraction of each target cell that unmasked source cells cover; 0 for masked target
+        cells.
     source_fractions : ndarray of float64, shape (nsource,)
         The same for source cells.
     source_areas, target_areas : ndarray of float64
@@ -56,7 +56,7 @@ class Weights(AreaWeights):
 
     Notes
     -----
-    Weights contain arrays and no grids, so their pickles are small.
+    Weights contain arrays but no grids, so their pickles are small.
 
     See Also
     --------
@@ -87,7 +87,7 @@ class Weights(AreaWeights):
 
     @property
     def order(self) -> int:
-        """2 if source cells have slopes, else 1; 1 of files."""
+        """2 if source cells have slopes, otherwise 1; weights from files have 1."""
         return 1
 
     @property
@@ -114,46 +114,47 @@ class Weights(AreaWeights):
         Parameters
         ----------
         source, target : Grid
-            The grids of the given and of the wanted fields.
+            The grids of the given fields and of the result.
         method : {"linear", "bilinear", "sibson", "laplace", "nearest", "binned", \
 "inverse_distance"}, optional
             How values at centers are combined:
 
             - "linear": in the triangles between centers
-            - "bilinear": between centers in rows and columns; toward a pole, to the mean of the
-              last row
+            - "bilinear": between centers in rows and columns; beyond the last row, toward its mean
+              at the pole
             - "sibson", "laplace": natural neighbors
             - "nearest": the value of the nearest center
-            - "binned": the mean over the source cells whose centers are nearest to that of the
-              target cell; none for others
+            - "binned": the mean of the source cells whose centers are nearest to that of the target
+              cell, if there are any
             - "inverse_distance": the nearest center and its neighbors in the Delaunay
-              triangulation, or the nearest `neighbors`, weighted by distances to the power of minus
-              `power`
+              triangulation, or the nearest `neighbors`, weighted by the inverse of the distance to
+              the power of `power`
         source_mask, target_mask : array_like of bool, optional
             True, or 1, for the cells to use.
         extrapolate : {"nan", "nearest"}, optional
             The values of target cells outside the centers.
         power : float, optional
-            Of "inverse_distance".
+            For "inverse_distance": the exponent.
         neighbors : int, optional
-            Of "inverse_distance": the number of centers, nearest first, with all that are as far as
-            the last of them, if they are within 90 degrees. By default those that the method names.
+            For "inverse_distance": the number of nearest centers to use, together with all others
+            at the same distance as the last of them, up to 90 degrees away. By default, the nearest
+            center and its Delaunay neighbors.
         workers : int, optional
             Maximum number of threads; by default one per core.
 
         Returns
         -------
         Weights
-            They sum to 1 for each target cell with a value. Integrals are not preserved: for those
-            use `Overlaps.to_weights`.
+            Weights that sum to 1 for each target cell with a value. They do not preserve integrals;
+            those of `Overlaps.to_weights` do.
 
         Raises
         ------
         InputError
-            An option is unknown, `power` or `neighbors` is not positive, `neighbors` has another
-            method, or "bilinear" has another source.
+            An option is unknown, `power` or `neighbors` is not positive, `neighbors` is given for
+            another method, or the source of "bilinear" has no rows and columns.
         ShapeError, DtypeError
-            A mask has another shape, or is not boolean.
+            A mask has the wrong shape, or is not boolean.
 
         See Also
         --------
@@ -223,7 +224,7 @@ class Weights(AreaWeights):
         layout : {"esmf", "scrip"}, optional
             Names of dimensions and variables: those of ESMF, or of SCRIP and CDO.
         source, target : Grid, optional
-            The grids, whose centers and corners are also written. NCO and CDO need them.
+            The grids, whose centers and corners are then also written. NCO and CDO need them.
         format : {"NETCDF4", "NETCDF3_64BIT_DATA"}, optional
             NetCDF-4, or CDF-5.
 
@@ -231,7 +232,7 @@ class Weights(AreaWeights):
         ------
         InputError
             `layout` or `format` is unknown, the weights are those of "majority" or limited, or a
-            grid has another number of cells.
+            grid has the wrong number of cells.
         MissingExtraError
             netCDF4 is not installed.
         OutputError
@@ -269,16 +270,16 @@ class Weights(AreaWeights):
         Raises
         ------
         FileFormatError
-            The file is not a map, a cell's number is out of range, or it has weights of second
-            order.
+            The file is not a map, the number of a cell is out of range, or its weights are of
+            second order.
         MissingExtraError
             netCDF4 is not installed.
 
         Notes
         -----
         Cells are numbered from 1 unless ``start_index`` or ``first_index`` says otherwise; the
-        numbers themselves are never used to guess. Entries of one pair are added. Weights of SCRIP
-        with the normalization "none" are areas, and become "conservative".
+        numbers themselves are never used to guess. Several entries of one pair of cells are added.
+        SCRIP's weights with the normalization "none" are areas, and become "conservative".
 
         Examples
         --------
