@@ -36,7 +36,7 @@ ROOT = Path(__file__).parents[1]
 # Wheels are linked with zig against the glibc that README.md promises.
 COMPATIBILITY = "manylinux_2_28"
 MACHINES = {"x86_64": "x86_64-unknown-linux-gnu", "aarch64": "aarch64-unknown-linux-gnu"}
-FREE_THREADED = ("python3.15t", "python3.14t")
+FREE_THREADED = ("3.15t", "3.14t")
 # What the commands on pages need of a shell. Nothing else is in the path of an environment.
 SHELL = ("sh", "mkdir", "env", "uname")
 # What is in the sdist and in no repository.
@@ -135,11 +135,28 @@ def build(source: Path, to: Path, machine: str, python: str) -> list[str]:
     return []
 
 
+def free_threaded() -> list[str]:
+    """Interpreters without a global lock, in the path or installed by uv; one for each version."""
+    found = []
+    for version in FREE_THREADED:
+        name = f"python{version}"
+        if not said_by(name, "-c", "print(1)"):
+            # It finds what is there, and downloads nothing.
+            name = said_by(sys.executable, "-m", "uv", "python", "find", version).strip()
+        found += [name] if name else []
+    return found
+
+
+def has_target(target: str) -> bool:
+    """Whether the compiler has the standard library for a target, from rustup or a distribution."""
+    folder = said_by("rustc", "--print", "target-libdir", "--target", target).strip()
+    return bool(folder) and any(Path(folder).glob("libstd-*"))
+
+
 def plans(rehearsal: Rehearsal) -> list[tuple[str, str]]:
     """The machine and the interpreter of each wheel that can be built; notes those that cannot."""
     here = platform.machine()
-    installed = said_by("rustup", "target", "list", "--installed").split()
-    free = [name for name in FREE_THREADED if said_by(name, "-c", "print(1)")]
+    free = free_threaded()
     found = [(here, python) for python in (sys.executable, *free)]
     for machine in sorted(set(MACHINES) - {here}):
         target = MACHINES[machine]
@@ -147,13 +164,13 @@ def plans(rehearsal: Rehearsal) -> list[tuple[str, str]]:
             why = (
                 "zig is missing: `pip install ziglang`; the wheel for this machine is not portable"
             )
-        elif target not in installed:
+        elif not has_target(target):
             why = f"its compiler is missing: `rustup target add {target}`"
         else:
             found.append((machine, sys.executable))
             why = ""
         rehearsal.leave_out(f"the wheel for {machine}", why)
-    why = "" if free else f"none of {', '.join(FREE_THREADED)} is installed"
+    why = "no Python 3.15t or 3.14t was found: `uv python install 3.14t`" if not free else ""
     rehearsal.leave_out("the wheel for Python without a global lock", why)
     why = "" if has("abi3audit") else "abi3audit is missing: `pip install abi3audit`"
     rehearsal.leave_out("the check of the stable ABI", why)

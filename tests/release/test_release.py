@@ -277,3 +277,34 @@ def test_a_rehearsal_says_what_it_leaves_out(monkeypatch: pytest.MonkeyPatch) ->
     made = rehearse.Rehearsal(Path(), Path())
     rehearse.plans(made)
     assert "rustup target add aarch64-unknown-linux-gnu" in made.left_out[0]
+    assert "uv python install 3.14t" in made.left_out[1]
+
+
+def test_a_rehearsal_builds_all_wheels_for_linux_that_it_can(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """For both processors, and free-threaded: an interpreter in the path, and one that uv has."""
+    rehearse = script("rehearse")
+    (tmp_path / "libstd-0123.rlib").touch()
+
+    def said_by(*command: str) -> str:
+        if command[0] == "rustc":
+            assert command[-1] == "aarch64-unknown-linux-gnu"
+            return f"{tmp_path}\n"
+        if command[:3] == (sys.executable, "-m", "uv"):
+            return "/uv/python3.15t\n" if command[-1] == "3.15t" else ""
+        return "1\n" if command[0] == "python3.14t" else ""
+
+    monkeypatch.setattr(rehearse, "said_by", said_by)
+    monkeypatch.setattr(rehearse, "has", lambda _: True)
+    monkeypatch.setattr(rehearse.platform, "machine", lambda: "x86_64")
+    made = rehearse.Rehearsal(Path(), Path())
+    assert rehearse.plans(made) == [
+        ("x86_64", sys.executable),
+        ("x86_64", "/uv/python3.15t"),
+        ("x86_64", "python3.14t"),
+        ("aarch64", sys.executable),
+    ]
+    assert made.left_out == []
+    (tmp_path / "libstd-0123.rlib").unlink()
+    assert ("aarch64", sys.executable) not in rehearse.plans(made)
