@@ -11,31 +11,16 @@ import typer
 from delone import __version__, distributed
 from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
-from delone.cli.options import Chord, Classes, Json, Layer, Quiet, Workers
 from delone.cli.outputs import write_all
-from delone.cli.referenced import Crs, Planar, require_known
+from delone.cli.referenced import require_known
 from delone.cli.report import Stopwatch
 from delone.cli.show import print_json, print_rows, spinner
 from delone.cli.surfaces import (
-    Boundary,
-    Breaklines,
-    Columns,
-    Crossing,
-    Duplicates,
-    EastingFirst,
-    MaxEdge,
-    Nodata,
-    Retriangulate,
-    SoftBreaklines,
-    Step,
     SurfaceOptions,
-    Tolerance,
-    Units,
-    Voids,
-    Window,
     figures_of,
     print_figures,
     surface,
+    with_surface,
 )
 from delone.io import input_suffixes, raster_suffixes
 from delone.io.raster import raster_writer
@@ -51,6 +36,7 @@ __all__ = ["dem"]
 _LIGHT = {"azimuth": 315.0, "altitude": 45.0, "z_factor": 1.0}
 
 
+@with_surface
 def dem(
     source: Annotated[
         Path,
@@ -96,29 +82,7 @@ def dem(
         str | None, typer.Option(help="Left, bottom, right, top; by default those of the points.")
     ] = None,
     value: Annotated[str, typer.Option(help="Column of the values of tiles.")] = "z",
-    breaklines: Breaklines = None,
-    soft_breaklines: SoftBreaklines = None,
-    boundary: Boundary = None,
-    max_edge: MaxEdge = None,
-    voids: Voids = False,
-    duplicates: Duplicates = "raise",
-    crossing: Crossing = "raise",
-    tolerance: Tolerance = 0.0,
-    chord: Chord = None,
-    step: Step = 1,
-    nodata: Nodata = None,
-    window: Window = None,
-    columns: Columns = None,
-    classes: Classes = None,
-    layer: Layer = None,
-    retriangulate: Retriangulate = False,
-    easting_first: EastingFirst = False,
-    crs: Crs = None,
-    units: Units = None,
-    planar: Planar = False,
-    workers: Workers = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
+    options: SurfaceOptions,
 ) -> None:
     """Make a raster of the surface of points: its heights, slope, aspect or hillshade.
 
@@ -126,25 +90,24 @@ def dem(
     or another column are written; of a file of points also what is computed from the slopes of the
     triangles.
     """
-    given = locals()
+    given = locals() | vars(options)
     cells = _numbers(resolution, "--resolution", (1, 2))
     box = None if bounds is None else _numbers(bounds, "--bounds", (4,))
     light = {name: given[name] for name in _LIGHT if given[name] is not None}
     what = _measure(given, light)
-    require_known(crs)
+    require_known(options.crs)
     size = (cells[0], cells[-1])
     if source.is_dir():
         _refuse_for_tiles(given, what)
-        _of_tiles(source, size, output, value=value, crs=crs, as_json=as_json, quiet=quiet)
+        _of_tiles(source, size, output, value, options)
         return
     if value != "z":
         raise Failure("--value is for tiles; name the heights with --columns x,y,z", Exit.USAGE)
-    options = SurfaceOptions.among(given)
     with writing():
         protect_inputs([output], source, *options.inputs())
         writers = {output: (raster_writer(output), check_target(output))[0]}
     watch = Stopwatch()
-    with spinner(quiet or as_json) as say:
+    with spinner(options.silent) as say:
         tin = surface(source, options, watch, say)
         with watch.stage(what):
             found = _raster(tin, what, {"resolution": size, "bounds": box} | light, say)
@@ -152,7 +115,7 @@ def dem(
         write_all(writers, found, watch, say, name=what, crs=tin.crs, units=unit)
     figures = figures_of(source, tin, [output]) | _figures(found, what)
     figures["stages"] = watch.rows(tin.npoints)
-    print_figures(source, figures, as_json=as_json, quiet=quiet)
+    print_figures(source, figures, as_json=options.as_json, quiet=options.quiet)
 
 
 def _measure(given: dict[str, Any], light: dict[str, Any]) -> str:
@@ -190,22 +153,19 @@ def _of_tiles(
     folder: Path,
     cells: tuple[float, float],
     output: Path,
-    *,
     value: str,
-    crs: str | None,
-    as_json: bool,
-    quiet: bool,
+    options: SurfaceOptions,
 ) -> None:
     with writing():
         check_target(output)
-    with reading(quiet=quiet):
+    with reading(quiet=options.quiet):
         found = distributed.open(folder)
-    with spinner(quiet or as_json) as say, writing():
+    with spinner(options.silent) as say, writing():
         say(f"interpolating {found.ntiles:,} tiles")
-        found.to_raster(cells, output, values=value, crs=crs)
-    if as_json:
+        found.to_raster(cells, output, values=value, crs=options.crs)
+    if options.as_json:
         print_json({"delone": __version__, "input": str(folder), "outputs": [str(output)]})
-    elif not quiet:
+    elif not options.quiet:
         print_rows(str(folder), [("cell", " x ".join(map(str, cells))), ("written", str(output))])
 
 

@@ -8,32 +8,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from delone.cli.exits import Exit, Failure, protect_inputs, writing
-from delone.cli.options import Chord, Classes, Json, Layer, Quiet, Workers
 from delone.cli.outputs import ready, write_all
-from delone.cli.referenced import Crs, Planar, require_known
+from delone.cli.referenced import require_known
 from delone.cli.report import Stopwatch
 from delone.cli.show import spinner
 from delone.cli.surfaces import (
-    Boundary,
-    Breaklines,
-    Columns,
-    Crossing,
-    Duplicates,
-    EastingFirst,
-    MaxEdge,
-    Nodata,
-    Retriangulate,
-    SoftBreaklines,
-    Step,
     SurfaceOptions,
     Survey,
-    Tolerance,
-    Units,
-    Voids,
-    Window,
     figures_of,
     print_figures,
     surface,
+    with_surface,
 )
 from delone.errors import InternalError
 from delone.terrain.simplifying import KEEP
@@ -44,6 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["simplify"]
 
 
+@with_surface
 def simplify(
     source: Survey,
     *,
@@ -66,29 +52,7 @@ def simplify(
             "--output", "-o", metavar="OUTPUT", help="Mesh to write, once or more: .ply .xml ..."
         ),
     ] = None,
-    breaklines: Breaklines = None,
-    soft_breaklines: SoftBreaklines = None,
-    boundary: Boundary = None,
-    max_edge: MaxEdge = None,
-    voids: Voids = False,
-    duplicates: Duplicates = "raise",
-    crossing: Crossing = "raise",
-    tolerance: Tolerance = 0.0,
-    chord: Chord = None,
-    step: Step = 1,
-    nodata: Nodata = None,
-    window: Window = None,
-    columns: Columns = None,
-    classes: Classes = None,
-    layer: Layer = None,
-    retriangulate: Retriangulate = False,
-    easting_first: EastingFirst = False,
-    crs: Crs = None,
-    units: Units = None,
-    planar: Planar = False,
-    workers: Workers = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
+    options: SurfaceOptions,
 ) -> None:
     """Leave out points of a surface up to an error that holds at all of them.
 
@@ -96,14 +60,13 @@ def simplify(
     """
     if (max_error is None) == (max_triangles is None):
         raise Failure("give one of --max-error and --max-triangles", Exit.USAGE)
-    options = SurfaceOptions.among(locals())
-    require_known(crs)
+    require_known(options.crs)
     with writing():
         protect_inputs(output or [], source, *options.inputs())
         writers = {path: ready(path) for path in output or []}
     watch = Stopwatch()
     goal: dict[str, Any] = {"max_error": max_error, "max_triangles": max_triangles}
-    with spinner(quiet or as_json) as say:
+    with spinner(options.silent) as say:
         tin = surface(source, options, watch, say)
         say("simplifying")
         with watch.stage("simplify"):
@@ -120,7 +83,7 @@ def simplify(
         "error": float(levels.errors[levels.triangles == small.nsimplex].min()),
         "stages": watch.rows(tin.npoints),
     }
-    print_figures(source, figures, as_json=as_json, quiet=quiet)
+    print_figures(source, figures, as_json=options.as_json, quiet=options.quiet)
 
 
 def _prove(levels: Simplification, goal: dict[str, Any]) -> None:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
 
 from delone import __version__
 from delone.cli.exits import Exit, Failure, reading
 from delone.cli.notes import noting
-from delone.cli.options import class_numbers, split
-from delone.cli.referenced import referenced
+from delone.cli.options import Chord, Classes, Json, Layer, Quiet, Workers, class_numbers, split
+from delone.cli.referenced import Crs, Planar, referenced
 from delone.cli.report import Stopwatch, peak_memory
 from delone.cli.show import print_json, print_report
 from delone.io import (
@@ -34,29 +36,15 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
 __all__ = [
-    "Boundary",
-    "Breaklines",
-    "Columns",
-    "Crossing",
-    "Duplicates",
-    "EastingFirst",
-    "MaxEdge",
-    "Nodata",
-    "Retriangulate",
-    "SoftBreaklines",
-    "Step",
     "SurfaceOptions",
     "Survey",
-    "Tolerance",
-    "Units",
-    "Voids",
-    "Window",
     "curves_of",
     "figures_of",
     "is_landxml",
     "other_surface",
     "print_figures",
     "surface",
+    "with_surface",
 ]
 
 Survey = Annotated[
@@ -122,40 +110,68 @@ EastingFirst = Annotated[
 
 @dataclass(frozen=True, kw_only=True)
 class SurfaceOptions:
-    """How a surface is made of files."""
+    """How a surface is made of files, and what is printed: each field is an option of commands."""
 
-    chord: float | None
-    step: int
-    nodata: float | None
-    window: str | None
-    columns: str | None
-    classes: str | None
-    layer: str | None
-    retriangulate: bool
-    easting_first: bool
-    breaklines: Path | None
-    soft_breaklines: Path | None
-    boundary: Path | None
-    max_edge: float | None
-    voids: bool
-    duplicates: str
-    crossing: str
-    tolerance: float
-    crs: str | None
-    units: str | None
-    planar: bool
-    workers: int | None
-    quiet: bool
+    breaklines: Breaklines = None
+    soft_breaklines: SoftBreaklines = None
+    boundary: Boundary = None
+    max_edge: MaxEdge = None
+    voids: Voids = False
+    duplicates: Duplicates = "raise"
+    crossing: Crossing = "raise"
+    tolerance: Tolerance = 0.0
+    chord: Chord = None
+    step: Step = 1
+    nodata: Nodata = None
+    window: Window = None
+    columns: Columns = None
+    classes: Classes = None
+    layer: Layer = None
+    retriangulate: Retriangulate = False
+    easting_first: EastingFirst = False
+    crs: Crs = None
+    units: Units = None
+    planar: Planar = False
+    workers: Workers = None
+    as_json: Json = False
+    quiet: Quiet = False
 
-    @classmethod
-    def among(cls, given: dict[str, Any]) -> SurfaceOptions:
-        """Select the options among the arguments of a command."""
-        return cls(**{each.name: given[each.name] for each in fields(cls)})
+    @property
+    def silent(self) -> bool:
+        """Whether no progress is shown."""
+        return self.quiet or self.as_json
 
     def inputs(self) -> list[Path]:
         """The files of lines."""
         lines = (self.breaklines, self.soft_breaklines, self.boundary)
         return [path for path in lines if path is not None]
+
+
+def with_surface(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options of surfaces, which it takes together as `options`."""
+    hints = get_type_hints(SurfaceOptions, include_extras=True)
+    shared = {
+        each.name: inspect.Parameter(
+            each.name,
+            inspect.Parameter.KEYWORD_ONLY,
+            default=each.default,
+            annotation=hints[each.name],
+        )
+        for each in fields(SurfaceOptions)
+    }
+    signature = inspect.signature(command, eval_str=True)
+    own = {name: each for name, each in signature.parameters.items() if name != "options"}
+
+    @functools.wraps(command)
+    def run(**given: Any) -> None:
+        options = SurfaceOptions(**{name: given.pop(name) for name in shared})
+        command(**given, options=options)
+
+    parameters = own | shared
+    # What typer reads.
+    run.__signature__ = signature.replace(parameters=list(parameters.values()))  # type: ignore[attr-defined]
+    run.__annotations__ = {name: each.annotation for name, each in parameters.items()}
+    return run
 
 
 def curves_of(path: Path, chord: float | None, *, aligned: bool = False) -> dict[str, Any]:

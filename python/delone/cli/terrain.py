@@ -13,7 +13,6 @@ import typer
 from delone.atomic import check_target, replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
-from delone.cli.options import Chord, Classes, Json, Layer, Quiet, Workers
 from delone.cli.profiles import (
     PROFILE_SUFFIXES,
     SectionOptions,
@@ -31,33 +30,19 @@ from delone.cli.quantities import (
     volume_rows,
     write_rows,
 )
-from delone.cli.referenced import Crs, Planar, require_known
+from delone.cli.referenced import require_known
 from delone.cli.report import Stopwatch
 from delone.cli.show import spinner
 from delone.cli.surfaces import (
-    Boundary,
-    Breaklines,
-    Columns,
-    Crossing,
-    Duplicates,
-    EastingFirst,
-    MaxEdge,
-    Nodata,
-    Retriangulate,
-    SoftBreaklines,
-    Step,
     SurfaceOptions,
     Survey,
-    Tolerance,
-    Units,
-    Voids,
-    Window,
     curves_of,
     figures_of,
     is_landxml,
     other_surface,
     print_figures,
     surface,
+    with_surface,
 )
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
 from delone.extras import require
@@ -83,6 +68,7 @@ Output = Annotated[
 ]
 
 
+@with_surface
 def contours(
     source: Survey,
     *,
@@ -120,29 +106,7 @@ def contours(
         int, typer.Option(help="Maximum number of points of all contours.")
     ] = MOST,
     output: Output = None,
-    breaklines: Breaklines = None,
-    soft_breaklines: SoftBreaklines = None,
-    boundary: Boundary = None,
-    max_edge: MaxEdge = None,
-    voids: Voids = False,
-    duplicates: Duplicates = "raise",
-    crossing: Crossing = "raise",
-    tolerance: Tolerance = 0.0,
-    chord: Chord = None,
-    step: Step = 1,
-    nodata: Nodata = None,
-    window: Window = None,
-    columns: Columns = None,
-    classes: Classes = None,
-    layer: Layer = None,
-    retriangulate: Retriangulate = False,
-    easting_first: EastingFirst = False,
-    crs: Crs = None,
-    units: Units = None,
-    planar: Planar = False,
-    workers: Workers = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
+    options: SurfaceOptions,
 ) -> None:
     """Compute contour lines, or the polygons between them, of points with heights."""
     wanted = None if levels is None else _numbers(levels, "--levels")
@@ -154,14 +118,13 @@ def contours(
         raise Failure("--label-length needs --labels", Exit.USAGE)
     if labels is not None and bands:
         raise Failure("--labels is for lines, not for --bands", Exit.USAGE)
-    options = SurfaceOptions.among(locals())
     _check(output or [], source, options, bands=bands)
     if labels is not None:
         with writing():
             protect_inputs([labels, *(output or [])], source, *options.inputs())
             ready_table(labels, "labels")
     watch = Stopwatch()
-    with spinner(quiet or as_json) as say:
+    with spinner(options.silent) as say:
         tin = surface(source, options, watch, say)
         say("computing contours")
         with watch.stage("contours"):
@@ -203,9 +166,10 @@ def contours(
         "lines_too_short_for_a_label": None if texts is None else texts.short,
         "stages": watch.rows(tin.npoints),
     }
-    print_figures(source, figures, as_json=as_json, quiet=quiet)
+    print_figures(source, figures, as_json=options.as_json, quiet=options.quiet)
 
 
+@with_surface
 def profile(
     source: Survey,
     line: Annotated[Path, typer.Argument(metavar="LINE", help="File with one line.")],
@@ -244,57 +208,35 @@ def profile(
             help="File to write, once or more: " + " ".join(PROFILE_SUFFIXES),
         ),
     ] = None,
-    breaklines: Breaklines = None,
-    soft_breaklines: SoftBreaklines = None,
-    boundary: Boundary = None,
-    max_edge: MaxEdge = None,
-    voids: Voids = False,
-    duplicates: Duplicates = "raise",
-    crossing: Crossing = "raise",
-    tolerance: Tolerance = 0.0,
-    chord: Chord = None,
-    step: Step = 1,
-    nodata: Nodata = None,
-    window: Window = None,
-    columns: Columns = None,
-    classes: Classes = None,
-    layer: Layer = None,
-    retriangulate: Retriangulate = False,
-    easting_first: EastingFirst = False,
-    crs: Crs = None,
-    units: Units = None,
-    planar: Planar = False,
-    workers: Workers = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
+    options: SurfaceOptions,
 ) -> None:
     """Compute the heights of surfaces along a line, or in cross sections: a table or a drawing.
 
     Lines and boundary are those of the first surface.
     """
-    options = SurfaceOptions.among(locals())
     wanted = SectionOptions.among(locals())
-    require_known(crs)
+    require_known(options.crs)
     ready_profile(output or [], [source, line, *(other or []), *options.inputs()], wanted)
     watch = Stopwatch()
-    with spinner(quiet or as_json) as say:
-        with reading(quiet=quiet):
-            along = read_geometries(line, **curves_of(line, chord, aligned=True))
+    with spinner(options.silent) as say:
+        with reading(quiet=options.quiet):
+            along = read_geometries(line, **curves_of(line, options.chord, aligned=True))
         files, aligned = [line, *(other or [])], is_landxml(line)
         tin = surface(source, options, watch, say, others=files, aligned=aligned)
         others = {
-            name: other_surface(path, replace(options, layer=own or layer), watch, say)
+            name: other_surface(path, replace(options, layer=own or options.layer), watch, say)
             for name, path, own in named_files(source, other or [], other_layer or [])
         }
         say("computing the profile")
-        with watch.stage("profile"), noting(quiet=quiet):
+        with watch.stage("profile"), noting(quiet=options.quiet):
             found = wanted.of(tin, along, others, name_of(source))
         write_profile(found, output or [], watch, wanted)
     figures = figures_of(source, tin, output) | profile_figures(found)
     figures["stages"] = watch.rows(tin.npoints)
-    print_figures(source, figures, as_json=as_json, quiet=quiet)
+    print_figures(source, figures, as_json=options.as_json, quiet=options.quiet)
 
 
+@with_surface
 def volume(
     source: Survey,
     other: Annotated[
@@ -322,65 +264,48 @@ def volume(
     other_layer: Annotated[
         str | None, typer.Option(help="Layer or surface of OTHER, if not that of --layer.")
     ] = None,
-    breaklines: Breaklines = None,
-    soft_breaklines: SoftBreaklines = None,
-    boundary: Boundary = None,
-    max_edge: MaxEdge = None,
-    voids: Voids = False,
-    duplicates: Duplicates = "raise",
-    crossing: Crossing = "raise",
-    tolerance: Tolerance = 0.0,
-    chord: Chord = None,
-    step: Step = 1,
-    nodata: Nodata = None,
-    window: Window = None,
-    columns: Columns = None,
-    classes: Classes = None,
-    layer: Layer = None,
-    retriangulate: Retriangulate = False,
-    easting_first: EastingFirst = False,
-    crs: Crs = None,
-    units: Units = None,
-    planar: Planar = False,
-    workers: Workers = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
+    options: SurfaceOptions,
 ) -> None:
     """Compute the volumes to cut and to fill between a surface and a height or another surface.
 
     Lines and boundary are those of the first surface.
     """
-    options = SurfaceOptions.among(locals())
     if region is not None and regions is not None:
         raise Failure("--region is one volume, --regions has a row for each: give one", Exit.USAGE)
     if regions is None and (output or regions_layer is not None):
         raise Failure("--output and --regions-layer need --regions", Exit.USAGE)
-    require_known(crs)
+    require_known(options.crs)
     polygons = [path for path in (region, regions) if path is not None]
     ready_rows(output or [], [source, Path(other), *polygons, *options.inputs()])
     watch = Stopwatch()
-    with spinner(quiet or as_json) as say:
-        with reading(quiet=quiet):
-            within = None if region is None else read_geometries(region, **curves_of(region, chord))
+    with spinner(options.silent) as say:
+        with reading(quiet=options.quiet):
+            within = (
+                None
+                if region is None
+                else read_geometries(region, **curves_of(region, options.chord))
+            )
             lots = None if regions is None else read_regions(regions, regions_layer, options)
         tin = surface(source, options, watch, say, others=[Path(other), *polygons])
         within_other = replace(options, layer=other_layer or options.layer)
         goal = _goal(other, within_other, watch, say)
         say("computing volumes")
-        with watch.stage("volume"), noting(quiet=quiet):
+        with watch.stage("volume"), noting(quiet=options.quiet):
             found: Volume | Volumes
             if lots is None:
                 found = tin.volume_to(goal, region=within)
             else:
                 found = tin.volumes_to(goal, lots)
         if isinstance(found, Volumes) and lots is not None:
-            write_rows(found, lots, output or [], watch, quiet=quiet)
+            write_rows(found, lots, output or [], watch, quiet=options.quiet)
     figures = figures_of(source, tin, output) | volume_figures(found)
     figures["stages"] = watch.rows(tin.npoints)
     units_of = dict.fromkeys(("cut", "fill", "net"), found.volume_units)
     units_of |= dict.fromkeys(("cut_area", "fill_area", "area"), found.area_units)
     more = volume_rows(found, lots)
-    print_figures(source, figures, as_json=as_json, quiet=quiet, of=units_of, more=more)
+    print_figures(
+        source, figures, as_json=options.as_json, quiet=options.quiet, of=units_of, more=more
+    )
 
 
 def _numbers(text: str, option: str) -> list[float]:
