@@ -52,7 +52,18 @@ _REGULAR = {
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class RegularReport(ValidationReport):
+class _Weighted:
+    """What reports of regular triangulations have in every dimension."""
+
+    hidden: NDArray[np.integer] = field(default_factory=no_rows)
+    duplicates: NDArray[np.integer] = field(default_factory=no_rows)
+
+    _SUBJECT: ClassVar[str] = "a canonical regular triangulation"
+
+
+# Fields of the last base are the first.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RegularReport(_Weighted, ValidationReport):
     """The result of ``RegularTriangulation.validate()``: truthy if the triangulation is correct.
 
     The fields are those of `ValidationReport`, with these changes: `missing` has points outside all
@@ -75,15 +86,11 @@ class RegularReport(ValidationReport):
     a canonical regular triangulation
     """
 
-    hidden: NDArray[np.integer] = field(default_factory=no_rows)
-    duplicates: NDArray[np.integer] = field(default_factory=no_rows)
-
-    _SUBJECT: ClassVar[str] = "a canonical regular triangulation"
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = SENTENCES | _REGULAR
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class RegularSpaceReport(SpaceReport):
+class RegularSpaceReport(_Weighted, SpaceReport):
     """The result of ``RegularTriangulation.validate()`` in 3-D.
 
     The fields are those of `SpaceReport`, with the changes of `RegularReport`. Two more:
@@ -103,15 +110,11 @@ class RegularSpaceReport(SpaceReport):
     True
     """
 
-    hidden: NDArray[np.integer] = field(default_factory=no_rows)
-    duplicates: NDArray[np.integer] = field(default_factory=no_rows)
-
-    _SUBJECT: ClassVar[str] = RegularReport._SUBJECT
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {**SpaceReport._SENTENCES, **_REGULAR}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class RegularHigherReport(HigherReport):
+class RegularHigherReport(_Weighted, HigherReport):
     """The result of ``RegularTriangulation.validate()`` in more than three dimensions.
 
     The fields are those of `HigherReport`, with the changes of `RegularReport`. Two more:
@@ -132,10 +135,6 @@ class RegularHigherReport(HigherReport):
     True
     """
 
-    hidden: NDArray[np.integer] = field(default_factory=no_rows)
-    duplicates: NDArray[np.integer] = field(default_factory=no_rows)
-
-    _SUBJECT: ClassVar[str] = RegularReport._SUBJECT
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {**HigherReport._SENTENCES, **_REGULAR}
 
 

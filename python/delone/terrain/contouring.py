@@ -20,6 +20,7 @@ from delone.extras import require
 from delone.immutable import ReadOnly, sealed
 from delone.renames import renamed
 from delone.terrain.labeling import Labels, labels_of
+from delone.terrain.layer import Layer
 from delone.terrain.slivers import drawn
 from delone.terrain.small import Rings, ring_areas, without_small
 from delone.terrain.surface import on_surface
@@ -45,7 +46,7 @@ _LEVELS = 1_000_000
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Contours(ReadOnly, Filed):
+class Contours(ReadOnly, Filed, Layer):
     """Contour lines, in the order of their levels.
 
     Parameters
@@ -72,6 +73,10 @@ class Contours(ReadOnly, Filed):
     units : str, optional
         The unit of heights.
 
+    Notes
+    -----
+    The columns of `to_geopandas` are ``level``, ``index`` and the geometry.
+
     Examples
     --------
     >>> from delone.terrain import TIN
@@ -92,6 +97,7 @@ class Contours(ReadOnly, Filed):
     crs: str | None = None
     units: str | None = None
 
+    _ELEMENTS: ClassVar[str] = "lines"
     _SAVES_CRS: ClassVar[bool] = True
 
     def _saved(self) -> dict[str, NDArray[Any]]:
@@ -265,41 +271,11 @@ class Contours(ReadOnly, Filed):
 
         return to_pyvista(self._parts())
 
-    def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
-        """Return a table of the lines (extra ``geo``).
+    def _geometries(self) -> NDArray[Any]:
+        return self.to_shapely()
 
-        Parameters
-        ----------
-        data : DataFrame or mapping, optional
-            Columns to include, with one row for each line. The geometry of a GeoDataFrame is
-            replaced, its reference system and index are kept.
-        crs : optional
-            Reference system; by default that of the surface.
-
-        Returns
-        -------
-        geopandas.GeoDataFrame
-            One row for each line: ``level``, ``index`` (whether it is an index contour), geometry.
-
-        Raises
-        ------
-        MissingExtraError
-            geopandas is not installed.
-        InputError
-            `data` does not have one row for each line.
-
-        Examples
-        --------
-        >>> from delone.terrain import TIN
-        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
-        >>> tin.contours(interval=2).to_geopandas().level.tolist()
-        [2.0, 4.0, 6.0, 8.0]
-        """
-        from delone.exchange.geopandas import beside
-
-        own = self.crs if crs is None else crs
-        columns = {"level": self.level, "index": self.index}
-        return beside(self.to_shapely(), data, own, columns=columns, of="lines")
+    def _fields(self) -> dict[str, Any]:
+        return {"level": self.level, "index": self.index}
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Plot the lines, index contours wider (extra ``plot``).
@@ -342,7 +318,7 @@ class Contours(ReadOnly, Filed):
 
 @renamed(rings="ring_starts", polygons="polygon_starts")
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Bands(ReadOnly, Filed):
+class Bands(ReadOnly, Filed, Layer):
     """The areas between contours, in the order of their heights.
 
     Parameters
@@ -367,6 +343,10 @@ class Bands(ReadOnly, Filed):
     units : str, optional
         The unit of heights.
 
+    Notes
+    -----
+    The columns of `to_geopandas` are ``low``, ``high`` and the geometry.
+
     Examples
     --------
     >>> from delone.terrain import TIN
@@ -386,6 +366,7 @@ class Bands(ReadOnly, Filed):
     crs: str | None = None
     units: str | None = None
 
+    _ELEMENTS: ClassVar[str] = "polygons"
     _SAVES_CRS: ClassVar[bool] = True
 
     def _saved(self) -> dict[str, NDArray[Any]]:
@@ -463,41 +444,11 @@ class Bands(ReadOnly, Filed):
         )
         return found
 
-    def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
-        """Return a table of the polygons (extra ``geo``).
+    def _geometries(self) -> NDArray[Any]:
+        return self.to_shapely()
 
-        Parameters
-        ----------
-        data : DataFrame or mapping, optional
-            Columns to include, with one row for each polygon. The geometry of a GeoDataFrame is
-            replaced, its reference system and index are kept.
-        crs : optional
-            Reference system; by default that of the surface.
-
-        Returns
-        -------
-        geopandas.GeoDataFrame
-            One row for each polygon: ``low``, ``high``, geometry.
-
-        Raises
-        ------
-        MissingExtraError
-            geopandas is not installed.
-        InputError
-            `data` does not have one row for each polygon.
-
-        Examples
-        --------
-        >>> from delone.terrain import TIN
-        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
-        >>> tin.bands([2.0]).to_geopandas().high.tolist()
-        [2.0, 8.0]
-        """
-        from delone.exchange.geopandas import beside
-
-        own = self.crs if crs is None else crs
-        columns = {"low": self.low, "high": self.high}
-        return beside(self.to_shapely(), data, own, columns=columns, of="polygons")
+    def _fields(self) -> dict[str, Any]:
+        return {"low": self.low, "high": self.high}
 
 
 def _arrays_of(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -14,9 +14,12 @@ from delone.counting import counted
 from delone.errors import InputError
 from delone.extras import require
 from delone.immutable import ReadOnly
+from delone.terrain.layer import Layer
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from numpy.typing import NDArray
 
     from delone._types import Bools, Floats, Rows
 
@@ -29,7 +32,7 @@ _MOST = 1_000_000
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Labels(ReadOnly):
+class Labels(ReadOnly, Layer):
     """Where the labels of contours are, and what they say.
 
     Parameters
@@ -54,6 +57,11 @@ class Labels(ReadOnly):
     crs : str, optional
         Coordinate reference system.
 
+    Notes
+    -----
+    The columns of `to_geopandas` are ``level``, ``index``, ``text``, ``angle``, ``line`` and the
+    geometry, a point.
+
     Examples
     --------
     >>> from delone.terrain import TIN
@@ -75,6 +83,8 @@ class Labels(ReadOnly):
     short: int = 0
     crs: str | None = None
 
+    _ELEMENTS: ClassVar[str] = "labels"
+
     def __len__(self) -> int:
         return len(self.text)
 
@@ -82,47 +92,14 @@ class Labels(ReadOnly):
         short = counted(self.short, "line")
         return f"<Labels of contours: {counted(len(self), 'label')}, {short} too short>"
 
-    def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
-        """Return a table of the labels as points, for a map (extra ``geo``).
-
-        Parameters
-        ----------
-        data : DataFrame or mapping, optional
-            Columns to include, with one row for each label.
-        crs : optional
-            Reference system; by default that of the surface.
-
-        Returns
-        -------
-        geopandas.GeoDataFrame
-            One row for each label: ``level``, ``index``, ``text``, ``angle``, ``line``, geometry.
-
-        Raises
-        ------
-        MissingExtraError
-            geopandas is not installed.
-        InputError
-            `data` does not have one row for each label.
-
-        Examples
-        --------
-        >>> from delone.terrain import TIN
-        >>> tin = TIN.from_points([(0, 0, 0), (40, 0, 0), (40, 40, 8), (0, 40, 8)])
-        >>> tin.contours([3]).labels(length=5).to_geopandas()[["text", "angle"]].values.tolist()
-        [['3', 0.0]]
-        """
-        from delone.exchange.geopandas import beside
-
+    def _geometries(self) -> NDArray[Any]:
         shapely = require("shapely", extra="geo", what="geometries")
-        own = self.crs if crs is None else crs
-        columns = {
-            "level": self.level,
-            "index": self.index,
-            "text": list(self.text),
-            "angle": self.angle,
-            "line": self.line,
-        }
-        return beside(shapely.points(self.points), data, own, columns=columns, of="labels")
+        found: NDArray[Any] = shapely.points(self.points)
+        return found
+
+    def _fields(self) -> dict[str, Any]:
+        names = ("level", "index", "text", "angle", "line")
+        return {name: getattr(self, name) for name in names} | {"text": list(self.text)}
 
 
 def labels_of(

@@ -9,7 +9,7 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass
 from functools import reduce
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from delone.georeference import caller_level
 from delone.immutable import ReadOnly, sealed
 from delone.measures import sizes
 from delone.plane.geometry import total
+from delone.terrain.layer import Layer
 from delone.terrain.lines import LOOSE, rings_by_feature
 from delone.terrain.volumes import Region, goal_of, region_of
 from delone.units import area_units, volume_units
@@ -43,7 +44,7 @@ _COLUMNS = ("cut", "fill", "net", "area", "coverage", "cut_area", "fill_area", "
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Volumes(ReadOnly):
+class Volumes(ReadOnly, Layer):
     """The volumes between two surfaces in each polygon of a layer, one row for each.
 
     Parameters
@@ -62,6 +63,10 @@ class Volumes(ReadOnly):
         The unit of heights. Volumes are in this unit times the unit of x and y squared.
     crs : str, optional
         Coordinate reference system.
+
+    Notes
+    -----
+    The columns of `to_geopandas` are those of `to_pandas` and the geometry, the polygon.
 
     Examples
     --------
@@ -84,6 +89,8 @@ class Volumes(ReadOnly):
     rings: tuple[tuple[Ring, ...], ...]
     units: str | None = None
     crs: str | None = None
+
+    _ELEMENTS: ClassVar[str] = "regions"
 
     def __len__(self) -> int:
         return len(self.cut)
@@ -157,47 +164,16 @@ class Volumes(ReadOnly):
         """
         from delone.exchange.geopandas import columns_beside
 
-        return columns_beside({name: getattr(self, name) for name in _COLUMNS}, data, of="regions")
+        return columns_beside(self._fields(), data, of="regions")
 
-    def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
-        """Return a table of the polygons with their volumes (extra ``geo``).
-
-        Parameters
-        ----------
-        data : DataFrame or mapping, optional
-            Columns to include, with one row for each polygon. The geometry of a GeoDataFrame is
-            replaced, its index is kept.
-        crs : optional
-            Reference system; by default that of the surface, in which the polygons are.
-
-        Returns
-        -------
-        geopandas.GeoDataFrame
-            The columns of `to_pandas`, and the geometry.
-
-        Raises
-        ------
-        MissingExtraError
-            geopandas or shapely is not installed.
-        InputError
-            As for `to_pandas`.
-
-        Examples
-        --------
-        >>> from delone.terrain import TIN
-        >>> ground = TIN.from_points([(0, 0, 2), (4, 0, 2), (4, 4, 2), (0, 4, 2)])
-        >>> found = ground.volumes_to(1.0, [[(0, 0), (2, 0), (2, 2), (0, 2)]])
-        >>> found.to_geopandas().geometry[0].wkt
-        'POLYGON ((0 0, 2 0, 2 2, 0 2, 0 0))'
-        """
-        from delone.exchange.geopandas import beside
-
+    def _geometries(self) -> NDArray[Any]:
         shapes = np.empty(len(self), dtype=object)
         for row, rings in enumerate(self.rings):
             shapes[row] = _geometry(rings)
-        own = self.crs if crs is None else crs
-        columns = {name: getattr(self, name) for name in _COLUMNS}
-        return beside(shapes, data, own, columns=columns, of="regions")
+        return shapes
+
+    def _fields(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in _COLUMNS}
 
 
 def _geometry(rings: tuple[Ring, ...]) -> Any:

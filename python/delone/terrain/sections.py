@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -15,12 +15,13 @@ from delone.counting import counted
 from delone.errors import BudgetExceededError, DtypeError, InputError
 from delone.extras import require
 from delone.immutable import ReadOnly, sealed
+from delone.terrain.layer import Layer
 from delone.terrain.lines import line_of
 from delone.terrain.profiles import profile
 from delone.terrain.volumes import goal_of
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from delone._types import Floats, Rows
     from delone.terrain.surface import Surface
@@ -149,7 +150,7 @@ class Profiles(ReadOnly):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class CrossSections(ReadOnly):
+class CrossSections(ReadOnly, Layer):
     """Profiles across an alignment, one for each station.
 
     Parameters
@@ -166,6 +167,10 @@ class CrossSections(ReadOnly):
         The heights along each section, from left to right.
     crs, units : str, optional
         The reference system, and the unit of heights.
+
+    Notes
+    -----
+    The columns of `to_geopandas` are ``station`` and the geometry, the line from left to right.
 
     Examples
     --------
@@ -186,6 +191,8 @@ class CrossSections(ReadOnly):
     sections: tuple[Profiles, ...]
     crs: str | None = None
     units: str | None = None
+
+    _ELEMENTS: ClassVar[str] = "sections"
 
     def __len__(self) -> int:
         return len(self.stations)
@@ -257,42 +264,13 @@ class CrossSections(ReadOnly):
         own |= dict(zip(self.sections[0].names, heights.T, strict=True)) | {"x": x, "y": y}
         return columns_beside(own, data, of="sections", repeats=sizes)
 
-    def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
-        """Return the lines of the sections in plan (extra ``geo``).
-
-        Parameters
-        ----------
-        data : DataFrame or mapping, optional
-            Columns to include, with one row for each section.
-        crs : optional
-            Reference system; by default that of the surface.
-
-        Returns
-        -------
-        geopandas.GeoDataFrame
-            One row for each section: ``station``, and its line from left to right.
-
-        Raises
-        ------
-        MissingExtraError
-            geopandas is not installed.
-        InputError
-            `data` does not have one row for each section.
-
-        Examples
-        --------
-        >>> from delone.terrain import TIN
-        >>> ground = TIN.from_points([(0, 0, 0), (90, 0, 0), (90, 90, 9), (0, 90, 9)])
-        >>> table = ground.cross_sections([(20, 20), (80, 20)], interval=60, left=5).to_geopandas()
-        >>> table.geometry[0].wkt
-        'LINESTRING (20 25, 20 15)'
-        """
-        from delone.exchange.geopandas import beside
-
+    def _geometries(self) -> NDArray[Any]:
         shapely = require("shapely", extra="geo", what="geometries")
-        own = self.crs if crs is None else crs
-        shapes = shapely.linestrings(self.ends)
-        return beside(shapes, data, own, columns={"station": self.stations}, of="sections")
+        found: NDArray[Any] = shapely.linestrings(self.ends)
+        return found
+
+    def _fields(self) -> dict[str, Any]:
+        return {"station": self.stations}
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Plot the sections in plan, with their stations (extra ``plot``).
