@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from delone.cli.exits import Exit, Failure, protect_inputs, writing
+from delone.cli.options import outputs
 from delone.cli.outputs import ready, write_all
 from delone.cli.referenced import require_known
 from delone.cli.report import Stopwatch
@@ -46,12 +47,7 @@ def simplify(
     prove: Annotated[
         bool, typer.Option("--prove", help="Prove the error by exact arithmetic.")
     ] = False,
-    output: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--output", "-o", metavar="OUTPUT", help="Mesh to write, once or more: .ply .xml ..."
-        ),
-    ] = None,
+    output: Annotated[list[Path] | None, outputs("Mesh to write", (".ply", ".xml", "..."))] = None,
     options: SurfaceOptions,
 ) -> None:
     """Leave out points of a surface up to an error that holds at all of them.

@@ -13,6 +13,7 @@ import typer
 from delone.atomic import check_target, replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
+from delone.cli.options import outputs
 from delone.cli.profiles import (
     PROFILE_SUFFIXES,
     SectionOptions,
@@ -57,16 +58,6 @@ if TYPE_CHECKING:
 
 __all__ = ["contours", "profile", "volume"]
 
-Output = Annotated[
-    list[Path] | None,
-    typer.Option(
-        "--output",
-        "-o",
-        metavar="OUTPUT",
-        help="File to write, once or more: " + " ".join([*TABLE_SUFFIXES, ".dxf"]),
-    ),
-]
-
 
 @with_surface
 def contours(
@@ -105,7 +96,9 @@ def contours(
     max_points: Annotated[
         int, typer.Option(help="Maximum number of points of all contours.")
     ] = MOST,
-    output: Output = None,
+    output: Annotated[
+        list[Path] | None, outputs("File to write", [*TABLE_SUFFIXES, ".dxf"])
+    ] = None,
     options: SurfaceOptions,
 ) -> None:
     """Compute contour lines, or the polygons between them, of points with heights."""
@@ -199,15 +192,7 @@ def profile(
     text_height: Annotated[
         float | None, typer.Option(help="Height of texts in DXF drawings, in their units.")
     ] = None,
-    output: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="OUTPUT",
-            help="File to write, once or more: " + " ".join(PROFILE_SUFFIXES),
-        ),
-    ] = None,
+    output: Annotated[list[Path] | None, outputs("File to write", PROFILE_SUFFIXES)] = None,
     options: SurfaceOptions,
 ) -> None:
     """Compute the heights of surfaces along a line, or in cross sections: a table or a drawing.
@@ -253,13 +238,7 @@ def volume(
         str | None, typer.Option(help="Layer of the file of --regions, if it has several.")
     ] = None,
     output: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="OUTPUT",
-            help="File for the rows of --regions, once or more: " + " ".join(ROW_SUFFIXES),
-        ),
+        list[Path] | None, outputs("File for the rows of --regions", ROW_SUFFIXES)
     ] = None,
     other_layer: Annotated[
         str | None, typer.Option(help="Layer or surface of OTHER, if not that of --layer.")
