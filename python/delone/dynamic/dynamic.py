@@ -9,6 +9,7 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_choice, as_limit, as_workers
+from delone.complex import Filed
 from delone.constrained import ConstrainedDelaunay
 from delone.counting import counted
 from delone.delaunay import Delaunay
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["Dynamic"]
 
 
-class Dynamic(Measured):
+class Dynamic(Measured, Filed):
     """A 2-D or 3-D Delaunay triangulation with points that can be inserted, removed and moved.
 
     Parameters
@@ -454,50 +455,12 @@ class Dynamic(Measured):
             self._system = draft._system
         return taken
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the current state to an .npz file, atomically.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The file. No suffix is added.
-
-        Raises
-        ------
-        OSError
-            The file cannot be written, or is not a regular file; an existing file is not changed.
-        TypeError
-            `path` is not a path. File objects are not accepted.
-
-        See Also
-        --------
-        load : The inverse.
-
-        Notes
-        -----
-        The file contains points, segments and their handles, from which `load` triangulates again.
-        It does not contain snapshots, which can be pickled.
-
-        Examples
-        --------
-        >>> import os, tempfile
-        >>> from delone import Dynamic
-        >>> live = Dynamic([(0, 0), (1, 0), (0, 1), (1, 1)])
-        >>> live.remove([0])
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     path = os.path.join(folder, "live.npz")
-        ...     live.save(path)
-        ...     Dynamic.load(path).handles
-        array([1, 2, 3])
-        """
-        from delone import archive
-
-        system = {} if self._system is None else {"crs": np.array(self._system)}
-        archive.write(path, self._state().arrays() | system, Dynamic.__name__)
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        return self._state().arrays()
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], *, max_handles: int | None = None) -> Self:
-        """Read a file that `save` wrote.
+        """Read a file that `save` wrote: points, segments and their handles, without snapshots.
 
         Parameters
         ----------
@@ -523,9 +486,21 @@ class Dynamic(Measured):
         TypeError
             `path` is not a path. File objects are not accepted.
 
+        Notes
+        -----
+        The points and segments are triangulated again. Snapshots can be pickled.
+
         Examples
         --------
-        See `save`.
+        >>> import os, tempfile
+        >>> from delone import Dynamic
+        >>> live = Dynamic([(0, 0), (1, 0), (0, 1), (1, 1)])
+        >>> live.remove([0])
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = os.path.join(folder, "live.npz")
+        ...     live.save(path)
+        ...     Dynamic.load(path).handles
+        array([1, 2, 3])
         """
         from delone import archive
 
