@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     # Names and seconds; a dictionary is made when it is asked for.
     Stages = dict[str, float] | tuple[tuple[str, float], ...]
 
-__all__ = ["Complex", "Exchanged", "Filed", "Referenced", "Stored", "points_alone"]
+__all__ = ["Complex", "Drawn", "Exchanged", "Filed", "Referenced", "Stored", "points_alone"]
 
 
 def points_alone(
@@ -79,14 +79,14 @@ class Referenced(Immutable):
         object.__setattr__(self, "_system", system)
 
 
-class Exchanged(Referenced):
-    """An object that is drawn and converted by its parts: points and simplices."""
+class Drawn:
+    """An object that has a picture."""
 
     __slots__ = ()
 
-    def _parts(self) -> Parts:
-        """Return what other libraries take."""
-        raise NotImplementedError
+    def _drawn(self) -> Any:
+        """Return what is drawn."""
+        return self
 
     @only(FLAT_OR_SOLID, "draw two or three of the columns of its points")
     def plot(self, ax: Any = None, **options: Any) -> Any:
@@ -109,7 +109,8 @@ class Exchanged(Referenced):
         MissingExtraError
             The library is not installed.
         InputError
-            An option does not exist for this kind of object, or there is nothing to draw.
+            An option does not exist for this kind of object or has a wrong value, or there is
+            nothing to draw.
 
         Examples
         --------
@@ -120,8 +121,17 @@ class Exchanged(Referenced):
         """
         from delone.plot import plot
 
-        drawn: Any = self
-        return plot(drawn, ax, **options)
+        return plot(self._drawn(), ax, **options)
+
+
+class Exchanged(Referenced, Drawn):
+    """An object that is drawn and converted by its parts: points and simplices."""
+
+    __slots__ = ()
+
+    def _parts(self) -> Parts:
+        """Return what other libraries take."""
+        raise NotImplementedError
 
     @only(FLAT_OR_SOLID, "meshio has no cells of more dimensions; use `save`")
     def to_meshio(self, *, order: int = 1) -> Any:

@@ -9,7 +9,7 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_choice, as_limit, as_workers
-from delone.complex import Filed
+from delone.complex import Drawn, Filed
 from delone.constrained import ConstrainedDelaunay
 from delone.counting import counted
 from delone.delaunay import Delaunay
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["Dynamic"]
 
 
-class Dynamic(Measured, Filed):
+class Dynamic(Measured, Drawn, Filed):
     """A 2-D or 3-D Delaunay triangulation with points that can be inserted, removed and moved.
 
     Parameters
@@ -112,7 +112,8 @@ class Dynamic(Measured, Filed):
     place in the mesh: in 2-D, flips (C. L. Lawson, 1977) restore the triangulation; in 3-D, this is
     done only if no flip is needed. Batches are sorted along a space-filling curve, and large ones
     triangulate all points again. Arrays such as `simplices` are built on first use after an edit,
-    in linear time. Each handle takes 12 bytes, even after its point is removed.
+    in linear time; `plot` draws the result of `freeze`. Each handle takes 12 bytes, even after its
+    point is removed.
 
     Examples
     --------
@@ -621,43 +622,8 @@ class Dynamic(Measured, Filed):
             return self._frozen_segments()._with_crs(self._system)
         return self._frozen(made)
 
-    def plot(self, ax: Any = None, **options: Any) -> Any:
-        """Draw with matplotlib (extra ``plot``) or, in 3-D, with PyVista (extra ``pyvista``).
-
-        Parameters
-        ----------
-        ax : matplotlib Axes or pyvista Plotter, optional
-            Where to draw; by default on a new one.
-        **options
-            As for `delone.plot.plot`; with segments those of a `ConstrainedDelaunay`.
-
-        Returns
-        -------
-        matplotlib Axes or pyvista Plotter
-            Where it is drawn.
-
-        Raises
-        ------
-        MissingExtraError
-            The library is not installed.
-        InputError
-            An option does not exist for this kind of object, or there is nothing to draw.
-
-        Notes
-        -----
-        The result of `freeze` is drawn, so this takes linear time, and with segments the time of a
-        new `ConstrainedDelaunay`.
-
-        Examples
-        --------
-        >>> from delone import Dynamic
-        >>> ax = Dynamic([(0, 0), (1, 0), (0, 1)]).plot()
-        >>> ax.get_aspect()
-        1.0
-        """
-        from delone.plot import plot
-
-        return plot(self.freeze(), ax, **options)
+    def _drawn(self) -> Delaunay | ConstrainedDelaunay:
+        return self.freeze()
 
     def _frozen(self, made: _core.LiveArrays2 | _core.LiveArrays3) -> Delaunay:
         """Return arrays without segments as a triangulation that never changes."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone._arrays import as_flag, as_queries, as_workers
-from delone.complex import Stored
+from delone.complex import Drawn, Stored
 from delone.counting import counted
 from delone.dimension import FLAT_OR_SOLID, only
 from delone.errors import InputError
@@ -45,7 +45,7 @@ _CELLS: dict[int, Any] = {2: PlaneCells, 3: SpaceCells} | dict.fromkeys(
 _WITHOUT = "cells with more coordinates have vertices and ridges, without measures"
 
 
-class Voronoi(Stored):
+class Voronoi(Stored, Drawn):
     """The Voronoi diagram of points with two to eight coordinates; in 2-D and 3-D also clipped.
 
     Parameters
@@ -179,6 +179,9 @@ class Voronoi(Stored):
     With more than three coordinates a diagram has vertices, ridges and cells, but no measures,
     clip, rays or pictures. A ridge may have any number of vertices, also one and infinity. The
     number of vertices grows as that of simplices: ask `delone.estimate` first.
+
+    Without a clip, `plot` draws a 2-D diagram in the bounding box of the sites, enlarged by 10 %.
+    In 3-D, it draws bounded and clipped cells, or the sites if there are none.
 
     Arrays are read-only and attributes cannot be set; attributes that are not listed above are
     computed on first use and kept. Time is that of the triangulation and O(n) for the rest;
@@ -744,45 +747,6 @@ class Voronoi(Stored):
         """The cells, in 2-D and 3-D."""
         cells: Any = self._cells
         return cells  # type: ignore[no-any-return]
-
-    @only(FLAT_OR_SOLID, "draw two or three of the columns of its points")
-    def plot(self, ax: Any = None, **options: Any) -> Any:
-        """Draw with matplotlib (extra ``plot``) or, in 3-D, with PyVista (extra ``pyvista``).
-
-        Parameters
-        ----------
-        ax : matplotlib Axes or pyvista Plotter, optional
-            Where to draw; by default on a new one.
-        **options
-            As for `delone.plot.plot`.
-
-        Returns
-        -------
-        matplotlib Axes or pyvista Plotter
-            Where it is drawn.
-
-        Raises
-        ------
-        MissingExtraError
-            The library is not installed.
-        InputError
-            An option does not exist for this kind of object, or has a wrong value.
-
-        Notes
-        -----
-        Without a clip, a 2-D diagram is drawn in the bounding box of the sites, enlarged by 10 %.
-        In 3-D, bounded and clipped cells are drawn, or the sites if there are none.
-
-        Examples
-        --------
-        >>> from delone import Voronoi
-        >>> ax = Voronoi([(0, 0), (2, 0), (1, 2)], clip="box").plot()
-        >>> ax.get_aspect()
-        1.0
-        """
-        from delone.plot import plot
-
-        return plot(self, ax, **options)
 
     def _described(self) -> str:
         cells = self._cells
