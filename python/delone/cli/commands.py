@@ -109,6 +109,11 @@ COMMANDS = {
         "volume",
         "Compute the volumes to cut and to fill between a surface and a height or another surface.",
     ),
+    "difference": Listed(
+        "difference",
+        "difference",
+        "Subtract a raster, a surface or a height from a raster of heights, cell by cell.",
+    ),
     "simplify": Listed(
         "simplify",
         "simplify",
@@ -141,7 +146,7 @@ TASKS = {
     "Triangulate": ("triangulate", "sphere", "tile", "check"),
     "Outlines, cells, neighbors": ("hull", "voronoi", "graph", "cluster"),
     "Interpolate": ("interpolate", "crossval", "regrid"),
-    "Terrain": ("ground", "dem", "contours", "profile", "volume", "simplify"),
+    "Terrain": ("ground", "dem", "contours", "profile", "volume", "difference", "simplify"),
     "Mesh": ("mesh", "tetrahedralize"),
 }
 

@@ -40,6 +40,7 @@ __all__ = [
     "Survey",
     "curves_of",
     "figures_of",
+    "four_of",
     "is_landxml",
     "other_surface",
     "print_figures",
@@ -271,12 +272,12 @@ def _read_raster(source: Path, options: SurfaceOptions) -> PointSet:
         source,
         band=layer if layer is None or named else int(layer),
         step=options.step,
-        bounds=None if options.window is None else _four(options.window),
+        bounds=None if options.window is None else four_of(options.window),
         nodata=options.nodata,
     )
 
 
-def _four(text: str) -> list[float]:
+def four_of(text: str) -> list[float]:
     """Return the numbers of --window."""
     try:
         found = [float(part) for part in text.split(",")]

@@ -21,7 +21,7 @@ from delone.errors import DeloneError, FileFormatError, InputError
 from delone.extras import require
 from delone.georeference import caller_level
 from delone.io.companions import require_companion
-from delone.io.netcdf import is_netcdf, read_heights
+from delone.io.netcdf import Heights, is_netcdf, read_heights
 from delone.io.nodata import as_nodata, is_nodata, require_declared
 from delone.io.pointset import PointSet
 from delone.io.surfacefile import LeftOutWarning
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from delone._types import Floats
 
-__all__ = ["as_bounds", "is_raster", "read_points", "read_raster"]
+__all__ = ["as_bounds", "is_raster", "read_cells", "read_points", "read_raster"]
 
 _DRIVERS = {".tif": "GTiff", ".tiff": "GTiff", ".asc": "AAIGrid"}
 # A triangulation of so many points takes some 10 GB.
@@ -165,6 +165,67 @@ def read_raster(
         raise FileFormatError(f"{file}: no cell has a height")
     _tell_empty(file, empty)
     return PointSet(points=points, z=z, crs=crs, source=str(file))
+
+
+def read_cells(
+    path: Path,
+    *,
+    band: int | str | None = None,
+    step: int = 1,
+    bounds: Sequence[float] | None = None,
+    nodata: float | None = None,
+    max_points: int = MOST_POINTS,
+) -> Heights:
+    """Read the heights of an upright raster as a grid, NaN where there is none.
+
+    Rows and columns are in the order of the file; arguments and errors are those of `read_raster`.
+    """
+    step, box = as_least(step, 1, name="step"), as_bounds(bounds)
+    empty = as_nodata(nodata)
+    if is_netcdf(path):
+        if band is not None and not isinstance(band, str):
+            raise InputError(
+                f"{path}: band must be the name of a variable of NetCDF, got {band!r:.40}"
+            )
+        return read_heights(path, band, step, box, empty, max_points)
+    if isinstance(band, str):
+        raise InputError(f"{path}: names of variables are for NetCDF; band is a number from 1 on")
+    wanted = None if band is None else as_least(band, 1, name="band")
+    with _opened(path) as raster:
+        number = _band(raster, wanted, path)
+        a, b, c, d, e, f = raster.transform[:6]
+        if b != 0 or d != 0:
+            raise FileFormatError(
+                f"{path} is rotated, so its cells have no rows and columns of one y and x: write "
+                "an upright raster with gdalwarp"
+            )
+        window = _window(raster, box, step)
+        if not (len(window.rows) and len(window.columns)):
+            raise InputError(f"{path}: no center of a cell is inside of bounds={box}")
+        _check_size(raster, number, window, max_points, path)
+        values = _values(raster, number, window, empty)
+        crs = None if raster.crs is None else str(raster.crs.to_string())
+    check_system(crs, str(path))
+    x, y = (
+        size * (np.array(numbers) + 0.5) + origin
+        for size, origin, numbers in ((a, c, window.columns), (e, f, window.rows))
+    )
+    return Heights(values, x, y, crs)
+
+
+def _values(raster: Any, band: int, window: _Window, nodata: float | None) -> Floats:
+    """Return the heights of cells, NaN where there is none."""
+    scale, offset = raster.scales[band - 1], raster.offsets[band - 1]
+    found = np.full((len(window.rows), len(window.columns)), np.nan)
+    columns = int(window.columns[0]), int(window.columns[-1]) + 1
+    for at, row in enumerate(window.rows):
+        read = raster.read(band, window=((row, row + 1), columns), masked=True)
+        values = np.ma.getdata(read)[0, :: window.columns.step]
+        without = np.ma.getmaskarray(read)[0, :: window.columns.step]
+        there = ~without & np.isfinite(values) & ~is_nodata(values, nodata)
+        found[at, there] = values[there]
+    require_declared(found[np.isfinite(found)], nodata, str(raster.name))
+    return found if (scale, offset) == (1, 0) else found * scale + offset
 
 
 def _of_netcdf(  # noqa: PLR0917

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_flag, as_optional_flag
+from delone._arrays import as_flag, as_number, as_optional_flag
 from delone.errors import InputError
 from delone.extras import require
 from delone.plot.axes import axis_names, figure_size, new_axes
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from delone._types import Floats
 
-__all__ = ["draw_raster", "plot_raster"]
+__all__ = ["draw_difference", "draw_raster", "plot_difference", "plot_raster"]
 
 
 def plot_raster(
@@ -111,6 +111,43 @@ def plot_raster(
     return ax
 
 
+def plot_difference(
+    values: Floats,
+    x: Floats,
+    y: Floats,
+    ax: Any = None,
+    *,
+    limit: float | None = None,
+    cmap: Any = None,
+    colorbar: bool = True,
+    label: str = "difference",
+    title: str | None = None,
+) -> Any:
+    """Draw differences in colors that are white at 0, and of one strength at both ends."""
+    bar, colors = as_flag(colorbar, name="colorbar"), as_cmap(cmap or "RdBu_r")
+    normalize = require("matplotlib.colors", extra="plot", what="drawing").Normalize
+    mappable = require("matplotlib.cm", extra="plot", what="drawing").ScalarMappable
+    known = np.abs(values[np.isfinite(values)])
+    if not len(known):
+        raise InputError("no cell has a difference to draw")
+    if limit is None:
+        end = float(np.quantile(known, 0.99)) or float(known.max()) or 1.0
+    else:
+        end = as_number(limit, name="limit")
+    if not 0 < end < np.inf:
+        raise InputError(f"limit must be a difference above 0, got {limit!r:.60}")
+    ax = new_axes(ax)
+    mapped = mappable(norm=normalize(-end, end), cmap=colors)
+    rgba = mapped.to_rgba(values)
+    rgba[..., 3] = np.isfinite(values)
+    show(ax, rgba, _extent(x, y))
+    if bar:
+        add_bar(ax, mapped, values, label)
+    if title:
+        ax.set_title(title, fontsize="medium")
+    return ax
+
+
 def draw_raster(
     path: Path,
     values: Floats,
@@ -132,6 +169,29 @@ def draw_raster(
     figsize = figure_size(right - left, top - bottom, size, with_bar=True)
     figure = figure_module.Figure(figsize=figsize, dpi=dpi, layout="constrained")
     ax = plot_raster(values, x, y, figure.add_subplot(), label=label, shade=shade)
+    xlabel, ylabel = axis_names(crs)
+    ax.set(xlabel=xlabel, ylabel=ylabel)
+    figure.savefig(path, dpi=dpi, facecolor="white")
+
+
+def draw_difference(
+    path: Path,
+    values: Floats,
+    x: Floats,
+    y: Floats,
+    *,
+    units: str | None = None,
+    crs: str | None = None,
+    size: float = 10.0,
+    dpi: int = 160,
+) -> None:
+    """Draw differences as `plot_difference` does into a PNG or SVG file."""
+    figure_module = require("matplotlib.figure", extra="plot", what="drawing")
+    left, right, bottom, top = _extent(x, y)
+    figsize = figure_size(right - left, top - bottom, size, with_bar=True)
+    figure = figure_module.Figure(figsize=figsize, dpi=dpi, layout="constrained")
+    label = "difference" + ("" if units is None else f" ({units})")
+    ax = plot_difference(values, x, y, figure.add_subplot(), label=label)
     xlabel, ylabel = axis_names(crs)
     ax.set(xlabel=xlabel, ylabel=ylabel)
     figure.savefig(path, dpi=dpi, facecolor="white")

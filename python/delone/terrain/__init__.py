@@ -11,6 +11,7 @@ from __future__ import annotations
 from delone.terrain.agreement import Agreement
 from delone.terrain.contouring import Bands, Contours
 from delone.terrain.deviations import Deviations
+from delone.terrain.differences import Difference, difference
 from delone.terrain.filtering import Ground, ground
 from delone.terrain.labeling import Labels
 from delone.terrain.profiles import Profile, Sight
@@ -27,6 +28,7 @@ __all__ = [
     "Contours",
     "CrossSections",
     "Deviations",
+    "Difference",
     "Ground",
     "Labels",
     "Profile",
@@ -35,5 +37,6 @@ __all__ = [
     "Simplification",
     "Volume",
     "Volumes",
+    "difference",
     "ground",
 ]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from delone.terrain.lines import Ring
     from delone.terrain.surface import Sheet, Surface
 
-__all__ = ["Region", "Volume", "goal_of", "region_of", "volume"]
+__all__ = ["Region", "Volume", "goal_of", "plane_of", "region_of", "volume"]
 
 
 class Region(NamedTuple):
@@ -132,7 +132,7 @@ def volume(tin: Surface, other: Any, region: Any) -> Volume:
 def goal_of(tin: Surface, other: Any) -> tuple[Sheet | None, list[float]]:
     """Return what is to be reached: a surface, or None and a plane."""
     if not hasattr(other, "_sheet"):
-        return None, _plane(other)
+        return None, plane_of(other)
     if tin.crs and other.crs and not same_crs(tin.crs, other.crs):
         raise InputError(
             f"the surfaces are in {tin.crs:.60} and in {other.crs:.60}: transform one of them"
@@ -141,7 +141,7 @@ def goal_of(tin: Surface, other: Any) -> tuple[Sheet | None, list[float]]:
     return other._sheet(), [0.0, 0.0, 0.0]
 
 
-def _plane(other: Any) -> list[float]:
+def plane_of(other: Any) -> list[float]:
     """Return a plane by its slopes and its height at the origin."""
     try:
         numbers = [as_number(each, name="other") for each in other]

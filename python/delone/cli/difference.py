@@ -1,0 +1,226 @@
+"""The command ``difference``: a raster of heights minus a raster, a surface or a height."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from delone import __version__, terrain
+from delone.atomic import check_target
+from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.notes import noting
+from delone.cli.options import Chord, Classes, Json, Layer, Quiet, Workers
+from delone.cli.outputs import write_all
+from delone.cli.referenced import Crs, Planar, require_known
+from delone.cli.report import Stopwatch, peak_memory
+from delone.cli.show import spinner
+from delone.cli.surfaces import (
+    Boundary,
+    Breaklines,
+    Columns,
+    Crossing,
+    Duplicates,
+    EastingFirst,
+    MaxEdge,
+    Nodata,
+    Retriangulate,
+    SoftBreaklines,
+    SurfaceOptions,
+    Tolerance,
+    Units,
+    Voids,
+    Window,
+    four_of,
+    print_figures,
+    surface,
+)
+from delone.errors import InputError
+from delone.io import raster_suffixes
+from delone.io.dem import is_raster
+from delone.io.netcdf import is_netcdf
+from delone.io.raster import raster_writer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from delone.terrain import Difference
+
+__all__ = ["difference"]
+
+
+def difference(
+    source: Annotated[
+        Path, typer.Argument(metavar="DEM", help="Raster of heights: .tif .tiff .asc .nc")
+    ],
+    other: Annotated[
+        str,
+        typer.Argument(
+            metavar="OTHER", help="What is subtracted: a raster, points, a surface, or a height."
+        ),
+    ],
+    *,
+    output: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="OUTPUT",
+            help="Raster or picture of the differences, once or more: "
+            + " ".join(raster_suffixes()),
+        ),
+    ] = None,
+    as_surface: Annotated[
+        bool,
+        typer.Option(
+            "--surface", help="Take OTHER, a raster with other cells, as linear between these."
+        ),
+    ] = False,
+    other_layer: Annotated[
+        str | None, typer.Option(help="Layer, band or variable of OTHER, if not that of --layer.")
+    ] = None,
+    breaklines: Breaklines = None,
+    soft_breaklines: SoftBreaklines = None,
+    boundary: Boundary = None,
+    max_edge: MaxEdge = None,
+    voids: Voids = False,
+    duplicates: Duplicates = "raise",
+    crossing: Crossing = "raise",
+    tolerance: Tolerance = 0.0,
+    chord: Chord = None,
+    nodata: Nodata = None,
+    window: Window = None,
+    columns: Columns = None,
+    classes: Classes = None,
+    layer: Layer = None,
+    retriangulate: Retriangulate = False,
+    easting_first: EastingFirst = False,
+    crs: Crs = None,
+    units: Units = None,
+    planar: Planar = False,
+    workers: Workers = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Subtract a raster, a surface or a height from a raster of heights, cell by cell.
+
+    Two rasters need the same cells. Lines and boundary are those of OTHER as a surface.
+    """
+    given = locals()
+    require_known(crs)
+    if not is_raster(source):
+        raise Failure(f"{source}: not a raster of heights: .tif .tiff .asc .nc", Exit.USAGE)
+    with writing():
+        protect_inputs(output or [], source, Path(other))
+        writers = {path: raster_writer(path) for path in output or []}
+        for path in writers:
+            check_target(path)
+    watch = Stopwatch()
+    box = None if window is None else four_of(window)
+    bands = {"band": _band(source, layer), "bounds": box, "nodata": nodata}
+    with spinner(quiet or as_json) as say:
+        goal: Any = _height(other)
+        if goal is None and is_raster(Path(other)) and not as_surface:
+            goal = Path(other)
+            bands["other_band"] = _band(goal, other_layer or layer)
+        elif goal is None:
+            # A window is that of the first raster; the surface is all of the other one.
+            own = {"layer": other_layer, "window": None, "step": 1}
+            own |= {} if is_raster(Path(other)) else {"nodata": None}
+            options = SurfaceOptions.among(given | own)
+            goal = surface(Path(other), options, watch, say)
+        say("computing the difference")
+        with reading(quiet=quiet), noting(quiet=quiet), watch.stage("difference"):
+            found = _difference(source, goal, crs=crs, units=units, **bands)
+        _write(writers, found, watch, say)
+    figures = _figures(source, other, found, output or [])
+    figures["stages"] = watch.rows(found.values.size)
+    of = dict.fromkeys(("cut", "fill", "net"), found.volume_units) | {"area": found.area_units}
+    of |= dict.fromkeys(("least", "greatest", "mean", "root_mean_square"), found.units)
+    print_figures(source, figures, as_json=as_json, quiet=quiet, of=of)
+
+
+def _difference(source: Path, goal: Any, **options: Any) -> Difference:
+    """Return the difference; what cures other cells are options here."""
+    try:
+        return terrain.difference(source, goal, **options)
+    except InputError as error:
+        text = str(error).replace(
+            "a surface of the other, difference(dem, TIN.from_raster(other))",
+            "the other one as a --surface",
+        )
+        text = re.sub(
+            r"bounds=\((.*)\)$", lambda found: "--window " + found[1].replace(" ", ""), text
+        )
+        if text == str(error):
+            raise
+        raise Failure(text, Exit.USAGE) from error
+
+
+def _write(
+    writers: dict[Path, Callable[..., None]],
+    found: Difference,
+    watch: Stopwatch,
+    say: Callable[[str], None],
+) -> None:
+    pictures = {path: _draw for path in writers if path.suffix.lower() in (".png", ".svg")}
+    rasters = {path: write for path, write in writers.items() if path not in pictures}
+    write_all(pictures, found, watch, say)
+    write_all(rasters, found, watch, say, name="difference", crs=found.crs, units=found.units)
+
+
+def _draw(path: Path, found: Difference) -> None:
+    from delone.plot.raster import draw_difference
+
+    draw_difference(path, found.values, found.x, found.y, units=found.units, crs=found.crs)
+
+
+def _height(text: str) -> float | None:
+    """Return a number; None for a file."""
+    if Path(text).exists():
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        raise Failure(f"{text}: neither a file nor a height", Exit.INPUT) from None
+
+
+def _band(path: Path, layer: str | None) -> int | str | None:
+    """Return the number of a band, or the name of a variable of NetCDF."""
+    if layer is None or is_netcdf(path):
+        return layer
+    if not layer.isdecimal():
+        raise Failure(f"{path}: the layer of a raster is the number of a band", Exit.USAGE)
+    return int(layer)
+
+
+def _figures(source: Path, other: str, found: Difference, output: list[Path]) -> dict[str, Any]:
+    known = found.count > 0
+    try:
+        volumes = {name: getattr(found, name) for name in ("cut", "fill", "net", "area")}
+    except InputError:  # cells in degrees have no area
+        volumes = {}
+    return {
+        "delone": __version__,
+        "input": str(source),
+        "other": other,
+        "crs": found.crs,
+        "units": found.units,
+        "columns": len(found.x),
+        "rows": len(found.y),
+        "cells_compared": found.count,
+        "cells_without_height": found.missing,
+        "cells_without_height_of_other": found.missing_other,
+        "least": found.min if known else None,
+        "greatest": found.max if known else None,
+        "mean": found.mean if known else None,
+        "root_mean_square": found.rms if known else None,
+        **volumes,
+        "volume_units": found.volume_units,
+        "area_units": found.area_units,
+        "outputs": [str(path) for path in output],
+        "output_bytes": sum(path.stat().st_size for path in output),
+        "peak_memory_bytes": peak_memory(),
+    }
