@@ -287,3 +287,24 @@ def test_voids_inside_are_open(command, figures, tmp_path):
     assert figures(*call, "--voids")["cut"] == 56 - 12 + 4 * 0.5
     code, _, err = command("volume", tmp_path / "p.csv", "0", "--voids")
     assert code == 2 and "--voids needs --max-edge" in err
+
+
+def test_lakes_are_level_and_near_points_are_merged(command, figures, tmp_path):
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(31.0), np.arange(31.0)))
+    points = np.vstack((np.column_stack((x, y, x)), [(2.001, 2, 2), (25.0, 25.002, 25)]))
+    survey, lakes = tmp_path / "survey.csv", tmp_path / "lakes.gpkg"
+    np.savetxt(survey, points, delimiter=",", header="x,y,z", comments="")
+    geopandas.GeoDataFrame(geometry=[shapely.box(10, 10, 20, 20)]).to_file(lakes)
+    found = figures("volume", survey, 0, "--level", lakes, "--snap", 0.01)
+    assert found["points_moved"] == 2
+    assert found["largest_move"] == pytest.approx(0.002)
+    assert (found["level_polygons"], found["points_left_out_in_level_polygons"]) == (1, 121)
+    # The plane z = x but for the lake, which is at 10 instead of 15 in the mean, and its shore.
+    assert found["cut"] == pytest.approx(900 * 15 - 100 * 5 - 10 * 10 / 2 * 1, rel=0.01)
+    dem = tmp_path / "dem.tif"
+    assert figures("dem", survey, "-r", 1, "--level", lakes, "--snap", 0.01, "-o", dem)["points"]
+    code, _, err = command("volume", survey, 0, "--snap", -1)
+    assert code == 2
+    assert "snap" in err
+    code, _, err = command("volume", survey, 0, "--level", tmp_path / "none.gpkg")
+    assert code == 3

@@ -151,6 +151,10 @@ ALLOWED: dict[str, dict[str, str]] = {
         "length < shortest": WANTED,
         "length > 0": CHECK,
     },
+    "terrain/merging.py": {
+        "np.hypot(*(places[a] - places[b]).T) < limit": WANTED,
+        "distance < limit": WANTED,
+    },
     "terrain/overlay.py": {
         "mesh.areas[off].sum() <= closeness(tin.points, pad.points) * length": DRAWN,
         "np.hypot(*normal.T) > limit": DRAWN,

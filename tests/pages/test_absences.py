@@ -92,7 +92,6 @@ ABSENCES: dict[tuple[str, str], str] = {
         "coming_from/startinpy.rst",
         "insertionstrategy",
     ): "the order of insertion is chosen by the core",
-    ("coming_from/startinpy.rst", "snap_tolerance"): "a tolerance would lose distinct points",
     ("coming_from/startinpy.rst", "IDW"): "it needs no triangulation",
     ("coming_from/startinpy.rst", "no CityJSON"): "io has no such writer",
     ("coming_from/stripy.rst", "smoothing"): "sphere has neither smoothing nor regular meshes",

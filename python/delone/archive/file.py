@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 __all__ = ["read", "refusal", "write"]
 
 _VERSION = 1
-# Bytes, four for each character: no WKT is as long.
-_LONGEST_TEXT = 1 << 18
+# Bytes, four for each character: no WKT is as long, nor the heights of 100,000 lakes.
+_LONGEST_TEXT = 1 << 24
 
 
 def write(path: str | os.PathLike[str], arrays: Mapping[str, NDArray[Any]], name: str) -> None:

@@ -158,7 +158,7 @@ _TIN = Kind(
         "soft": ("|b1", 0),
     },
     checks.check_surface,
-    ("crs", "units"),
+    ("crs", "units", "adjustments"),
 )
 
 

@@ -138,11 +138,13 @@ def _refuse_for_tiles(given: dict[str, Any], what: str) -> None:
             Exit.USAGE,
         )
     lines = ("bounds", "breaklines", "soft_breaklines", "boundary", "max_edge", "columns")
-    names = (*lines, "classes", "layer", "units", "workers", "nodata", "window")
+    names = (*lines, "classes", "layer", "units", "workers", "nodata", "window", "level")
     set_ = [name for name in names if given[name] is not None]
     set_ += [name for name in ("duplicates", "crossing") if given[name] != "raise"]
     set_ += [
-        name for name in ("tolerance", "retriangulate", "easting_first", "voids") if given[name]
+        name
+        for name in ("tolerance", "snap", "retriangulate", "easting_first", "voids")
+        if given[name]
     ]
     if set_:
         options = ", ".join(f"--{name.replace('_', '-')}" for name in set_)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,31 +13,11 @@ from delone import __version__, terrain
 from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
-from delone.cli.options import Chord, Classes, Json, Layer, Quiet, Workers
 from delone.cli.outputs import write_all
-from delone.cli.referenced import Crs, Planar, require_known
+from delone.cli.referenced import require_known
 from delone.cli.report import Stopwatch, peak_memory
 from delone.cli.show import spinner
-from delone.cli.surfaces import (
-    Boundary,
-    Breaklines,
-    Columns,
-    Crossing,
-    Duplicates,
-    EastingFirst,
-    MaxEdge,
-    Nodata,
-    Retriangulate,
-    SoftBreaklines,
-    SurfaceOptions,
-    Tolerance,
-    Units,
-    Voids,
-    Window,
-    four_of,
-    print_figures,
-    surface,
-)
+from delone.cli.surfaces import SurfaceOptions, four_of, print_figures, surface, with_surface
 from delone.errors import InputError
 from delone.io import raster_suffixes
 from delone.io.dem import is_raster
@@ -51,6 +32,7 @@ if TYPE_CHECKING:
 __all__ = ["difference"]
 
 
+@with_surface
 def difference(
     source: Annotated[
         Path, typer.Argument(metavar="DEM", help="Raster of heights: .tif .tiff .asc .nc")
@@ -81,35 +63,14 @@ def difference(
     other_layer: Annotated[
         str | None, typer.Option(help="Layer, band or variable of OTHER, if not that of --layer.")
     ] = None,
-    breaklines: Breaklines = None,
-    soft_breaklines: SoftBreaklines = None,
-    boundary: Boundary = None,
-    max_edge: MaxEdge = None,
-    voids: Voids = False,
-    duplicates: Duplicates = "raise",
-    crossing: Crossing = "raise",
-    tolerance: Tolerance = 0.0,
-    chord: Chord = None,
-    nodata: Nodata = None,
-    window: Window = None,
-    columns: Columns = None,
-    classes: Classes = None,
-    layer: Layer = None,
-    retriangulate: Retriangulate = False,
-    easting_first: EastingFirst = False,
-    crs: Crs = None,
-    units: Units = None,
-    planar: Planar = False,
-    workers: Workers = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
+    options: SurfaceOptions,
 ) -> None:
     """Subtract a raster, a surface or a height from a raster of heights, cell by cell.
 
     Two rasters need the same cells. Lines and boundary are those of OTHER as a surface.
     """
-    given = locals()
-    require_known(crs)
+    quiet = options.quiet
+    require_known(options.crs)
     if not is_raster(source):
         raise Failure(f"{source}: not a raster of heights: .tif .tiff .asc .nc", Exit.USAGE)
     with writing():
@@ -118,28 +79,28 @@ def difference(
         for path in writers:
             check_target(path)
     watch = Stopwatch()
-    box = None if window is None else four_of(window)
-    bands = {"band": _band(source, layer), "bounds": box, "nodata": nodata}
-    with spinner(quiet or as_json) as say:
+    box = None if options.window is None else four_of(options.window)
+    bands = {"band": _band(source, options.layer), "bounds": box, "nodata": options.nodata}
+    with spinner(options.silent) as say:
         goal: Any = _height(other)
         if goal is None and is_raster(Path(other)) and not as_surface:
             goal = Path(other)
-            bands["other_band"] = _band(goal, other_layer or layer)
+            bands["other_band"] = _band(goal, other_layer or options.layer)
         elif goal is None:
             # A window is that of the first raster; the surface is all of the other one.
-            own = {"layer": other_layer, "window": None, "step": 1}
-            own |= {} if is_raster(Path(other)) else {"nodata": None}
-            options = SurfaceOptions.among(given | own)
-            goal = surface(Path(other), options, watch, say)
+            own = replace(options, layer=other_layer, window=None)
+            if not is_raster(Path(other)):
+                own = replace(own, nodata=None)
+            goal = surface(Path(other), own, watch, say)
         say("computing the difference")
         with reading(quiet=quiet), noting(quiet=quiet), watch.stage("difference"):
-            found = _difference(source, goal, crs=crs, units=units, **bands)
+            found = _difference(source, goal, crs=options.crs, units=options.units, **bands)
         _write(writers, found, watch, say)
     figures = _figures(source, other, found, output or [])
     figures["stages"] = watch.rows(found.values.size)
     of = dict.fromkeys(("cut", "fill", "net"), found.volume_units) | {"area": found.area_units}
     of |= dict.fromkeys(("least", "greatest", "mean", "root_mean_square"), found.units)
-    print_figures(source, figures, as_json=as_json, quiet=quiet, of=of)
+    print_figures(source, figures, as_json=options.as_json, quiet=quiet, of=of)
 
 
 def _difference(source: Path, goal: Any, **options: Any) -> Difference:

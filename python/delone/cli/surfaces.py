@@ -84,6 +84,14 @@ Tolerance = Annotated[
     float,
     typer.Option(help="Heights at one place that differ by at most this are equal."),
 ]
+Snap = Annotated[
+    float,
+    typer.Option(help="Merge points that are nearer than this to a line or to each other."),
+]
+Level = Annotated[
+    Path | None,
+    typer.Option(help="File of polygons in which the surface is level, such as lakes."),
+]
 Units = Annotated[
     str | None, typer.Option(help="The unit of heights, if the file does not say it: m, ft, us-ft.")
 ]
@@ -121,6 +129,8 @@ class SurfaceOptions:
     duplicates: Duplicates = "raise"
     crossing: Crossing = "raise"
     tolerance: Tolerance = 0.0
+    snap: Snap = 0.0
+    level: Level = None
     chord: Chord = None
     step: Step = 1
     nodata: Nodata = None
@@ -144,7 +154,7 @@ class SurfaceOptions:
 
     def inputs(self) -> list[Path]:
         """The files of lines."""
-        lines = (self.breaklines, self.soft_breaklines, self.boundary)
+        lines = (self.breaklines, self.soft_breaklines, self.boundary, self.level)
         return [path for path in lines if path is not None]
 
 
@@ -235,14 +245,14 @@ def surface(
                 classes=class_numbers(options.classes),
                 layer=options.layer,
             )
-        for name in ("breaklines", "soft_breaklines", "boundary"):
+        for name in ("breaklines", "soft_breaklines", "boundary", "level"):
             path = getattr(options, name)
             lined[name] = None if path is None else _lines(path, options)
     if isinstance(survey, PointSet) and survey.z is None:
         raise Failure(f"{source}: no column has heights: name it with --columns x,y,z", Exit.USAGE)
     survey = referenced(survey, options.crs, planar=options.planar, quiet=options.quiet)
     say(f"triangulating {len(survey.points):,} points")
-    policies = ("duplicates", "crossing", "tolerance", "units", "workers")
+    policies = ("duplicates", "crossing", "tolerance", "snap", "units", "workers")
     lined |= {name: getattr(options, name) for name in policies}
     with watch.stage("triangulate"), noting(quiet=options.quiet):
         if isinstance(survey, PointSet):
@@ -257,7 +267,8 @@ def other_surface(
     own: dict[str, Any] = {"chord": options.chord if _is_drawing(file) else None}
     if not is_raster(file):
         own |= {"step": 1, "nodata": None, "window": None}
-    alone = replace(options, breaklines=None, soft_breaklines=None, boundary=None, **own)
+    own |= dict.fromkeys(("breaklines", "soft_breaklines", "boundary", "level"))
+    alone = replace(options, **own)
     return surface(file, alone, watch, say)
 
 
@@ -309,9 +320,24 @@ def figures_of(source: Path, tin: TIN, output: list[Path] | None) -> dict[str, A
         "units": tin.units,
         "points": tin.npoints,
         "triangles": tin.nsimplex,
+        **_adjustments_of(tin),
         "outputs": [str(path) for path in output or ()],
         "output_bytes": sum(path.stat().st_size for path in output or ()),
         "peak_memory_bytes": peak_memory(),
+    }
+
+
+def _adjustments_of(tin: TIN) -> dict[str, Any]:
+    """Return what --snap and --level have changed of the input."""
+    found = tin.adjustments
+    if found is None:
+        return {}
+    return {
+        "points_moved": found.points_moved,
+        "points_of_lines_moved": found.line_points_moved,
+        "largest_move": found.largest_move,
+        "points_left_out_in_level_polygons": found.points_leveled if len(found.levels) else None,
+        "level_polygons": len(found.levels) or None,
     }
 
 

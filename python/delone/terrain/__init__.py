@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+from delone.terrain.adjustments import Adjustments
 from delone.terrain.agreement import Agreement
 from delone.terrain.contouring import Bands, Contours
 from delone.terrain.deviations import Deviations
@@ -23,6 +24,7 @@ from delone.terrain.volumes import Volume
 
 __all__ = [
     "TIN",
+    "Adjustments",
     "Agreement",
     "Bands",
     "Contours",

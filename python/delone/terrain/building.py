@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -10,7 +11,8 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_choice, as_flag, as_number, as_points, as_workers, require_finite
 from delone.constrained.delaunay import ConstrainedDelaunay
-from delone.errors import InputError, ShapeError
+from delone.constrained.membership import inside
+from delone.errors import ConflictingValuesError, InputError, ShapeError
 from delone.georeference import (
     as_known_crs,
     caller_level,
@@ -21,9 +23,10 @@ from delone.georeference import (
     warn_of_degrees,
     warn_of_unknown,
 )
-from delone.plane.topology import among, edge_keys
+from delone.plane.topology import among, edge_keys, triangles_among
+from delone.terrain.adjustments import Adjustments, adjustments_of
 from delone.terrain.extent import Part, refuse_crossing_rings, within, without_outer
-from delone.terrain.gathering import SOFT, Lines, gathered
+from delone.terrain.gathering import LEVEL, SOFT, Lines, gathered
 from delone.terrain.heights import (
     POLICIES,
     Claims,
@@ -32,7 +35,10 @@ from delone.terrain.heights import (
     on_ground,
     resolved,
 )
+from delone.terrain.joining import joined
+from delone.terrain.leveling import Level, leveled, require_level
 from delone.terrain.lines import Ring, lines_of, rings_of
+from delone.terrain.merging import as_snap
 from delone.units import (
     UnitsWarning,
     as_units,
@@ -43,7 +49,7 @@ from delone.units import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -76,6 +82,7 @@ class Built(NamedTuple):
     soft: Bools
     crs: str | None
     units: str | None
+    adjustments: Adjustments | None = None
 
 
 def build(
@@ -91,20 +98,25 @@ def build(
     duplicates: str,
     crossing: str,
     tolerance: float,
+    snap: float,
+    level: Any,
     crs: Any,
     units: Any,
     planar: bool,
     workers: int | None,
-    surface_of: Callable[[Floats], Surface],
+    surface_of: Callable[..., Surface],
 ) -> Built:
     """Triangulate points and lines, and give each vertex a height.
 
-    `surface_of` returns the surface of points alone, for lines without heights.
+    `surface_of` returns the surface of points, with `breaklines`, for lines without heights.
     """
     as_choice(duplicates, POLICIES, name="duplicates")
     as_choice(crossing, POLICIES, name="crossing")
-    allowed = as_tolerance(tolerance)
-    if as_flag(voids, name="voids") and max_edge is None:
+    allowed, near = as_tolerance(tolerance), as_snap(snap)
+    limit = None if max_edge is None else as_number(max_edge, name="max_edge")
+    if limit is not None and not limit > 0:
+        raise InputError(f"max_edge must be above 0, got {max_edge!r:.80}")
+    if as_flag(voids, name="voids") and limit is None:
         raise InputError("voids=True needs max_edge, the longest edge that spans nothing")
     points = _points_of(xyz)
     system = system_of(crs, xyz)
@@ -124,7 +136,26 @@ def build(
         [Ring(line) for line in lines_of(each, name=name, crs=system)]
         for name, each in (("breaklines", breaklines), ("soft_breaklines", soft_breaklines))
     ]
-    lines = gathered([*given, *rings], points, surface_of)
+    every = points
+    kept = np.ones(len(every), dtype=bool)
+    lakes: Level | None = None
+    if level is not None:
+        # Triangles beside a shore have no long edges because of it.
+        longest = np.inf if limit is None else limit / 2
+        lakes = leveled(level, points, system, longest, surface_of)
+        kept, points = lakes.outside, points[lakes.outside]
+    shores = [] if lakes is None else lakes.shores
+    around = [shore.points for shore in shores]
+    lines = gathered(
+        [*given, *rings, shores],
+        points,
+        lambda ground: surface_of(ground, **({"breaklines": around} if around else {})),
+    )
+    with _rows_of(kept):
+        merged = joined(points, lines, near, duplicates, allowed) if near else None
+    if merged is not None:
+        points, lines = merged.points[merged.kept], merged.lines
+        kept[np.flatnonzero(kept)[~merged.kept]] = False
     rows = np.concatenate((points[:, :2], lines.points[:, :2]))
     mesh = ConstrainedDelaunay(
         rows,
@@ -133,17 +164,35 @@ def build(
         workers=workers,
         planar=True,
     )
-    heights = _heights(
-        mesh, points, lines, duplicates=duplicates, crossing=crossing, tolerance=allowed
-    )
-    part = Part(mesh, heights, within(mesh, lines), is_soft(mesh, lines))
-    mesh, heights, kept, soft = without_outer(part, lines)
-    if max_edge is not None:
-        limit = as_number(max_edge, name="max_edge")
-        if not limit > 0:
-            raise InputError(f"max_edge must be above 0, got {max_edge!r:.80}")
-        kept = peeled(mesh, kept, limit, voids=voids)
-    return compact(mesh, heights, kept, soft, system, heights_in)
+    with _rows_of(kept):
+        heights = _heights(
+            mesh, points, lines, duplicates=duplicates, crossing=crossing, tolerance=allowed
+        )
+    covered = within(mesh, lines)
+    level_ = inside(mesh, np.where(lines.kinds == LEVEL, lines.polygons, -1).astype(np.int32))
+    if lakes is not None:
+        require_level(mesh, heights, level_, covered, lakes.heights)
+    part = Part(mesh, heights, covered, is_soft(mesh, lines))
+    mesh, heights, found, soft = without_outer(part, lines)
+    if limit is not None:
+        lake = triangles_among(mesh.simplices, part.mesh.simplices[level_ & covered])
+        found = peeled(mesh, found, limit, voids=voids) | (lake & found)
+    made = compact(mesh, heights, found, soft, system, heights_in)
+    return made._replace(adjustments=adjustments_of(merged, lakes))
+
+
+@contextmanager
+def _rows_of(kept: Bools) -> Iterator[None]:
+    """Let errors name the rows of all points, of which some are left out."""
+    try:
+        yield
+    except ConflictingValuesError as error:
+        numbers = np.flatnonzero(kept)
+        if len(numbers) == len(kept):
+            raise
+        further = np.arange(error.rows.max(initial=0) + 1 - len(numbers)) + len(kept)
+        rows = np.concatenate((numbers, further.clip(0)))[error.rows]
+        raise ConflictingValuesError(str(error), rows=rows) from None
 
 
 def bare(

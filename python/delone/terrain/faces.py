@@ -51,8 +51,9 @@ def with_lines(surface: SurfaceFile, options: dict[str, Any]) -> dict[str, Any]:
 
 def build_faces(surface: SurfaceFile, options: dict[str, Any]) -> building.Built:
     """Return the surface of the faces of a file; edges on its breaklines are breaklines."""
-    for name in (*_LINES, *_RINGS, "max_edge", "voids"):
-        if options.get(name) is not None and options[name] is not False:
+    for name in (*_LINES, *_RINGS, "max_edge", "voids", "level", "snap"):
+        given = options.get(name)
+        if given is not None and given is not False and not (name == "snap" and given == 0):
             raise InputError(f"{surface.source} has faces, so {name} changes nothing: {_AFRESH}")
     duplicates = options.get("duplicates", "raise")
     as_choice(duplicates, POLICIES, name="duplicates")

@@ -25,14 +25,16 @@ __all__ = [
     "HOLE",
     "HULL",
     "ISLAND",
+    "LEVEL",
     "SOFT",
     "Lines",
     "gathered",
     "off_ground",
 ]
 
-# The kinds of lines. The last is the hull of all heights, where rings leave it.
-HARD, SOFT, BOUNDARY, HOLE, ISLAND, HULL = range(6)
+# The kinds of lines. The last two are shores of level polygons, and the hull of all heights, where
+# rings leave it.
+HARD, SOFT, BOUNDARY, HOLE, ISLAND, LEVEL, HULL = range(7)
 
 
 class Lines(NamedTuple):

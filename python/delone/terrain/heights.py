@@ -24,7 +24,15 @@ if TYPE_CHECKING:
     from delone._types import Bools, Floats, Rows
     from delone.constrained.delaunay import ConstrainedDelaunay
 
-__all__ = ["POLICIES", "Claims", "claims_of_lines", "claims_of_points", "on_ground", "resolved"]
+__all__ = [
+    "POLICIES",
+    "Claims",
+    "claims_of_lines",
+    "claims_of_points",
+    "conflict",
+    "on_ground",
+    "resolved",
+]
 
 POLICIES = ("raise", "min", "max", "mean")
 # Both ends of a line, the vertex on it and its share of the line are rounded once each.
@@ -144,7 +152,7 @@ def _reduced(  # noqa: PLR0917
         return Claims(vertex, z, bound)
     if policy == "raise":
         rows = vertex[different]
-        raise _conflict(points[rows], rows, low[different], high[different], what, option)
+        raise conflict(points[rows], rows, low[different], high[different], what, option)
     if policy == "mean":
         total, number = np.bincount(at, claims.z), np.bincount(at)
         z[different] = total[different] / number[different]
@@ -153,9 +161,10 @@ def _reduced(  # noqa: PLR0917
     return Claims(vertex, z, bound)
 
 
-def _conflict(  # noqa: PLR0917
+def conflict(  # noqa: PLR0917
     places: Floats, rows: Rows, low: Floats, high: Floats, what: str, option: str
 ) -> ConflictingValuesError:
+    """The error that heights differ at places."""
     shown = ", ".join(
         f"({x:.10g}, {y:.10g}): {_range(*span)}"
         for (x, y), *span in zip(places[:_SHOWN], low.tolist(), high.tolist(), strict=False)

@@ -111,8 +111,10 @@ def heights(tin: Surface, xy: ArrayLike, tolerance: float) -> Floats:
     place = tin.locate(queries, tolerance=tolerance)
     inside = place.simplex >= 0
     corners = tin.z[tin.simplices[np.where(inside, place.simplex, 0)]]
-    found = np.where(inside, (place.barycentric * corners).sum(axis=-1), np.nan)
-    return np.asarray(found)
+    found = (place.barycentric * corners).sum(axis=-1)
+    # What is level stays level; weights have the sum 1 up to rounding only.
+    level = (corners == corners[..., :1]).all(axis=-1)
+    return np.asarray(np.where(inside, np.where(level, corners[..., 0], found), np.nan))
 
 
 def extremes(tin: Surface) -> tuple[float, float]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from delone.immutable import kept, sealed
 from delone.plane.location import stretches
+from delone.terrain.adjustments import Adjustments
 from delone.triangulation import HullTiling
 
 if TYPE_CHECKING:
@@ -23,10 +24,11 @@ __all__ = ["Surveyed"]
 class Surveyed(HullTiling):
     """A triangulation with heights, lines, a reference system and units."""
 
-    __slots__ = ("_breaklines", "_crs", "_soft", "_units", "_z")
+    __slots__ = ("_adjustments", "_breaklines", "_crs", "_soft", "_units", "_z")
     _SAVES_CRS = True
 
     _breaklines: Indices
+    _adjustments: NDArray[np.str_]
     _crs: NDArray[np.str_]
     _soft: Bools
     _units: NDArray[np.str_]
@@ -62,6 +64,11 @@ class Surveyed(HullTiling):
     def units(self) -> str | None:
         """The unit of heights, such as ``"m"``, ``"ft"`` or ``"us-ft"``; None if it is unknown."""
         return str(self._units) or None
+
+    @property
+    def adjustments(self) -> Adjustments | None:
+        """What `snap` and `level` have changed of the input; None if neither was given."""
+        return Adjustments._of_text(str(self._adjustments)) if str(self._adjustments) else None
 
     def _stretches(self, a: Floats, b: Floats) -> list[Stretch]:
         """The triangles of the hull along a segment, in parts that are on the surface or not."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
@@ -108,6 +109,8 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         duplicates: str = "raise",
         crossing: str = "raise",
         tolerance: float = 0.0,
+        snap: float = 0.0,
+        level: Any = None,
         crs: Any = None,
         units: str | None = None,
         planar: bool = False,
@@ -146,6 +149,17 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
             Heights at one place that differ by at most this count as equal; by default, the limit
             is the slope of a line times the rounding error of its coordinates. Of equal heights,
             the most accurate is used, and of several such heights, the lowest.
+        snap : float, optional
+            Points that are nearer than this to each other or to a line are merged. Points of lines
+            are merged first, then points move to those of lines, or become part of a line; of other
+            points the first in the order of x and y stays. Heights that meet at a place are those
+            of duplicates: see `duplicates`, `crossing` and `tolerance`. Boundary, holes and islands
+            do not move. `adjustments` has the number of points and the largest move.
+        level : optional
+            Polygons or rings, such as lakes, in which the surface is level. Each feature, or each
+            ring given as an array, has the one height of its points, or, without heights, the
+            lowest of the surface along its shore. Points inside or on the shore are left out, and
+            counted in `adjustments`; `max_edge` removes nothing there.
         crs : optional
             Coordinate reference system, such as ``"EPSG:28992"``, an EPSG code or a pyproj.CRS; by
             default that of the data. Lines that declare another one are transformed (with pyproj).
@@ -171,7 +185,10 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
             The rings of a polygon cross themselves or each other.
         InputError
             A line without heights extends beyond the points, `crs` is not the reference system of
-            the points, no triangle is left, or an option is not one of its choices.
+            the points, no triangle is left, a level polygon has several heights, no height, or a
+            line with another height inside, or an option is not one of its choices.
+        BudgetExceededError
+            `snap` is so large that millions of pairs of points are near each other.
         DegenerateInputError, NonFiniteError, ShapeError, DtypeError, MemoryError
             As for `delone.Delaunay`.
 
@@ -200,12 +217,18 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
             duplicates=duplicates,
             crossing=crossing,
             tolerance=tolerance,
+            snap=snap,
+            level=level,
             crs=crs,
             units=units,
             planar=planar,
             workers=workers,
-            surface_of=lambda points: cls.from_points(
-                points, duplicates=duplicates, tolerance=tolerance, planar=True, workers=workers
+            surface_of=partial(
+                cls.from_points,
+                duplicates=duplicates,
+                tolerance=tolerance,
+                planar=True,
+                workers=workers,
             ),
         )
         return cls._built(made, workers)
@@ -223,12 +246,15 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
                 "soft": made.soft,
                 "crs": np.array(made.crs or ""),
                 "units": np.array(made.units or ""),
+                "adjustments": np.array(
+                    "" if made.adjustments is None else made.adjustments._text()
+                ),
             },
             workers=workers,
         )
 
     def _fill(self, arrays: Any, stages: Any, workers: int | None) -> None:
-        known = {name: arrays.get(name, np.array("")) for name in ("crs", "units")}
+        known = {name: arrays.get(name, np.array("")) for name in ("crs", "units", "adjustments")}
         plain = {name: arrays[name] for name in self._ARRAYS}
         number = np.cumsum(plain["kept"], dtype=np.int32) - 1
         number = np.append(np.where(plain["kept"], number, -1), -1).astype(np.int32)
@@ -244,7 +270,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         )
 
     def _arrays(self) -> dict[str, NDArray[Any]]:
-        known = {"crs": self._crs, "units": self._units}
+        known = {"crs": self._crs, "units": self._units, "adjustments": self._adjustments}
         return super()._arrays() | {name: text for name, text in known.items() if str(text)}
 
     def _described(self) -> str:
