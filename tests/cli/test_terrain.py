@@ -308,3 +308,15 @@ def test_lakes_are_level_and_near_points_are_merged(command, figures, tmp_path):
     assert "snap" in err
     code, _, err = command("volume", survey, 0, "--level", tmp_path / "none.gpkg")
     assert code == 3
+
+
+def test_contours_with_fewer_points(survey, figures, command, tmp_path):
+    out = tmp_path / "lines.gpkg"
+    full = figures("contours", survey, "--interval", 100, "-o", out)
+    few = figures("contours", survey, "--interval", 100, "--simplify", 2, "-o", out)
+    assert few["lines"] == full["lines"] == len(geopandas.read_file(out))
+    assert few["coordinates"] + few["points_of_lines_left_out"] == full["coordinates"]
+    assert few["points_of_lines_left_out"] > 1000
+    code, _, err = command("contours", survey, "--interval", 100, "--simplify", 2, "--bands")
+    assert code == 2
+    assert "--simplify is for lines" in err

@@ -80,6 +80,13 @@ def contours(
             "one around them."
         ),
     ] = 0.0,
+    simplify: Annotated[
+        float,
+        typer.Option(
+            help="Leave out points of lines that are within this distance of the rest; lines stay "
+            "on their sides of each other."
+        ),
+    ] = 0.0,
     bands: Annotated[
         bool, typer.Option("--bands", help="Write polygons between levels instead of lines.")
     ] = False,
@@ -107,6 +114,8 @@ def contours(
         raise Failure("--smooth is for lines, not for --bands", Exit.USAGE)
     if bands and min_length:
         raise Failure("--min-length is for lines, not for --bands", Exit.USAGE)
+    if bands and simplify:
+        raise Failure("--simplify is for lines, not for --bands", Exit.USAGE)
     if labels is None and label_length is not None:
         raise Failure("--label-length needs --labels", Exit.USAGE)
     if labels is not None and bands:
@@ -139,6 +148,7 @@ def contours(
                     smooth=smooth,
                     min_length=min_length,
                     min_area=min_area,
+                    simplify=simplify,
                     max_points=max_points,
                 )
         say(f"writing {len(found):,} {'polygons' if bands else 'lines'}")
@@ -155,6 +165,7 @@ def contours(
         "triangles_left_out": found.left_out or None,
         "short_lines_left_out": found.short if min_length else None,
         f"small_{what}_left_out": found.small if min_area else None,
+        "points_of_lines_left_out": found.straightened if simplify else None,
         "labels": None if texts is None else len(texts),
         "lines_too_short_for_a_label": None if texts is None else texts.short,
         "stages": watch.rows(tin.npoints),

@@ -68,6 +68,8 @@ class Contours(ReadOnly, Filed, Layer):
         The number of lines that are left out because they are shorter than `min_length`.
     small : int, optional
         The number of closed lines that are left out because they enclose less than `min_area`.
+    straightened : int, optional
+        The number of points that are left out because of `simplify`.
     crs : str, optional
         Coordinate reference system.
     units : str, optional
@@ -94,6 +96,7 @@ class Contours(ReadOnly, Filed, Layer):
     left_out: int = 0
     short: int = 0
     small: int = 0
+    straightened: int = 0
     crs: str | None = None
     units: str | None = None
 
@@ -525,12 +528,15 @@ def lines(
     *,
     min_length: float,
     min_area: float,
+    simplify: float,
 ) -> Contours:
     """Return the contours of a surface."""
+    from delone.terrain.generalizing import simplified
     from delone.terrain.smoothing import smoothed
 
     rounds = as_count(smooth, name="smooth")
     least, smallest = _least(min_length, "min_length"), _least(min_area, "min_area")
+    near = _least(simplify, "simplify")
     # Each round doubles the points at most.
     factor = 1 << min(rounds, _MOST_ROUNDS)
     made, left_out = _within(_core.contour_lines2, tin, levels, max_points, factor)
@@ -547,6 +553,9 @@ def lines(
     if least:
         kept = _lengths(points, starts) >= least
         points, starts, level = *_only(points, starts, kept), level[kept]
+    before = len(points)
+    if near:
+        points, starts = simplified(points, starts, near)
     return Contours(
         points=points,
         starts=starts,
@@ -556,6 +565,7 @@ def lines(
         left_out=left_out,
         short=len(made.levels) - len(level) - small,
         small=small,
+        straightened=before - len(points),
         crs=tin.crs,
         units=tin.units,
     )

@@ -401,6 +401,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         smooth: int = 0,
         min_length: float = 0.0,
         min_area: float = 0.0,
+        simplify: float = 0.0,
         max_points: int = contouring.MOST,
     ) -> contouring.Contours:
         """Compute contour lines.
@@ -424,6 +425,9 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
             Lines shorter than this, in the unit of the points, are left out and counted.
         min_area : float, optional
             Closed lines that enclose less than this are left out and counted.
+        simplify : float, optional
+            Points of lines are left out and counted as long as each is within this distance of the
+            line that remains, and no line crosses another one or itself, or changes its side of it.
         max_points : int, optional
             Maximum number of points of all contours; smoothing may double them in each round.
 
@@ -458,7 +462,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         ([3.0, 6.0], [[0.0, 3.0], [3.0, 3.0], [4.0, 3.0]])
         """
         wanted, marked = contouring.levels_of(self, levels, interval, base, index)
-        least = {"min_length": min_length, "min_area": min_area}
+        least = {"min_length": min_length, "min_area": min_area, "simplify": simplify}
         return contouring.lines(self, wanted, marked, smooth, max_points, **least)
 
     def bands(

@@ -1,0 +1,234 @@
+"""Lines with fewer points that cross nothing and stay on their side of all other lines.
+
+A point between two others is left out if no other point of any line is inside of or on the triangle
+of the three, which is decided exactly. Moving the line across an empty triangle is an isotopy: no
+line crosses another one or itself, closed lines stay around what they are around, and lines that
+touch do so at the same points. This is the condition of A. Saalfeld, "Topologically consistent line
+simplification with the Douglas-Peucker algorithm", CaGIS 26 (1999), for one point at a time, as M.
+Visvalingam and J. Whyatt leave points out (The Cartographic Journal 30, 1993).
+
+Every point that is left out is within the tolerance of the piece in its place. In each round,
+points are left out that deviate less than both of their neighbors; ties are broken by coordinates.
+The triangles of such points remain empty when others are left out, so that one round equals leaving
+them out one by one.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from delone.predicates import orient2d
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone._types import Bools, Floats, Rows
+
+__all__ = ["simplified"]
+
+# Points in boxes of triangles that are compared at once.
+_PAIRS = 1 << 22
+# The fewest different points of a closed line.
+_LEAST = 3
+# Closed lines with at most so many different points lose one point in a round.
+_FEW = 2 * _LEAST
+
+
+class _State(NamedTuple):
+    """Points of all lines, and which of them are still there."""
+
+    points: Floats
+    fixed: Bools
+    line: Rows
+    closed: Bools  # of each line
+    alive: Bools
+    blocker: Rows  # a point in the triangle of each point, -1 if none is known
+
+
+def simplified(points: Floats, starts: Rows, tolerance: float) -> tuple[Floats, Rows]:
+    """Return lines with fewer points, within a distance of all that are left out."""
+    if len(starts) < 2:
+        return points, starts
+    state = _state(points, starts)
+    # Each round leaves out a point, or finds a blocker, which stays until a point is left out.
+    while _round(state, tolerance):
+        pass
+    counts = np.add.reduceat(state.alive.astype(np.int64), starts[:-1])
+    return points[state.alive], np.concatenate(([0], np.cumsum(counts)))
+
+
+def _state(points: Floats, starts: Rows) -> _State:
+    sizes = np.diff(starts)
+    first, last = starts[:-1], starts[1:] - 1
+    closed = (points[first] == points[last]).all(axis=1)
+    # Where lines touch, both keep the point; the two ends of a closed line are one.
+    single = np.ones(len(points), dtype=bool)
+    single[last[closed]] = False
+    _, number = np.unique(points, axis=0, return_inverse=True)
+    number = number.ravel()
+    fixed = np.bincount(number[single], minlength=len(points))[number] > 1
+    fixed[first], fixed[last] = True, True
+    return _State(
+        points,
+        fixed,
+        np.repeat(np.arange(len(sizes)), sizes),
+        closed,
+        np.ones(len(points), dtype=bool),
+        np.full(len(points), -1, dtype=np.int64),
+    )
+
+
+def _round(state: _State, tolerance: float) -> bool:
+    """Leave out points; False if none can be left out."""
+    rows = np.flatnonzero(state.alive)
+    place = np.flatnonzero(~state.fixed[rows])
+    u, v, w = rows[place - 1], rows[place], rows[place + 1]
+    deviation = _deviations(state.points, u, w)
+    counts = np.bincount(state.line[rows], minlength=len(state.closed))
+    # A closed line repeats its first point.
+    few = state.closed & (counts - 1 <= _FEW)
+    enough = ~(state.closed & (counts - 1 <= _LEAST))[state.line[v]]
+    possible = (deviation <= tolerance) & enough & (state.blocker[v] < 0)
+    chosen = _independent(state.points, rows, place[possible], deviation[possible])
+    chosen = _one_of_few(state, v[possible], deviation[possible], chosen, few)
+    if not chosen.any():
+        return False
+    u, v, w = (each[possible][chosen] for each in (u, v, w))
+    found = _inside(state.points, rows, u, v, w)
+    state.blocker[v] = found
+    gone = v[found < 0]
+    state.alive[gone] = False
+    # Triangles with a corner that is gone are new ones, and what was in others may be gone.
+    beside = np.concatenate((u[found < 0], w[found < 0]))
+    state.blocker[beside] = -1
+    freed = (state.blocker >= 0) & ~state.alive[state.blocker]
+    state.blocker[freed] = -1
+    return True
+
+
+def _deviations(points: Floats, u: Rows, w: Rows) -> Floats:
+    """Return the greatest distance of the points between rows u and w from the piece u-w."""
+    counts = w - u - 1
+    owner = np.repeat(np.arange(len(u)), counts)
+    between = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts) + u[owner] + 1
+    a, way = points[u], points[w] - points[u]
+    size = (way**2).sum(axis=1)
+    away = points[between] - a[owner]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = (away * way[owner]).sum(axis=1) / size[owner]
+    share = np.where(size[owner] > 0, np.clip(share, 0.0, 1.0), 0.0)
+    distance = np.hypot(*(away - share[:, None] * way[owner]).T)
+    found: Floats = np.maximum.reduceat(distance, np.cumsum(counts) - counts) if len(u) else size
+    return found
+
+
+def _independent(points: Floats, rows: Rows, place: Rows, deviation: Floats) -> Bools:
+    """Return which points deviate less than those beside them on the line that may go, too."""
+    rank = np.full(len(rows) + 1, np.iinfo(np.int64).max)
+    x, y = points[rows[place]].T
+    order = np.lexsort((y, x, deviation))
+    rank[place[order]] = np.arange(len(place))
+    found: Bools = (rank[place] < rank[place - 1]) & (rank[place] < rank[place + 1])
+    return found
+
+
+def _one_of_few(state: _State, v: Rows, deviation: Floats, chosen: Bools, few: Bools) -> Bools:
+    """Of closed lines with few points, keep but the first of the chosen."""
+    rows = np.flatnonzero(chosen & few[state.line[v]])
+    x, y = state.points[v[rows]].T
+    order = rows[np.lexsort((y, x, deviation[rows], state.line[v[rows]]))]
+    again = np.diff(state.line[v[order]], prepend=-1) == 0
+    found = chosen.copy()
+    found[order[again]] = False
+    return found
+
+
+def _inside(points: Floats, rows: Rows, u: Rows, v: Rows, w: Rows) -> NDArray[np.int64]:
+    """Return a point inside of or on each triangle other than its corners, -1 if there is none."""
+    corners = points[np.stack((u, v, w))]
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    cells = _Cells.of(points, rows, low, high)
+    found = np.full(len(u), -1, dtype=np.int64)
+    total = cells.counts(low, high)
+    ends = np.cumsum(total)
+    start = 0
+    # Each block has at least one triangle, so this ends.
+    while start < len(u):
+        before = ends[start - 1] if start else 0
+        stop = max(start + 1, int(np.searchsorted(ends, before + _PAIRS, side="right")))
+        part = slice(start, stop)
+        triangle, point = cells.pairs(low[part], high[part])
+        triangle += start
+        p = points[point]
+        inside = ((p >= low[triangle]) & (p <= high[triangle])).all(axis=1)
+        for corner in corners:
+            inside &= (p != corner[triangle]).any(axis=1)
+        triangle, point = triangle[inside], point[inside]
+        a, b, c = (corner[triangle] for corner in corners)
+        p = points[point]
+        signs = np.stack([orient2d(*ends_, p) for ends_ in ((a, b), (b, c), (c, a))])
+        on = (signs >= 0).all(axis=0) | (signs <= 0).all(axis=0)
+        found[triangle[on]] = point[on]
+        start = stop
+    return found
+
+
+class _Cells(NamedTuple):
+    """Points in the cells of a grid, row by row, as ranges of a sorted array."""
+
+    origin: Floats
+    size: Floats
+    columns: int
+    rows: int
+    start: Rows
+    order: Rows
+
+    @classmethod
+    def of(cls, points: Floats, rows: Rows, low: Floats, high: Floats) -> _Cells:
+        """Sort points into cells about as large as boxes, not many more than points."""
+        places = points[rows]
+        origin = places.min(axis=0)
+        extent = np.maximum(places.max(axis=0) - origin, np.finfo(float).tiny)
+        most = max(1, int(np.sqrt(len(rows))))
+        box = np.maximum(np.median(high - low, axis=0), extent / (4 * most))
+        shape = np.clip(np.ceil(extent / box), 1, 4 * most).astype(np.int64)
+        columns, count = int(shape[0]), int(shape[1])
+        size = extent / shape
+        cell = _cell(places, origin, size, shape)
+        key = cell[:, 1] * columns + cell[:, 0]
+        order = np.argsort(key, kind="stable")
+        start = np.concatenate(([0], np.cumsum(np.bincount(key, minlength=columns * count))))
+        return cls(origin, size, columns, count, start, rows[order])
+
+    def _spans(self, low: Floats, high: Floats) -> tuple[Rows, Rows, Rows]:
+        """Return the ranges of points in the rows of cells that boxes meet, and the boxes."""
+        shape = np.array((self.columns, self.rows))
+        first, last = (_cell(each, self.origin, self.size, shape) for each in (low, high))
+        height = last[:, 1] - first[:, 1] + 1
+        box = np.repeat(np.arange(len(low)), height)
+        row = np.arange(len(box)) - np.repeat(np.cumsum(height) - height, height) + first[box, 1]
+        start = self.start[row * self.columns + first[box, 0]]
+        stop = self.start[row * self.columns + last[box, 0] + 1]
+        return box, start, stop
+
+    def counts(self, low: Floats, high: Floats) -> Rows:
+        """Return the number of points in the cells of each box."""
+        box, start, stop = self._spans(low, high)
+        return np.bincount(box, stop - start, minlength=len(low)).astype(np.int64)
+
+    def pairs(self, low: Floats, high: Floats) -> tuple[Rows, Rows]:
+        """Return boxes and the points in their cells."""
+        box, start, stop = self._spans(low, high)
+        sizes = stop - start
+        at = np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+        return np.repeat(box, sizes), self.order[np.repeat(start, sizes) + at]
+
+
+def _cell(
+    places: Floats, origin: Floats, size: Floats, shape: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """Return the column and row of places; monotone, so that a box has all that is inside."""
+    found: NDArray[np.int64] = np.floor((places - origin) / size).astype(np.int64)
+    return np.clip(found, 0, shape - 1)

@@ -1,0 +1,214 @@
+"""Contours with fewer points: nothing crosses, nothing changes sides, and the distance holds."""
+
+from fractions import Fraction
+from itertools import combinations
+
+import numpy as np
+import pytest
+import shapely
+
+from delone import InputError
+from delone.terrain import TIN
+from delone.terrain.generalizing import simplified
+
+
+def hills(seed, count=2500):
+    random = np.random.default_rng(seed)
+    xy = random.random((count, 2)) * 100
+    x, y = xy.T
+    z = 8 * np.sin(x / 9) * np.cos(y / 7) + random.random(count) * 2
+    return TIN.from_points(np.column_stack((xy, z)))
+
+
+def pieces(lines):
+    return [line[k : k + 2] for line in lines for k in range(len(line) - 1)]
+
+
+def side(a, b, c):
+    (ax, ay), (bx, by), (cx, cy) = (map(Fraction, p) for p in (a, b, c))
+    found = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    return (found > 0) - (found < 0)
+
+
+def cross(p, q):
+    """Whether two pieces have a point in common that is not an end of both."""
+    (a, b), (c, d) = p.tolist(), q.tolist()
+    if max(a[0], b[0]) < min(c[0], d[0]) or max(c[0], d[0]) < min(a[0], b[0]):
+        return False
+    if max(a[1], b[1]) < min(c[1], d[1]) or max(c[1], d[1]) < min(a[1], b[1]):
+        return False
+    if a in (c, d) or b in (c, d):
+        # Ends in common: they may only go on over each other.
+        common, other = (a, b) if a in (c, d) else (b, a)
+        away = d if c == common else c
+        if side(common, other, away) != 0 or other == away:
+            return other == away
+        way = [p - q for p, q in zip(other, common, strict=True)]
+        return sum(w * (p - q) for w, p, q in zip(way, away, common, strict=True)) > 0
+    return side(a, b, c) * side(a, b, d) <= 0 and side(c, d, a) * side(c, d, b) <= 0
+
+
+def require_no_crossing(lines):
+    segments = pieces(lines)
+    tree = shapely.STRtree([shapely.LineString(each) for each in segments])
+    for k, j in tree.query(tree.geometries).T:
+        if k < j:
+            assert not cross(segments[k], segments[j]), (segments[k], segments[j])
+
+
+def around(lines, closed):
+    """Return pairs of a closed line and another line inside of it."""
+    polygons = [
+        shapely.Polygon(line) if ring else None for line, ring in zip(lines, closed, strict=True)
+    ]
+    found = set()
+    for k, polygon in enumerate(polygons):
+        if polygon is None:
+            continue
+        shapely.prepare(polygon)
+        found |= {
+            (k, j) for j, line in enumerate(lines)
+            if j != k and shapely.contains_xy(polygon, *line[len(line) // 2])
+        }  # fmt: skip
+    return found
+
+
+def lines_of(found):
+    return [found.coordinates(k) for k in range(len(found))]
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("tolerance", [0.2, 2.0, 50.0])
+def test_lines_do_not_cross_and_stay_where_they_are(seed, tolerance):
+    tin = hills(seed)
+    full, few = tin.contours(interval=0.7), tin.contours(interval=0.7, simplify=tolerance)
+    before, after = lines_of(full), lines_of(few)
+    assert few.straightened == len(full.points) - len(few.points) > len(full.points) / 3
+    assert np.array_equal(full.level, few.level)
+    require_no_crossing(after)
+    closed = full.closed.tolist()
+    assert closed == few.closed.tolist()
+    nested = around(before, closed)
+    assert len(nested) > 20
+    assert nested == around(after, closed)
+    for old, new, ring in zip(before, after, closed, strict=True):
+        assert np.array_equal(old[[0, -1]], new[[0, -1]])
+        assert set(map(tuple, new.tolist())) <= set(map(tuple, old.tolist()))
+        far = shapely.distance(shapely.points(old), shapely.LineString(new)).max()
+        assert far <= tolerance * (1 + 1e-12)
+        if ring:
+            assert len(new) >= 4
+            signs = (shapely.LinearRing(each).is_ccw for each in (old, new))
+            assert len(set(signs)) == 1
+
+
+def test_a_line_does_not_jump_over_a_peak():
+    bend = np.array([(0.0, 0), (5, 3), (10, 0)])
+    peak = np.array([(4.0, 1), (6, 1), (5, 2), (4, 1)])
+    for lines in ([bend, peak], [peak, bend]):
+        starts = np.cumsum([0, *map(len, lines)])
+        points, found = simplified(np.concatenate(lines), starts, 10.0)
+        assert np.array_equal(found, starts)
+        assert len(points) == 7
+    alone, _ = simplified(bend, np.array([0, 3]), 10.0)
+    assert alone.tolist() == [[0, 0], [10, 0]]
+    # A point exactly on the new piece is in the way, too; just beside it is not.
+    for y, count in ((0.0, 3), (-1e-300, 2)):
+        lines = [bend, np.array([(5, y), (5, -9.0)])]
+        points, found = simplified(np.concatenate(lines), np.array([0, 3, 5]), 10.0)
+        assert found[1] == count
+
+
+def test_the_distance_is_that_of_all_points_left_out():
+    turn = np.linspace(0, np.pi, 1001)
+    arc = np.column_stack((np.cos(turn), np.sin(turn))) * 100
+    for tolerance in (0.01, 1, 20):
+        points, starts = simplified(arc, np.array([0, 1001]), tolerance)
+        far = shapely.distance(shapely.points(arc), shapely.LineString(points))
+        assert tolerance / 20 < far.max() <= tolerance
+        assert starts[-1] == len(points)
+    # Not far from the ideal: chords of an arc with that height.
+    assert len(simplified(arc, np.array([0, 1001]), 1.0)[0]) < 2.2 * np.pi / (2 * np.arccos(0.99))
+
+
+@pytest.mark.parametrize("tolerance", [0.5, 3.0])
+def test_every_point_that_is_left_has_a_reason(tolerance):
+    full = hills(5, 700).contours(interval=0.7)
+    few, starts = simplified(full.points, full.starts, tolerance)
+    tree = shapely.STRtree(shapely.points(few))
+    for k, old in enumerate(lines_of(full)):
+        new = few[starts[k] : starts[k + 1]]
+        at = [np.flatnonzero((old == each).all(axis=1))[0] for each in new]
+        if (old[0] == old[-1]).all():
+            at[-1] = len(old) - 1
+            if len(new) == 4:
+                continue
+        for i in range(1, len(new) - 1):
+            piece = shapely.LineString(new[[i - 1, i + 1]])
+            between = shapely.points(old[at[i - 1] + 1 : at[i + 1]])
+            if shapely.distance(between, piece).max() > tolerance * (1 - 1e-12):
+                continue
+            corners = new[i - 1 : i + 2].tolist()
+            box = shapely.box(*np.min(corners, axis=0), *np.max(corners, axis=0))
+            near = [few[j].tolist() for j in tree.query(box, predicate="intersects")]
+            a, b, c = corners
+            signs = [
+                {side(a, b, p), side(b, c, p), side(c, a, p)} for p in near if p not in corners
+            ]
+            assert any(not {-1, 1} <= each for each in signs)
+
+
+def test_straight_lines_keep_their_ends_only():
+    line = np.column_stack((np.arange(9.0), np.arange(9.0)))
+    points, _ = simplified(line, np.array([0, 9]), 1e-300)
+    assert points.tolist() == [[0, 0], [8, 8]]
+    tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
+    assert len(tin.contours([3.0], simplify=1e-9).points) == 2
+
+
+def test_closed_lines_keep_three_points():
+    turn = np.linspace(0, 2 * np.pi, 13)
+    ring = np.column_stack((np.cos(turn), np.sin(turn)))
+    ring[-1] = ring[0]
+    for size in (13, 7, 6, 5, 4):
+        part = np.vstack((ring[: size - 1], ring[:1]))
+        points, _ = simplified(part, np.array([0, size]), 100.0)
+        assert len(points) == 4
+        assert abs(shapely.Polygon(points).area) > 0.05
+
+
+def test_lines_that_touch_still_touch():
+    a = np.array([(0.0, 0), (4, 0.5), (5, 1), (6, 0.5), (10, 0)])
+    b = np.array([(0.0, 9), (4, 2), (5, 1), (6, 2), (10, 9)])
+    points, starts = simplified(np.concatenate((a, b)), np.array([0, 5, 10]), 3.0)
+    for k in range(2):
+        assert [5, 1] in points[starts[k] : starts[k + 1]].tolist()
+
+
+def test_the_direction_of_lines_changes_nothing():
+    full = hills(3, 900).contours(interval=0.5)
+    lines = lines_of(full)
+    order = np.random.default_rng(0).permutation(len(lines))
+    one, first = simplified(full.points, full.starts, 0.5)
+    turned = [lines[k][::-1] for k in order]
+    two, second = simplified(
+        np.concatenate(turned), np.cumsum([0, *(len(each) for each in turned)]), 0.5
+    )
+    for at, k in enumerate(order.tolist()):
+        assert np.array_equal(one[first[k] : first[k + 1]], two[second[at] : second[at + 1]][::-1])
+
+
+def test_none_and_bad_values():
+    tin = hills(0, 200)
+    assert tin.contours([1000.0], simplify=1.0).straightened == 0
+    assert tin.contours(interval=1).straightened == 0
+    for bad in (-1, np.nan, np.inf):
+        with pytest.raises(InputError, match="simplify must be"):
+            tin.contours(interval=1, simplify=bad)
+
+
+def test_the_judge_sees_crossings():
+    crossing = [np.array([(0.0, 0), (2, 2)]), np.array([(0.0, 2), (2, 0)])]
+    with pytest.raises(AssertionError):
+        require_no_crossing(crossing)
+    assert not any(cross(p, q) for p, q in combinations(pieces([np.eye(2), np.eye(2) + 3]), 2))
