@@ -94,6 +94,11 @@ COMMANDS = {
         "Find the ground among lidar points, and write their classes.",
         on_rows=False,
     ),
+    "terrain": Listed(
+        "site",
+        "terrain",
+        "Make several products of one surface, and a page of pictures and numbers about them.",
+    ),
     "contours": Listed(
         "terrain",
         "contours",
@@ -146,7 +151,16 @@ TASKS = {
     "Triangulate": ("triangulate", "sphere", "tile", "check"),
     "Outlines, cells, neighbors": ("hull", "voronoi", "graph", "cluster"),
     "Interpolate": ("interpolate", "crossval", "regrid"),
-    "Terrain": ("ground", "dem", "contours", "profile", "volume", "difference", "simplify"),
+    "Terrain": (
+        "ground",
+        "terrain",
+        "dem",
+        "contours",
+        "profile",
+        "volume",
+        "difference",
+        "simplify",
+    ),
     "Mesh": ("mesh", "tetrahedralize"),
 }
 

@@ -56,7 +56,7 @@ if TYPE_CHECKING:
 
     from delone.terrain import TIN, Volume
 
-__all__ = ["contours", "profile", "volume"]
+__all__ = ["contours", "profile", "volume", "write_lines"]
 
 
 @with_surface
@@ -152,10 +152,10 @@ def contours(
                     max_points=max_points,
                 )
         say(f"writing {len(found):,} {'polygons' if bands else 'lines'}")
-        _write(found, output or [], watch, "bands" if bands else "contours")
+        write_lines(found, output or [], watch, "bands" if bands else "contours")
         texts = None if labels is None else found.labels(length=label_length)
         if texts is not None:
-            _write(texts, [labels] if labels else [], watch, "labels")
+            write_lines(texts, [labels] if labels else [], watch, "labels")
     what = "polygons" if bands else "lines"
     written = [*(output or []), *([] if labels is None else [labels])]
     figures = figures_of(source, tin, written) | {
@@ -331,7 +331,8 @@ def _goal(
     return other_surface(Path(other), options, watch, say)
 
 
-def _write(found: Any, output: list[Path], watch: Stopwatch, layer: str) -> None:
+def write_lines(found: Any, output: list[Path], watch: Stopwatch, layer: str) -> None:
+    """Write contours, bands or labels to tables, contours also to drawings."""
     with writing(), ExitStack() as stack:
         drawings = [path for path in output if path.suffix.lower() == ".dxf"]
         rows = found.to_geopandas() if len(output) > len(drawings) else None

@@ -1,0 +1,397 @@
+"""The command ``terrain``: several products of one surface in a folder, with a page about them."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import partial
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+import typer
+
+from delone import __version__
+from delone.atomic import replacing
+from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.notes import noting
+from delone.cli.options import Chord, Classes, Json, Layer, Quiet, Workers
+from delone.cli.outputs import write_all
+from delone.cli.page import Section, page
+from delone.cli.profiles import (
+    SectionOptions,
+    profile_figures,
+    ready_profile,
+    write_profile,
+)
+from delone.cli.referenced import Crs, Planar, require_known
+from delone.cli.report import Stopwatch
+from delone.cli.show import spinner
+from delone.cli.surfaces import (
+    Boundary,
+    Breaklines,
+    Columns,
+    Crossing,
+    Duplicates,
+    EastingFirst,
+    Level,
+    MaxEdge,
+    Nodata,
+    Retriangulate,
+    Snap,
+    SoftBreaklines,
+    Step,
+    SurfaceOptions,
+    Survey,
+    Tolerance,
+    Units,
+    Voids,
+    Window,
+    curves_of,
+    figures_of,
+    print_figures,
+    surface,
+)
+from delone.cli.tables import ready_table
+from delone.cli.terrain import write_lines
+from delone.extras import require
+from delone.io import read_geometries
+from delone.io.raster import raster_writer
+from delone.terrain import difference
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from delone.terrain import TIN
+
+__all__ = ["terrain"]
+
+_SHADES = ("hillshade", "slope", "aspect")
+# Cells along the longer side of the map of a page.
+_CELLS = 900
+_NO_SECTIONS = SectionOptions(
+    interval=None, left=None, right=None, start=0.0, exaggeration=None, text_height=None
+)
+
+
+@dataclass
+class _Product:
+    """A product: what is written, what is told of it, and how it is drawn."""
+
+    name: str
+    files: list[Path]
+    figures: dict[str, Any] = field(default_factory=dict)
+    found: Any = None
+
+
+def terrain(
+    source: Survey,
+    *,
+    folder: Annotated[
+        Path,
+        typer.Option(
+            "--output", "-o", metavar="FOLDER", help="Folder of the files and of index.html."
+        ),
+    ],
+    contours: Annotated[
+        float | None, typer.Option(help="Contour lines at this distance of levels: contours.gpkg")
+    ] = None,
+    bands: Annotated[
+        float | None, typer.Option(help="Polygons between such levels: bands.gpkg")
+    ] = None,
+    dem: Annotated[
+        float | None, typer.Option(help="A raster of heights with cells of this size: dem.tif")
+    ] = None,
+    hillshade: Annotated[
+        bool, typer.Option("--hillshade", help="Brightness on the cells of --dem: hillshade.tif")
+    ] = False,
+    slope: Annotated[
+        bool, typer.Option("--slope", help="Slope in degrees on the cells of --dem: slope.tif")
+    ] = False,
+    aspect: Annotated[
+        bool, typer.Option("--aspect", help="Direction of the slope on these: aspect.tif")
+    ] = False,
+    profile: Annotated[
+        list[Path] | None,
+        typer.Option(help="File of one line, once or more: profile-NAME.csv, with its picture."),
+    ] = None,
+    volume: Annotated[
+        float | None, typer.Option(help="Volumes above and below this height, on the page.")
+    ] = None,
+    smooth: Annotated[int, typer.Option(help="As for contours.")] = 0,
+    min_length: Annotated[float, typer.Option(help="As for contours.")] = 0.0,
+    min_area: Annotated[float, typer.Option(help="As for contours, of lines and polygons.")] = 0.0,
+    simplify: Annotated[float, typer.Option(help="As for contours.")] = 0.0,
+    breaklines: Breaklines = None,
+    soft_breaklines: SoftBreaklines = None,
+    boundary: Boundary = None,
+    max_edge: MaxEdge = None,
+    voids: Voids = False,
+    duplicates: Duplicates = "raise",
+    crossing: Crossing = "raise",
+    tolerance: Tolerance = 0.0,
+    snap: Snap = 0.0,
+    level: Level = None,
+    chord: Chord = None,
+    step: Step = 1,
+    nodata: Nodata = None,
+    window: Window = None,
+    columns: Columns = None,
+    classes: Classes = None,
+    layer: Layer = None,
+    retriangulate: Retriangulate = False,
+    easting_first: EastingFirst = False,
+    crs: Crs = None,
+    units: Units = None,
+    planar: Planar = False,
+    workers: Workers = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Make several products of one surface, and a page of pictures and numbers about them.
+
+    The input is read and triangulated once. Files are those of the commands contours, dem and
+    profile with the same options.
+    """
+    given = locals()
+    options = SurfaceOptions.among(given)
+    require_known(crs)
+    shades = [name for name in _SHADES if given[name]]
+    if shades and dem is None:
+        raise Failure(f"--{shades[0]} needs --dem, the size of its cells", Exit.USAGE)
+    if contours is None and (smooth or min_length or simplify):
+        raise Failure("--smooth, --min-length and --simplify are for --contours", Exit.USAGE)
+    if contours is None and bands is None and min_area:
+        raise Failure("--min-area is for --contours and --bands", Exit.USAGE)
+    products = _wanted(folder, given, shades)
+    watch = Stopwatch()
+    inputs = [source, *(profile or []), *options.inputs()]
+    with spinner(quiet or as_json) as say, _folder(folder, products, inputs):
+        with reading(quiet=quiet):
+            lines = [
+                read_geometries(path, **curves_of(path, chord, aligned=True))
+                for path in profile or []
+            ]
+        tin = surface(source, options, watch, say, others=profile or [], aligned=bool(profile))
+        for product, compute in zip(products, _computed(tin, given, shades, lines), strict=True):
+            say(f"computing {product.name}")
+            with watch.stage(product.name), noting(quiet=quiet):
+                product.found = compute()
+            _write(product, tin, watch, say)
+        figures = figures_of(source, tin, [each for one in products for each in one.files])
+        say("drawing the page")
+        with watch.stage("page"):
+            _write_page(folder / "index.html", source, tin, figures, products)
+    figures["outputs"].append(str(folder / "index.html"))
+    figures["output_bytes"] += (folder / "index.html").stat().st_size
+    figures["products"] = [{"product": each.name} | each.figures for each in products]
+    figures["stages"] = watch.rows(tin.npoints)
+    more = [row for each in products for row in _rows(each.figures, f"{each.name}: ")]
+    print_figures(source, figures, as_json=as_json, quiet=quiet, more=more)
+
+
+def _write_page(
+    target: Path, source: Path, tin: TIN, figures: dict[str, Any], products: Sequence[_Product]
+) -> None:
+    sections = [_overview(source, tin, figures), *(_section(tin, each) for each in products)]
+    text = page(source.name, sections, f"Made by delone {__version__}")
+    with writing(), replacing(target) as temporary:
+        temporary.write_text(text, encoding="utf-8", newline="\n")
+
+
+def _wanted(folder: Path, given: dict[str, Any], shades: list[str]) -> list[_Product]:
+    """Return the products that are asked for, in the order in which they are computed."""
+    found = [
+        _Product(name, [folder / f"{name}.gpkg"])
+        for name in ("contours", "bands")
+        if given[name] is not None
+    ]
+    if given["dem"] is not None:
+        found += [_Product(name, [folder / f"{name}.tif"]) for name in ("dem", *shades)]
+    names: list[str] = []
+    for path in given["profile"] or []:
+        name, number = path.stem, 2
+        # Ends, since the names are finitely many.
+        while name in names:
+            name, number = f"{path.stem} {number}", number + 1
+        names.append(name)
+        found.append(_Product(f"profile {name}", [folder / f"profile-{name}.csv"]))
+    if given["volume"] is not None:
+        found.append(_Product("volume", [], {"height": given["volume"]}))
+    if not found:
+        raise Failure(
+            "give one or more of --contours, --bands, --dem, --profile and --volume", Exit.USAGE
+        )
+    return found
+
+
+@contextmanager
+def _folder(folder: Path, products: Sequence[_Product], inputs: list[Path]) -> Iterator[None]:
+    """Make the folder, and remove it again if nothing is written."""
+    require("matplotlib", extra="plot", what="drawing the page")
+    with writing():
+        if folder.exists() and not folder.is_dir():
+            raise NotADirectoryError(f"{folder} is not a folder")
+        new = not folder.exists()
+        folder.mkdir(exist_ok=True)
+    try:
+        _check(folder, products, inputs)
+        yield
+    finally:
+        # Nothing is left of a run that fails before its first file.
+        if new and not any(folder.iterdir()):
+            folder.rmdir()
+
+
+def _check(folder: Path, products: Sequence[_Product], inputs: list[Path]) -> None:
+    """Check that all files can be written before any work is done."""
+    files = [path for product in products for path in product.files]
+    protect_inputs([*files, folder / "index.html"], *inputs)
+    with writing():
+        for path in files:
+            if path.suffix == ".gpkg":
+                ready_table(path, "contours")
+            elif path.suffix == ".tif":
+                raster_writer(path)
+    ready_profile([path for path in files if path.suffix == ".csv"], inputs, _NO_SECTIONS)
+
+
+def _computed(
+    tin: TIN, given: dict[str, Any], shades: list[str], lines: Sequence[Any]
+) -> list[Callable[[], Any]]:
+    """Return what computes each product, in the order of `_wanted`."""
+    found: list[Callable[[], Any]] = []
+    if given["contours"] is not None:
+        options = {name: given[name] for name in ("smooth", "min_length", "min_area", "simplify")}
+        found.append(lambda: tin.contours(interval=given["contours"], **options))
+    if given["bands"] is not None:
+        found.append(lambda: tin.bands(interval=given["bands"], min_area=given["min_area"]))
+    if given["dem"] is not None:
+        cells = given["dem"]
+        measures = ["height", *shades]
+        found += [partial(tin.raster, what, resolution=cells) for what in measures]
+    found += [partial(tin.profile, line) for line in lines]
+    if given["volume"] is not None:
+        found.append(lambda: tin.volume_to(given["volume"]))
+    return found
+
+
+def _write(product: _Product, tin: TIN, watch: Stopwatch, say: Callable[[str], None]) -> None:
+    """Write the file of a product as the command of its own does, and keep its figures."""
+    found, name = product.found, product.name
+    if name in ("contours", "bands"):
+        write_lines(found, product.files, watch, name)
+        what = "lines" if name == "contours" else "polygons"
+        levels = found.level if name == "contours" else found.low
+        left_out = {
+            "triangles left out": found.left_out,
+            "short left out": getattr(found, "short", 0),
+            "small left out": found.small,
+            "points left out": getattr(found, "straightened", 0),
+        }
+        product.figures = {
+            what: len(found),
+            "levels": len(np.unique(levels)),
+            "coordinates": len(found.points),
+            **{key: count for key, count in left_out.items() if count},
+        }
+    elif name in ("dem", *_SHADES):
+        measure = "height" if name == "dem" else name
+        unit = {"dem": tin.units, "slope": "degrees", "aspect": "degrees"}.get(name)
+        writers = {path: raster_writer(path) for path in product.files}
+        write_all(writers, found, watch, say, name=measure, crs=tin.crs, units=unit)
+        known = found.values[np.isfinite(found.values)]
+        product.figures = {
+            "columns": len(found.x),
+            "rows": len(found.y),
+            "without value": int(found.values.size - known.size),
+            "least": float(known.min()) if known.size else None,
+            "greatest": float(known.max()) if known.size else None,
+        }
+    elif name == "volume":
+        product.figures |= {
+            each: getattr(found, each)
+            for each in ("cut", "fill", "net", "area", "volume_units", "area_units")
+        }
+    else:
+        write_profile(found, product.files, watch, _NO_SECTIONS)
+        product.figures = profile_figures(found)
+
+
+def _rows(figures: dict[str, Any], before: str = "") -> list[tuple[str, str]]:
+    """Return figures as texts."""
+    units = {"cut": "volume_units", "fill": "volume_units", "net": "volume_units"}
+    units["area"] = "area_units"
+    rows = []
+    for name, value in figures.items():
+        if value is None or name in units.values() or isinstance(value, list | dict):
+            continue
+        form = {float: ".10g", int: ","}.get(type(value), "")
+        unit = figures.get(units.get(name, ""))
+        text = f"{value:{form}}" + (f" {unit}" if unit else "")
+        rows.append((before + name.replace("_", " "), text))
+    return rows
+
+
+def _overview(source: Path, tin: TIN, figures: dict[str, Any]) -> Section:
+    """Return the section of the surface itself: a map in colors of heights, shaded."""
+    low, high = float(tin.z.min()), float(tin.z.max())
+    told = {key: value for key, value in figures.items() if key not in _NOT_TOLD}
+    bounds = np.stack((tin.min_bound, tin.max_bound)).T.tolist()
+    told |= {
+        "heights": f"{low:.6g} to {high:.6g}" + (f" {tin.units}" if tin.units else ""),
+        **{axis: f"{a:.10g} to {b:.10g}" for axis, (a, b) in zip("xy", bounds, strict=True)},
+        "input": source.name,
+    }
+    picture = _drawn(lambda ax: _map(tin, ax), wide=6.0)
+    alt = f"Map of the heights of {source.name}, shaded"
+    return Section("Surface", _rows(told), picture, alt)
+
+
+_NOT_TOLD = ("input", "delone", "outputs", "output_bytes", "peak_memory_bytes")
+
+
+def _map(tin: TIN, ax: Any) -> None:
+    label = "height" + (f" ({tin.units})" if tin.units else "")
+    tin.raster(resolution=_cell(tin)).plot(ax, shade=True, label=label)
+
+
+def _cell(tin: TIN) -> float:
+    """Return the size of the cells of maps."""
+    return float((tin.max_bound - tin.min_bound).max()) / _CELLS
+
+
+def _section(tin: TIN, product: _Product) -> Section:
+    """Return the section of a product."""
+    found, name = product.found, product.name
+    files, rows = [path.name for path in product.files], _rows(product.figures)
+    title = {"dem": "DEM"}.get(name, name[:1].upper() + name[1:])
+    draw: Callable[[Any], Any] = found.plot if hasattr(found, "plot") else found
+    wide, high, alt = 6.0, None, f"Map of the {title}"
+    if name == "volume":
+        height = product.figures["height"]
+        draw = difference(tin.raster(resolution=_cell(tin)), height, units=tin.units).plot
+        alt = "Map of the heights above the level in red, which are to be cut, and below it in blue"
+    elif name in ("dem", *_SHADES):
+        if not np.isfinite(found.values).any():
+            return Section(title, rows, files=files)
+        options = {"hillshade": {"cmap": "gray"}, "aspect": {"cmap": "twilight"}}.get(name, {})
+        label = {"dem": "height", "hillshade": "brightness"}.get(name, f"{name} in degrees")
+        draw = partial(found.plot, label=label, **options)
+    elif name not in ("contours", "bands"):
+        wide, high, alt = 9.0, 3.0, "Height over distance along the line"
+    return Section(title, rows, _drawn(draw, wide=wide, high=high), alt, files)
+
+
+def _drawn(draw: Callable[[Any], Any], *, wide: float, high: float | None = None) -> bytes:
+    """Return a picture as the bytes of a PNG file."""
+    figures = require("matplotlib.figure", extra="plot", what="drawing the page")
+    size = wide, wide * 0.8 if high is None else high
+    figure = figures.Figure(figsize=size, dpi=130, layout="constrained")
+    ax = figure.add_subplot()
+    draw(ax)
+    ax.ticklabel_format(useOffset=False, style="plain")
+    target = BytesIO()
+    figure.savefig(target, format="png", facecolor="white")
+    return target.getvalue()

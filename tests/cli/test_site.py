@@ -1,0 +1,197 @@
+"""The command ``terrain``: its files are those of separate commands, its page loads nothing."""
+
+import json
+import re
+from html.parser import HTMLParser
+from urllib.parse import unquote
+
+import geopandas
+import numpy as np
+import pytest
+import shapely
+
+from delone.cli import site, surfaces
+from delone.io import read_points
+from delone.terrain import TIN
+
+
+@pytest.fixture
+def hill(tmp_path):
+    """A survey with a line, in a folder of its own."""
+    random = np.random.default_rng(3)
+    xy = random.random((2000, 2)) * 100
+    z = 9 * np.exp(-(((xy - 50) / 25) ** 2).sum(axis=1)) + random.random(2000) / 9
+    path = tmp_path / "hill.csv"
+    np.savetxt(path, np.column_stack((xy, z)), delimiter=",", header="x,y,z", comments="")
+    road = shapely.LineString([(20, 20), (60, 55), (80, 50)])
+    geopandas.GeoDataFrame(geometry=[road], crs="EPSG:28992").to_file(tmp_path / "road.gpkg")
+    return path
+
+
+class Page(HTMLParser):
+    """Tags and texts of a page."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.texts = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data):
+        self.texts.append(data)
+
+
+COMMON = ("--crs", "EPSG:28992", "--units", "m", "--max-edge", "9")
+
+
+def test_files_are_those_of_separate_commands(hill, command, tmp_path):
+    site_, road = tmp_path / "site", tmp_path / "road.gpkg"
+    lines = ("--smooth", "1", "--min-length", "5", "--simplify", "0.2", "--min-area", "2")
+    code, _, err = command(
+        "terrain", hill, *COMMON, "--contours", "0.5", "--bands", "2", *lines, "--dem", "2",
+        "--hillshade", "--slope", "--aspect", "--profile", road, "-o", site_,
+    )  # fmt: skip
+    assert (code, err) == (0, "")
+    for name, own in (
+        ("contours", ("--interval", "0.5", *lines)),
+        ("bands", ("--bands", "--interval", "2", "--min-area", "2")),
+    ):
+        alone = tmp_path / f"{name}.gpkg"
+        assert command("contours", hill, *COMMON, *own, "-o", alone)[0] == 0
+        a, b = geopandas.read_file(site_ / alone.name), geopandas.read_file(alone)
+        assert len(a) > 4
+        assert a.equals(b)
+        assert a.crs == b.crs
+    for name in ("dem", "hillshade", "slope", "aspect"):
+        alone = tmp_path / f"{name}.tif"
+        own = () if name == "dem" else (f"--{name}",)
+        assert command("dem", hill, *COMMON, "-r", "2", *own, "-o", alone)[0] == 0
+        assert (site_ / alone.name).read_bytes() == alone.read_bytes()
+    alone = tmp_path / "road.csv"
+    assert command("profile", hill, road, *COMMON, "-o", alone)[0] == 0
+    assert (site_ / "profile-road.csv").read_bytes() == alone.read_bytes()
+    assert len(list(site_.iterdir())) == 8
+
+
+def test_the_surface_is_made_once(hill, figures, tmp_path, monkeypatch):
+    made = []
+    real = TIN.from_points.__func__
+
+    def counted(cls, *args, **options):
+        made.append(len(args[0].points))
+        return real(cls, *args, **options)
+
+    reads = []
+    monkeypatch.setattr(TIN, "from_points", classmethod(counted))
+    monkeypatch.setattr(
+        surfaces, "read_points", lambda *a, **k: reads.append(a) or read_points(*a, **k)
+    )
+    found = figures(
+        "terrain", hill, *COMMON, "--contours", 1, "--dem", 4, "--volume", 2, "-o", tmp_path / "s"
+    )
+    assert made == [2000]
+    assert len(reads) == 1
+    products = {each["product"]: each for each in found["products"]}
+    alone = figures("volume", hill, 2, *COMMON)
+    assert {name: products["volume"][name] for name in ("cut", "fill", "area")} == {
+        name: alone[name] for name in ("cut", "fill", "area")
+    }
+    assert products["volume"]["volume_units"] == "m3"
+    assert found["outputs"][-1].endswith("index.html")
+
+
+def test_the_page_has_pictures_and_numbers_and_loads_nothing(hill, figures, tmp_path):
+    found = figures(
+        "terrain", hill, *COMMON, "--contours", 1, "--dem", 4, "--volume", 2,
+        "--profile", tmp_path / "road.gpkg", "-o", tmp_path / "s",
+    )  # fmt: skip
+    text = (tmp_path / "s" / "index.html").read_text(encoding="utf-8")
+    page = Page(text)
+    assert {tag for tag, _ in page.tags}.isdisjoint({"script", "link", "iframe", "object"})
+    assert not any(name.startswith("on") for _, given in page.tags for name in given)
+    images = [given for tag, given in page.tags if tag == "img"]
+    assert len(images) == 5
+    assert all(each["src"].startswith("data:image/png;base64,") and each["alt"] for each in images)
+    links = [unquote(given["href"]) for tag, given in page.tags if tag == "a"]
+    assert links == ["./contours.gpkg", "./dem.tif", "./profile-road.csv"]
+    assert all((tmp_path / "s" / link).exists() for link in links)
+    assert "default-src 'none'" in text
+    assert not re.search(r"https?:", text)
+    for product in found["products"]:
+        for value in product.values():
+            if isinstance(value, float):
+                assert any(part.startswith(f"{value:.10g}") for part in page.texts)
+
+
+HOSTILE = "<img src=x onerror=alert(1)>&\"'%41"
+
+
+def test_hostile_names_are_text(hill, command, tmp_path):
+    road, survey = tmp_path / f"{HOSTILE}.geojson", tmp_path / f"{HOSTILE}\udcff.csv"
+    (tmp_path / "road.gpkg").unlink()
+    survey.write_bytes(hill.read_bytes())
+    line = {"type": "LineString", "coordinates": [[20, 20], [80, 50]]}
+    road.write_text(json.dumps(line))
+    folder = tmp_path / "site <b>"
+    code, _, err = command("terrain", survey, "--profile", road, "--units", "m", "-o", folder)
+    assert code == 0, err
+    text = (folder / "index.html").read_text(encoding="utf-8")
+    assert "<img src=x" not in text
+    page = Page(text)
+    # A byte that is not UTF-8 is shown as such.
+    assert f"{HOSTILE}\ufffd.csv" in page.texts
+    assert all(given["src"].startswith("data:") for tag, given in page.tags if tag == "img")
+    (link,) = [given["href"] for tag, given in page.tags if tag == "a"]
+    name = unquote(link.removeprefix("./"))
+    assert (folder / name).exists()
+    assert name == f"profile-{HOSTILE}.csv"
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "text"),
+    [
+        ((), 2, "one or more of"),
+        (("--hillshade",), 2, "--hillshade needs --dem"),
+        (("--dem", "1", "--simplify", "1"), 2, "are for --contours"),
+        (("--dem", "1", "--min-area", "1"), 2, "--contours and --bands"),
+        (("--contours", "-1"), 2, "interval must be above 0"),
+        (("--dem", "1", "--profile", "none.gpkg"), 3, "none.gpkg"),
+    ],
+)
+def test_what_is_refused_leaves_no_folder(hill, command, tmp_path, *, options, code, text):
+    found, _, err = command("terrain", hill, *options, "-o", tmp_path / "site")
+    assert (found, text in err) == (code, True), err
+    assert not (tmp_path / "site").exists()
+
+
+def test_inputs_stay(hill, command, tmp_path):
+    folder = tmp_path / "site"
+    folder.mkdir()
+    lakes = folder / "contours.gpkg"
+    geopandas.GeoDataFrame(geometry=[shapely.box(40, 40, 60, 60)]).to_file(lakes)
+    before = lakes.read_bytes()
+    code, _, err = command("terrain", hill, "--contours", 1, "--level", lakes, "-o", folder)
+    assert (code, "replace the input" in err) == (2, True)
+    assert lakes.read_bytes() == before
+    code, _, err = command("terrain", hill, "--contours", 1, "-o", hill)
+    assert (code, "not a folder" in err) == (5, True)
+
+
+def test_two_profiles_of_one_name(hill, command, tmp_path):
+    other = tmp_path / "other"
+    other.mkdir()
+    line = shapely.LineString([(10, 50), (90, 50)])
+    geopandas.GeoDataFrame(geometry=[line]).to_file(other / "road.gpkg")
+    both = ("--profile", tmp_path / "road.gpkg", "--profile", other / "road.gpkg")
+    code, _, err = command("terrain", hill, *COMMON, *both, "-o", tmp_path / "site")
+    assert code == 0, err
+    names = {path.name for path in (tmp_path / "site").iterdir()}
+    assert names == {"profile-road.csv", "profile-road 2.csv", "index.html"}
+
+
+def test_a_page_without_pictures_of_nothing(hill, command, tmp_path):
+    assert site._rows({"a_b": None, "c_d": 1234}) == [("c d", "1,234")]
+    code, _, err = command("terrain", hill, "--contours", 1000, "-o", tmp_path / "site")
+    assert code == 0, err
