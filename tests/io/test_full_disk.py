@@ -46,7 +46,7 @@ def _cells(file: Path) -> None:
 
 def _writers() -> Iterator[tuple[str, str, Write]]:
     for suffix in output_suffixes():
-        z = HEIGHTS if suffix in (".xml", ".landxml") else None
+        z = HEIGHTS if suffix in (".json", ".xml", ".landxml") else None
         yield "plane", suffix, lambda file, z=z: write_mesh(file, PLANE, z=z)
     for suffix in (".gpkg", ".geojson", ".vtu", ".msh"):
         yield "edges", suffix, lambda file: write_mesh(file, PLANE, edges=True)

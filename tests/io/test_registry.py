@@ -115,7 +115,7 @@ def test_failure_in_the_middle_leaves_what_was_there(tmp_path, monkeypatch, suff
     module = "fem" if suffix in (".xdmf", ".med", ".inp", ".su2", ".vtk", ".mesh") else module
     module = "triangle" if suffix in (".node", ".ele", ".poly") else module
     module = "tetgen" if suffix in (".smesh", ".face") else module
-    module = {".off": "off", ".glb": "gltf"}.get(suffix, module)
+    module = {".off": "off", ".glb": "gltf", ".json": "cityjson"}.get(suffix, module)
     module = "landxml" if suffix in (".xml", ".landxml") else module
     monkeypatch.setattr(f"delone.io.{module}.write_mesh", write_half)
     with pytest.raises(error):

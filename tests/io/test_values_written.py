@@ -78,7 +78,7 @@ def test_every_format_is_looked_at() -> None:
     others = {".su2", ".med", ".node", ".ele", ".poly", ".gpkg", ".geojson", ".npz", ".stl"}
     surfaces = {".xml", ".landxml"}  # in tests/terrain
     surfaces |= {".off", ".smesh", ".face"}  # in test_solids
-    surfaces |= {".glb"}  # in test_gltf
+    surfaces |= {".glb", ".json"}  # in test_gltf and test_cityjson
     assert {*MESHIO, *others, *surfaces, *PICTURES} == set(output_suffixes())
 
 

@@ -28,7 +28,7 @@ ABSENT = re.compile(
     r"not covered|not in delone|(?:build|built) (?:it )?again|(?:are|still|is) planar"
     r"|project them first|not there\b|do not exist|no release|no [\w -]+ yet\b|only available"
     r"|not (?:yet )?(?:supported|available|possible|implemented|provided|offered)"
-    r"|\bno class\b|no CityJSON|^none\b(?! of)",
+    r"|\bno class\b|^none\b(?! of)",
     re.IGNORECASE,
 )
 # Sessions are run as tests, messages included.
@@ -93,7 +93,6 @@ ABSENCES: dict[tuple[str, str], str] = {
         "insertionstrategy",
     ): "the order of insertion is chosen by the core",
     ("coming_from/startinpy.rst", "IDW"): "it needs no triangulation",
-    ("coming_from/startinpy.rst", "no CityJSON"): "io has no such writer",
     ("coming_from/stripy.rst", "smoothing"): "sphere has neither smoothing nor regular meshes",
     ("coming_from/tetgen.rst", "``M``, ``O``: none"): "faces are kept exactly; improve optimizes",
     ("coming_from/tetgen.rst", "boolean operations"): "there is no geometry kernel",

@@ -76,6 +76,7 @@ _WRITERS = {
     **dict.fromkeys(_TETGEN, "tetgen"),
     ".off": "off",
     ".glb": "gltf",
+    ".json": "cityjson",
     **dict.fromkeys((".gpkg", ".geojson"), "vector"),
     ".npz": "arrays",
     **dict.fromkeys(_LANDXML, "landxml"),
@@ -117,7 +118,7 @@ _WITHOUT_ATTRIBUTES = (".dxf", ".off", ".dem")
 _GEOMETRIES = ("vector", "parquet", *_SHEETS)
 # Formats that can store a reference system, or label the axes with it.
 _LABELS = (".png", ".svg")
-WITH_CRS = (".gpkg", ".geojson", ".npz", ".glb", *_LANDXML, *_LABELS)
+WITH_CRS = (".gpkg", ".geojson", ".json", ".npz", ".glb", *_LANDXML, *_LABELS)
 _MESH_READERS = {
     ".npz": "arrays",
     **dict.fromkeys(_READ_MESHES, "mesh"),

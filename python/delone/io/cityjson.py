@@ -1,0 +1,122 @@
+"""CityJSON 2.0: a surface with heights as the relief of a terrain (TINRelief).
+
+Coordinates of CityJSON are whole numbers with a scale and a translation. The scale is the coarsest
+of a millimeter, a tenth of one and so on, in the unit of the points, with which no two points
+become one and no triangle turns over or loses its area, which is decided exactly. So each
+coordinate is within half of the scale of its own. The format is that of https://www.cityjson.org.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.errors import FileFormatError
+from delone.georeference import parsed
+from delone.io.content import content
+from delone.io.systems import check_system
+from delone.predicates import orient2d
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone._types import Floats, Indices
+    from delone.exchange.parts import HasParts
+
+__all__ = ["require_libraries", "write_mesh"]
+
+# The first is what surveys are accurate to; further ones are tried where points are closer.
+_DIGITS = range(3, 16)
+# Whole numbers that readers hold in doubles.
+_LARGEST = 2.0**53
+# Triangles and points that become text at once.
+_BLOCK = 1 << 16
+
+
+def require_libraries(suffix: str) -> None:
+    """Do nothing: files are written without a library."""
+
+
+def write_mesh(
+    path: Path,
+    triangulation: HasParts,
+    *,
+    z: ArrayLike | None = None,
+    crs: str | None = None,
+    edges: bool = False,
+    attributes: Mapping[str, ArrayLike] | None = None,
+) -> None:
+    """Write one object of the type TINRelief."""
+    if edges or attributes:
+        what = "edges" if edges else "attributes"
+        raise FileFormatError(f"{path.suffix} files of CityJSON cannot store {what}; use .vtu")
+    if z is None:
+        raise FileFormatError(
+            f"{path.suffix} files of CityJSON need heights: give z, or write a TIN; GeoJSON is "
+            ".geojson"
+        )
+    check_system(crs, path.suffix)
+    found = content(triangulation, z=z).bare()
+    used, inverse = np.unique(found.simplices, return_inverse=True)
+    rows: Indices = inverse.reshape(found.simplices.shape).astype(np.int32)
+    points = found.points[used]
+    if not np.isfinite(points).all():
+        raise FileFormatError(
+            f"{path.suffix} files of CityJSON need a finite height for each point"
+        )
+    if not len(rows):
+        raise FileFormatError(f"{path.suffix} files of CityJSON need a triangle")
+    digits, origin, whole = _rounded(points, rows)
+    with path.open("w", encoding="utf-8", newline="\n") as file:
+        file.write(_head(points, crs, digits, origin))
+        file.write('"CityObjects":{"terrain":{"type":"TINRelief","geometry":[')
+        file.write('{"type":"CompositeSurface","lod":"1","boundaries":[\n')
+        file.writelines(_lists(rows[:, None, :]))
+        file.write(']}]}},\n"vertices":[\n')
+        file.writelines(_lists(whole))
+        file.write("]}\n")
+
+
+def _rounded(points: Floats, rows: Indices) -> tuple[int, Floats, NDArray[np.int64]]:
+    """Return the digits of the scale, the translation, and coordinates as whole numbers."""
+    origin = np.floor(points.min(axis=0))
+    for digits in _DIGITS:
+        scaled = np.rint((points - origin) * 10.0**digits)
+        if not (scaled < _LARGEST).all():
+            break
+        a, b, c = (scaled[rows[:, k], :2] for k in range(3))
+        if (orient2d(a, b, c) > 0).all():
+            return digits, origin, scaled.astype(np.int64)
+    raise FileFormatError(
+        "triangles are so thin that coordinates of CityJSON, whole numbers of up to 53 "
+        "bits, turn some over: simplify the surface, or merge near points with snap"
+    )
+
+
+def _head(points: Floats, crs: str | None, digits: int, origin: Floats) -> str:
+    """Return the beginning of a file, up to its objects."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    metadata: dict[str, Any] = {"geographicalExtent": [*low.tolist(), *high.tolist()]}
+    system = None if crs is None else parsed(crs)
+    named = None if system is None else system.to_authority()
+    if named is not None:
+        metadata["referenceSystem"] = f"https://www.opengis.net/def/crs/{named[0]}/0/{named[1]}"
+    head = {
+        "type": "CityJSON",
+        "version": "2.0",
+        "transform": {"scale": [float(f"1e-{digits}")] * 3, "translate": origin.tolist()},
+        "metadata": metadata,
+    }
+    return json.dumps(head, separators=(",", ":"), allow_nan=False)[:-1] + ",\n"
+
+
+def _lists(array: NDArray[Any]) -> Iterator[str]:
+    """Yield the rows of an array as lists of JSON, with commas between them."""
+    for start in range(0, len(array), _BLOCK):
+        text = json.dumps(array[start : start + _BLOCK].tolist(), separators=(",", ":"))
+        yield ("" if start == 0 else ",\n") + text[1:-1]
