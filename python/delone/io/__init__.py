@@ -21,6 +21,7 @@ from delone.io.registry import (
     write_mesh,
 )
 from delone.io.surfacefile import LeftOutWarning, SurfaceFile
+from delone.io.tileset import write_tileset
 
 __all__ = [
     "GeometrySet",
@@ -40,4 +41,5 @@ __all__ = [
     "write_drawing",
     "write_mesh",
     "write_raster",
+    "write_tileset",
 ]

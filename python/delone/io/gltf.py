@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from delone._types import Floats, Indices
     from delone.exchange.parts import HasParts
 
-__all__ = ["require_libraries", "write_mesh"]
+__all__ = ["require_libraries", "write_local", "write_mesh"]
 
 # Numbers of the specification.
 _FLOAT, _UINT = 5126, 5125
@@ -74,6 +74,15 @@ def write_mesh(
     if scale != [1.0, 1.0, 1.0]:
         node["scale"] = scale
     _write(path, node, arrays, rows.astype(np.uint32), _LINES if edges else _TRIANGLES)
+
+
+def write_local(path: Path, points: Floats, simplices: Indices) -> None:
+    """Write triangles between points in meters around an origin: east, north and up."""
+    arrays = {
+        "POSITION": _upright(points).astype(np.float32),
+        "NORMAL": _upright(_normals(points, simplices)).astype(np.float32),
+    }
+    _write(path, {"mesh": 0}, arrays, simplices.ravel().astype(np.uint32), _TRIANGLES)
 
 
 def _upright(xyz: Floats) -> Floats:
