@@ -159,8 +159,6 @@ def test_bilinear_of_regions_and_masks() -> None:
     assert not (part.indices == 5).any()
     assert set(part.indptr) != set(weights.indptr)
     assert np.allclose(part.matrix.sum(axis=1)[part.fractions > 0], 1)
-    with pytest.raises(delone.InputError, match="bilinear needs a source in rows and columns"):
-        Weights.between(TARGET, SOURCE, "bilinear")
 
 
 @pytest.mark.parametrize("method", POINTWISE)

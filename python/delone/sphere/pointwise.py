@@ -11,6 +11,7 @@ from delone.plane.topology import vertex_neighbor_vertices
 from delone.sphere.coordinates import directions_of, units_of
 from delone.sphere.delaunay import Delaunay
 from delone.sphere.interpolation import Linear, NaturalNeighbor
+from delone.sphere.quadrilaterals import between_corners
 from delone.sphere.voronoi import Voronoi
 
 if TYPE_CHECKING:
@@ -182,13 +183,18 @@ def _bilinear(pair: _Pair, used: Bools | None) -> Entries:
     """Return weights between centers in rows and columns; all four must be used.
 
     Between the outermost row and a pole that its cells reach, the pole has the mean of the row.
+    Other cells are those around the corners that they have in common.
     """
     source = pair.source
-    if source.bounds is None:
+    if source.bounds is None and source.edges == "parallel":
         raise InputError(
-            "bilinear needs a source in rows and columns, between meridians and parallels: linear "
-            "is for all grids"
+            "bilinear needs a source in rows and columns, or cells that have corners in common, "
+            "which those of reduced grids have not: linear is for all grids"
         )
+    if source.bounds is None:
+        queries = pair.target.centers_lonlat[pair.targets]
+        rows, cells, weights = between_corners(source, used, queries, pair.workers)
+        return _unmasked(Entries(pair.targets[rows], cells, weights), used)
     shape = source.grid_shape
     at = np.arange(source.ncells).reshape(shape)
     lon, lat = (edges[:-1] + np.diff(edges) / 2 for edges in source.bounds)
@@ -221,7 +227,11 @@ def _bilinear(pair: _Pair, used: Bools | None) -> Entries:
         for beyond, k, pole in ((row < 0, 0, -90.0), (y > lat[-1], len(lat) - 1, 90.0)):
             if abs(source.bounds[1][[0, -1]] - pole).min() == 0:
                 parts += _to_pole(pair, beyond, (x, y, column), (lon, lat, at), k, pole)
-    entries = Entries(*(np.concatenate(each) for each in zip(*parts, strict=True)))
+    return _unmasked(Entries(*(np.concatenate(each) for each in zip(*parts, strict=True))), used)
+
+
+def _unmasked(entries: Entries, used: Bools | None) -> Entries:
+    """Return positive weights, without targets to which an unused cell contributes."""
     if used is not None:
         # A target with a cell that is not used has no value.
         lost = np.unique(entries.rows[~used[entries.columns] & (entries.values > 0)])

@@ -148,7 +148,7 @@ def as_corners(
             f"{x.shape} and {y.shape}"
         )
     flat = np.column_stack((x.ravel(), y.ravel()))
-    vectors = directions_of(flat, None, degrees=degrees, workers=workers)
+    vectors = directions_of(flat, None, degrees=degrees, workers=workers, any_turns=True)
     at = np.arange(len(vectors), dtype=np.int64).reshape(x.shape)
     if x.ndim == 3:
         return vectors, at.reshape(-1, x.shape[2]), x.shape[:2]
@@ -178,7 +178,7 @@ def as_starts(
     if xyz is not None:
         vectors = directions_of(lonlat, given, degrees=degrees, workers=workers)
     else:
-        vectors = directions_of(given, None, degrees=degrees, workers=workers)
+        vectors = directions_of(given, None, degrees=degrees, workers=workers, any_turns=True)
     if starts is None:
         raise ShapeError("give starts, or corners of shape (n, c, columns)")
     where = np.asarray(starts)
@@ -270,7 +270,7 @@ def geometries(given: Any, *, degrees: bool, workers: int | None) -> Rings:
     places, of_ring = places[kept.astype(bool)], of_ring[kept.astype(bool)]
     if not len(places):
         raise InputError("there are no polygons")
-    vectors = directions_of(places, None, degrees=degrees, workers=workers)
+    vectors = directions_of(places, None, degrees=degrees, workers=workers, any_turns=True)
     count = np.bincount(of_ring, minlength=len(rings))
     per_item = np.bincount(of_item[of_part], minlength=len(items))
     return Rings(
