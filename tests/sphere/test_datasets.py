@@ -146,6 +146,8 @@ def mpas() -> Any:
             "latVertex": ("nVertices", np.radians(Y.ravel())),
             "verticesOnCell": (("nCells", "maxEdges"), table),
             "nEdgesOnCell": ("nCells", np.full(72, 4)),
+            "lonCell": ("nCells", np.radians(around(X).mean(axis=2).ravel())),
+            "latCell": ("nCells", np.radians(around(Y).mean(axis=2).ravel())),
         },
         attrs={"on_a_sphere": "YES"},
     )
@@ -265,7 +267,7 @@ KINDS: dict[str, tuple[Callable[[], Any], Grid, tuple[int, ...]]] = {
 @pytest.mark.parametrize("kind", KINDS)
 def test_conventions(kind: str) -> None:
     make, expected, shape = KINDS[kind]
-    grid = Grid.from_dataset(make())
+    grid = Grid.from_dataset(make(), cells="faces" if kind == "FESOM" else None)
     assert grid.grid_shape == shape
     assert grid.edges == expected.edges
     assert not grid.report.reversed.size or kind == "FESOM"
@@ -275,6 +277,14 @@ def test_conventions(kind: str) -> None:
     assert np.allclose(areas, expected.areas, rtol=1e-14, atol=0)
     assert np.isclose(grid.areas.sum(), 4 * np.pi, rtol=1e-14)
     assert grid.validate()
+    centers = grid.centers_lonlat
+    if kind == "GEOS-CS":
+        centers = np.concatenate(list(centers.reshape(*shape, 2)), axis=1).reshape(-1, 2)
+    lon, lat = np.radians(np.stack((centers, expected.centers_lonlat), axis=1).T)
+    away = np.sin(lat[0]) * np.sin(lat[1]) + np.cos(lat[0]) * np.cos(lat[1]) * np.cos(
+        lon[0] - lon[1]
+    )
+    assert away.min() > np.cos(np.radians(12))
 
 
 def test_masks() -> None:

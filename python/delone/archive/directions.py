@@ -88,6 +88,11 @@ def check_grid(**arrays: NDArray[Any]) -> None:
         require(len(arrays["cells"]) == count + 1, "shape and cells do not match")
         _check_vectors(arrays["places"])
     require(len(mask) in {0, count}, "mask and shape do not match")
+    given = arrays["centers"]
+    require(len(given) in {0, count}, "centers and shape do not match")
+    require(bool(np.isfinite(given).all()), "a center is not finite")
+    inside = (given >= (-1080, -90)) & (given <= (1080, 90))
+    require(bool(inside.all()), "a center is beyond a pole")
     edges = [len(arrays[name]) for name in ("rows", "columns")]
     fits = edges == [0, 0] or [size - 1 for size in edges] == shape.tolist()
     require(fits, "rows and columns do not fit the shape")

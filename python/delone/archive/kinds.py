@@ -183,11 +183,12 @@ def _graph(ndim: int) -> Kind:
     return Kind(f"delone.graphs.Graph {ndim}-D", layout, checks.check_graph, ("kind", "crs"))
 
 
-# Edges of columns and rows and the mask of a grid, which may be empty; its shape, and a count.
+# Edges of columns and rows, mask and centers of a grid, which may be empty; its shape and a count.
 _CELLS = {
     "columns": ("<f8", 0),
     "rows": ("<f8", 0),
     "mask": ("|b1", 0),
+    "centers": ("<f8", 2),
     "shape": ("<i8", 0),
     "merged": ("<i8", 0),
 }

@@ -33,7 +33,7 @@ _ARGUMENTS = (
     (r"infer_bounds=True", "--infer-bounds"),
     (r"degrees=True or degrees=False", "--degrees or --radians"),
     (r"\border=(\d)", r"--order \1"),
-    (r"\b(dims|coords|name|fill)=", r"--\1"),
+    (r"\b(dims|coords|name|fill|cells)=", r"--\1"),
 )
 
 
@@ -116,6 +116,10 @@ def regrid(
         bool,
         typer.Option("--infer-bounds", help="Infer missing cell bounds halfway between centers."),
     ] = False,
+    cells: Annotated[
+        str | None,
+        typer.Option(help="Of meshes of UGRID and FESOM: fields of INPUT are at nodes or faces."),
+    ] = None,
     degrees: Annotated[
         bool | None,
         typer.Option("--degrees/--radians", help="The unit of angles without a units attribute."),
@@ -164,6 +168,7 @@ def regrid(
                 dims=split(dims),
                 coords=pair,
                 infer_bounds=infer_bounds,
+                cells=cells,
                 degrees=degrees,
                 workers=workers,
             )

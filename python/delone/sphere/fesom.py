@@ -1,4 +1,4 @@
-"""Meshes of FESOM in text files, and the cells around their nodes: the median dual."""
+"""Meshes of FESOM in text files, and cells around the nodes of meshes: the median dual."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ import numpy as np
 
 from delone._arrays import as_simplices
 from delone.errors import FileFormatError, InputError
-from delone.sphere.coordinates import directions_of, units_of
+from delone.sphere.coordinates import units_of
 
 if TYPE_CHECKING:
     import os
 
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Rows
+    from delone._types import Floats, Rows
+    from delone.sphere.grid_report import GridReport
 
 __all__ = ["median_dual", "read_text"]
 
@@ -49,32 +50,51 @@ def _table(path: Path, columns: int) -> Floats:
     return found
 
 
-def median_dual(lonlat: Floats, triangles: Rows, turned: Bools) -> tuple[Any, ...]:
-    """Return the arrays of the core for cells around nodes.
+def median_dual(
+    vectors: Floats, corners: Rows, starts: Rows, report: GridReport
+) -> tuple[Any, ...]:
+    """Return the arrays of the core for cells around the nodes of polygons.
 
-    The corners of a cell are the middles of the triangles and of the edges around its node, and at
-    the boundary the node itself.
+    Polygons are rows of `corners`, as compressed rows, with the `report` of a grid of them: some
+    run clockwise, and some have no area and take no part. The corners of a cell are the middles of
+    the polygons and of the edges around its node, and at the boundary the node itself.
     """
-    vectors = directions_of(lonlat, None, degrees=True, workers=None, any_turns=True)
     places = units_of(vectors, None)
-    triangles = triangles.copy()
-    triangles[turned, 1:] = triangles[turned, :0:-1]
-    middles = units_of(places[triangles].sum(axis=1), None)
-    # Around each node, the edge before and after each of its triangles, counterclockwise.
+    sums = np.zeros((len(starts) - 1, 3))
+    lengths = np.diff(starts)
+    of = np.repeat(np.arange(len(lengths)), lengths)
+    for axis in range(3):
+        sums[:, axis] = np.bincount(of, places[corners, axis], len(lengths))
+    middles = units_of(sums, None) if len(sums) else sums
+    # Around each node, the edge before and after each of its polygons, counterclockwise.
     steps: list[dict[int, tuple[int, int]]] = [{} for _ in places]
-    for t, row in enumerate(triangles.tolist()):
-        for k in range(3):
-            node, one, other = row[k], row[k - 2], row[k - 1]
+    every, ends = corners.tolist(), starts.tolist()
+    turned, empty = set(report.turned.tolist()), set(report.empty.tolist())
+    for t in range(len(lengths)):
+        if t in empty:
+            continue
+        row = every[ends[t] : ends[t + 1]]
+        if t in turned:
+            row.reverse()
+        for k, node in enumerate(row):
+            one, other = row[(k + 1) % len(row)], row[k - 1]
             if one in steps[node]:
                 raise InputError(
-                    f"triangles {steps[node][one][1]} and {t} overlap: both are on one side of the "
+                    f"cells {steps[node][one][1]} and {t} overlap: both are on one side of the "
                     f"edge of nodes {node} and {one}"
                 )
             steps[node][one] = other, t
+    return _joined(places, middles, steps)
+
+
+def _joined(
+    places: Floats, middles: Floats, steps: list[dict[int, tuple[int, int]]]
+) -> tuple[Any, ...]:
+    """Return the rings around nodes."""
     corners: list[NDArray[np.float64]] = []
     rings, cells = [0], [0]
     for node, around in enumerate(steps):
-        # Chains of triangles; each begins at the boundary if it reaches it.
+        # Chains of polygons; each begins at the boundary if it reaches it.
         first = sorted(set(around) - {other for other, _ in around.values()})
         while around:
             start = first.pop() if first else min(around)

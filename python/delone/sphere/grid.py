@@ -9,6 +9,7 @@ import numpy as np
 from delone._arrays import as_choice, as_flag, as_number, as_workers
 from delone.errors import InputError
 from delone.sphere import rings as rings_of
+from delone.sphere.coordinates import directions_of, lonlat_of
 from delone.sphere.fesom import median_dual, read_text
 from delone.sphere.formats import Choices, read_cells
 from delone.sphere.gaussian import gaussian_bounds
@@ -57,6 +58,9 @@ class Grid(GridCells):
         The kind of sides: meridians and parallels, or arcs of great circles.
     mask : ndarray of bool, shape (ncells,), or None
         The cells to use, if a dataset specifies them: for `Overlaps.to_weights`.
+    centers_lonlat : ndarray of float64, shape (ncells, 2)
+        Longitudes and latitudes where fields are interpolated from and to: those of a dataset,
+        sites, or nodes; otherwise halfway between bounds or the mean direction of the corners.
     bounds : pair of ndarray of float64, or None
         Edges between columns and between rows, in degrees, of cells between meridians and parallels
         in rows and columns.
@@ -104,6 +108,7 @@ class Grid(GridCells):
         edges: str | None = None,
         degrees: bool | None = None,
         infer_bounds: bool = False,
+        cells: str | None = None,
         merge: float = 1e-12,
         workers: int | None = None,
     ) -> Self:
@@ -127,6 +132,10 @@ class Grid(GridCells):
             error, unless the convention fixes their unit.
         infer_bounds : bool, optional
             Whether to infer missing bounds, halfway between centers; see Notes.
+        cells : {"nodes", "faces"}, optional
+            For meshes of UGRID and FESOM: where fields are. Around nodes, a cell has its corners in
+            the middle of faces and edges: the median dual. By default the nodes of FESOM, and
+            otherwise faces, or the ``location`` of the variable `name`.
         merge : float, optional
             Corners closer than this, in radians, are merged; 0 merges none.
         workers : int, optional
@@ -140,7 +149,8 @@ class Grid(GridCells):
         Raises
         ------
         InputError
-            No grid is found, or several; bounds or units are missing; a node is out of range.
+            No grid is found, or several; bounds or units are missing; a node is out of range; or
+            the grid has no nodes for `cells`.
         DirectionError, ShapeError, DtypeError, NonFiniteError
             As for `from_curvilinear`.
 
@@ -173,9 +183,9 @@ class Grid(GridCells):
         kind = None if edges is None else as_choice(edges, ("parallel", "arc"), name="edges")
         unit = None if degrees is None else as_flag(degrees, name="degrees")
         infer = as_flag(infer_bounds, name="infer_bounds")
-        return cls._of_cells(
-            read_cells(ds, Choices(name, coords, kind, unit, infer, near, workers)), near, workers
-        )
+        place = None if cells is None else as_choice(cells, ("nodes", "faces"), name="cells")
+        choices = Choices(name, coords, kind, unit, infer, place, near, workers)
+        return cls._of_cells(read_cells(ds, choices), near, workers)
 
     @classmethod
     def _of_cells(cls, cells: Cells, merge: float, workers: int | None) -> Self:
@@ -186,12 +196,29 @@ class Grid(GridCells):
             return cls._product(columns, rows, cells.merged, workers, cells.mask)
         assert cells.nodes is not None
         assert cells.starts is not None
+        if cells.location == "node":
+            return cls._around_nodes(cells, workers)
         vectors, merged = merged_corners(cells.nodes, 0.0 if cells.shared else merge)
         if cells.corners is not None:
             vectors = vectors[cells.corners]
         arrays = _alone(vectors, cells.starts)
         merged += cells.merged
-        return cls._of("arc", arrays, cells.shape, merged, workers, mask=cells.mask)
+        centers = cells.centers
+        return cls._of(
+            "arc", arrays, cells.shape, merged, workers, mask=cells.mask, centers=centers
+        )
+
+    @classmethod
+    def _around_nodes(cls, cells: Cells, workers: int | None) -> Self:
+        """Return the median dual of a mesh, whose own cells must be usable."""
+        assert cells.nodes is not None
+        assert cells.starts is not None
+        assert cells.corners is not None
+        count = len(cells.starts) - 1
+        faces = cls._of("arc", _alone(cells.nodes[cells.corners], cells.starts), (count,), 0, None)
+        arrays = median_dual(cells.nodes, cells.corners, cells.starts, faces.report)
+        centers = lonlat_of(cells.nodes) if cells.centers is None else cells.centers
+        return cls._of("arc", arrays, cells.shape, 0, workers, mask=cells.mask, centers=centers)
 
     @classmethod
     def from_lonlat(
@@ -461,7 +488,7 @@ class Grid(GridCells):
         Returns
         -------
         Grid
-            Sides are arcs of great circles between the rounded vertices.
+            Sides are arcs of great circles between the rounded vertices. Centers are the sites.
 
         Raises
         ------
@@ -481,7 +508,9 @@ class Grid(GridCells):
                0.66666667])
         """
         vectors, starts = rings_of.voronoi(diagram)
-        return cls._polygons(vectors, starts, (len(starts) - 1,), 0.0, workers)
+        arrays = _alone(vectors, starts)
+        sites = lonlat_of(diagram.vectors)
+        return cls._of("arc", arrays, (len(starts) - 1,), 0, workers, centers=sites)
 
     @classmethod
     def from_healpix(cls, nside: int, order: str = "ring", *, workers: int | None = None) -> Self:
@@ -534,9 +563,9 @@ class Grid(GridCells):
         ----------
         folder : str or path-like
             Has ``nod2d.out`` and ``elem2d.out``, with longitudes and latitudes in degrees.
-        cells : {"nodes", "triangles"}, optional
-            What fields belong to. Around nodes, a cell has its corners in the middle of triangles
-            and edges: the median dual.
+        cells : {"nodes", "faces"}, optional
+            What fields belong to: nodes or triangles. Around nodes, a cell has its corners in the
+            middle of triangles and edges: the median dual.
         workers : int, optional
             Maximum number of threads; by default one per core.
 
@@ -571,15 +600,15 @@ class Grid(GridCells):
         ...     print(sphere.Grid.from_fesom(folder))
         <Grid of 4 cells, arcs of great circles>
         """
-        kind = as_choice(cells, ("nodes", "triangles"), name="cells")
+        kind = as_choice(cells, ("nodes", "faces"), name="cells")
         lonlat, triangles = read_text(folder)
         made = cls.from_mesh(lonlat=lonlat[triangles], merge=0.0, workers=workers)
-        if kind == "triangles":
+        if kind == "faces":
             return made
-        turned = np.zeros(len(triangles), dtype=bool)
-        turned[made.report.reversed] = True
-        arrays = median_dual(lonlat, triangles, turned)
-        return cls._of("arc", arrays, (len(lonlat),), 0, workers)
+        vectors = directions_of(lonlat, None, degrees=True, workers=workers, any_turns=True)
+        starts = np.arange(len(triangles) + 1, dtype=np.int64) * 3
+        arrays = median_dual(vectors, triangles.ravel(), starts, made.report)
+        return cls._of("arc", arrays, (len(lonlat),), 0, workers, centers=lonlat)
 
     @classmethod
     def _polygons(

@@ -42,10 +42,11 @@ _RINGS = "places", "rings", "cells", "holes"
 class GridCells(Stored):
     """Cells on the sphere, however they were made; see `Grid`."""
 
-    __slots__ = ("_arrays", "_bounds", "_edges", "_made", "_mask", "_merged", "_shape")
+    __slots__ = ("_arrays", "_bounds", "_centers", "_edges", "_made", "_mask", "_merged", "_shape")
 
     _arrays: tuple[Any, ...]
     _bounds: tuple[Floats, Floats] | None
+    _centers: Floats | None
     _edges: str
     _made: _core.CellGrid
     _mask: Bools | None
@@ -63,8 +64,9 @@ class GridCells(Stored):
         *,
         bounds: tuple[Floats, Floats] | None = None,
         mask: Bools | None = None,
+        centers: Floats | None = None,
     ) -> Self:
-        """Return a grid of arrays for the core."""
+        """Return a grid of arrays for the core; `centers` are those of fields, in degrees."""
         as_workers(workers)
         made = cls.__new__(cls)
         arrays = tuple(sealed(a) if isinstance(a, np.ndarray) else a for a in arrays)
@@ -72,6 +74,7 @@ class GridCells(Stored):
         made._hold(
             arrays=arrays,
             bounds=None if bounds is None else (sealed(bounds[0]), sealed(bounds[1])),
+            centers=None if centers is None else sealed(centers),
             edges=edges,
             made=build(*arrays),
             mask=None if mask is None else sealed(mask),
@@ -84,17 +87,21 @@ class GridCells(Stored):
 
     def __reduce__(self) -> tuple[Any, ...]:
         parts = self._edges, self._arrays, self._shape, self._merged, self._workers
-        return self._again, (parts, self._bounds, self._mask)
+        return self._again, (parts, self._bounds, self._mask, self._centers)
 
     @classmethod
     def _again(
-        cls, parts: tuple[Any, ...], bounds: tuple[Floats, Floats] | None, mask: Bools | None
+        cls,
+        parts: tuple[Any, ...],
+        bounds: tuple[Floats, Floats] | None,
+        mask: Bools | None,
+        centers: Floats | None = None,
     ) -> Self:
         """Return a pickled grid."""
         edges, arrays, *rest = parts
         if len(arrays) != 4 + (edges == "parallel"):
             raise ShapeError("a pickled Grid is incomplete")
-        return cls._of(edges, arrays, *rest, bounds=bounds, mask=mask)
+        return cls._of(edges, arrays, *rest, bounds=bounds, mask=mask, centers=centers)
 
     @classmethod
     def _stored_as(cls) -> str:
@@ -105,7 +112,8 @@ class GridCells(Stored):
         found: dict[str, NDArray[Any]] = dict(zip(names, self._arrays[:4], strict=True))
         columns, rows = self._bounds or (np.zeros(0), np.zeros(0))
         mask = np.zeros(0, dtype=np.bool_) if self._mask is None else self._mask
-        found |= {"columns": columns, "rows": rows, "mask": mask}
+        centers = np.zeros((0, 2)) if self._centers is None else self._centers
+        found |= {"columns": columns, "rows": rows, "mask": mask, "centers": centers}
         found["shape"] = np.array(self._shape, dtype=np.int64)
         found["merged"] = np.array([self._merged], dtype=np.int64)
         return found
@@ -119,6 +127,7 @@ class GridCells(Stored):
             given = (*given, int(np.prod(shape)))
         bounds = (arrays["columns"], arrays["rows"]) if len(arrays["rows"]) else None
         mask = arrays["mask"] if len(arrays["mask"]) else None
+        centers = arrays["centers"]
         return cls._of(
             "parallel" if parallel else "arc",
             given,
@@ -127,6 +136,7 @@ class GridCells(Stored):
             None,
             bounds=bounds,
             mask=mask,
+            centers=centers if len(centers) else None,
         )
 
     def __repr__(self) -> str:
@@ -216,9 +226,11 @@ class GridCells(Stored):
     def centers_lonlat(self) -> Floats:
         """Longitudes and latitudes of a place in the middle of each cell, (ncells, 2), in degrees.
 
-        Halfway between bounds in rows and columns, else the mean direction of the corners; NaN for
-        cells without corners.
+        Those of a dataset, or nodes with cells around them. Otherwise halfway between bounds in
+        rows and columns, or the mean direction of the corners; NaN for cells without corners.
         """
+        if self._centers is not None:
+            return self._centers
         if self._bounds is not None:
             lon, lat = (edges[:-1] + np.diff(edges) / 2 for edges in self._bounds)
             x, y = np.meshgrid(np.where(lon > 180, lon - 360, lon), lat)

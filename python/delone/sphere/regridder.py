@@ -15,6 +15,7 @@ from delone.extras import require
 from delone.georeference import caller_level
 from delone.immutable import Immutable
 from delone.sphere.formats import Choices
+from delone.sphere.grid import Grid
 from delone.sphere.overlaps import Overlaps
 from delone.sphere.pointwise import POINTWISE
 from delone.sphere.targets import side_of
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.sphere.grid import Grid
     from delone.sphere.targets import Side
 
 __all__ = ["Regridder"]
@@ -60,8 +60,8 @@ class Regridder(Immutable):
     weights : Weights, optional
         Use these, such as those of a map file, instead of computing some. `method` and masks
         are theirs.
-    coords, degrees, infer_bounds, merge, workers
-        As for `Grid.from_dataset`; `coords` are those of the source.
+    coords, degrees, infer_bounds, cells, merge, workers
+        As for `Grid.from_dataset`; `coords` and `cells` are those of the source.
 
     Attributes
     ----------
@@ -133,6 +133,7 @@ class Regridder(Immutable):
         coords: tuple[str, str] | None = None,
         degrees: bool | None = None,
         infer_bounds: bool = False,
+        cells: str | None = None,
         merge: float = 1e-12,
         workers: int | None = None,
     ) -> None:
@@ -140,10 +141,14 @@ class Regridder(Immutable):
         as_choice(method, METHODS + POINTWISE, name="method")
         unit = None if degrees is None else as_flag(degrees, name="degrees")
         infer = as_flag(infer_bounds, name="infer_bounds")
-        choices = Choices(None, coords, None, unit, infer, as_number(merge, name="merge"), workers)
+        near = as_number(merge, name="merge")
+        choices = Choices(None, None, None, unit, infer, None, near, workers)
+        place = None if cells is None else as_choice(cells, ("nodes", "faces"), name="cells")
+        if place is not None and isinstance(source, Grid | str):
+            raise InputError("cells is for datasets: make the grid by Grid.from_dataset(cells=)")
         sides = (
-            side_of(source, choices, "source"),
-            side_of(target, choices._replace(coords=None), "target"),
+            side_of(source, choices._replace(coords=coords, cells=place), "source"),
+            side_of(target, choices, "target"),
         )
         grids = sides[0].grid, sides[1].grid
         if weights is None:

@@ -24,6 +24,8 @@ class Choices(NamedTuple):
     # Whether angles without units are in degrees; None if nobody said so.
     degrees: bool | None = None
     infer: bool = False
+    # "nodes" or "faces" of a mesh; None for what the convention has.
+    cells: str | None = None
     merge: float = 0.0
     workers: int | None = None
 
@@ -51,6 +53,10 @@ class Cells(NamedTuple):
     shared: bool = False
     # The names of longitudes and latitudes of centers, if there are any.
     coords: tuple[Any, Any] | None = None
+    # "node" if fields are at the nodes of a mesh, whose faces these cells are.
+    location: str = "face"
+    # Longitudes and latitudes of the centers in degrees, (n, 2), if they are known.
+    centers: Floats | None = None
 
 
 def flags_of(mask: Any, count: int, *, used: int = 1) -> Bools | None:

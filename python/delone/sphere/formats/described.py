@@ -23,7 +23,8 @@ _NAMES = {
     "ICON": r"([ce]|v)(lon|lat)(_vertices)?|.*_of_.*|(cell|vertex|edge)_index",
     "GEOS-CS": r"corner_(lons|lats)|lons|lats|anchor|contacts|ncontact|orientation|cubed_sphere",
     "OASIS": r".*\.(lon|lat|clo|cla|srf|msk|ang)",
-    "FESOM": r"lon|lat|triag_nodes",
+    "FESOM": r"lon|lat|triag_nodes|nodes|elements|edges|edge_tri|edge_cross_dxdy|"
+    r"nod_in_elem2D(_num)?|(nod|elem)_(area|part)|gradient_(sca|vec)_[xy]",
     "Exodus": r"coord[xyz]?|coor_names|connect\d+|e(b|l)_.*|edge_type\d+|ebepecnt\d+|"
     r"global_id\d*|time_whole|info_records|qa_records",
 }
@@ -71,6 +72,9 @@ def kept_of_target(variables: Variables, cells: Cells) -> tuple[set[str], dict[s
         # Of several meshes, the one whose faces are the cells.
         for name in meshes:
             faces = str(variables[name].attrs.get("face_node_connectivity"))
+            nodes = str(variables[name].attrs.get("node_coordinates")).split()
+            if cells.location == "node" and set(nodes) == set(cells.coords or ()):
+                return names, {"mesh": name, "location": "node"}
             if faces in variables and set(cells.dims) <= set(variables[faces].dims):
                 return names, {"mesh": name, "location": "face"}
     return (describing(variables, cells) if cells.format == "CF" else set()), {}

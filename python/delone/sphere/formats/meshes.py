@@ -28,6 +28,7 @@ __all__ = [
     "read_esmf",
     "read_exodus",
     "read_fesom",
+    "read_fesom_diagnostics",
     "read_icon",
     "read_mpas",
     "read_ugrid",
@@ -72,9 +73,17 @@ def topologies(variables: Variables) -> list[str]:
 def read_ugrid(variables: Variables, choices: Choices) -> Cells:
     """Read the faces of a mesh of UGRID."""
     known = topologies(variables)
-    name = choices.name
+    name, location = choices.name, "face"
     if name is not None and name not in known and name in variables:
+        location = str(variables[name].attrs.get("location", location))
         name = variables[name].attrs.get("mesh", name)
+    if choices.cells is not None:
+        location = choices.cells[:-1]
+    if location not in {"face", "node"}:
+        raise InputError(
+            f"{choices.name!r:.60} has the location {location!r:.40}, not node or face: there are "
+            "no cells around edges"
+        )
     if name is None and len(known) == 1:
         name = known[0]
     if name not in known:
@@ -109,9 +118,32 @@ def read_ugrid(variables: Variables, choices: Choices) -> Cells:
         start=int(table.attrs.get("start_index", 0)),
         transposed=transposed,
     )
+    if location == "node":
+        return _at_nodes("UGRID", variables, (nodes[0], nodes[1]), vectors, cells)
     dims = (table.dims[1 if transposed else 0],)
     coords = _ordered(variables, str(topology.get("face_coordinates", "")).split())
     return _cells("UGRID", dims, vectors, cells, coords=coords)
+
+
+def _at_nodes(
+    convention: str,
+    variables: Variables,
+    names: tuple[str, str],
+    nodes: Floats,
+    faces: tuple[Rows, Rows],
+) -> Cells:
+    """Return faces of which the nodes have fields."""
+    dims = variables[names[0]].dims
+    return Cells(
+        convention,
+        dims,
+        (len(nodes),),
+        nodes=nodes,
+        corners=faces[0],
+        starts=faces[1],
+        coords=names,
+        location="node",
+    )
 
 
 def _present(variables: Variables, lon: str, lat: str) -> tuple[str, str] | None:
@@ -187,12 +219,38 @@ def read_icon(variables: Variables, choices: Choices) -> Cells:
 
 
 def read_fesom(variables: Variables, choices: Choices) -> Cells:
-    """Read the triangles of FESOM: numbers from 1, angles in degrees."""
-    vectors = _nodes(variables, ("lon", "lat"), choices, fixed=True)
-    table = variables["triag_nodes"]
+    """Read a mesh of FESOM: numbers from 1, angles in degrees; fields are at nodes."""
+    names = "lon", "lat"
+    vectors = _nodes(variables, names, choices, fixed=True)
+    cells, dims = _three(variables, "triag_nodes", len(vectors))
+    if choices.cells == "faces":
+        return _cells("FESOM", dims, vectors, cells)
+    return _at_nodes("FESOM", variables, names, vectors, cells)
+
+
+def read_fesom_diagnostics(variables: Variables, choices: Choices) -> Cells:
+    """Read FESOM's mesh.diag.nc of before UGRID: nodes (2, n) in radians, elements (3, m)."""
+    given = variables["nodes"]
+    both = numbers(given, "nodes")
+    if both.ndim != 2 or both.shape[0] != 2:
+        raise ShapeError(f"nodes must have shape (2, n), got {both.shape}")
+    known = in_degrees(given, 0, "nodes", choices, fixed=False)
+    vectors = places(both[0], both[1], (known, known), ("nodes[0]", "nodes[1]"), choices)
+    cells, dims = _three(variables, "elements", len(vectors))
+    if choices.cells == "faces":
+        return _cells("FESOM", dims, vectors, cells)
+    made = _cells("FESOM", given.dims[1:], vectors, cells, location="node")
+    return made._replace(shape=(len(vectors),))
+
+
+def _three(
+    variables: Variables, name: str, nodes: int
+) -> tuple[tuple[Rows, Rows], tuple[Any, ...]]:
+    """Return triangles in either order of axes, and their dimension."""
+    table = variables[name]
     transposed = table.ndim == 2 and table.shape[0] == 3 and table.shape[1] != 3
-    cells = connected(table, "triag_nodes", len(vectors), start=1, transposed=transposed)
-    return _cells("FESOM", (table.dims[1 if transposed else 0],), vectors, cells)
+    cells = connected(table, name, nodes, start=1, transposed=transposed)
+    return cells, (table.dims[1 if transposed else 0],)
 
 
 def read_exodus(variables: Variables, choices: Choices) -> Cells:

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from delone.errors import InputError
+from delone.interpolate.places import unit_of
 from delone.sphere.formats import corners, meshes, structured
-from delone.sphere.formats.variables import variables_of
+from delone.sphere.formats.variables import in_degrees, numbers, variables_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from delone._types import Floats
     from delone.sphere.formats.cells import Cells, Choices
 
     Variables = dict[str, Any]
@@ -25,6 +29,10 @@ class _Format(NamedTuple):
     wanted: str
     known: Callable[[Variables], Any]
     read: Callable[[Variables, Choices], Cells]
+
+
+# Conventions that fix the unit of centers: whether it is degrees.
+_UNITS = {"MPAS": False, "ICON": False, "FESOM": True, "OASIS": True, "GEOS-CS": True}
 
 
 def _has(*names: str) -> Callable[[Variables], bool]:
@@ -67,6 +75,12 @@ _FORMATS = (
 _LAST = (
     _Format("FESOM", "lon, lat, triag_nodes", _has("lon", "lat", "triag_nodes"), meshes.read_fesom),
     _Format(
+        "FESOM",
+        "nodes, elements, nod_in_elem2D",
+        _has("nodes", "elements", "nod_in_elem2D"),
+        meshes.read_fesom_diagnostics,
+    ),
+    _Format(
         "Exodus",
         "connect1, and coord or coordx, coordy, coordz",
         lambda v: "connect1" in v and ("coord" in v or "coordx" in v),
@@ -77,6 +91,38 @@ _LAST = (
 
 def read_cells(given: Any, choices: Choices) -> Cells:
     """Return the cells of an xarray dataset, or of a grid of uxarray."""
+    found = _read(given, choices)
+    if choices.cells is not None and found.format not in {"UGRID", "FESOM"}:
+        raise InputError(
+            f"cells={choices.cells!r:.20} is for meshes of UGRID and FESOM, and this is "
+            f"{found.format}"
+        )
+    if found.coords is not None and found.columns is None:
+        return found._replace(centers=_centers(variables_of(given), found, choices))
+    return found
+
+
+def _centers(variables: Variables, cells: Cells, choices: Choices) -> Floats | None:
+    """Return the centers that a dataset has, in degrees; None if it does not say their unit."""
+    assert cells.coords is not None
+    columns = []
+    for axis, name in enumerate(cells.coords):
+        part = variables[name]
+        if part.size != np.prod(cells.shape):
+            return None
+        known = unit_of(part, axis)
+        if known is None and cells.format not in _UNITS and choices.degrees is None:
+            return None
+        values = numbers(part, name).astype(np.float64).ravel()
+        degrees = in_degrees(part, axis, name, choices, fixed=_UNITS.get(cells.format))
+        columns.append(values if degrees else np.degrees(values))
+    # Latitudes beyond a pole by a rounding are the pole.
+    lonlat = np.column_stack((columns[0], np.clip(columns[1], -90, 90)))
+    return lonlat if np.isfinite(lonlat).all() else None
+
+
+def _read(given: Any, choices: Choices) -> Cells:
+    """Return the cells by the convention of their variables."""
     grid = getattr(given, "uxgrid", given)
     if hasattr(grid, "face_node_connectivity") and hasattr(grid, "node_lon"):
         return meshes.read_uxarray(grid, choices)
@@ -90,7 +136,7 @@ def read_cells(given: Any, choices: Choices) -> Cells:
         return meshes.read_mpas(variables, choices, dict(given.attrs))
     for each in _LAST:
         # Bounds of cells around nodes are preferred to triangles between them.
-        if each.known(variables) and not _has_bounds(variables):
+        if each.known(variables) and (choices.cells or not _has_bounds(variables)):
             return each.read(variables, choices)
     if structured.centers(variables, choices) is not None:
         return structured.read_bounds(variables, choices)
