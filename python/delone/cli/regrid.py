@@ -152,7 +152,6 @@ def regrid(
             fields = _chosen(whole, split(variables), source)
             own = whole if grid is None else _opened(grid)
             wanted = _opened(named) if named.exists() else target
-            table = None if weights is None else sphere.Weights.from_netcdf(weights)
         say("finding weights")
         with reading(quiet=quiet), watch.stage("weights"):
             from delone.xarray import Regridder
@@ -164,7 +163,7 @@ def regrid(
                 order=order,
                 limiter=limiter,
                 neighbors=neighbors,
-                weights=table,
+                weights=weights,
                 dims=split(dims),
                 coords=pair,
                 infer_bounds=infer_bounds,

@@ -69,7 +69,7 @@ def median_dual(
     # Around each node, the edge before and after each of its polygons, counterclockwise.
     steps: list[dict[int, tuple[int, int]]] = [{} for _ in places]
     every, ends = corners.tolist(), starts.tolist()
-    turned, empty = set(report.turned.tolist()), set(report.empty.tolist())
+    turned, empty = set(report.reversed.tolist()), set(report.empty.tolist())
     for t in range(len(lengths)):
         if t in empty:
             continue

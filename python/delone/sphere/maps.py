@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.areal.paired import added
+from delone.areal.paired import added, row_sums
 from delone.atomic import replacing
 from delone.errors import FileFormatError, InputError
 from delone.extras import require
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Floats
+    from delone._types import Bools, Floats
     from delone.sphere.grid import Grid
 
     Grids = tuple[Grid | None, Grid | None]
@@ -37,6 +37,8 @@ _ESMF = {
     "linear": "Bilinear",
     "bilinear": "Bilinear",
 } | dict.fromkeys(("sibson", "laplace", "inverse_distance"), "Interpolation")
+# Sums of weights that differ by less agree.
+_NEAR = 1e-9
 _ROW = {"esmf": "row", "scrip": "dst_address"}
 _COLUMN = {"esmf": "col", "scrip": "src_address"}
 
@@ -126,6 +128,7 @@ def _write_heads(file: Any, weights: Any, layout: str) -> None:
     else:
         file.source_grid = file.dest_grid = "not given"
     file.delone_method = weights.method
+    file.delone_order = np.int32(weights.order)
 
 
 def _write_cells(
@@ -171,8 +174,8 @@ def _write_places(file: Any, names: dict[str, str], grid: Grid) -> None:
             corner[:] = places[..., axis]
 
 
-def read_map(path: str | os.PathLike[str]) -> tuple[Any, ...]:
-    """Return the parts of the weights of a file; see `Weights.from_netcdf`."""
+def read_map(path: str | os.PathLike[str], grids: Grids) -> tuple[tuple[Any, ...], int]:
+    """Return the parts of the weights of a file, and their order; see `Weights.from_netcdf`."""
     netcdf = require("netCDF4", extra="xarray", what="reading NetCDF files")
     try:
         file = netcdf.Dataset(path)
@@ -182,10 +185,11 @@ def read_map(path: str | os.PathLike[str]) -> tuple[Any, ...]:
         raise FileFormatError(f"{path} is not a NetCDF file: {error}") from error
     with file:
         file.set_auto_mask(False)
-        return _parts(file, str(path))
+        parts = _parts(file, str(path), grids)
+        return parts, _order(file, parts[1][2])
 
 
-def _parts(file: Any, path: str) -> tuple[Any, ...]:
+def _parts(file: Any, path: str, grids: Grids) -> tuple[Any, ...]:
     """Return what `Weights` holds."""
     names = set(file.variables)
     layout = "esmf" if {"row", "col", "S"} <= names else "scrip"
@@ -195,9 +199,14 @@ def _parts(file: Any, path: str) -> tuple[Any, ...]:
             f"{path} is not a map file: it has neither row, col and S nor src_address, "
             "dst_address and remap_matrix"
         )
+    fixed = str(getattr(file, "contains_fixed_dst", "")).casefold() == "true"
+    if fixed or len(file.dimensions.get("num_src_fields", ())) > 1:
+        raise FileFormatError(
+            f"{path} has fixed values or several source fields, which weights do not hold"
+        )
     shapes, areas, fractions = [], [], []
     for side in range(2):
-        found = _read_cells(file, _names(layout, side), path)
+        found = _read_cells(file, _names(layout, side), path, grids[side], side)
         shapes.append(found[0])
         areas.append(found[1])
         fractions.append(found[2])
@@ -219,12 +228,37 @@ def _parts(file: Any, path: str) -> tuple[Any, ...]:
     # Entries of one pair are added.
     entries = added(rows, columns, values, len(areas[1]))
     counts = np.diff(entries[0])
-    covered = fractions[1]
-    if covered is None:
-        # A file without fractions: any cell with an entry has values.
-        covered = (counts > 0).astype(np.float64)
+    method, covered = _consistent(method, entries, fractions[1], counts > 0)
     share = np.ones(len(areas[0])) if fractions[0] is None else fractions[0]
     return method, entries, (share, covered), (areas[0], areas[1]), (shapes[0], shapes[1])
+
+
+def _consistent(
+    method: str, entries: tuple[Any, ...], given: Floats | None, there: Bools
+) -> tuple[str, Floats]:
+    """Return the method and the fractions of target cells that fit the weights themselves.
+
+    Results are sums of weights times values, whatever else a file says: of "conservative", sums of
+    weights are the fractions, and of other means they are one.
+    """
+    sums = row_sums(entries[0], entries[2])
+    if method == "conservative":
+        fits = given is not None and bool((np.abs(sums - given) <= _NEAR).all())
+        return method, given if given is not None and fits else np.where(there, sums, 0.0)
+    if method in {"normalized", *_MAP} and not (np.abs(sums[there] - 1) <= _NEAR).all():
+        method = "other"
+    # Without fractions, any cell with an entry has values.
+    return method, there.astype(np.float64) if given is None else given
+
+
+def _order(file: Any, values: Floats) -> int:
+    """Return 2 if weights have slopes: as a file says, or because some are negative."""
+    own = getattr(file, "delone_order", None)
+    said = str(getattr(file, "ESMF_regrid_method", "")) + str(getattr(file, "map_method", ""))
+    if own is not None:
+        return 2 if int(np.ravel(own)[0]) == 2 else 1
+    second = "second" in said.casefold() or "2nd" in said.casefold()
+    return 2 if second or bool((values < -_NEAR).any()) else 1
 
 
 def _method(file: Any) -> str:
@@ -255,20 +289,53 @@ def _numbers(file: Any, name: str, count: int, path: str) -> NDArray[np.int64]:
 
 
 def _read_cells(
-    file: Any, names: dict[str, str], path: str
+    file: Any, names: dict[str, str], path: str, grid: Grid | None, side: int
 ) -> tuple[tuple[int, ...], Floats, Floats | None]:
     """Return the shape, areas and covered fractions of the cells of one grid."""
-    if names["size"] not in file.dimensions:
-        raise FileFormatError(f"{path} has no dimension {names['size']}")
-    count = len(file.dimensions[names["size"]])
-    shape: tuple[int, ...] = (count,)
-    if names["dims"] in file.variables:
-        dims = np.asarray(file.variables[names["dims"]][:]).ravel()[::-1]
-        if (dims > 0).all() and int(np.prod(dims, dtype=np.int64)) == count:
-            shape = tuple(dims.tolist())
+    name = ("source", "target")[side]
+    if names["size"] in file.dimensions:
+        count = len(file.dimensions[names["size"]])
+    elif grid is not None:
+        count = grid.ncells
+    else:
+        raise FileFormatError(f"{path} has no dimension {names['size']}: give the grid, {name}=")
+    if grid is not None and grid.ncells != count:
+        raise InputError(f"{name} has {grid.ncells} cells, and {path} {count}")
+    shape = _shape(file, names, count) if grid is None else grid.grid_shape
     found = []
     for key in ("area", "frac"):
         variable = file.variables.get(names[key])
         found.append(None if variable is None else np.asarray(variable[:], dtype=np.float64))
     areas, fractions = found
+    if areas is None and grid is not None:
+        areas = grid.areas
     return shape, np.full(count, np.nan) if areas is None else areas, fractions
+
+
+def _shape(file: Any, names: dict[str, str], count: int) -> tuple[int, ...]:
+    """Return the shape of fields: the dimensions, the fastest of which comes first in files.
+
+    Some programs write two of them in the other order. Their centers tell: in rows and columns,
+    latitudes do not change along one axis, and longitudes along the other.
+    """
+    if names["dims"] not in file.variables:
+        return (count,)
+    dims = np.asarray(file.variables[names["dims"]][:]).ravel()
+    if not (dims > 0).all() or int(np.prod(dims, dtype=np.int64)) != count:
+        return (count,)
+    shape = tuple(dims[::-1].tolist())
+    x, y = (file.variables.get(names[key]) for key in ("x", "y"))
+    if len(shape) == 2 and x is not None and y is not None:
+        one, two = (np.asarray(part[:]).ravel() for part in (x, y))
+        if len(one) == len(two) == count:
+            orders = [each for each in (shape, shape[::-1]) if _in_rows(one, two, each)]
+            return orders[0] if orders else shape
+    return shape
+
+
+def _in_rows(x: Floats, y: Floats, shape: tuple[int, ...]) -> bool:
+    """Return whether centers are in rows and columns, along either axis."""
+    one, two = x.reshape(shape), y.reshape(shape)
+    across, down = one == one[:1], two == two[:, :1]
+    back = one == one[:, :1], two == two[:1]
+    return bool((across.all() and down.all()) or (back[0].all() and back[1].all()))

@@ -181,7 +181,7 @@ def _corners(source: Grid, used: Bools | None) -> tuple[Rows, Rows, Rows, Rows, 
     cell, node = cell[kept], node[kept]
     before, after = node[_shifted(cell, 1)], node[_shifted(cell, -1)]
     turned = np.zeros(source.ncells, dtype=bool)
-    turned[source.report.turned] = True
+    turned[source.report.reversed] = True
     back = turned[cell]
     before, after = np.where(back, after, before), np.where(back, before, after)
     kept = ~_repeated(cell, node, source.ncells, used)[cell]

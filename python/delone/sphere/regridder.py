@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from typing import TYPE_CHECKING, Any
 
@@ -57,9 +58,8 @@ class Regridder(Immutable):
         dataset; of a `Grid`, the last dimensions of each field that have its shape.
     extrapolate, power, neighbors : optional
         As for `Weights.between`, for its methods.
-    weights : Weights, optional
-        Use these, such as those of a map file, instead of computing some. `method` and masks
-        are theirs.
+    weights : Weights, str or path-like, optional
+        Use these, or those of a map file, instead of computing some. `method` and masks are theirs.
     coords, degrees, infer_bounds, cells, merge, workers
         As for `Grid.from_dataset`; `coords` and `cells` are those of the source.
 
@@ -129,7 +129,7 @@ class Regridder(Immutable):
         power: float = 2.0,
         neighbors: int | None = None,
         dims: Sequence[Any] | None = None,
-        weights: Weights | None = None,
+        weights: Weights | str | os.PathLike[str] | None = None,
         coords: tuple[str, str] | None = None,
         degrees: bool | None = None,
         infer_bounds: bool = False,
@@ -170,6 +170,8 @@ class Regridder(Immutable):
                 shared = Overlaps(*grids, workers=workers)
                 weights = shared.to_weights(method, order=order, limiter=limiter, **given)
         else:
+            if isinstance(weights, str | os.PathLike):
+                weights = Weights.from_netcdf(weights, source=grids[0], target=grids[1])
             _require_fit(weights, grids)
         own = sides[0].dims if dims is None else tuple(dims)
         if own is not None and len(own) != len(grids[0].grid_shape):

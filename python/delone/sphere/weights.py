@@ -17,9 +17,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
+    from delone._types import Bools, Floats
     from delone.sphere.grid import Grid
 
-__all__ = ["Weights"]
+__all__ = ["SlopedWeights", "Weights"]
 
 
 class Weights(AreaWeights):
@@ -87,7 +88,7 @@ class Weights(AreaWeights):
 
     @property
     def order(self) -> int:
-        """2 if source cells have slopes, otherwise 1; weights from files have 1."""
+        """2 if source cells have slopes, else 1."""
         return 1
 
     @property
@@ -265,13 +266,22 @@ class Weights(AreaWeights):
         write_map(self, path, kind, (source, target), form)
 
     @classmethod
-    def from_netcdf(cls, path: str | os.PathLike[str]) -> Self:
-        """Read a map file of ESMF, TempestRemap, SCRIP or CDO (extra ``xarray``).
+    def from_netcdf(
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        source: Grid | None = None,
+        target: Grid | None = None,
+    ) -> Weights:
+        """Read a map file of ESMF, TempestRemap, SCRIP, CDO or YAC (extra ``xarray``).
 
         Parameters
         ----------
         path : str or path-like
             The file.
+        source, target : Grid, optional
+            The grids. Files that do not say how many cells these have, such as those of YAC, need
+            them. Fields then have their shapes.
 
         Returns
         -------
@@ -281,16 +291,24 @@ class Weights(AreaWeights):
         Raises
         ------
         FileFormatError
-            The file is not a map, the number of a cell is out of range, or its weights are of
-            second order.
+            The file is not a map, does not have the number of cells, a cell's number is out of
+            range, or it has weights of second order with gradients.
+        InputError
+            A grid has another number of cells than the file.
         MissingExtraError
             netCDF4 is not installed.
 
         Notes
         -----
         Cells are numbered from 1 unless ``start_index`` or ``first_index`` says otherwise; the
-        numbers themselves are never used to guess. Several entries of one pair of cells are added.
-        SCRIP's weights with the normalization "none" are areas, and become "conservative".
+        numbers themselves are never used to guess. Entries of one pair are added. Weights of SCRIP
+        with the normalization "none" are areas, and become "conservative". Results are always sums
+        of the weights times the values: fractions that a file lacks, or that contradict the sums of
+        weights, are replaced by these. If a file lists its dimensions in another order than ESMF,
+        the centers tell which one varies fastest.
+
+        Weights of second order, and those with negative entries, have `order` 2: they are not
+        areas, and with ``skipna=True`` missing values raise an error.
 
         Examples
         --------
@@ -307,4 +325,43 @@ class Weights(AreaWeights):
         """
         from delone.sphere.maps import read_map
 
-        return cls._of(*read_map(path))
+        parts, order = read_map(path, (source, target))
+        if order == 1:
+            return cls._of(*parts)
+        return SlopedWeights._of(*parts)
+
+
+class SlopedWeights(Weights):
+    """Weights of a map file of second order, which does not tell areas from slopes.
+
+    Examples
+    --------
+    >>> import os, tempfile
+    >>> from delone import sphere
+    >>> source, target = sphere.Grid.from_healpix(2), sphere.Grid.from_lonlat([0, 90], [0, 90])
+    >>> weights = sphere.Overlaps(source, target).to_weights("conservative", order=2)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = os.path.join(folder, "map.nc")
+    ...     weights.to_netcdf(path)
+    ...     sphere.Weights.from_netcdf(path).order
+    2
+    """
+
+    __slots__ = ()
+
+    @property
+    def order(self) -> int:
+        """2: some entries are slopes."""
+        return 2
+
+    def __repr__(self) -> str:
+        return super().__repr__().replace(f", {self._method},", f", {self._method}, order 2,", 1)
+
+    def _mixed(self, part: Floats, skipna: bool, least: float) -> tuple[Floats, Bools]:
+        if skipna and np.isnan(part).any():
+            raise InputError(
+                "weights of second order in a map file do not tell areas from slopes, so missing "
+                "values cannot be left out: use the weights of Overlaps.to_weights(order=2) "
+                "themselves, or a map of first order"
+            )
+        return super()._mixed(part, skipna, least)
