@@ -47,6 +47,12 @@ COMMANDS = {
         "Regrid the fields of a NetCDF file by the areas that cells share, exactly.",
         on_rows=False,
     ),
+    "areal": Listed(
+        "areal",
+        "areal",
+        "Transfer columns between layers of polygons by the areas that they share, exactly.",
+        on_rows=False,
+    ),
     "check": Listed(
         "check",
         "check",
@@ -150,7 +156,7 @@ TASKS = {
     "Look at a file": ("info", "explore"),
     "Triangulate": ("triangulate", "sphere", "tile", "check"),
     "Outlines, cells, neighbors": ("hull", "voronoi", "graph", "cluster"),
-    "Interpolate": ("interpolate", "crossval", "regrid"),
+    "Interpolate": ("interpolate", "crossval", "regrid", "areal"),
     "Terrain": (
         "ground",
         "terrain",

@@ -16,7 +16,6 @@ from delone import __version__
 from delone.atomic import replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
-from delone.cli.options import Chord, Classes, Json, Layer, Quiet, Workers
 from delone.cli.outputs import write_all
 from delone.cli.page import Section, page
 from delone.cli.profiles import (
@@ -25,33 +24,17 @@ from delone.cli.profiles import (
     ready_profile,
     write_profile,
 )
-from delone.cli.referenced import Crs, Planar, require_known
+from delone.cli.referenced import require_known
 from delone.cli.report import Stopwatch
 from delone.cli.show import spinner
 from delone.cli.surfaces import (
-    Boundary,
-    Breaklines,
-    Columns,
-    Crossing,
-    Duplicates,
-    EastingFirst,
-    Level,
-    MaxEdge,
-    Nodata,
-    Retriangulate,
-    Snap,
-    SoftBreaklines,
-    Step,
     SurfaceOptions,
     Survey,
-    Tolerance,
-    Units,
-    Voids,
-    Window,
     curves_of,
     figures_of,
     print_figures,
     surface,
+    with_surface,
 )
 from delone.cli.tables import ready_table
 from delone.cli.terrain import write_lines
@@ -85,6 +68,7 @@ class _Product:
     found: Any = None
 
 
+@with_surface
 def terrain(
     source: Survey,
     *,
@@ -123,31 +107,7 @@ def terrain(
     min_length: Annotated[float, typer.Option(help="As for contours.")] = 0.0,
     min_area: Annotated[float, typer.Option(help="As for contours, of lines and polygons.")] = 0.0,
     simplify: Annotated[float, typer.Option(help="As for contours.")] = 0.0,
-    breaklines: Breaklines = None,
-    soft_breaklines: SoftBreaklines = None,
-    boundary: Boundary = None,
-    max_edge: MaxEdge = None,
-    voids: Voids = False,
-    duplicates: Duplicates = "raise",
-    crossing: Crossing = "raise",
-    tolerance: Tolerance = 0.0,
-    snap: Snap = 0.0,
-    level: Level = None,
-    chord: Chord = None,
-    step: Step = 1,
-    nodata: Nodata = None,
-    window: Window = None,
-    columns: Columns = None,
-    classes: Classes = None,
-    layer: Layer = None,
-    retriangulate: Retriangulate = False,
-    easting_first: EastingFirst = False,
-    crs: Crs = None,
-    units: Units = None,
-    planar: Planar = False,
-    workers: Workers = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
+    options: SurfaceOptions,
 ) -> None:
     """Make several products of one surface, and a page of pictures and numbers about them.
 
@@ -155,8 +115,8 @@ def terrain(
     profile with the same options.
     """
     given = locals()
-    options = SurfaceOptions.among(given)
-    require_known(crs)
+    require_known(options.crs)
+    quiet = options.quiet
     shades = [name for name in _SHADES if given[name]]
     if shades and dem is None:
         raise Failure(f"--{shades[0]} needs --dem, the size of its cells", Exit.USAGE)
@@ -167,10 +127,10 @@ def terrain(
     products = _wanted(folder, given, shades)
     watch = Stopwatch()
     inputs = [source, *(profile or []), *options.inputs()]
-    with spinner(quiet or as_json) as say, _folder(folder, products, inputs):
+    with spinner(options.silent) as say, _folder(folder, products, inputs):
         with reading(quiet=quiet):
             lines = [
-                read_geometries(path, **curves_of(path, chord, aligned=True))
+                read_geometries(path, **curves_of(path, options.chord, aligned=True))
                 for path in profile or []
             ]
         tin = surface(source, options, watch, say, others=profile or [], aligned=bool(profile))
@@ -188,7 +148,7 @@ def terrain(
     figures["products"] = [{"product": each.name} | each.figures for each in products]
     figures["stages"] = watch.rows(tin.npoints)
     more = [row for each in products for row in _rows(each.figures, f"{each.name}: ")]
-    print_figures(source, figures, as_json=as_json, quiet=quiet, more=more)
+    print_figures(source, figures, as_json=options.as_json, quiet=quiet, more=more)
 
 
 def _write_page(
