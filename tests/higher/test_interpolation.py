@@ -33,7 +33,7 @@ def test_linear_functions_are_reproduced(d: int) -> None:
     assert np.abs(field.weights_at(queries) @ (points @ slope) + 2 - field(queries)).max() < 1e-12
     with pytest.raises(delone.InputError, match="4 of 4 queries are outside the hull"):
         Linear(points, points @ slope, extrapolate="raise")(outside)
-    for option in ({"extrapolate": "nearest"}, {"extrapolate": "linear"}, {"tolerance": 1.0}):
+    for option in ({"extrapolate": "linear"}, {"tolerance": 1.0}):
         with pytest.raises(delone.InputError, match="only available in 2-D and 3-D"):
             Linear(points, points @ slope, **option)
 
@@ -155,8 +155,6 @@ def test_method_grid_refuses_what_is_no_grid() -> None:
         Linear(points[1:], values[1:], method="grid")
     with pytest.raises(delone.InputError, match="needs the points of a rectilinear grid"):
         Linear(Delaunay(points), values, method="grid")
-    with pytest.raises(delone.InputError, match="has no values outside of the hull"):
-        Linear(points, values, method="grid", extrapolate="nearest")
     with pytest.raises(delone.InputError, match="method must be one of"):
         Linear(points, values, method="lattice")
     assert rectilinear(np.array([[0.0, 0.0], [0.0, 1.0], [0.0, 2.0], [0.0, 3.0]])) is None

@@ -123,8 +123,6 @@ def test_what_cannot_be_lazy_is_refused() -> None:
     values = points[:, 0]
     with pytest.raises(delone.InputError, match="method='lazy' needs points"):
         Linear(Delaunay(points), values, method="lazy")
-    with pytest.raises(delone.InputError, match="has no values outside of the hull"):
-        Linear(points, values, method="lazy", extrapolate="nearest")
     with pytest.raises(delone.InputError, match="at most 8 dimensions; choose method='lazy'"):
         Linear(np.random.default_rng(0).random((30, 9)), np.zeros(30), method="mesh")
     flat = np.column_stack((points, points.sum(axis=1), np.zeros((30, 7))))

@@ -59,6 +59,7 @@ ALLOWED: dict[str, dict[str, str]] = {
         "lengths < at_rank - slack": FILTER,
         "lengths > at_rank + slack": FILTER,
     },
+    "interpolate/beyond.py": {"gap <= 4 * _EPS * size * np.linalg.norm(place)": VALUE},
     "interpolate/accessor.py": {"sites.made.distance(queries) <= sites.limit": WANTED},
     "interpolate/base.py": {"interpolator._distance(queries) <= limit": WANTED},
     "interpolate/repeated.py": {

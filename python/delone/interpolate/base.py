@@ -367,11 +367,11 @@ class Interpolator:
                 f"{type(self).__name__} is only available with up to {self._MOST} coordinates: "
                 f"{others} points with {self._ndim}"
             )
-        if self._tolerance or self._extrapolate not in ("nan", "raise", self.EXTRAPOLATE[0]):
+        if self._tolerance or self._extrapolate == "linear":
             option = "tolerance" if self._tolerance else f"extrapolate={self._extrapolate!r}"
             raise InputError(
-                f"{option} is only available in 2-D and 3-D: with {self._ndim} coordinates the "
-                "nearest points of the hull are not computed; Nearest has a value everywhere"
+                f"{option} is only available in 2-D and 3-D, and the points have {self._ndim} "
+                "coordinates; extrapolate='nearest' has a value everywhere"
             )
 
     def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:

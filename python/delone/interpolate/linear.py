@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from delone._arrays import as_workers
+from delone.blocks import blocks
 from delone.errors import InputError
 from delone.higher.dimension import MOST
 from delone.interpolate.base import Interpolator
+from delone.interpolate.beyond import nearest_in_box, nearest_terms
 from delone.interpolate.hull import Terms, edge_terms, plane_gradients, summed
 from delone.interpolate.lazily import Lazily
 from delone.interpolate.rectilinear import Rectilinear, rectilinear
@@ -27,9 +29,6 @@ if TYPE_CHECKING:
     from delone.triangulation import Triangulation
 
 __all__ = ["Linear"]
-
-# Policies that have values outside.
-_BEYOND = ("nearest", "linear")
 
 # What the methods without a mesh need.
 _NEEDED = {
@@ -62,7 +61,7 @@ class Linear(Interpolator):
     extrapolate : {"nan", "nearest", "linear", "raise"}, optional
         Behavior outside the hull: NaN; the value at the nearest point of the hull; linear
         extrapolation from that point, with the gradients of the planes that best fit its sites and
-        their neighbors; or an error. From 4-D on, only ``"nan"`` and ``"raise"`` are available.
+        their neighbors; or an error. ``"linear"`` is only available in 2-D and 3-D, with a mesh.
     tolerance : float, optional
         Queries outside the hull, but at most this far from it, in the unit of the points, count as
         inside and have the value at the nearest point of the hull. The default is 0. About half of
@@ -210,10 +209,10 @@ class Linear(Interpolator):
         """Whether a mesh can be avoided; in 2-D and 3-D, only on request."""
         if self._method == "auto":
             return self._ndim > SPACE
-        if self._method != "mesh" and (self._tolerance or self._extrapolate in _BEYOND):
+        if self._method != "mesh" and (self._tolerance or self._extrapolate == "linear"):
             raise InputError(
-                f"method={self._method!r:.20} has no values outside of the hull: choose "
-                "extrapolate='nan' or 'raise', without tolerance"
+                f"method={self._method!r:.20} has no gradients at the hull and no tolerance: "
+                "choose extrapolate='nan', 'nearest' or 'raise'"
             )
         return self._method != "mesh"
 
@@ -233,6 +232,40 @@ class Linear(Interpolator):
 
     def __repr__(self) -> str:
         return super().__repr__() if self._implicit is None else f"<Linear on {self._implicit}>"
+
+    @property
+    def _projects(self) -> bool:
+        """Whether queries outside have terms of simplices at the nearest points of the hull."""
+        higher = self._implicit is not None or self._ndim > SPACE
+        return higher and self._extrapolate == "nearest"
+
+    def _at_nearest(self, queries: Floats) -> tuple[Indices, Floats]:
+        """Return the corners of simplices, (k, d + 1), and weights; outside, those at the hull."""
+        if isinstance(self._implicit, Rectilinear):
+            low, high = (np.array([axis[k] for axis in self._implicit.axes]) for k in (0, -1))
+            return nearest_in_box(low, high, queries, self._implicit.within)
+        if self._implicit is not None:
+            every = np.arange(len(self._implicit.points), dtype=np.int64)
+            return nearest_terms(self._implicit.points, every, queries, self._implicit.within)
+        rows = np.unique(self._mesh.boundary).astype(np.int64)
+        return nearest_terms(self._mesh.points, rows, queries, self._corners_of)
+
+    def _corners_of(self, queries: Floats) -> tuple[Indices, Floats]:
+        """Return the corners of simplices of the mesh, -1 outside, and weights."""
+        index: Any = self._mesh._locator
+        simplex, weights = index.within(queries, as_workers(self._workers))
+        corners = np.where(simplex[:, None] >= 0, self._mesh.simplices[simplex], np.int32(-1))
+        return corners, weights
+
+    def _interpolated(self, queries: Floats, columns: Floats) -> Floats:
+        if not self._projects:
+            return super()._interpolated(queries, columns)
+        found = np.full((len(queries), columns.shape[1]), np.nan)
+        for block in blocks(len(queries)):
+            corners, weights = self._at_nearest(queries[block])
+            known = np.flatnonzero(corners[:, 0] >= 0)
+            found[block][known] = summed(Terms(corners[known], weights[known], None), columns, None)
+        return found
 
     def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
         if self._implicit is not None:
@@ -275,6 +308,8 @@ class Linear(Interpolator):
         return plane_gradients(mesh.points, self._around(), columns, as_workers(self._workers))
 
     def _table(self, queries: Floats, shape: tuple[int, ...]) -> Weights:
+        if self._projects:
+            return Weights(*rectangular(*self._at_nearest(queries)), shape, self)
         if self._implicit is not None:
             if self._extrapolate == "raise":
                 self._left(queries, None)
