@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from delone import sphere
+from delone import datasets, sphere
 from delone.errors import InputError
 
 shapely = pytest.importorskip("shapely")
@@ -99,3 +99,15 @@ def test_what_is_not_understood_is_refused() -> None:
         cells.to_geopandas(step=0)
     with pytest.raises(InputError, match="data has 2 rows for 6 points"):
         cells.to_geopandas({"a": [1, 2]})
+
+
+def test_a_cell_around_a_pole_is_one_polygon() -> None:
+    # A turn away, the longitude of the first corner of Antarctica is rounded.
+    ring = datasets.land()["coordinates"][1][0]
+    shape = sphere.Grid.from_polygons([shapely.Polygon(ring)]).to_geopandas().geometry[0]
+    assert len(shapely.get_parts(shape)) == 1
+    assert shape.is_valid
+    places = shapely.get_coordinates(shape)
+    # Nothing runs to the pole but the edges of the map.
+    up = np.flatnonzero((np.abs(places[1:, 1]) == 90) != (np.abs(places[:-1, 1]) == 90))
+    assert set(np.abs(places[up, 0])) == {180.0}

@@ -26,6 +26,10 @@ __all__ = ["flat_polygon"]
 _CENTER = (0.0, 0.0)
 
 
+# Degrees: more than the rounding of a longitude that was some turns away.
+_SEAM = 1e-9
+
+
 def flat_polygon(rings: Sequence[Floats], step: float) -> Any:
     """Return what is to the left of all rings of unit vectors, in degrees, as shapely polygons.
 
@@ -114,6 +118,17 @@ def _closed(path: Floats, turns: int) -> Floats:
     return np.vstack([path, (path[-1, 0], pole), (path[0, 0], pole), path[0]])
 
 
+def _moved(places: Floats, turn: int, seam: float) -> Floats:
+    """Places some turns further west; those where a path was opened are there to the last bit.
+
+    Otherwise a rounding would leave a gap that the union of parts does not close.
+    """
+    found = places - (360.0 * turn, 0.0)
+    near = np.abs(found[:, 0] - seam) < _SEAM
+    found[near, 0] = seam
+    return found
+
+
 def _wrapped(shapely: Any, path: Floats) -> Any:
     """The inside of a path, as polygons with longitudes from -180 to 180."""
     whole = shapely.make_valid(shapely.Polygon(path))
@@ -124,7 +139,7 @@ def _wrapped(shapely: Any, path: Floats) -> Any:
     for turn in range(low, high + 1):
         west = 360.0 * turn - 180.0
         part = shapely.intersection(whole, shapely.box(west, -90, west + 360, 90))
-        parts.append(shapely.transform(part, lambda xy, turn=turn: xy - (360.0 * turn, 0.0)))
+        parts.append(shapely.transform(part, lambda xy, turn=turn: _moved(xy, turn, path[0, 0])))
     # Only areas: cuts may leave lines and points.
     areas = [each for part in parts for each in shapely.get_parts(part) if each.area > 0]
     return shapely.union_all(areas) if len(areas) != 1 else areas[0]
