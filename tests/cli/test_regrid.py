@@ -137,7 +137,41 @@ def test_pictures(model, tmp_path, figures, suffix):
         text = picture.read_text()
         assert "rain, 162 cells" in text
         assert "rain, 48 cells" in text
+        assert "rain, difference from the nearest source cell" in text
+        # Amounts of cells of other sizes have no difference.
+        figures("regrid", model, "healpix:2", "--method", "sum", "-o", picture)
+        assert "difference" not in picture.read_text()
     assert opened(file).rain.shape == (4, 48)
+
+
+def test_fields_at_nodes_and_bilinear_on_quadrilaterals(tmp_path, figures, command):
+    lon, lat = np.meshgrid(np.arange(0.0, 41, 10), np.arange(-20.0, 21, 10))
+    lon += lat / 7
+    at = np.arange(25).reshape(5, 5)
+    faces = np.stack((at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]), axis=2).reshape(-1, 4)
+    ds = xarray.Dataset(
+        {
+            "mesh": ((), 0, {"cf_role": "mesh_topology", "node_coordinates": "x y",
+                             "face_node_connectivity": "faces"}),
+            "faces": (("face", "four"), faces, {"start_index": 0}),
+            "x": ("node", lon.ravel(), {"units": "degrees_east"}),
+            "y": ("node", lat.ravel(), {"units": "degrees_north"}),
+            "t": ("node", 3 + lat.ravel()),
+        }
+    )  # fmt: skip
+    ds.to_netcdf(tmp_path / "mesh.nc")
+    out = tmp_path / "out.nc"
+    found = figures(
+        "regrid", tmp_path / "mesh.nc", "2x2", "--cells", "nodes", "--method", "bilinear", "-o", out
+    )
+    assert (found["source"]["cells"], found["variables"]) == (25, ["t"])
+    result = opened(out).t
+    inside = result.sel(lat=slice(-20, 20), lon=slice(12, 28))
+    # Parallels are not straight: between 10 degrees of longitude they bend by this much.
+    assert np.abs(inside - 3 - inside.lat).max() < 0.1
+    assert inside.notnull().all()
+    code, _, err = command("regrid", tmp_path / "mesh.nc", "2x2", "--cells", "edges")
+    assert (code, "cells must be" in err) == (2, True)
 
 
 def test_without_an_output_only_the_report(model, tmp_path, figures):

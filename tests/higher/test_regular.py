@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
@@ -100,3 +103,38 @@ def test_saving_location_and_errors(tmp_path) -> None:
         RegularTriangulation(random.random((60, 9)), weights)
     with pytest.raises(delone.InputError):
         delone.AlphaComplex(mesh)
+
+
+def solved(rows: list[list[Fraction]]) -> list[Fraction]:
+    """The solution of linear equations, each with its right side."""
+    size = len(rows)
+    for k in range(size):
+        pivot = next(r for r in range(k, size) if rows[r][k])
+        rows[k], rows[pivot] = rows[pivot], rows[k]
+        rows[k] = [x / rows[k][k] for x in rows[k]]
+        for r in range(size):
+            if r != k and rows[r][k]:
+                rows[r] = [x - rows[r][k] * y for x, y in zip(rows[r], rows[k], strict=True)]
+    return [row[-1] for row in rows]
+
+
+def test_weights_are_the_squares_of_a_column_that_is_left_out() -> None:
+    # Compositions: five parts that add up to six.
+    parts = [c for c in itertools.product(range(5), repeat=5) if sum(c) == 6]
+    points = np.random.default_rng(0).permutation(np.array(parts, dtype=float))[:45]
+    mesh = RegularTriangulation(points[:, :4], -(points[:, 4] ** 2))
+    assert not len(mesh.hidden)
+    exact = [[Fraction(x) for x in row] for row in points.tolist()]
+    squares = [sum(x * x for x in row) for row in exact]
+    for corners in mesh.simplices.tolist():
+        # The center of the sphere through the corners that is in the flat of the points.
+        base = corners[0]
+        rows = [[Fraction(1)] * 5 + [Fraction(6)]]
+        for corner in corners[1:]:
+            way = [2 * (x - y) for x, y in zip(exact[corner], exact[base], strict=True)]
+            rows.append([*way, squares[corner] - squares[base]])
+        center = solved(rows)
+        away = [sum((x - y) ** 2 for x, y in zip(row, center, strict=True)) for row in exact]
+        assert min(away) == away[base] == away[corners[-1]]
+    # Without the weights distances are others, and so are the simplices.
+    assert as_sets(Delaunay(points[:, :4]).simplices) != as_sets(mesh.simplices)

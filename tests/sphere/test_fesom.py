@@ -177,6 +177,41 @@ def test_nodes_of_quadrilaterals_and_targets() -> None:
         Regridder("10x10", "10x10", cells="nodes")
 
 
+@pytest.mark.parametrize("corners", [3, 4])
+def test_fields_at_nodes_are_interpolated_on_the_mesh_itself(corners: int) -> None:
+    xarray = pytest.importorskip("xarray")
+    rng = np.random.default_rng(corners)
+    lon, lat = np.meshgrid(np.arange(0.0, 61, 10), np.arange(-30.0, 31, 10))
+    lon, lat = (part + rng.uniform(-2, 2, part.shape) for part in (lon, lat))
+    at = np.arange(49).reshape(7, 7)
+    faces = np.stack((at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]), axis=2).reshape(-1, 4)
+    if corners == 3:
+        # One diagonal in all of them: many triangles are not Delaunay.
+        faces = np.concatenate((faces[:, :3], faces[:, [0, 2, 3]]))
+    ds = xarray.Dataset(
+        {
+            "mesh": ((), 0, {"cf_role": "mesh_topology", "node_coordinates": "x y",
+                             "face_node_connectivity": "faces"}),
+            "faces": (("face", "most"), faces),
+            "x": ("node", lon.ravel(), {"units": "degrees_east"}),
+            "y": ("node", lat.ravel(), {"units": "degrees_north"}),
+        }
+    )  # fmt: skip
+    source = Grid.from_dataset(ds, cells="nodes")
+    target = Grid.from_lonlat(np.arange(5, 56, 3), np.arange(-25, 26, 3))
+    weights = sphere.Weights.between(source, target, "bilinear")
+    assert (weights.fractions == 1).all()
+    own = {frozenset(face) for face in faces.tolist()}
+    rows = np.split(weights.indices, weights.indptr[1:-1])
+    assert all(any(set(row.tolist()) <= face for face in own) for row in rows)
+    places = sphere.Delaunay(lonlat=source.centers_lonlat).points
+    middles = sphere.Delaunay(lonlat=target.centers_lonlat).points
+    assert np.abs(np.cross(weights.matrix @ places, middles)).max() < 1e-13
+    if corners == 3:
+        linear = sphere.Weights.between(source, target, "linear")
+        assert not np.array_equal(linear.indices, weights.indices)
+
+
 def test_centers_are_those_of_datasets() -> None:
     xarray = pytest.importorskip("xarray")
     lon, lat = np.meshgrid(np.arange(0.0, 50, 10), np.arange(0.0, 50, 10))

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 import typer
 
 from delone import __version__, datasets, sphere
@@ -132,7 +133,8 @@ def regrid(
 
     The grids are those of CF, UGRID, SCRIP, ESMF, MPAS, ICON, FESOM, Exodus, OASIS, GEOS-CS and
     HEALPix. Times, levels, attributes and float32 remain; variables with only some of the
-    dimensions of cells are left out with a note. Images show the first field on both grids.
+    dimensions of cells are left out with a note. Images show the first field on both grids, and
+    the difference from the nearest source cells.
     """
     outputs = output or []
     written = [*outputs, *([save_weights] if save_weights else [])]
@@ -261,16 +263,23 @@ def _noted(regridder: Any, fields: Any, options: dict[str, Any], *, quiet: bool)
 
 
 def _draw(path: Path, regridder: Any, fields: Any, found: Any) -> None:
-    """Draw the first field, at the first of its other dimensions, on both grids."""
+    """Draw the first field, at the first of its other dimensions, on both grids.
+
+    A third map shows what regridding changes: the result without the value of the nearest cell.
+    Amounts and categories have no such difference.
+    """
     figures = require("matplotlib.figure", extra="plot", what="drawing")
     names = _regridded(regridder, fields, found)
     if not names:
         raise Failure("there is no field to draw", Exit.USAGE)
     before, after = fields[names[0]], found[names[0]]
     own = regridder.source_dims or before.dims[before.ndim - len(regridder.source.grid_shape) :]
-    figure = figures.Figure(figsize=(9.0, 9.0), dpi=140, layout="constrained")
+    maps = 2 if regridder.weights.method in {"sum", "majority"} else 3
+    figure = figures.Figure(figsize=(9.0, 4.4 * maps), dpi=140, layout="constrained")
+    axes = figure.subplots(maps, 1)
+    shown = []
     for ax, grid, array, dims in zip(
-        figure.subplots(2, 1),
+        axes[:2],
         (regridder.source, regridder.target),
         (before, after),
         (own, regridder.target_dims),
@@ -280,7 +289,23 @@ def _draw(path: Path, regridder: Any, fields: Any, found: Any) -> None:
         values = array.isel(others).transpose(*dims).values
         title = f"{names[0]}, {grid.ncells:,} cells"
         grid.plot(ax, values=values, sides=False, coast=datasets.land(), title=title)
+        shown.append(values)
+    if maps == 3:
+        _draw_change(axes[2], regridder, shown, names[0])
     figure.savefig(path, facecolor="white", format=path.suffix.lower().lstrip("."))
+
+
+def _draw_change(ax: Any, regridder: Any, shown: list[Any], name: str) -> None:
+    """Draw a field on the target without that of the nearest source cells."""
+    near = sphere.Weights.between(regridder.source, regridder.target, "nearest")
+    change = shown[1].astype(float) - near.apply(shown[0]).reshape(shown[1].shape)
+    most = float(np.nanmax(np.abs(change), initial=0.0)) or 1.0
+    title = f"{name}, difference from the nearest source cell"
+    drawn = regridder.target.plot(
+        ax, values=change, sides=False, coast=datasets.land(), cmap="RdBu_r", title=title
+    )
+    # Without a change, cells are white.
+    drawn.images[0].set_clim(-most, most)
 
 
 def _regridded(regridder: Any, fields: Any, found: Any) -> list[str]:
