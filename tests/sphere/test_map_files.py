@@ -206,6 +206,20 @@ def test_files_without_sizes_need_the_grids(tmp_path: Path) -> None:
         Weights.from_netcdf(tmp_path / "map.nc", source=REGION)
 
 
+def test_sides_of_cells_must_be_those_of_the_file(tmp_path: Path) -> None:
+    weights = Overlaps(MESH, ROWS).to_weights()
+    weights.to_netcdf(tmp_path / "map.nc", source=MESH, target=ROWS)
+    read = Weights.from_netcdf(tmp_path / "map.nc", source=MESH, target=ROWS)
+    assert np.array_equal(read.values, weights.values)
+    lon, lat = np.meshgrid(np.arange(0.0, 361, 20), np.arange(-90.0, 91, 15))
+    arcs = Grid.from_curvilinear(lon, lat)
+    with pytest.raises(delone.InputError, match=r"target have arcs of great circles as sides, and"):
+        Weights.from_netcdf(tmp_path / "map.nc", target=arcs)
+    # Without the grids a file does not say.
+    weights.to_netcdf(tmp_path / "bare.nc")
+    assert Weights.from_netcdf(tmp_path / "bare.nc", target=arcs).target_shape == (12, 18)
+
+
 @pytest.mark.parametrize("target", [ROWS, REGION, MESH])
 def test_uxarray_applies_maps(tmp_path: Path, target: Grid) -> None:
     pytest.importorskip("uxarray")

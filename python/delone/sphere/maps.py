@@ -40,6 +40,9 @@ _ESMF = {
 # Sums of weights that differ by less agree.
 _NEAR = 1e-9
 _ROW = {"esmf": "row", "scrip": "dst_address"}
+# What the sides of cells are, of files that have the grids.
+_EDGES = ("delone_source_edges", "delone_target_edges")
+_SIDES = {"parallel": "meridians and parallels", "arc": "arcs of great circles"}
 _COLUMN = {"esmf": "col", "scrip": "src_address"}
 
 
@@ -93,6 +96,7 @@ def write_map(
             grid = grids[side]
             if grid is not None:
                 _write_places(file, _names(layout, side), grid)
+                file.setncattr(_EDGES[side], grid.edges)
         links = "n_s" if layout == "esmf" else "num_links"
         file.createDimension(links, len(weights.values))
         file.createDimension("num_wgts", 1)
@@ -301,6 +305,12 @@ def _read_cells(
         raise FileFormatError(f"{path} has no dimension {names['size']}: give the grid, {name}=")
     if grid is not None and grid.ncells != count:
         raise InputError(f"{name} has {grid.ncells} cells, and {path} {count}")
+    edges = getattr(file, _EDGES[side], None)
+    if grid is not None and edges is not None and edges != grid.edges:
+        raise InputError(
+            f"the cells of {name} have {_SIDES[grid.edges]} as sides, and those of {path} "
+            f"{_SIDES.get(edges, 'others')}"
+        )
     shape = _shape(file, names, count) if grid is None else grid.grid_shape
     found = []
     for key in ("area", "frac"):

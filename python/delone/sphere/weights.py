@@ -294,7 +294,7 @@ class Weights(AreaWeights):
             The file is not a map, does not have the number of cells, a cell's number is out of
             range, or it has weights of second order with gradients.
         InputError
-            A grid has another number of cells than the file.
+            A grid has another number of cells than the file, or other sides.
         MissingExtraError
             netCDF4 is not installed.
 
