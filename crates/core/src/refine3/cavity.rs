@@ -174,10 +174,8 @@ impl Cavity {
                 let Some(other) = mesh.next_wall(side, [x, y]) else {
                     continue;
                 };
-                if self.open.contains(&other)
-                    || !self.has(other.0)
-                    || mesh.facet_of(other) != mesh.facet_of(side)
-                {
+                // Facets meet at segments, so this one is of the same.
+                if self.open.contains(&other) || !self.has(other.0) {
                     continue;
                 }
                 let behind = mesh.behind(other);

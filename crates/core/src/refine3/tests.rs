@@ -119,8 +119,7 @@ fn refined(model: &Model, split: bool, ratio: f64, size: impl Fn(Point3) -> f64)
     made
 }
 
-/// Six times the volume as an integer multiple of a power of two, of points on a fine lattice; as a
-/// double otherwise.
+/// Six times the volume.
 fn volume(points: &[Point3], v: [i32; 4]) -> f64 {
     let [a, b, c, d] = v.map(|v| points[v as usize]);
     judge::dot(
@@ -171,6 +170,15 @@ fn assert_valid(model: &Model, made: &Refined, split: bool) {
     assert_eq!(walls.len(), made.faces.len());
     if !split {
         assert_eq!(made.faces, model.faces);
+    }
+    // They are oriented as given.
+    let normal = |points: &[Point3], face: [i32; 3]| {
+        let [a, b, c] = face.map(|v| points[v as usize]);
+        judge::cross(judge::minus(b, a), judge::minus(c, a))
+    };
+    for (&face, &row) in made.faces.iter().zip(&made.face_rows) {
+        let given = normal(&model.points, model.faces[row as usize]);
+        assert!(judge::dot(normal(&made.points, face), given) > 0.0);
     }
     let sum = |points: &[Point3], all: &[[i32; 4]]| -> f64 {
         all.iter().map(|&v| volume(points, v)).sum()
