@@ -185,8 +185,9 @@ def test_lines_that_touch_still_touch():
         assert [5, 1] in points[starts[k] : starts[k + 1]].tolist()
 
 
-def test_the_direction_of_lines_changes_nothing():
-    full = hills(3, 900).contours(interval=0.5)
+@pytest.mark.parametrize("count", [900, 6000])
+def test_the_direction_of_lines_changes_nothing(count):
+    full = hills(3, count).contours(interval=0.5)
     lines = lines_of(full)
     order = np.random.default_rng(0).permutation(len(lines))
     one, first = simplified(full.points, full.starts, 0.5)

@@ -15,6 +15,7 @@ them out one by one.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -30,13 +31,16 @@ __all__ = ["simplified"]
 
 # Points in boxes of triangles that are compared at once.
 _PAIRS = 1 << 22
+# Cells are made again when fewer than this share of their points are left.
+_WORTH = 0.6
 # The fewest different points of a closed line.
 _LEAST = 3
 # Closed lines with at most so many different points lose one point in a round.
 _FEW = 2 * _LEAST
 
 
-class _State(NamedTuple):
+@dataclass(eq=False)
+class _State:
     """Points of all lines, and which of them are still there."""
 
     points: Floats
@@ -45,6 +49,8 @@ class _State(NamedTuple):
     closed: Bools  # of each line
     alive: Bools
     blocker: Rows  # a point in the triangle of each point, -1 if none is known
+    deviation: Floats  # what leaving out each point would cost, NaN if that has to be computed
+    cells: _Cells | None = None  # of what was alive when they were made
 
 
 def simplified(points: Floats, starts: Rows, tolerance: float) -> tuple[Floats, Rows]:
@@ -77,6 +83,7 @@ def _state(points: Floats, starts: Rows) -> _State:
         closed,
         np.ones(len(points), dtype=bool),
         np.full(len(points), -1, dtype=np.int64),
+        np.full(len(points), np.nan),
     )
 
 
@@ -85,7 +92,9 @@ def _round(state: _State, tolerance: float) -> bool:
     rows = np.flatnonzero(state.alive)
     place = np.flatnonzero(~state.fixed[rows])
     u, v, w = rows[place - 1], rows[place], rows[place + 1]
-    deviation = _deviations(state.points, u, w)
+    new = np.isnan(state.deviation[v])
+    state.deviation[v[new]] = _deviations(state.points, u[new], w[new])
+    deviation = state.deviation[v]
     counts = np.bincount(state.line[rows], minlength=len(state.closed))
     # A closed line repeats its first point.
     few = state.closed & (counts - 1 <= _FEW)
@@ -96,13 +105,14 @@ def _round(state: _State, tolerance: float) -> bool:
     if not chosen.any():
         return False
     u, v, w = (each[possible][chosen] for each in (u, v, w))
-    found = _inside(state.points, rows, u, v, w)
+    found = _inside(state, rows, u, v, w)
     state.blocker[v] = found
     gone = v[found < 0]
     state.alive[gone] = False
     # Triangles with a corner that is gone are new ones, and what was in others may be gone.
     beside = np.concatenate((u[found < 0], w[found < 0]))
     state.blocker[beside] = -1
+    state.deviation[beside] = np.nan
     freed = (state.blocker >= 0) & ~state.alive[state.blocker]
     state.blocker[freed] = -1
     return True
@@ -145,11 +155,15 @@ def _one_of_few(state: _State, v: Rows, deviation: Floats, chosen: Bools, few: B
     return found
 
 
-def _inside(points: Floats, rows: Rows, u: Rows, v: Rows, w: Rows) -> NDArray[np.int64]:
+def _inside(state: _State, rows: Rows, u: Rows, v: Rows, w: Rows) -> NDArray[np.int64]:
     """Return a point inside of or on each triangle other than its corners, -1 if there is none."""
+    points = state.points
     corners = points[np.stack((u, v, w))]
     low, high = corners.min(axis=0), corners.max(axis=0)
-    cells = _Cells.of(points, rows, low, high)
+    cells = state.cells
+    # Those that are gone are skipped, until they are many.
+    if cells is None or len(rows) < _WORTH * len(cells.order):
+        cells = state.cells = _Cells.of(points, rows, low, high)
     found = np.full(len(u), -1, dtype=np.int64)
     total = cells.counts(low, high)
     ends = np.cumsum(total)
@@ -162,7 +176,7 @@ def _inside(points: Floats, rows: Rows, u: Rows, v: Rows, w: Rows) -> NDArray[np
         triangle, point = cells.pairs(low[part], high[part])
         triangle += start
         p = points[point]
-        inside = ((p >= low[triangle]) & (p <= high[triangle])).all(axis=1)
+        inside = ((p >= low[triangle]) & (p <= high[triangle])).all(axis=1) & state.alive[point]
         for corner in corners:
             inside &= (p != corner[triangle]).any(axis=1)
         triangle, point = triangle[inside], point[inside]
@@ -170,7 +184,10 @@ def _inside(points: Floats, rows: Rows, u: Rows, v: Rows, w: Rows) -> NDArray[np
         p = points[point]
         signs = np.stack([orient2d(*ends_, p) for ends_ in ((a, b), (b, c), (c, a))])
         on = (signs >= 0).all(axis=0) | (signs <= 0).all(axis=0)
-        found[triangle[on]] = point[on]
+        # Of several the first by coordinates, whatever the order of lines.
+        triangle, point, (x, y) = triangle[on], point[on], p[on].T
+        order = np.lexsort((y, x, triangle))[::-1]
+        found[triangle[order]] = point[order]
         start = stop
     return found
 
