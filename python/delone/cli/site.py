@@ -337,7 +337,8 @@ def _section(tin: TIN, product: _Product) -> Section:
         if not np.isfinite(found.values).any():
             return Section(title, rows, files=files)
         options = {"hillshade": {"cmap": "gray"}, "aspect": {"cmap": "twilight"}}.get(name, {})
-        label = {"dem": "height", "hillshade": "brightness"}.get(name, f"{name} in degrees")
+        height = "height" + (f" ({tin.units})" if tin.units else "")
+        label = {"dem": height, "hillshade": "brightness"}.get(name, f"{name} in degrees")
         draw = partial(found.plot, label=label, **options)
     elif name not in ("contours", "bands"):
         wide, high, alt = 9.0, 3.0, "Height over distance along the line"
@@ -352,6 +353,8 @@ def _drawn(draw: Callable[[Any], Any], *, wide: float, high: float | None = None
     ax = figure.add_subplot()
     draw(ax)
     ax.ticklabel_format(useOffset=False, style="plain")
+    # Coordinates of maps are long, and maps may be narrow.
+    ax.locator_params(axis="x", nbins=4 if high is None else 9)
     target = BytesIO()
     figure.savefig(target, format="png", facecolor="white")
     return target.getvalue()
