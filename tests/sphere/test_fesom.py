@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -229,6 +230,16 @@ def test_centers_are_those_of_datasets() -> None:
     target = Grid.from_lonlat([13, 15], [15, 17])
     weights = sphere.Weights.between(source, target, "bilinear")
     assert (weights.indices.tolist(), weights.values.tolist()) == ([5], [1.0])
+    # Longitudes of more than a turn, as of ocean grids, are no mistake.
+    wide = ds.assign_coords(
+        lon=(("j", "i"), x + np.array([0, 0, 0, 360]), {"units": "degrees_east"})
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for method in ("bilinear", "linear", "nearest", "binned"):
+            other = sphere.Weights.between(Grid.from_dataset(wide), target, method)
+            mine = sphere.Weights.between(source, target, method)
+            assert np.allclose(other.matrix.toarray(), mine.matrix.toarray(), atol=1e-12)
 
 
 def test_what_is_refused(tmp_path: Path) -> None:

@@ -31,6 +31,7 @@ class _Format(NamedTuple):
     read: Callable[[Variables, Choices], Cells]
 
 
+_TURN = 360.0
 # Conventions that fix the unit of centers: whether it is degrees.
 _UNITS = {"MPAS": False, "ICON": False, "FESOM": True, "OASIS": True, "GEOS-CS": True}
 
@@ -116,6 +117,9 @@ def _centers(variables: Variables, cells: Cells, choices: Choices) -> Floats | N
         values = numbers(part, name).astype(np.float64).ravel()
         degrees = in_degrees(part, axis, name, choices, fixed=_UNITS.get(cells.format))
         columns.append(values if degrees else np.degrees(values))
+    if len(columns[0]) and np.ptp(columns[0]) > _TURN:
+        # As grids of oceans have them, which begin anywhere.
+        columns[0] = (columns[0] + _TURN / 2) % _TURN - _TURN / 2
     # Latitudes beyond a pole by a rounding are the pole.
     lonlat = np.column_stack((columns[0], np.clip(columns[1], -90, 90)))
     return lonlat if np.isfinite(lonlat).all() else None
