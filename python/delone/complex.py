@@ -133,6 +133,10 @@ class Exchanged(Referenced, Drawn):
         """Return what other libraries take."""
         raise NotImplementedError
 
+    def _raised_parts(self) -> Parts:
+        """Return the same for what shows heights, if there are some."""
+        return self._parts()
+
     @only(FLAT_OR_SOLID, "meshio has no cells of more dimensions; use `save`")
     def to_meshio(self, *, order: int = 1) -> Any:
         """Convert to a mesh of meshio (extra ``mesh``).
@@ -148,7 +152,7 @@ class Exchanged(Referenced, Drawn):
         meshio.Mesh
             The simplices, and segments as lines, with regions and markers as values. Where segments
             have markers, as those of a `Mesh`, both are tags of Gmsh as well: regions from 1 on,
-            markers as they are. 2-D points get z = 0.
+            markers as they are. 2-D points get z = 0, those of a `TIN` their heights.
 
         Raises
         ------
@@ -165,7 +169,7 @@ class Exchanged(Referenced, Drawn):
         """
         from delone.exchange.meshio import to_meshio
 
-        return to_meshio(self._parts(), order=order)
+        return to_meshio(self._raised_parts(), order=order)
 
     @only(FLAT_OR_SOLID, "PyVista has no cells of more dimensions")
     def to_pyvista(self, *, order: int = 1) -> Any:
@@ -180,8 +184,9 @@ class Exchanged(Referenced, Drawn):
         Returns
         -------
         pyvista.PolyData or pyvista.UnstructuredGrid
-            Edges and triangles as a surface, 2-D points at z = 0; tetrahedra as a grid. Values of
-            simplices and points, such as regions, are its data.
+            Edges and triangles as a surface, 2-D points at z = 0, and those of a `TIN` at their
+            heights; tetrahedra as a grid. Values of simplices and points, such as regions, are its
+            data.
 
         Raises
         ------
@@ -198,7 +203,7 @@ class Exchanged(Referenced, Drawn):
         """
         from delone.exchange.pyvista import to_pyvista
 
-        return to_pyvista(self._parts(), order=order)
+        return to_pyvista(self._raised_parts(), order=order)
 
 
 class Filed:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -85,64 +85,5 @@ class Surveyed(HullTiling):
             crs=self.crs,
         )
 
-    def to_meshio(self, *, order: int = 1) -> Any:
-        """Convert to a mesh of meshio with heights (extra ``mesh``).
-
-        Parameters
-        ----------
-        order : {1, 2}, optional
-            With 2, elements of second order, with a node in the middle of each edge: nodes are the
-            points and then the `edges`, row by row.
-
-        Returns
-        -------
-        meshio.Mesh
-            Triangles between points in 3-D, and breaklines as lines.
-
-        Raises
-        ------
-        InputError
-            `order` is neither 1 nor 2.
-        MissingExtraError
-            meshio is not installed.
-
-        Examples
-        --------
-        >>> from delone.terrain import TIN
-        >>> TIN.from_points([(0, 0, 1), (1, 0, 2), (0, 1, 3)]).to_meshio().points[:, 2]
-        array([1., 2., 3.])
-        """
-        from delone.exchange.meshio import to_meshio
-
-        return to_meshio(self._parts()._replace(points=self.xyz), order=order)
-
-    def to_pyvista(self, *, order: int = 1) -> Any:
-        """Convert to a surface of PyVista with heights (extra ``pyvista``).
-
-        Parameters
-        ----------
-        order : {1, 2}, optional
-            With 2, elements of second order, with a node in the middle of each edge: nodes are the
-            points and then the `edges`, row by row.
-
-        Returns
-        -------
-        pyvista.PolyData
-            Triangles between points in 3-D.
-
-        Raises
-        ------
-        InputError
-            `order` is neither 1 nor 2.
-        MissingExtraError
-            PyVista is not installed.
-
-        Examples
-        --------
-        >>> from delone.terrain import TIN
-        >>> TIN.from_points([(0, 0, 1), (1, 0, 2), (0, 1, 3)]).to_pyvista().bounds[4:]
-        (1.0, 3.0)
-        """
-        from delone.exchange.pyvista import to_pyvista
-
-        return to_pyvista(self._parts()._replace(points=self.xyz), order=order)
+    def _raised_parts(self) -> Parts:
+        return self._parts()._replace(points=self.xyz)
