@@ -74,3 +74,10 @@ def test_drawings_are_surfaces_and_breaklines(tmp_path, figures):
     pytest.importorskip("shapely")
     with_lines = figures("volume", survey, "0", "--breaklines", tmp_path / "a b.dxf")["cut"]
     assert with_lines == found["cut"]
+
+
+def test_json_and_quiet_show_no_progress() -> None:
+    from delone.cli.surfaces import SurfaceOptions
+
+    assert SurfaceOptions(as_json=True).silent and SurfaceOptions(quiet=True).silent
+    assert not SurfaceOptions().silent
