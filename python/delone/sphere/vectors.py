@@ -86,9 +86,11 @@ class _Halves(NamedTuple):
         """Those of directions; `longitudes` are those of directions at a pole."""
         # Negative zeros would point to the west.
         x, y, z = vectors.T + 0.0
-        across = np.where((x == 0) & (y == 0), longitudes, np.arctan2(y, x)) / 2
-        # Lengths may be such that squares overflow.
+        # Lengths may be such that squares overflow, and functions of NumPy have other last bits.
         largest = np.abs(vectors).max(axis=1, initial=0.0)
+        power = -np.frexp(largest)[1]
+        turn = np.arctan2(np.ldexp(y, power), np.ldexp(x, power))
+        across = np.where((x == 0) & (y == 0), longitudes, turn) / 2
         up = np.arctan2(z / largest, np.hypot(x / largest, y / largest)) / 2
         return cls((np.cos(across), np.sin(across)), (np.cos(up), np.sin(up)))
 
