@@ -140,3 +140,30 @@ def test_second_order(tmp_path, command):
         assert np.array_equal(found.points, wanted.points)
         assert np.array_equal(found.cells_dict["tetra10"], wanted.cells_dict["tetra10"])
     assert files[2].exists()
+
+
+def test_sizes_and_shapes(tmp_path, command, figures):
+    source = save(tmp_path / "cube.ply", *CUBE)
+    found = figures(
+        "tetrahedralize", source, "--boundary", "surface", "--size", "0.8", "-o", tmp_path / "a.vtu"
+    )
+    refinement = found["refinement"]
+    assert refinement["too_large"]["count"] == 0
+    assert refinement["largest_size_ratio"] <= 1
+    assert found["improvement"]["goal"] == 20
+    assert found["tetrahedra"] > 100
+    volume = found["volume"]
+    bounded = figures("tetrahedralize", source, "--boundary", "surface", "--max-volume", "0.1")
+    assert bounded["tetrahedra"] >= volume / 0.1
+    options = ("--radius-edge", "1.5", "--min-angle", "10")
+    shaped = figures("tetrahedralize", source, *options)
+    assert (shaped["refinement"]["radius_edge"], shaped["improvement"]["goal"]) == (1.5, 10)
+    code, out, _ = command("tetrahedralize", source, "--boundary", "surface", "--size", "0.8")
+    assert code == 0
+    assert "larger than the size" in out and "none" in out
+    code, _, err = command("tetrahedralize", source, "--size", "-1")
+    assert code == 2 and "size must be above 0" in err
+    code, _, err = command(
+        "tetrahedralize", source, "--boundary", "surface", "--size", "0.001", "--max-points", "99"
+    )
+    assert code == 4 and "more than --max-points" in err

@@ -98,9 +98,8 @@ def improved(
     return improve(mesh, min_angle=goal, max_iter=most, progress=told)
 
 
-def improvement_figures(improved: TetMesh) -> dict[str, Any]:
+def improvement_figures(report: Any) -> dict[str, Any]:
     """Return angles before and after, and the tetrahedra below the goal by cause."""
-    report: Any = improved.report
     causes, counts = np.unique(report.cause, return_counts=True)
     return {
         "goal": report.min_angle,

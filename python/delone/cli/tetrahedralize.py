@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 import typer
 
-from delone import TetMesh, __version__, improve, tetrahedralize
+from delone import RefinementReport, TetMesh, __version__, improve, tetrahedralize
 from delone.cli.exits import Exit, Failure, as_options, protect_inputs, writing
 from delone.cli.faces import read_parts
 from delone.cli.options import Json, MeshOutput, Order, Quiet, Workers
@@ -40,6 +40,7 @@ _STAGES = {
     "check": "checking the surface",
     "recover": "recovering faces",
     "select": "selecting what is inside",
+    "refine": "adding points for sizes and shapes",
     "done": "done",
 }
 # The surface is at fault, not the command line.
@@ -92,11 +93,28 @@ def fill(
             help="Label the region around a point, instead of those of the file; repeatable.",
         ),
     ] = None,
+    size: Annotated[
+        float | None, typer.Option(help="Target edge length, in the unit of the file.")
+    ] = None,
+    max_volume: Annotated[
+        float | None, typer.Option(help="Largest volume of a tetrahedron.")
+    ] = None,
+    radius_edge: Annotated[
+        float | None,
+        typer.Option(help="Largest circumradius divided by the shortest edge; with sizes 2."),
+    ] = None,
+    min_angle: Annotated[
+        float | None,
+        typer.Option(help="Goal for the smallest dihedral angle in degrees; with sizes 20."),
+    ] = None,
     max_points: Annotated[
         int | None, typer.Option(help="Maximum number of added points; by default a million.")
     ] = None,
     better: Annotated[
-        bool, typer.Option("--improve", help="Remove slivers; all triangles are kept.")
+        bool,
+        typer.Option(
+            "--improve", help="Remove slivers; all triangles are kept. Sizes and angles imply it."
+        ),
     ] = False,
     order: Order = 1,
     workers: Workers = None,
@@ -107,7 +125,8 @@ def fill(
 
     Holes, regions and markers of faces in .smesh and .poly are used.
 
-    With ``--boundary surface``, triangles in one plane are replaced, which adds fewer points.
+    With ``--boundary surface``, triangles in one plane are replaced, which adds fewer points, and
+    divided where sizes require it. Sizes, ``--radius-edge`` and ``--min-angle`` add points inside.
 
     A PNG file shows the tetrahedra behind a cut.
     """
@@ -120,6 +139,10 @@ def fill(
         "inside": inside or ("enclosed" if source.suffix.lower() in _UNORIENTED else "winding"),
         "holes": _numbers(hole, "--hole", 3),
         "regions": _numbers(region, "--region", 4),
+        "size": size,
+        "max_volume": max_volume,
+        "radius_edge": radius_edge,
+        "min_angle": min_angle,
         "max_points": max_points,
         "workers": workers,
     }
@@ -138,11 +161,14 @@ def fill(
             mesh = _filled(source, (points, faces), options, say)
         gained: dict[str, Any] = {}
         figures = _figures(mesh)
-        if better:
+        if isinstance(mesh.report, RefinementReport):
+            if mesh.report.improvement is not None:
+                gained = {"improvement": improvement_figures(mesh.report.improvement)}
+        elif better:
             say("improving")
             with watch.stage("improve"):
                 mesh = improve(mesh)
-            gained = {"improvement": improvement_figures(mesh)}
+            gained = {"improvement": improvement_figures(mesh.report)}
         write_all(writers, mesh, watch, say, z=None, crs=None, edges=False)
     figures = {
         "delone": __version__,
@@ -195,6 +221,10 @@ def _filled(
 
 def _figures(mesh: TetMesh) -> dict[str, Any]:
     report: Any = mesh.report
+    recovery, refinement = report, {}
+    if isinstance(report, RefinementReport):
+        recovery = report.recovery
+        refinement = {"refinement": _refinement(report)}
     quality = mesh.quality()
     labels, counts = np.unique(mesh.region, return_counts=True)
     with np.errstate(over="ignore"):
@@ -207,10 +237,27 @@ def _figures(mesh: TetMesh) -> dict[str, Any]:
         "volume": finite_or_none(volume),
         "smallest_dihedral": float(quality.smallest_dihedral.min()),
         "largest_dihedral": float(quality.largest_dihedral.max()),
-        "kept": report.ok,
-        **{name: int(getattr(report, name)) for name in _COUNTS},
-        **{name: _listed(getattr(report, name)) for name in _ROWS if len(getattr(report, name))},
-        "report": str(report),
+        "kept": recovery.ok,
+        **{name: int(getattr(recovery, name)) for name in _COUNTS},
+        **{
+            name: _listed(getattr(recovery, name)) for name in _ROWS if len(getattr(recovery, name))
+        },
+        "report": str(recovery),
+        **refinement,
+    }
+
+
+def _refinement(report: RefinementReport) -> dict[str, Any]:
+    counts = ("on_segments", "on_facets", "for_sizes", "for_shapes")
+    return {
+        **{name: getattr(report, name) for name in counts},
+        "radius_edge": finite_or_none(report.radius_edge),
+        "largest_radius_edge": finite_or_none(report.largest_radius_edge),
+        "largest_size_ratio": report.largest_size_ratio,
+        "too_large": _listed(report.too_large),
+        "above_ratio": _listed(report.above_ratio),
+        "surface_distance": report.surface_distance,
+        "exhausted": report.exhausted,
     }
 
 
@@ -228,7 +275,29 @@ def _rows(figures: dict[str, Any]) -> list[Row]:
         ("volume", "beyond range" if volume is None else f"{volume:,.6g}"),
         ("report", figures["report"]),
     ]
+    if "refinement" in figures:
+        rows += _refinement_rows(figures["refinement"])
     if "improvement" in figures:
         return rows + improvement_rows(figures["improvement"])
     small, large = figures["smallest_dihedral"], figures["largest_dihedral"]
     return [*rows, ("dihedral angles", f"{small:.4g} to {large:.4g} degrees")]
+
+
+def _refinement_rows(figures: dict[str, Any]) -> list[Row]:
+    large, above = figures["too_large"]["count"], figures["above_ratio"]["count"]
+    rows = [
+        (
+            "points for sizes",
+            f"{figures['for_sizes']:,} inside, {figures['on_facets']:,} on faces, "
+            f"{figures['on_segments']:,} on edges",
+        ),
+        ("points for shapes", f"{figures['for_shapes']:,}"),
+        (
+            "larger than the size",
+            f"{large:,}, up to {figures['largest_size_ratio']:.3g} times" if large else "none",
+        ),
+        ("above the radius-edge ratio", f"{above:,}" if above else "none"),
+    ]
+    if figures["exhausted"]:
+        rows.append(("stopped by", "the limit on points, --max-points"))
+    return rows

@@ -160,7 +160,7 @@ def triangulate(
                 raise Failure("--improve is for tetrahedra: give --3d", Exit.USAGE)
             with watch.stage("improve"):
                 tetrahedra = improved(mesh, writers, say, min_angle=min_angle, passes=max_iter)
-            written, gained = tetrahedra, {"improvement": improvement_figures(tetrahedra)}
+            written, gained = tetrahedra, {"improvement": improvement_figures(tetrahedra.report)}
         write_all(writers, written, watch, say, z=z, crs=survey.crs, edges=edges)
         say("measuring")
         with watch.stage("measure"):
