@@ -25,11 +25,7 @@ def solution() -> None:
         path = Path(folder) / "bracket.stl"
         plane.extrude((0, 0, 0.75), capping=True).triangulate().save(path)
         hull = delone.tetrahedralize(path)
-        low, high = hull.points.min(axis=0), hull.points.max(axis=0)
-        axes = [np.arange(a + 0.175, b, 0.35) for a, b in zip(low, high, strict=True)]
-        lattice = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 3)
-        inside = lattice[hull.find_simplex(lattice) >= 0]
-        mesh = delone.improve(delone.tetrahedralize(path, extra_points=inside))
+        mesh = delone.tetrahedralize(path, boundary="surface", size=0.4)
     basis = skfem.Basis(mesh.to_skfem(), skfem.ElementTetP2())
     matrix, right = laplace.assemble(basis), unit_load.assemble(basis)
     u = skfem.solve(*skfem.condense(matrix, right, D=basis.get_dofs()))

@@ -1,9 +1,9 @@
 """Drop-in replacement for the package ``tetgen``: its class, with `delone.tetrahedralize` inside.
 
 That package wraps H. Si's program TetGen. Here the names are the same, but delone does the work; no
-code of either is used. Points are only added strictly between the triangles. Coplanar triangles may
-be retriangulated, except with TetGen's switch Y. Requests for quality are not supported, and raise
-an error.
+code of either is used. Coplanar triangles may be retriangulated, and triangles are divided if the
+volumes of tetrahedra are bounded, except with TetGen's switch Y. Other points are only added
+strictly between the triangles.
 """
 
 from __future__ import annotations
