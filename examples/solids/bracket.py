@@ -19,7 +19,7 @@ import delone
 # %%
 # The surface: an L with two holes is meshed in 2-D and extruded. :doc:`/tutorials/part` begins with an STL file.
 
-THICKNESS, RADIUS, LATTICE = 0.6, 0.5, 0.5
+THICKNESS, RADIUS, SIZE = 0.6, 0.5, 0.5
 HELD, PULLED = 1, 2
 CENTERS = {HELD: (1, 4), PULLED: (5, 1)}
 turn = 2 * np.pi * np.append(np.arange(12), 0) / 12
@@ -40,21 +40,11 @@ for marker, center in CENTERS.items():
     markers[(np.abs(distance - RADIUS) < 1e-6).all(axis=0)] = marker
 
 # %%
-# A lattice inside the surface gives vertices there. Extruded faces have no common orientation, so everything that they
-# enclose is filled.
+# Tetrahedra of a size. Extruded faces have no common orientation, so everything that they enclose is filled.
 
-hull = delone.tetrahedralize(points, faces, inside="enclosed")
-low, high = hull.points.min(axis=0), hull.points.max(axis=0)
-axes = [np.arange(a + 0.3, b, LATTICE) for a, b in zip(low, high, strict=True)]
-lattice = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 3)
-filled = delone.tetrahedralize(
-    points,
-    faces,
-    inside="enclosed",
-    face_markers=markers,
-    extra_points=lattice[hull.find_simplex(lattice) >= 0],
+mesh = delone.tetrahedralize(
+    points, faces, inside="enclosed", face_markers=markers, boundary="surface", size=SIZE
 )
-mesh = delone.improve(filled)
 print(mesh, f"dihedral angles from {mesh.quality().smallest_dihedral.min():.0f} degrees on")
 assert mesh.validate()
 

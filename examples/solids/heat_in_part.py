@@ -60,21 +60,17 @@ for name, label in {"block": BLOCK, "plug": PLUG}.items():
 
 # %%
 # Both surfaces in one: equal points are one vertex, and the common wall separates two regions, which seeds label. A
-# common mistake is to add no points: then nearly all vertices are on the surface, and the solution has no values
-# inside. So lattice points are added. :func:`delone.improve` removes slivers.
+# common mistake is to give no size: then nearly all vertices are on the surface, and the solution has no values
+# inside. With a size, points are added between the faces, and slivers are removed.
 
 files = [delone.io.read_mesh(folder / f"{name}.stl") for name in ("block", "plug")]
 first, second = (np.column_stack((file.points, file.z)) for file in files)
 points = np.concatenate((first, second))
 faces = np.concatenate((files[0].simplices, files[1].simplices + len(first)))
 
-lattice = np.stack(np.meshgrid(t[1:], t[1:], (0.25, 0.5, 0.75)), axis=-1).reshape(-1, 3)
-lattice += np.random.default_rng(0).uniform(-0.02, 0.02, lattice.shape)
-inside = lattice[abs(np.hypot(*lattice[:, :2].T) - 1) > 0.6 * SIZE]
-
 seeds = [(1.51, 1.5, 0.49, BLOCK), (0.02, 0.01, 0.49, PLUG)]
 bare = delone.tetrahedralize(points, faces, regions=seeds)
-mesh = delone.improve(delone.tetrahedralize(points, faces, regions=seeds, extra_points=inside))
+mesh = delone.tetrahedralize(points, faces, regions=seeds, size=SIZE)
 print(mesh, mesh.validate(), sep="\n")
 assert bare.nadded < 20
 assert mesh.validate()
