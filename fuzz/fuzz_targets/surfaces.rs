@@ -2,15 +2,18 @@
 //!
 //! The pairs of faces that cross or touch are compared with all pairs by exact orientations. Where
 //! none cross, the inside is filled: positive tetrahedra that conform, with each face as a wall, and the
-//! same ones for every order of the rows, with flips and without.
+//! same ones for every order of the rows, with flips and without. They are refined, with the faces kept and
+//! divided.
 
 #![no_main]
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use delone_core::Point3;
+use delone_core::arrays::FACETS;
 use delone_core::error::Error;
 use delone_core::recover::{Recovered, Task, recover};
+use delone_core::refine3::{Given, Rounds};
 use delone_core::surface::{Checked, Options, check};
 use delone_core::watch::Watch;
 use delone_fuzz::Coordinates;
@@ -28,6 +31,9 @@ const LARGEST: f64 = 1e306;
 
 /// Points that may be added.
 const MOST_ADDED: usize = 2_000;
+
+/// Points that a refinement may add.
+const MOST_REFINED: usize = 300;
 
 type Face = [i32; 3];
 
@@ -281,6 +287,10 @@ fn filled(
         Err(e) => panic!("{e}: {points:?} {faces:?}"),
     };
     verify(&made, points, faces, needed);
+    if flips && !needed.is_empty() {
+        refined(&made, faces.len(), false);
+        refined(&made, faces.len(), true);
+    }
     let corners = |t: &[i32; 4]| {
         let mut corners = t.map(|v| made.points[v as usize].map(|x| (x + 0.0).to_bits()));
         corners.sort_unstable();
@@ -328,4 +338,69 @@ fn verify(made: &Recovered, points: &[Point3], faces: &[Face], needed: &[bool]) 
         rows.all(|(&needed, n)| n > 0 || !needed),
         "{points:?} {faces:?}"
     );
+}
+
+/// Refines the tetrahedra to a part of their extent: positive ones that conform, whose border is what
+/// became of the faces. Without `split` these are the same.
+fn refined(made: &Recovered, count: usize, split: bool) {
+    let mut rows: Vec<Option<Face>> = vec![None; count];
+    for (corners, walls) in made.tetrahedra.iter().zip(&made.walls) {
+        for (k, facet) in FACETS.iter().enumerate() {
+            if let Ok(row) = usize::try_from(walls[k]) {
+                rows[row] = Some(facet.map(|i| corners[i]));
+            }
+        }
+    }
+    let faces: Vec<Face> = rows.into_iter().flatten().collect();
+    let sources: Vec<i32> = (0..faces.len() as i32).collect();
+    let markers: Vec<i32> = sources.iter().map(|row| row % 3 / 2).collect();
+    let given = Given {
+        points: &made.points,
+        simplices: &made.tetrahedra,
+        labels: &[],
+        faces: &faces,
+        sources: &sources,
+        markers: &markers,
+        split,
+        radius_edge: 1.0 + count as f64 / 16.0,
+    };
+    let mut rounds = Rounds::new(&given).expect("a mesh");
+    let (corners, _) = rounds.fresh().expect("tetrahedra");
+    let all = || corners.iter().flatten().flatten();
+    let extent = all().fold(f64::NEG_INFINITY, |m, &x| m.max(x))
+        - all().fold(f64::INFINITY, |m, &x| m.min(x));
+    let size = extent / (1 + count % 7) as f64;
+    rounds
+        .comply(&vec![size; corners.len()], count % 2 == 0)
+        .expect("sizes");
+    rounds
+        .refine(MOST_REFINED, &Watch::idle(), &mut |_| Ok(()))
+        .expect("a mesh");
+    let found = rounds.export().expect("arrays");
+    assert_eq!(found.points[..made.points.len()], made.points[..]);
+    if !split {
+        assert_eq!(found.faces, faces);
+    }
+    let ascending = |mut face: Face| {
+        face.sort_unstable();
+        face
+    };
+    let walls: BTreeSet<Face> = found.faces.iter().map(|&f| ascending(f)).collect();
+    let mut sides: BTreeMap<Face, usize> = BTreeMap::new();
+    for corners in &found.simplices {
+        let [a, b, c, d] = corners.map(|v| found.points[v as usize]);
+        assert_eq!(orient3d(a, b, c, d), Sign::Positive, "{:?}", made.points);
+        for facet in FACETS {
+            *sides
+                .entry(ascending(facet.map(|i| corners[i])))
+                .or_default() += 1;
+        }
+    }
+    for (face, n) in sides {
+        assert!(
+            n == 2 || n == 1 && walls.contains(&face),
+            "{:?}",
+            made.points
+        );
+    }
 }
