@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import delone
-from delone.errors import BudgetExceededError, DtypeError, InputError, ShapeError
+from delone.errors import BudgetExceededError, DtypeError, InputError, LimitError, ShapeError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -335,3 +335,29 @@ def test_functions_of_sizes_are_called_with_positions_in_the_mesh() -> None:
     delone.tetrahedralize(*surface(CORNERS), size=function)
     everything = np.concatenate(seen)
     assert everything.shape[1] == 3 and (everything > 0).all() and (everything < 1).all()
+
+
+@pytest.mark.parametrize("power", [-1000, -500, 400, 1000])
+def test_sizes_of_any_magnitude(power: int) -> None:
+    points, faces = surface(CORNERS + 0.5)
+    one = delone.tetrahedralize(points, faces, boundary="surface", size=0.4)
+    factor = 2.0**power
+    two = delone.tetrahedralize(points * factor, faces, boundary="surface", size=0.4 * factor)
+    assert np.array_equal(two.points, one.points * factor)
+    assert two.report.largest_size_ratio == one.report.largest_size_ratio > 0.5
+    assert two.report.surface_distance == one.report.surface_distance * factor
+
+    def size(p: Floats) -> Floats:
+        assert (p > 0.4 * factor).all() and (p < 1.6 * factor).all()
+        return np.full(len(p), 0.5 * factor)
+
+    varying = delone.tetrahedralize(points * factor, faces, boundary="surface", size=size)
+    assert 0.5 < varying.report.largest_size_ratio <= 1
+    corner = varying.refine([0], ratio=0.2, boundary="surface")
+    assert corner.nsimplex > varying.nsimplex
+
+
+def test_points_without_room_between_them_are_refused() -> None:
+    points, faces = surface(CORNERS * 3 * 5e-324)
+    with pytest.raises(LimitError, match="scale the coordinates"):
+        delone.tetrahedralize(points, faces, boundary="surface", size=5e-324)

@@ -43,24 +43,32 @@ def _positions() -> Floats:
 
 
 class Lengths:
-    """The sizes that are asked for, by position and region."""
+    """The sizes that are asked for, by position and region.
+
+    Corners, volumes and sizes are divided by `unit`, a power of two, and its cube; callers and
+    their functions use the original coordinates.
+    """
 
     def __init__(
         self,
         size: Any,
         max_volume: Any,
         regions: Indices,
-        extent: float,
+        scale: tuple[float, float],
         further: Callable[[Floats], Floats] | None = None,
     ) -> None:
+        extent, unit = scale
         self._by_region: dict[int, float] = {}
         self._everywhere = math.inf
         self._functions = [] if further is None else [further]
         self._large = _LARGE * extent
+        self._unit = unit
         known = set(regions.tolist())
-        self._set(max_volume, known, "max_volume", lambda v: float(length_of(v)))
+        self._set(
+            max_volume, known, "max_volume", lambda v: float(length_of(v / unit / unit / unit))
+        )
         if size is None or isinstance(size, Mapping) or is_number(size):
-            self._set(size, known, "size", float)
+            self._set(size, known, "size", lambda length: length / unit)
         else:
             self._functions.append(evaluator(size, 3))
 
@@ -107,8 +115,9 @@ class Lengths:
         return sizes
 
     def _evaluated(self, positions: Floats) -> Floats:
-        sizes = [checked(function(positions), positions) for function in self._functions]
-        smallest: Floats = np.min(sizes, axis=0)
+        given = positions * self._unit
+        sizes = [checked(function(given), given) for function in self._functions]
+        smallest: Floats = np.min(sizes, axis=0) / self._unit
         return smallest
 
     def _inside(self, corners: Floats) -> Floats:
@@ -130,7 +139,7 @@ class Lengths:
     ) -> None:
         """Raise an error if tetrahedra as large as allowed need far more points than the limit."""
         simplices = self.estimate(corners, labels, volumes)
-        about = simplices / _PER_POINT
+        about = max((simplices - len(corners)) / _PER_POINT, 0.0)
         if about * _SHARE > max_points:
             raise BudgetExceededError(
                 f"the sizes require about {rounded(simplices)} tetrahedra, that is about "

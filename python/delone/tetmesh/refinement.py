@@ -14,7 +14,7 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_callback, as_choice, as_limit, as_number
 from delone.counting import agreed, counted, listed
-from delone.errors import InputError
+from delone.errors import InputError, LimitError
 from delone.immutable import ReadOnly
 from delone.sizes import chosen
 from delone.space.locking import sides
@@ -54,6 +54,8 @@ _AGAIN = 2
 # Sizes are met up to the rounding of volumes and edges.
 _ROUNDING = 1e-9
 _SHOWN = 5
+# Products of coordinates are doubles if the largest coordinate is in this range.
+_USUAL = 1e-60, 1e60
 # The fields of a report that are counts, and those that are numbers.
 REFINEMENT_COUNTS = ("on_segments", "on_facets", "for_shapes", "for_sizes", "exhausted")
 REFINEMENT_FLOATS = ("radius_edge", "largest_radius_edge", "largest_size_ratio", "surface_distance")
@@ -208,8 +210,9 @@ def as_bounds(
 
 
 class _State(NamedTuple):
-    """A mesh during refinement, with all faces that stay."""
+    """A mesh during refinement, with all faces that stay; points are divided by `unit`."""
 
+    unit: float
     points: Floats
     simplices: Indices
     labels: Indices
@@ -223,16 +226,17 @@ class _State(NamedTuple):
 
 def refined(mesh: Any, marked: ArrayLike | None, bounds: Bounds) -> Any:
     """Return a finer TetMesh; see ``TetMesh.refine``."""
+    start = state = _started(mesh)
+    corners = start.points[start.simplices]
+    volumes = _volumes(corners)
     further = None
     if marked is not None:
-        further = _size_function(mesh, chosen(marked, mesh.nsimplex, "tetrahedra"), bounds.ratio)
-    extent = float(np.ptp(mesh.points[mesh.simplices.ravel()], axis=0).max())
-    regions = np.unique(mesh.region)
-    lengths = Lengths(bounds.size, bounds.max_volume, regions, extent, further)
-    lengths.require_within(
-        mesh.points[mesh.simplices], mesh.region, np.abs(mesh.volumes), bounds.max_points
-    )
-    start = state = _started(mesh)
+        rows = chosen(marked, mesh.nsimplex, "tetrahedra")
+        further = _size_function(mesh, rows, length_of(bounds.ratio * volumes[rows]) * start.unit)
+    extent = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
+    regions, scale = np.unique(mesh.region), (extent, start.unit)
+    lengths = Lengths(bounds.size, bounds.max_volume, regions, scale, further)
+    lengths.require_within(corners, mesh.region, volumes, bounds.max_points)
     total = dict.fromkeys(REFINEMENT_COUNTS, 0)
     improvement, left = None, bounds.max_points
     for turn in range(1 + _AGAIN):
@@ -270,8 +274,10 @@ def _started(mesh: Any) -> _State:
     markers = np.unique(mesh.face_markers, return_inverse=True)[1].reshape(-1)
     beyond = int(sources.max(initial=-1)) + 1
     other = int(markers.max(initial=-1)) + 1
+    unit = _unit(mesh.points[mesh.simplices.ravel()])
     return _State(
-        points=mesh.points,
+        unit=unit,
+        points=mesh.points / unit,
         simplices=mesh.simplices,
         labels=mesh.region,
         faces=np.ascontiguousarray(faces),
@@ -309,7 +315,7 @@ def _rounds(
 
 def _continued(state: _State, made: RefinedTetrahedra) -> _State:
     """Return the state that the core made of another one."""
-    return _State(
+    return state._replace(
         points=made.points,
         simplices=made.simplices,
         labels=made.labels,
@@ -345,9 +351,16 @@ def _finished(
 ) -> Any:
     """Return the mesh of the last state, with its report."""
     (start, state), (total, improvement) = states, done
-    points, simplices = state.points, np.ascontiguousarray(state.simplices)
-    excess = _excess(points, simplices, lengths.at(*_placed(state)))
-    shapes = _radius_edge(points[simplices])
+    simplices = np.ascontiguousarray(state.simplices)
+    excess = _excess(state.points, simplices, lengths.at(*_placed(state)))
+    shapes = _radius_edge(state.points[simplices])
+    with np.errstate(over="ignore"):
+        points = state.points * start.unit
+    if not np.array_equal(points / start.unit, state.points):
+        raise LimitError(
+            "between these points, no added point is a double of full accuracy: scale the "
+            "coordinates"
+        )
     own = state.rows < len(mesh.input_faces)
     rows = state.rows[own]
     report = RefinementReport(
@@ -356,7 +369,7 @@ def _finished(
         radius_edge=bounds.radius_edge,
         largest_radius_edge=float(shapes.max(initial=0.0)),
         largest_size_ratio=float(excess.max(initial=0.0)),
-        surface_distance=_distance(start, state),
+        surface_distance=_distance(start, state) * start.unit,
         too_large=np.flatnonzero(excess > 1 + _ROUNDING),
         above_ratio=np.flatnonzero(shapes > bounds.radius_edge * (1 + _ROUNDING)),
         improvement=improvement,
@@ -382,10 +395,18 @@ def _recovery(report: ImproveReport | RecoveryReport | RefinementReport) -> Reco
     return report if isinstance(report, RecoveryReport) else None
 
 
-def _size_function(mesh: Any, rows: NDArray[np.intp], ratio: float) -> Callable[[Floats], Floats]:
-    """Return a size function that makes chosen tetrahedra smaller."""
+def _unit(points: Floats) -> float:
+    """Return 1, or the power of two with which products of coordinates remain doubles."""
+    largest = float(np.abs(points).max())
+    return 1.0 if _USUAL[0] <= largest <= _USUAL[1] else 2.0 ** int(np.frexp(largest)[1] - 1)
+
+
+def _size_function(
+    mesh: Any, rows: NDArray[np.intp], lengths: Floats
+) -> Callable[[Floats], Floats]:
+    """Return a size function that asks for these lengths in chosen tetrahedra."""
     sizes = np.full(mesh.nsimplex, np.inf)
-    sizes[rows] = length_of(ratio * np.abs(mesh.volumes[rows]))
+    sizes[rows] = lengths
 
     def size(positions: Floats) -> Floats:
         found = mesh.locate(positions)
@@ -397,10 +418,15 @@ def _size_function(mesh: Any, rows: NDArray[np.intp], ratio: float) -> Callable[
 def _excess(points: Floats, simplices: Indices, sizes: Floats) -> Floats:
     """Return by which factor each tetrahedron is larger than its size, as the core measures it."""
     corners = points[simplices]
-    sides = corners[:, 1:] - corners[:, :1]
-    volumes = np.abs(np.einsum("ij,ij->i", np.cross(sides[:, 0], sides[:, 1]), sides[:, 2])) / 6
-    found: Floats = np.maximum(length_of(volumes), _longest(corners) / 2) / sizes
+    found: Floats = np.maximum(length_of(_volumes(corners)), _longest(corners) / 2) / sizes
     return found
+
+
+def _volumes(corners: Floats) -> Floats:
+    sides = corners[:, 1:] - corners[:, :1]
+    normals = np.cross(sides[:, 0], sides[:, 1])
+    volumes: Floats = np.abs(np.einsum("ij,ij->i", normals, sides[:, 2])) / 6
+    return volumes
 
 
 def _longest(corners: Floats) -> Floats:

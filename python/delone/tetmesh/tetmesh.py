@@ -270,6 +270,8 @@ class TetMesh(Triangulation):
             negative (the message gives the position); an argument is invalid.
         BudgetExceededError
             The sizes require more points than `max_points`; with the estimate.
+        LimitError
+            Between the points there is no double of full accuracy: they are below 1e-307.
         KeyboardInterrupt
             Ctrl-C was pressed.
 
