@@ -327,7 +327,9 @@ class TetGen:
     @property
     def _made(self) -> TetMesh:
         if self.tetmesh is None:
-            raise MeshNotTetrahedralizedError("there is no mesh yet: call tetrahedralize()")
+            raise MeshNotTetrahedralizedError(
+                "the surface has not been filled: call tetrahedralize() first"
+            )
         return self.tetmesh
 
     @property

@@ -57,7 +57,7 @@ pub struct Cavity {
     pub outer: Vec<Side>,
     /// The walls that are replaced, from each side.
     open: Vec<Side>,
-    /// Twice the number of the cavity for tetrahedra in it, one more for those left out.
+    /// The number of the cavity for tetrahedra in it; each turn of leaving out has its own.
     mark: Vec<u32>,
     number: u32,
     links: Vec<Link>,
@@ -83,11 +83,7 @@ struct Made {
 
 impl Cavity {
     fn has(&self, t: u32) -> bool {
-        self.mark[t as usize] == 2 * self.number
-    }
-
-    fn is_left_out(&self, t: u32) -> bool {
-        self.mark[t as usize] == 2 * self.number + 1
+        self.mark[t as usize] == self.number
     }
 
     /// Whether a tetrahedron is in the cavity that was built last.
@@ -101,12 +97,16 @@ impl Cavity {
         let missing = places.saturating_sub(self.mark.len());
         make_room(&mut self.mark, missing)?;
         self.mark.resize(self.mark.len() + missing, 0);
-        self.number += 1;
-        if self.number == u32::MAX / 2 {
+        // Far from the end, as the turns below count as well.
+        if self.number >= u32::MAX / 2 {
             self.mark.fill(0);
-            self.number = 1;
+            self.number = 0;
         }
-        if !self.grow(mesh, p, start)? {
+        let sees = |u: u32| {
+            let [a, b, c, d] = mesh.places_of(mesh.corners[u as usize]);
+            insphere(a, b, c, d, p) == Sign::Positive
+        };
+        if !self.flood(mesh, start, |_, u| sees(u))? {
             return Ok(false);
         }
         // Each turn leaves out tetrahedra, so there is an end.
@@ -122,17 +122,26 @@ impl Cavity {
                 if start.cells.contains(&t) {
                     return Ok(false);
                 }
-                self.mark[t as usize] = 2 * self.number + 1;
+                self.mark[t as usize] = 0;
             }
-            self.reconnect(mesh, start)?;
+            // Some are no longer connected.
+            let before = self.number;
+            self.flood(mesh, start, |mark, _| mark == before)?;
         }
     }
 
-    /// Collects tetrahedra whose circumspheres contain the point, without crossing walls.
-    fn grow(&mut self, mesh: &Mesh, p: Point3, start: &Start) -> Result<bool> {
+    /// Collects the tetrahedra that are connected to the first ones without walls and are admitted,
+    /// by their marks and numbers; false if there are too many.
+    fn flood(
+        &mut self,
+        mesh: &Mesh,
+        start: &Start,
+        admits: impl Fn(u32, u32) -> bool,
+    ) -> Result<bool> {
+        self.number += 1;
         self.cells.clear();
         for &t in &start.cells {
-            self.mark[t as usize] = 2 * self.number;
+            self.mark[t as usize] = self.number;
             push(&mut self.cells, t)?;
         }
         let mut next = 0;
@@ -143,9 +152,8 @@ impl Cavity {
                 if mesh.wall[t as usize][k] != NONE || u == NONE || self.has(u) {
                     continue;
                 }
-                let [a, b, c, d] = mesh.places_of(mesh.corners[u as usize]);
-                if insphere(a, b, c, d, p) == Sign::Positive {
-                    self.mark[u as usize] = 2 * self.number;
+                if admits(self.mark[u as usize], u) {
+                    self.mark[u as usize] = self.number;
                     push(&mut self.cells, u)?;
                 }
             }
@@ -241,33 +249,6 @@ impl Cavity {
                 }
             }
         }
-        Ok(())
-    }
-
-    /// Drops the tetrahedra that were left out, and those that are no longer connected.
-    fn reconnect(&mut self, mesh: &Mesh, start: &Start) -> Result<()> {
-        self.number += 1;
-        let before = 2 * (self.number - 1);
-        self.cells.clear();
-        for &t in &start.cells {
-            self.mark[t as usize] = 2 * self.number;
-            push(&mut self.cells, t)?;
-        }
-        let mut next = 0;
-        while let Some(&t) = self.cells.get(next) {
-            next += 1;
-            for k in 0..4 {
-                let u = mesh.across[t as usize][k];
-                if u == NONE || mesh.wall[t as usize][k] != NONE {
-                    continue;
-                }
-                if self.mark[u as usize] == before {
-                    self.mark[u as usize] = 2 * self.number;
-                    push(&mut self.cells, u)?;
-                }
-            }
-        }
-        debug_assert!(self.cells.iter().all(|&t| !self.is_left_out(t)));
         Ok(())
     }
 
