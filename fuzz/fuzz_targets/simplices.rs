@@ -9,13 +9,13 @@
 
 use std::collections::BTreeSet;
 
-use delone_core::arrays::Given;
-use delone_core::error::Error;
+use delone_core::base::arrays::Given;
+use delone_core::base::error::Error;
 use delone_core::locate::{Batch, Cache, Locator};
 use delone_core::ndim::{
     Findings, Hyper, Lazy, Weighed, hull, regular, triangulate, validate, validate_regular, within,
 };
-use delone_core::watch::Watch;
+use delone_core::base::watch::Watch;
 use delone_fuzz::Coordinates;
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 

@@ -5,11 +5,11 @@
 use std::collections::BTreeSet;
 
 use delone_core::Point3;
-use delone_core::arrays::Given;
-use delone_core::delaunay3::triangulate;
-use delone_core::delaunay3::validate::{Findings3, validate};
-use delone_core::error::Error;
-use delone_core::watch::Watch;
+use delone_core::base::arrays::Given;
+use delone_core::delaunay::space::triangulate;
+use delone_core::delaunay::space::validate::{Findings3, validate};
+use delone_core::base::error::Error;
+use delone_core::base::watch::Watch;
 use delone_fuzz::Coordinates;
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 

@@ -10,12 +10,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use delone_core::Point3;
-use delone_core::arrays::FACETS;
-use delone_core::error::Error;
-use delone_core::recover::{Recovered, Task, recover};
-use delone_core::refine3::{Given, Rounds};
-use delone_core::surface::{Checked, Options, check};
-use delone_core::watch::Watch;
+use delone_core::base::arrays::FACETS;
+use delone_core::base::error::Error;
+use delone_core::solids::recover::{Recovered, Task, recover};
+use delone_core::solids::refine::{Given, Rounds};
+use delone_core::solids::surface::{Checked, Options, check};
+use delone_core::base::watch::Watch;
 use delone_fuzz::Coordinates;
 use delone_predicates::{Point2, Sign, orient2d, orient3d};
 use libfuzzer_sys::arbitrary::{Arbitrary, Result, Unstructured};

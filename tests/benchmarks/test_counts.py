@@ -60,8 +60,8 @@ def test_changes_above_one_percent_are_named(
 def test_each_room_has_a_job() -> None:
     program = (ROOT / "crates" / "core" / "examples" / "counts.rs").read_text(encoding="utf-8")
     used = set(re.findall(r"\b(\w+)::", program))
-    rooms = ["delaunay2", "delaunay3", "constrained", "locate", "sphere", "live", "graphs"]
-    assert used.issuperset([*rooms, "alpha", "contour", "recover", "overlay"])
+    rooms = ["delaunay", "constrained", "locate", "sphere", "live", "graphs"]
+    assert used.issuperset([*rooms, "alpha", "contour", "recover", "volume"])
 
 
 def test_a_new_job_fails_nothing(counts: Any, capsys: pytest.CaptureFixture[str]) -> None:

@@ -25,8 +25,8 @@ CRATES = ROOT / "crates"
 
 # Files that may hold `unsafe`, each with what it is for.
 UNSAFE = {
-    "crates/core/src/memory.rs": "zeroed pages, large pages, signed rows",
-    "crates/core/src/delaunay3/dispatch.rs": "code for features found at run time",
+    "crates/core/src/base/memory.rs": "zeroed pages, large pages, signed rows",
+    "crates/core/src/delaunay/space/dispatch.rs": "code for features found at run time",
 }
 
 LONGEST = 800

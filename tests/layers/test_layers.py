@@ -63,34 +63,32 @@ INSIDE = {"_core", "plane", "space", "dimension"}
 ALONE = {"datasets", "reference", "testing"}
 GROUND_FLOOR = set[str]().union(*PYTHON[:4])
 
-# What each module of the core may use, of the core and of other crates.
+# What each room of the core, and each file of its `base`, may use, of the core and of other crates.
 GROUND = {"arrays", "error", "memory", "watch"}
-CORE: dict[str, set[str]] = {
+BASE: dict[str, set[str]] = {
     "arrays": set(),
-    "cluster": {"graphs", "order", "points", "parallel", "wide", "num_bigint", "delone_predicates"}
-    | GROUND,
-    "consistency": {"parallel", "delone_predicates"} | GROUND,
     "error": {"delone_predicates"},
     "memory": {"error", "libc"},
     "watch": {"error"},
     "parallel": GROUND,
     "points": {"error", "memory", "delone_predicates"},
     "proof": GROUND,
+    "wide": {"delone_predicates"},
+    "joins": {"error", "memory", "watch"},
+    "consistency": {"parallel", "delone_predicates"} | GROUND,
+}
+CORE: dict[str, set[str]] = {
+    **BASE,
     "order": {"points", "parallel", "delone_predicates"} | GROUND,
     # Topology alone: neither coordinates nor predicates.
-    "mesh2": {"parallel"} | GROUND,
-    "delaunay2": {"mesh2", "order", "points", "parallel", "proof", "delone_predicates"} | GROUND,
-    "mesh3": GROUND,
-    "joins": {"error", "memory", "watch"},
+    "mesh": {"parallel"} | GROUND,
+    "delaunay": {"mesh", "order", "points", "parallel", "proof", "delone_predicates"} | GROUND,
     "measure": {"parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
-    "delaunay3": {"mesh3", "order", "points", "parallel", "proof", "delone_predicates"} | GROUND,
-    "constrained": {"delaunay2", "joins", "mesh2", "order", "points", "delone_predicates"} | GROUND,
-    "refine": {"constrained", "delaunay2", "measure", "mesh2", "wide", "delone_predicates"}
-    | GROUND,
-    "improve": {"delone_predicates"} | GROUND,
+    "constrained": {"delaunay", "joins", "mesh", "order", "points", "delone_predicates"} | GROUND,
+    "refine": {"constrained", "delaunay", "measure", "mesh", "wide", "delone_predicates"} | GROUND,
     "locate": {"order", "points", "parallel", "wide", "delone_predicates"} | GROUND,
     "alpha": {"measure", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
-    "graphs": {"order", "points", "parallel", "delone_predicates"} | GROUND,
+    "graphs": {"order", "points", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "hull": {"order", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "ndim": {
         "consistency",
@@ -100,30 +98,15 @@ CORE: dict[str, set[str]] = {
         "parallel",
         "points",
         "regular",
-        "regular3",
         "wide",
         "num_bigint",
         "delone_predicates",
     }
     | GROUND,
-    "live": {
-        "constrained",
-        "delaunay2",
-        "delaunay3",
-        "locate",
-        "locate3",
-        "mesh2",
-        "mesh3",
-        "order",
-        "points",
-        "delone_predicates",
-    }
+    "live": {"constrained", "delaunay", "locate", "mesh", "order", "points", "delone_predicates"}
     | GROUND,
-    "locate3": {"locate", "points", "wide", "delone_predicates"} | GROUND,
-    "wide": {"delone_predicates"},
     "distributed": {"locate", "points", "parallel", "delone_predicates"} | GROUND,
-    "refine3": {"improve", "graphs", "delone_predicates"} | GROUND,
-    "regular": {"parallel", "delaunay2", "order", "points", "proof", "wide", "delone_predicates"}
+    "regular": {"parallel", "delaunay", "order", "points", "proof", "wide", "delone_predicates"}
     | GROUND,
     "voronoi": {
         "measure",
@@ -135,28 +118,9 @@ CORE: dict[str, set[str]] = {
         "delone_predicates",
     }
     | GROUND,
-    "regular3": {
-        "delaunay3",
-        "regular",
-        "order",
-        "points",
-        "proof",
-        "wide",
-        "delone_predicates",
-    }
-    | GROUND,
-    "voronoi3": {
-        "measure",
-        "regular3",
-        "voronoi",
-        "parallel",
-        "wide",
-        "delone_predicates",
-    }
-    | GROUND,
     "sphere": {
         "constrained",
-        "mesh2",
+        "mesh",
         "order",
         "parallel",
         "points",
@@ -165,10 +129,9 @@ CORE: dict[str, set[str]] = {
         "delone_predicates",
     }
     | GROUND,
-    "recover": {"delaunay3", "points", "wide", "num_bigint", "delone_predicates"} | GROUND,
-    "surface": {
+    "solids": {
         "constrained",
-        "delaunay2",
+        "delaunay",
         "graphs",
         "locate",
         "order",
@@ -179,11 +142,19 @@ CORE: dict[str, set[str]] = {
         "delone_predicates",
     }
     | GROUND,
-    "contour": {"delone_predicates"} | GROUND,
-    "simplify": {"constrained", "mesh2", "order", "delone_predicates"} | GROUND,
-    "overlay": {"delaunay2", "locate", "order", "parallel", "points", "delone_predicates"} | GROUND,
-    "interpolate": {"locate", "delaunay2", "parallel", "wide", "delone_predicates"} | GROUND,
-    "interpolate_sphere": {"interpolate", "sphere", "parallel", "delone_predicates"} | GROUND,
+    "terrain": {
+        "constrained",
+        "delaunay",
+        "locate",
+        "mesh",
+        "order",
+        "parallel",
+        "points",
+        "delone_predicates",
+    }
+    | GROUND,
+    "interpolate": {"delaunay", "locate", "sphere", "parallel", "wide", "delone_predicates"}
+    | GROUND,
     "overlap": {
         "locate",
         "order",
@@ -193,8 +164,6 @@ CORE: dict[str, set[str]] = {
         "num_bigint",
         "delone_predicates",
     }
-    | GROUND,
-    "interpolate3": {"interpolate", "locate", "locate3", "parallel", "wide", "delone_predicates"}
     | GROUND,
 }
 # The crates that each crate may need.
@@ -245,9 +214,15 @@ def python_faults(package: Path) -> list[str]:
 def rust_uses(path: Path) -> set[str]:
     """Modules of the same crate and names of other crates that a file mentions in paths."""
     text = rust_text(path)
-    found = used_modules(path)
+    found = used_modules(path) - {"base"} | used_modules(path, within="base")
     found |= {name for name in NAMES_OF_CRATES if re.search(rf"\b{name}\b\s*(::|;|as\b)", text)}
     return found
+
+
+def core_part(relative: Path) -> str:
+    """A room of the core, or a file of `base`."""
+    parts = relative.parts
+    return (parts[1] if parts[0] == "base" else parts[0]).removesuffix(".rs")
 
 
 def core_faults(core: Path) -> list[str]:
@@ -255,8 +230,8 @@ def core_faults(core: Path) -> list[str]:
     source = core / "src"
     for path in sorted(source.rglob("*.rs")):
         relative = path.relative_to(source)
-        part = relative.parts[0].removesuffix(".rs")
-        if part == "lib":
+        part = core_part(relative)
+        if part in ("lib", "mod"):
             continue
         if part not in CORE:
             faults.append(f"{relative}: {part} is in no table of layers")
@@ -312,7 +287,7 @@ def test_the_tables_hold_nothing_that_is_not_so() -> None:
     source = CRATES / "core" / "src"
     rust = used(
         source.rglob("*.rs"),
-        lambda path: path.relative_to(source).parts[0].removesuffix(".rs"),
+        lambda path: core_part(path.relative_to(source)),
         rust_uses,
     )
     stale = {
@@ -372,16 +347,16 @@ def test_a_wrong_arrow_in_python_is_found(file: str, line: str, fault: str, tmp_
 @pytest.mark.parametrize(
     ("file", "line", "fault"),
     [
-        ("mesh2/mod.rs", "use crate::points::Extent;", "mesh2/mod.rs uses points"),
+        ("mesh/plane/mod.rs", "use crate::base::points::Extent;", "mesh/plane/mod.rs uses points"),
         (
-            "mesh2/mod.rs",
+            "mesh/mod.rs",
             "use delone_predicates::Sign;",
-            "mesh2/mod.rs uses delone_predicates",
+            "mesh/mod.rs uses delone_predicates",
         ),
-        ("order/mod.rs", "use crate::{error::Result, mesh2};", "order/mod.rs uses mesh2"),
-        ("order/mod.rs", "fn f() { crate::delaunay2::g(); }", "order/mod.rs uses delaunay2"),
-        ("points.rs", "use pyo3::prelude::*;", "points.rs uses pyo3"),
-        ("watch.rs", "use numpy as np;", "watch.rs uses numpy"),
+        ("order/mod.rs", "use crate::{base::error::Result, mesh};", "order/mod.rs uses mesh"),
+        ("order/mod.rs", "fn f() { crate::delaunay::plane::g(); }", "order/mod.rs uses delaunay"),
+        ("base/points.rs", "use pyo3::prelude::*;", "base/points.rs uses pyo3"),
+        ("base/watch.rs", "use crate::base::{error::E, points};", "base/watch.rs uses points"),
         ("tools.rs", "", "tools.rs: tools is in no table of layers"),
     ],
 )

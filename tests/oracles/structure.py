@@ -298,16 +298,16 @@ def first_words(tree: str) -> list[str]:
     return words
 
 
-def used_modules(path: Path) -> set[str]:
-    """Modules of the same crate that a file of Rust mentions in paths."""
-    return set(_mentioned(rust_text(path)))
+def used_modules(path: Path, within: str = "") -> set[str]:
+    """Modules of the same crate, or of one module of it, that a file of Rust mentions in paths."""
+    return set(_mentioned(rust_text(path), f"crate::{within}::" if within else "crate::"))
 
 
 @cache
-def _mentioned(text: str) -> frozenset[str]:
+def _mentioned(text: str, start: str) -> frozenset[str]:
     return frozenset(
         word
-        for match in re.finditer(r"\bcrate::", text)
+        for match in re.finditer(rf"\b{start}", text)
         for word in first_words(text[match.end() :])
     )
 

@@ -1,7 +1,7 @@
 //! Alpha complexes and concave hulls as arrays.
 
 use delone_core::alpha::{self, Limit, Sites};
-use delone_core::error::{Error, Result};
+use delone_core::base::error::{Error, Result};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 

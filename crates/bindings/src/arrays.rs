@@ -7,7 +7,7 @@ use numpy::{
 };
 use pyo3::prelude::*;
 
-use delone_core::error::{Error, Result};
+use delone_core::base::error::{Error, Result};
 
 use crate::errors::Outcome;
 

@@ -1,8 +1,8 @@
 //! Clusters: merges of a spanning tree, condensed trees, and clusters of one density.
 
-use delone_core::cluster::{self, Condensed, cores, hierarchy, reach_tree};
-use delone_core::error::Error;
+use delone_core::base::error::Error;
 use delone_core::graphs::Tree;
+use delone_core::graphs::cluster::{self, Condensed, cores, hierarchy, reach_tree};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 

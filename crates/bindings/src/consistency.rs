@@ -1,6 +1,6 @@
 //! Checks whether arrays of unknown origin are a mesh.
 
-use delone_core::consistency::{self, Fault};
+use delone_core::base::consistency::{self, Fault};
 use delone_core::ndim;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;

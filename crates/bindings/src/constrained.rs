@@ -1,11 +1,11 @@
 //! Constrained triangulations as arrays.
 
 use delone_core::Point2;
+use delone_core::base::error::{Error, Result};
 use delone_core::constrained::nesting::{Covers, Parts, odd_pairs};
 use delone_core::constrained::{
     Constrained, Options, Rule, components, constrain, numbered_by_smallest, polygon, simple_ring,
 };
-use delone_core::error::{Error, Result};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 

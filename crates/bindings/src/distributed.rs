@@ -1,8 +1,8 @@
 //! Disks of triangles and the points deepest in circles, for triangulations in tiles.
 
+use delone_core::base::error::{Error, Result};
+use delone_core::base::memory::with_room;
 use delone_core::distributed::{deepest, disk, within};
-use delone_core::error::{Error, Result};
-use delone_core::memory::with_room;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 

@@ -1,9 +1,9 @@
 //! Triangulations passed as arrays: borrowed and checked for one call, or held for many; and other
 //! arrays passed with points: weights, edges.
 
-use delone_core::arrays::Given;
-use delone_core::error::{Error, Result};
-use delone_core::watch::Watch;
+use delone_core::base::arrays::Given;
+use delone_core::base::error::{Error, Result};
+use delone_core::base::watch::Watch;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 

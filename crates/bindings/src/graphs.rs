@@ -1,6 +1,6 @@
 //! Proximity graphs as arrays of edges.
 
-use delone_core::error::{Error, Result};
+use delone_core::base::error::{Error, Result};
 use delone_core::graphs::{self, Neighbors, Region, Rule, Skeleton, Tree};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;

@@ -1,8 +1,8 @@
 //! Improved tetrahedra as arrays.
 
-use delone_core::error::Result;
-use delone_core::error::{Error, Result as CoreResult};
-use delone_core::improve::{Improved, Task, improve};
+use delone_core::base::error::Result;
+use delone_core::base::error::{Error, Result as CoreResult};
+use delone_core::solids::improve::{Improved, Task, improve};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 

@@ -1,12 +1,12 @@
 //! Interpolation: the bodies of the methods of `Locator2`, and other functions.
 
-use delone_core::error::{Error, Result};
+use delone_core::base::error::{Error, Result};
+use delone_core::interpolate::space;
 use delone_core::interpolate::{
     Adjacency, Barrier, Field, Kind, Method, Order, Rows, Table as Sums, clough_tocher,
     clough_tocher_weights, global_gradients, leave_one_out, linear, local_gradients, natural,
     natural_values,
 };
-use delone_core::interpolate3;
 use delone_core::{Point2, Point3};
 use numpy::{
     PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods,
@@ -348,7 +348,7 @@ pub fn gradients_local3(
     let field = Field::of_rows(n, items, None, columns)?;
     let found = watched(py, |watch| {
         let edges = Adjacency::new(n, starts, ends)?;
-        interpolate3::local_gradients(rows, edges, field, vertices, workers, watch)
+        space::local_gradients(rows, edges, field, vertices, workers, watch)
     })?;
     shaped(py, found, [vertices.len(), columns, 3])
 }

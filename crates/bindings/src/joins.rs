@@ -1,7 +1,7 @@
 //! Equal facets in lists, as arrays.
 
-use delone_core::error::Result;
-use delone_core::joins;
+use delone_core::base::error::Result;
+use delone_core::base::joins;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Lawson flips of arbitrary triangulations, and neighbors, as arrays.
 
-use delone_core::delaunay2::lawson::lawson;
-use delone_core::mesh2::import::adjacency;
+use delone_core::delaunay::plane::lawson::lawson;
+use delone_core::mesh::plane::import::adjacency;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 

@@ -4,9 +4,9 @@ use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::{Mutex, TryLockError};
 
 use delone_core::Point2;
-use delone_core::error::{Error, Result};
+use delone_core::base::error::{Error, Result};
+use delone_core::base::watch::Watch;
 use delone_core::live::plane::{Plane, State};
-use delone_core::watch::Watch;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 

@@ -3,9 +3,9 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicI64, Ordering};
 
-use delone_core::error::Error;
+use delone_core::base::error::Error;
+use delone_core::base::watch::Watch;
 use delone_core::live::space::{Space, State};
-use delone_core::watch::Watch;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
@@ -56,7 +56,7 @@ impl Live3 {
         &self,
         py: Python<'_>,
         count: usize,
-        work: impl FnOnce(&mut Space, &Watch) -> delone_core::error::Result<T> + Send,
+        work: impl FnOnce(&mut Space, &Watch) -> delone_core::base::error::Result<T> + Send,
     ) -> Outcome<T> {
         locked(&self.live, py, count, work)
     }
@@ -66,7 +66,7 @@ impl Live3 {
         &self,
         py: Python<'_>,
         count: usize,
-        work: impl FnOnce(&mut Space, &Watch) -> delone_core::error::Result<T> + Send,
+        work: impl FnOnce(&mut Space, &Watch) -> delone_core::base::error::Result<T> + Send,
     ) -> Outcome<T> {
         self.with(py, count, |space, watch| {
             let made = work(space, watch)?;

@@ -1,6 +1,6 @@
 //! Point location on arrays.
 
-use delone_core::error::Error;
+use delone_core::base::error::Error;
 use delone_core::locate::{Batch, Kept, Locator, along, coordinates, find, nearest};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;

@@ -1,7 +1,7 @@
 //! Point location on arrays of tetrahedra.
 
-use delone_core::interpolate3::natural;
-use delone_core::locate3::{coordinates, find, nearest, within};
+use delone_core::interpolate::space::natural;
+use delone_core::locate::space::{coordinates, find, nearest, within};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 

@@ -1,9 +1,9 @@
 //! Triangulations that are kept for many calls: the common part of `Locator2` and `Locator3`.
 
-use delone_core::error::Result;
+use delone_core::base::error::Result;
+use delone_core::base::watch::Watch;
+use delone_core::locate::space;
 use delone_core::locate::{self, Batch, Cache, Dimension, Locator};
-use delone_core::locate3;
-use delone_core::watch::Watch;
 use numpy::{Element, PyReadonlyArray2};
 use pyo3::prelude::*;
 
@@ -21,7 +21,7 @@ pub struct Tiling<P: Dimension<D, N>, const D: usize, const N: usize> {
 /// Triangles.
 pub type Plane = Tiling<locate::Plane, 2, 3>;
 /// Tetrahedra.
-pub type Space = Tiling<locate3::Space, 3, 4>;
+pub type Space = Tiling<space::Space, 3, 4>;
 
 impl<P: Dimension<D, N>, const D: usize, const N: usize> Tiling<P, D, N> {
     /// Checks the arrays and builds the index.

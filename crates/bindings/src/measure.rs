@@ -1,7 +1,7 @@
 //! Measures of simplices: edges and faces, centers, sizes, shapes.
 
-use delone_core::error::Result;
-use delone_core::watch::Watch;
+use delone_core::base::error::Result;
+use delone_core::base::watch::Watch;
 use delone_core::{measure, ndim};
 use numpy::{PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;

@@ -1,6 +1,6 @@
 //! Triangulations in four to eight dimensions as arrays, and point location in them.
 
-use delone_core::arrays::Arrays;
+use delone_core::base::arrays::Arrays;
 use delone_core::locate::find;
 use delone_core::ndim::{self, Findings, Hyper, Lazy, Weighed};
 use numpy::PyReadonlyArray2;

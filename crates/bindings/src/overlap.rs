@@ -1,6 +1,6 @@
 //! Grids of cells on the sphere and in the plane, and the areas that two of them share.
 
-use delone_core::error::Result;
+use delone_core::base::error::Result;
 use delone_core::overlap::{
     Checked, Grid, Polygons, Rows, Shared, check, check_plane, overlaps, overlaps_plane,
 };

@@ -1,7 +1,7 @@
 //! The predicates over arrays of points.
 
-use delone_core::error::{Error, Result};
-use delone_core::memory::with_room;
+use delone_core::base::error::{Error, Result};
+use delone_core::base::memory::with_room;
 use delone_predicates as exact;
 use delone_predicates::Sign;
 use numpy::PyReadonlyArray2;

@@ -1,7 +1,7 @@
 //! Recovered faces as arrays.
 
-use delone_core::error::Error;
-use delone_core::recover::{Counts, Recovered, Task, recover};
+use delone_core::base::error::Error;
+use delone_core::solids::recover::{Counts, Recovered, Task, recover};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 

@@ -3,11 +3,11 @@
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
-use delone_core::error::{Error, Result};
-use delone_core::memory::copied;
+use delone_core::base::error::{Error, Result};
+use delone_core::base::memory::copied;
+use delone_core::base::watch::Watch;
 use delone_core::refine::smooth::{self, Target};
 use delone_core::refine::{Lines, Refined, Rounds, Samples, Task, judge, refine_telling};
-use delone_core::watch::Watch;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 

@@ -2,8 +2,8 @@
 
 use std::sync::Mutex;
 
-use delone_core::error::{Error, Result};
-use delone_core::refine3::{Given, Refined, Rounds};
+use delone_core::base::error::{Error, Result};
+use delone_core::solids::refine::{Given, Refined, Rounds};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
@@ -152,7 +152,7 @@ impl Refinement3 {
 
 /// The coordinates of four corners in one row.
 fn flattened(corners: Vec<[[f64; 3]; 4]>) -> Result<Vec<[f64; 12]>> {
-    let mut all = delone_core::memory::with_room(corners.len())?;
+    let mut all = delone_core::base::memory::with_room(corners.len())?;
     for [[a, b, c], [d, e, f], [g, h, i], [j, k, l]] in corners {
         all.push([a, b, c, d, e, f, g, h, i, j, k, l]);
     }

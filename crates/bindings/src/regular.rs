@@ -1,7 +1,8 @@
 //! Regular triangulations of weighted points, and triangulations of periodic points, as arrays.
 
-use delone_core::error::Error;
-use delone_core::{ndim, regular as plane, regular3 as space, voronoi};
+use delone_core::base::error::Error;
+use delone_core::regular::{self as plane, space};
+use delone_core::{ndim, voronoi};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 

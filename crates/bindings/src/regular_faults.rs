@@ -1,9 +1,9 @@
 //! What is wrong with regular and with periodic triangulations, as arrays.
 
-use delone_core::error::Error;
+use delone_core::base::error::Error;
 use delone_core::ndim;
+use delone_core::regular::space;
 use delone_core::regular::{self, Wrapped};
-use delone_core::regular3 as space;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 

@@ -1,6 +1,6 @@
 //! Results that Python can also construct: from a file, from a pickle, or from arrays.
 
-use delone_core::error::{Error, Result};
+use delone_core::base::error::{Error, Result};
 use numpy::{Element, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;

@@ -6,8 +6,8 @@ use std::thread::current;
 use std::time::{Duration, Instant};
 
 use crate::errors::{Outcome, attached, detached};
-use delone_core::error::Result;
-use delone_core::watch::Watch;
+use delone_core::base::error::Result;
+use delone_core::base::watch::Watch;
 use pyo3::prelude::*;
 
 /// Minimum time between two checks of Python's signals: a check takes the GIL.

@@ -1,8 +1,8 @@
 //! 3-D triangulations as arrays.
 
 use delone_core::Point3;
-use delone_core::delaunay3::triangulate;
-use delone_core::delaunay3::validate::{Findings3, validate};
+use delone_core::delaunay::space::triangulate;
+use delone_core::delaunay::space::validate::{Findings3, validate};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 

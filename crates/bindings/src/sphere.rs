@@ -1,14 +1,14 @@
 //! Triangulations of directions as arrays.
 
 use delone_core::Point3;
-use delone_core::arrays::Arrays;
-use delone_core::error::{Error, Result};
-use delone_core::interpolate_sphere::{Kind, Queries, weights};
-use delone_core::memory::copied;
+use delone_core::base::arrays::Arrays;
+use delone_core::base::error::{Error, Result};
+use delone_core::base::memory::copied;
+use delone_core::base::watch::Watch;
+use delone_core::interpolate::sphere::{Kind, Queries, weights};
 use delone_core::sphere::angles::{Measure, directions};
 use delone_core::sphere::locate::Index;
 use delone_core::sphere::{constrain, directions as rays, dual, measure, span, triangulate, void};
-use delone_core::watch::Watch;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -1,8 +1,8 @@
 //! Checks of surfaces of triangles in 3-D as arrays.
 
 use delone_core::Point3;
-use delone_core::error::Result;
-use delone_core::surface::{self, Checked, Options, Pairs, Resolved};
+use delone_core::base::error::Result;
+use delone_core::solids::surface::{self, Checked, Options, Pairs, Resolved};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 

@@ -1,10 +1,10 @@
 //! Contours of triangulated surfaces, volumes between them, and their simplification.
 
-use delone_core::arrays::Given;
-use delone_core::contour;
-use delone_core::error::{Error, Result};
-use delone_core::overlay::{self, Other, Surface};
-use delone_core::simplify::{Task, simplify};
+use delone_core::base::arrays::Given;
+use delone_core::base::error::{Error, Result};
+use delone_core::terrain::contour;
+use delone_core::terrain::simplify::{Task, simplify};
+use delone_core::terrain::volume::{self, Other, Surface};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
@@ -156,7 +156,7 @@ pub fn volumes2(
     let region = region.as_ref().map(Sheet::given).transpose()?;
     let surface = surface.surface()?;
     let found = watched(py, |watch| {
-        overlay::volumes(surface, other, region, workers, watch)
+        volume::volumes(surface, other, region, workers, watch)
     })?;
     Ok(found.map(|values| column(py, values)))
 }

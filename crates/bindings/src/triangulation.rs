@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use delone_core::Point2;
-use delone_core::arrays::Arrays;
-use delone_core::delaunay2::validate::{Findings, validate};
-use delone_core::delaunay2::{Method, triangulate};
+use delone_core::base::arrays::Arrays;
+use delone_core::delaunay::plane::validate::{Findings, validate};
+use delone_core::delaunay::plane::{Method, triangulate};
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

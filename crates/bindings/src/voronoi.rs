@@ -1,7 +1,7 @@
 //! 2-D Voronoi and power diagrams, and polygons clipped from them, as arrays.
 
 use delone_core::Point2;
-use delone_core::error::{Error, Result};
+use delone_core::base::error::{Error, Result};
 use delone_core::voronoi::{self, Cells, Convex, Given, Outline};
 use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;

@@ -1,8 +1,8 @@
 //! 3-D Voronoi and power diagrams, their measures, and cells clipped to a polyhedron, as arrays.
 
 use delone_core::Point3;
-use delone_core::error::Result;
-use delone_core::voronoi3::{self as dual, Cells, Clip, Measures};
+use delone_core::base::error::Result;
+use delone_core::voronoi::space::{self as dual, Cells, Clip, Measures};
 use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 

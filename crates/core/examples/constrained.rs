@@ -10,9 +10,9 @@ use std::fs;
 use std::time::Instant;
 
 use delone_core::Point2;
+use delone_core::base::watch::Watch;
 use delone_core::constrained::{Options, constrain};
-use delone_core::delaunay2::Method;
-use delone_core::watch::Watch;
+use delone_core::delaunay::plane::Method;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = env::args().skip(1);

@@ -7,16 +7,18 @@
 use std::error::Error;
 use std::hint::black_box;
 
-use delone_core::arrays::Given;
+use delone_core::base::arrays::Given;
+use delone_core::base::watch::{IDLE, Watch};
 use delone_core::constrained::{Options, constrain};
-use delone_core::delaunay2::{Method, triangulate};
+use delone_core::delaunay::plane::{Method, triangulate};
+use delone_core::delaunay::space as delaunay3;
 use delone_core::live::plane::Plane;
 use delone_core::locate::{Batch, Kept, Locator, find};
-use delone_core::overlay::{Other, Surface, volumes};
-use delone_core::recover::{Task, recover};
-use delone_core::watch::{IDLE, Watch};
+use delone_core::solids::recover::{Task, recover};
+use delone_core::terrain::contour;
+use delone_core::terrain::volume::{Other, Surface, volumes};
 use delone_core::{Point2, Point3};
-use delone_core::{alpha, contour, delaunay3, graphs, sphere};
+use delone_core::{alpha, graphs, sphere};
 
 type Outcome = Result<(), Box<dyn Error>>;
 type Job = fn() -> Outcome;

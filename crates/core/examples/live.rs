@@ -5,9 +5,9 @@
 use std::time::Instant;
 
 use delone_core::Point2;
-use delone_core::delaunay2::{Method, triangulate};
+use delone_core::base::watch::Watch;
+use delone_core::delaunay::plane::{Method, triangulate};
 use delone_core::live::plane::Plane;
-use delone_core::watch::Watch;
 
 /// Uniform points in the unit square.
 fn scattered(n: usize, seed: u64) -> Vec<Point2> {

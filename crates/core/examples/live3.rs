@@ -3,9 +3,9 @@
 use std::time::Instant;
 
 use delone_core::Point3;
-use delone_core::delaunay3::triangulate;
+use delone_core::base::watch::Watch;
+use delone_core::delaunay::space::triangulate;
 use delone_core::live::space::Space;
-use delone_core::watch::Watch;
 
 fn scattered(n: usize, seed: u64) -> Vec<Point3> {
     let mut x = seed;

@@ -5,11 +5,11 @@
 use std::time::Instant;
 
 use delone_core::Point2;
-use delone_core::arrays::Given;
-use delone_core::delaunay2::{Method, triangulate};
+use delone_core::base::arrays::Given;
+use delone_core::base::memory::with_room;
+use delone_core::base::watch::{IDLE, Watch};
+use delone_core::delaunay::plane::{Method, triangulate};
 use delone_core::locate::{Batch, Kept, Locator, find, nearest};
-use delone_core::memory::with_room;
-use delone_core::watch::{IDLE, Watch};
 
 fn main() {
     let mut arguments = std::env::args().skip(1);

@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
+use delone_core::base::watch::Watch;
 use delone_core::constrained::{Options, components, constrain};
-use delone_core::delaunay2::Method;
+use delone_core::delaunay::plane::Method;
 use delone_core::refine::{Task, refine};
-use delone_core::watch::Watch;
 
 /// A Koch curve over a heptagon, `2^levels` segments per side.
 fn ring(sides: u32, levels: u32) -> Vec<[f64; 2]> {

@@ -5,10 +5,10 @@
 use std::time::Instant;
 
 use delone_core::Point2;
-use delone_core::arrays::Given;
-use delone_core::delaunay2::validate::validate;
-use delone_core::delaunay2::{Method, triangulate};
-use delone_core::watch::Watch;
+use delone_core::base::arrays::Given;
+use delone_core::base::watch::Watch;
+use delone_core::delaunay::plane::validate::validate;
+use delone_core::delaunay::plane::{Method, triangulate};
 
 fn main() {
     let mut arguments = std::env::args().skip(1);

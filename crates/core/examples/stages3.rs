@@ -6,10 +6,10 @@
 use std::time::Instant;
 
 use delone_core::Point3;
-use delone_core::arrays::Given;
-use delone_core::delaunay3::triangulate;
-use delone_core::delaunay3::validate::{Findings3, validate};
-use delone_core::watch::Watch;
+use delone_core::base::arrays::Given;
+use delone_core::base::watch::Watch;
+use delone_core::delaunay::space::triangulate;
+use delone_core::delaunay::space::validate::{Findings3, validate};
 
 fn main() {
     let mut arguments = std::env::args().skip(1);

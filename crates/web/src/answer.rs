@@ -1,6 +1,6 @@
 //! What a call returns: arrays by number, or an error with the class and text of Python's.
 
-use delone_core::error::Error;
+use delone_core::base::error::Error;
 use delone_predicates::Point2;
 use wasm_bindgen::prelude::*;
 

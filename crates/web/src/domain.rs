@@ -2,10 +2,10 @@
 
 use std::collections::HashSet;
 
-use delone_core::arrays::{Arrays, Given};
+use delone_core::base::arrays::{Arrays, Given};
 use delone_core::constrained::{Constrained, components};
 use delone_core::locate::find;
-use delone_core::watch::Watch;
+use delone_core::base::watch::Watch;
 use delone_predicates::{Point2, orient2d};
 
 use crate::answer::{Failure, Outcome};

@@ -1,7 +1,7 @@
 //! A triangulation that is edited in place: what a page asks while a point is dragged.
 
 use delone_core::live::plane::Plane;
-use delone_core::watch::Watch;
+use delone_core::base::watch::Watch;
 use wasm_bindgen::prelude::*;
 
 use crate::answer::{Answer, answer, pairs, repeats};
@@ -81,7 +81,7 @@ impl Live {
     /// The triangles of rows that an edit takes and makes.
     fn edited(
         &mut self,
-        edit: impl FnOnce(&mut Plane) -> delone_core::error::Result<()>,
+        edit: impl FnOnce(&mut Plane) -> delone_core::base::error::Result<()>,
     ) -> Answer {
         answer(|| {
             let Some(plane) = &mut self.plane else {

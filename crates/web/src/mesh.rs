@@ -1,10 +1,10 @@
 //! Constrained triangulations and refined meshes.
 
 use delone_core::constrained::{Constrained, Options, constrain};
-use delone_core::delaunay2::Method;
-use delone_core::error::Error;
+use delone_core::delaunay::plane::Method;
+use delone_core::base::error::Error;
 use delone_core::refine::{Task, refine};
-use delone_core::watch::Watch;
+use delone_core::base::watch::Watch;
 use delone_predicates::Point2;
 use wasm_bindgen::prelude::*;
 
@@ -137,7 +137,7 @@ fn refined(
         i32::from(!made.exhausted),
     ];
     points.extend_from_slice(&made.added);
-    let all = delone_core::arrays::Arrays {
+    let all = delone_core::base::arrays::Arrays {
         simplices: made.simplices,
         neighbors: made.neighbors,
     };
@@ -182,7 +182,7 @@ fn lines(domain: &Constrained, kept: &[bool]) -> Vec<[u32; 2]> {
 
 fn arrays(
     points: Vec<Point2>,
-    part: delone_core::arrays::Arrays<3>,
+    part: delone_core::base::arrays::Arrays<3>,
     walls: &[[bool; 3]],
     subsegments: Vec<[i32; 2]>,
     duplicates: &[[u32; 2]],

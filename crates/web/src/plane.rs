@@ -1,11 +1,11 @@
 //! 2-D triangulations: triangles, cells, circles, location.
 
-use delone_core::arrays::Given;
-use delone_core::delaunay2::{self, Method, Triangulation};
-use delone_core::error::{Error, Result};
+use delone_core::base::arrays::Given;
+use delone_core::delaunay::plane::{self, Method, Triangulation};
+use delone_core::base::error::{Error, Result};
 use delone_core::locate::{self, Batch, Kept, Locator};
-use delone_core::points::scan;
-use delone_core::watch::Watch;
+use delone_core::base::points::scan;
+use delone_core::base::watch::Watch;
 use delone_core::{hull, measure, voronoi};
 use delone_predicates::Point2;
 use wasm_bindgen::prelude::*;
@@ -66,7 +66,7 @@ fn delaunay(points: &[Point2], method: &str) -> Outcome<Triangulation> {
         .collect();
     let text = || format!("method must be one of {}, got '{method}'", names.join(", "));
     let method = Method::named(method).ok_or_else(|| Failure::Input(text(), None))?;
-    Ok(delaunay2::triangulate(points, method, 1, &Watch::idle())?)
+    Ok(plane::triangulate(points, method, 1, &Watch::idle())?)
 }
 
 /// Checked triangles.
@@ -228,7 +228,7 @@ pub fn flips(xy: &[f64], corners: &[i32]) -> Answer {
         let points = pairs(xy);
         let triangles = triangles(points, corners)?;
         let watch = Watch::idle();
-        let made = delone_core::delaunay2::lawson::lawson(points, triangles, true, &watch)?;
+        let made = delone_core::delaunay::plane::lawson::lawson(points, triangles, true, &watch)?;
         let arrays = [
             made.arrays.simplices.into_flattened(),
             made.sequence.into_flattened(),

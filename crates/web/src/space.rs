@@ -1,9 +1,9 @@
 //! 3-D triangulations.
 
-use delone_core::arrays::OUTWARD;
-use delone_core::delaunay3::triangulate;
+use delone_core::base::arrays::OUTWARD;
+use delone_core::delaunay::space::triangulate;
 use delone_core::measure;
-use delone_core::watch::Watch;
+use delone_core::base::watch::Watch;
 use delone_predicates::Point3;
 use wasm_bindgen::prelude::*;
 

@@ -22,7 +22,7 @@ use delone_predicates::arithmetic::{Pair, decode_odd};
 use num_bigint::BigInt;
 
 use super::number::{Number, Rough, Rounded, certain};
-use crate::wide::{lowest, ratio, scaled, sign};
+use crate::base::wide::{lowest, ratio, scaled, sign};
 
 /// Vectors with a largest component between these, 2^-40 and 2^40, and weights below the square,
 /// cause no overflow and no underflow that matters: N is of degree 8.

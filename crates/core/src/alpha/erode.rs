@@ -14,10 +14,10 @@ use std::collections::BinaryHeap;
 use delone_predicates::proximity::shorter;
 use delone_predicates::{Point2, Sign};
 
-use crate::arrays::Given;
-use crate::error::{Error, Result};
-use crate::memory::{filled, push, with_room};
-use crate::watch::{Pace, Watch};
+use crate::base::arrays::Given;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, push, with_room};
+use crate::base::watch::{Pace, Watch};
 
 /// Steps between two checks for interruption.
 const LOT: usize = 1 << 14;

@@ -1,8 +1,8 @@
 //! Connected components of simplices that have facets in common.
 
-use crate::error::Result;
-use crate::memory::{filled, with_room};
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::{filled, with_room};
+use crate::base::watch::{Pace, Watch};
 
 /// Simplices between two checks for interruption.
 const LOT: usize = 1 << 16;

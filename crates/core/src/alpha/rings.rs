@@ -7,9 +7,9 @@
 
 use delone_predicates::{Point2, Sign, orient2d};
 
-use crate::error::Result;
-use crate::memory::{filled, push};
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::{filled, push};
+use crate::base::watch::{Pace, Watch};
 
 /// Edges between two checks for interruption.
 const LOT: usize = 1 << 16;

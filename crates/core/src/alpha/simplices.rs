@@ -1,10 +1,10 @@
 //! Points with weights, and what the complexes of triangles and tetrahedra share.
 
 use super::ball::{Kind, Site};
-use crate::error::Result;
-use crate::memory::{Zero, zeroed};
-use crate::parallel;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::{Zero, zeroed};
+use crate::base::parallel;
+use crate::base::watch::Watch;
 
 /// Simplices per task.
 pub(super) const SHARE: usize = 1 << 12;

@@ -5,10 +5,10 @@
 
 use super::ball;
 use super::simplices::{Sites, bits, each, value};
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::watch::Watch;
 use crate::measure::{Buckets, distinct};
-use crate::memory::with_room;
-use crate::watch::Watch;
 
 /// The values of tetrahedra, faces and edges.
 pub struct Solid {
@@ -243,7 +243,7 @@ impl Measured<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Error;
+    use crate::base::error::Error;
     use crate::measure::{edges, faces3};
 
     /// An octahedron, cut into tetrahedra around the segment between its poles.

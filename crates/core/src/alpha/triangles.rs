@@ -2,11 +2,11 @@
 
 use super::ball::{self, Kind, Site};
 use super::simplices::{SHARE, Sites, bits, each, value};
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::memory::{with_room, zeroed};
+use crate::base::parallel;
+use crate::base::watch::Watch;
 use crate::measure::{Buckets, distinct};
-use crate::memory::{with_room, zeroed};
-use crate::parallel;
-use crate::watch::Watch;
 
 /// The values of triangles and edges.
 pub struct Flat {

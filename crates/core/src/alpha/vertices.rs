@@ -2,9 +2,9 @@
 
 use super::ball::hides;
 use super::simplices::Sites;
-use crate::error::Result;
-use crate::memory::{filled, with_room};
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::{filled, with_room};
+use crate::base::watch::{Pace, Watch};
 
 /// Edges between two checks for interruption.
 const LOT: usize = 1 << 14;

@@ -3,9 +3,9 @@
 
 use std::cmp::Ordering;
 
-use crate::error::Result;
-use crate::memory::{filled, with_room};
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::{filled, with_room};
+use crate::base::watch::{Pace, Watch};
 
 /// Triangles between two checks for interruption.
 const LOT: usize = 1 << 16;

@@ -18,9 +18,9 @@
 use delone_predicates::{Point2, Sign, angle, lexicographic};
 
 use super::split::Splitter;
-use crate::error::Result;
-use crate::memory::with_room;
-use crate::mesh2::{next, prev};
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::mesh::plane::{next, prev};
 
 impl Splitter<'_> {
     /// Splits subsegments until all diametral circles are empty, except between neighboring

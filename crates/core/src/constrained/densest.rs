@@ -2,7 +2,7 @@
 
 use delone_predicates::Point2;
 
-use crate::error::Densest;
+use crate::base::error::Densest;
 
 /// The most segments that are named.
 const NAMED: usize = 5;

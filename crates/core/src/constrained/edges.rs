@@ -1,7 +1,7 @@
 //! A lookup of a few edges among many subsegments.
 
-use crate::error::Result;
-use crate::memory::filled;
+use crate::base::error::Result;
+use crate::base::memory::filled;
 
 /// An edge, regardless of its direction.
 pub fn edge([u, v]: [u32; 2]) -> [u32; 2] {

@@ -4,9 +4,9 @@ use super::marked::Marked;
 use super::present::mark_present;
 use super::segment::{Cavity, Step};
 use super::sites::Sites;
-use crate::error::Result;
-use crate::memory::{push, with_room};
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::{push, with_room};
+use crate::base::watch::{Pace, Watch};
 
 /// Segments between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 10;

@@ -7,11 +7,11 @@
 use delone_predicates::{Point2, Sign, orient2d};
 
 use super::sites::Sites;
-use crate::delaunay2::walk::walk_within;
-use crate::error::{Error, Result};
-use crate::memory::{filled, make_room};
-use crate::mesh2::{Code, Mesh2, Patch, next, prev, triangle};
-use crate::watch::{IDLE, Watch};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, make_room};
+use crate::base::watch::{IDLE, Watch};
+use crate::delaunay::plane::walk::walk_within;
+use crate::mesh::plane::{Code, Mesh2, Patch, next, prev, triangle};
 
 /// Triangles, or segments, between two checks for interruption.
 pub const LOT: u32 = 1 << 16;
@@ -114,7 +114,7 @@ impl<S: Sites> Marked<S> {
     }
 
     /// Legalizes: flips edges, starting from those on the stack, until all are legal. Terminates
-    /// because each flip lowers the lifted surface (see `delaunay2::lawson`; marked edges
+    /// because each flip lowers the lifted surface (see `delaunay::plane::lawson`; marked edges
     /// do not change that).
     pub fn legalize(&mut self) -> Result<()> {
         self.legalize_with(|_, _| {})

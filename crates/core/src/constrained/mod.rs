@@ -37,13 +37,13 @@ pub use self::subsegments::Subsegments;
 use self::inserted::Inserted;
 use self::marked::Marked;
 use self::split::Splitter;
-use crate::arrays::Arrays;
-use crate::delaunay2::{Built, Clock, Method, Stage, mesh};
-use crate::error::{Densest, Error, Result};
-use crate::memory::{filled, push, with_room};
-use crate::mesh2::export;
+use crate::base::arrays::Arrays;
+use crate::base::error::{Densest, Error, Result};
+use crate::base::memory::{filled, push, with_room};
+use crate::base::watch::{Pace, Watch};
+use crate::delaunay::plane::{Built, Clock, Method, Stage, mesh};
+use crate::mesh::plane::export;
 use crate::order;
-use crate::watch::{Pace, Watch};
 
 /// Segments between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 10;

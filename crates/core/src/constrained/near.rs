@@ -25,10 +25,10 @@ use delone_predicates::{Point2, Sign, orient2d};
 use super::intersection::intersection;
 use super::marked::{Marked, turn};
 use super::pairs::overlap;
-use crate::error::Result;
-use crate::memory::{make_room, push};
-use crate::mesh2::triangle;
-use crate::points::Extent;
+use crate::base::error::Result;
+use crate::base::memory::{make_room, push};
+use crate::base::points::Extent;
+use crate::mesh::plane::triangle;
 
 /// A segment and the size of the pixels in its box.
 pub(crate) struct Band {

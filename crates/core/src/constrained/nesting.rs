@@ -5,10 +5,10 @@
 //! crossings and overlaps of rings are subsegments by then, and rings that rounding has bent are
 //! still closed. The sides of each polygon must form closed rings: then all paths agree.
 
-use crate::error::{Error, Result};
-use crate::joins::{Facets, ascending};
-use crate::memory::{filled, make_room, push, with_room};
-use crate::watch::{Pace, Watch};
+use crate::base::error::{Error, Result};
+use crate::base::joins::{Facets, ascending};
+use crate::base::memory::{filled, make_room, push, with_room};
+use crate::base::watch::{Pace, Watch};
 
 /// Items between two checks for interruption.
 const LOT: usize = 1 << 14;

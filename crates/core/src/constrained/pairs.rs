@@ -18,12 +18,12 @@
 use delone_predicates::{Point2, Sign, stages};
 
 use super::intersection::crosses;
-use crate::error::{Error, Result};
-use crate::memory::{filled, with_room};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, with_room};
+use crate::base::points::Extent;
+use crate::base::watch::{Pace, Watch};
 use crate::order::curve::{Scratch, along_curve};
 use crate::order::sort;
-use crate::points::Extent;
-use crate::watch::{Pace, Watch};
 
 /// Children of a node.
 const FAN: usize = 8;

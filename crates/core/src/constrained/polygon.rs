@@ -12,12 +12,12 @@ use super::edges::{Edges, edge};
 use super::marked::Marked;
 use super::ring::simple_ring;
 use super::{Options, Work};
-use crate::delaunay2::{Clock, Method};
-use crate::error::{Error, Result};
-use crate::memory::{filled, push, with_room};
-use crate::mesh2::{next, prev, triangle};
-use crate::points::LIMIT2;
-use crate::watch::Watch;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, push, with_room};
+use crate::base::points::LIMIT2;
+use crate::base::watch::Watch;
+use crate::delaunay::plane::{Clock, Method};
+use crate::mesh::plane::{next, prev, triangle};
 
 /// Which points are inside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

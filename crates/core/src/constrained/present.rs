@@ -8,9 +8,9 @@
 
 use super::marked::{LOT, Marked};
 use super::sites::Sites;
-use crate::error::Result;
-use crate::memory::filled;
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::filled;
+use crate::base::watch::{Pace, Watch};
 
 /// An empty slot.
 const NONE: u32 = u32::MAX;

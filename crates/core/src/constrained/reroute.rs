@@ -23,10 +23,10 @@ use super::near::{Seen, is_near, passes};
 use super::segment::{Cavity, Step};
 use super::split::route;
 use super::{Crossings, Work, pairs};
-use crate::error::Result;
-use crate::memory::{filled, push, with_room};
-use crate::mesh2::{next, prev};
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::{filled, push, with_room};
+use crate::base::watch::Watch;
+use crate::mesh::plane::{next, prev};
 
 /// How many segments may wait: this many, or one in `ONE_IN`.
 const FEW: usize = 16;
@@ -307,7 +307,7 @@ mod tests {
     use super::super::split::Splitter;
     use super::*;
     use crate::constrained::inserted::insert_all;
-    use crate::delaunay2::{Clock, Method};
+    use crate::delaunay::plane::{Clock, Method};
 
     type Bits = [u64; 2];
 

@@ -2,7 +2,7 @@
 //! hull.
 //!
 //! G. H. Meisters, "Polygons have ears", The American Mathematical Monthly 82 (1975); the flips are
-//! those of `delaunay2::lawson`, with the sides as constrained edges.
+//! those of `delaunay::plane::lawson`, with the sides as constrained edges.
 //!
 //! # Why the ring is simple if this succeeds
 //!
@@ -37,9 +37,9 @@
 
 use delone_predicates::{Point2, Sign, incircle_canonical, lexicographic, orient2d};
 
-use crate::error::Result;
-use crate::memory::{filled, with_room};
-use crate::mesh2::{Code, Mesh2, Patch, next, prev};
+use crate::base::error::Result;
+use crate::base::memory::{filled, with_room};
+use crate::mesh::plane::{Code, Mesh2, Patch, next, prev};
 
 /// The most vertices of a ring: above, the search among all corners costs more than it saves.
 const MOST: usize = 400;
@@ -389,7 +389,7 @@ impl<'a> Fill<'a> {
         }
     }
 
-    /// Flips edges until all are legal; see `delaunay2::lawson` for why that terminates.
+    /// Flips edges until all are legal; see `delaunay::plane::lawson` for why that terminates.
     fn flip(&mut self) {
         let mut mesh = self.mesh.resume(self.count);
         while let Some(e) = self.stack.pop() {

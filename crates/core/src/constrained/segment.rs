@@ -24,8 +24,8 @@ use delone_predicates::Sign;
 
 use super::marked::{Marked, turn};
 use super::sites::Sites;
-use crate::error::{Error, Result};
-use crate::mesh2::{Code, Patch, next, prev, triangle};
+use crate::base::error::{Error, Result};
+use crate::mesh::plane::{Code, Patch, next, prev, triangle};
 
 /// How far the insertion of a segment came.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

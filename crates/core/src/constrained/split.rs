@@ -34,10 +34,10 @@ use super::intersection::intersection;
 use super::marked::Marked;
 use super::near::{Seen, passes};
 use super::segment::{Cavity, Met, Step};
-use crate::error::{Error, Result};
-use crate::mesh2::{next, prev};
+use crate::base::error::{Error, Result};
+use crate::base::watch::{Pace, Watch};
+use crate::mesh::plane::{next, prev};
 use crate::order;
-use crate::watch::{Pace, Watch};
 
 /// Pieces, or changes of what covers them, between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 10;

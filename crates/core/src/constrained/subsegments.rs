@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use crate::error::{Error, Result};
-use crate::memory::with_room;
+use crate::base::error::{Error, Result};
+use crate::base::memory::with_room;
+use crate::base::watch::{Pace, Watch};
 use crate::order;
-use crate::watch::{Pace, Watch};
 
 /// Subsegments in the order of the first segment that covers them and along it, directed as it is.
 #[derive(Debug, Default)]

@@ -9,12 +9,12 @@
 use delone_predicates::{Point2, Sign, incircle_canonical};
 
 use super::disk::{LEAST, disk};
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::parallel;
+use crate::base::points::Extent;
+use crate::base::watch::Watch;
 use crate::locate::{in_unit, unit_of};
-use crate::memory::with_room;
-use crate::parallel;
-use crate::points::Extent;
-use crate::watch::Watch;
 
 /// Points per leaf.
 const LEAF: usize = 16;

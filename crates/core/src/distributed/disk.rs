@@ -24,11 +24,11 @@
 
 use delone_predicates::Point2;
 
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::parallel;
+use crate::base::watch::Watch;
 use crate::locate::seen_from;
-use crate::memory::with_room;
-use crate::parallel;
-use crate::watch::Watch;
 
 const UNIT: f64 = f64::EPSILON / 2.0;
 const ROUND: f64 = 16.0 * UNIT;

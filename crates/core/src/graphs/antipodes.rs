@@ -10,11 +10,11 @@ use delone_predicates::{Sign, incircle, insphere};
 
 use super::edges::{SHARE, Skeleton, joined, sorted};
 use super::tree::Tree;
-use crate::error::Result;
-use crate::memory::{filled, push};
-use crate::parallel;
-use crate::points::Extent;
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::{filled, push};
+use crate::base::parallel;
+use crate::base::points::Extent;
+use crate::base::watch::{Pace, Watch};
 
 /// Vertices that are searched from between two checks for interruption.
 const LOT: usize = 1 << 8;

@@ -1,9 +1,9 @@
 //! Union-find: sets that are joined (R. E. Tarjan, "Efficiency of a good but not linear set union
 //! algorithm", 1975), and the connected components of a graph.
 
-use crate::error::Result;
-use crate::memory::{filled, with_room};
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::{filled, with_room};
+use crate::base::watch::{Pace, Watch};
 
 /// Edges between two checks for interruption.
 const LOT: usize = 1 << 16;

@@ -3,10 +3,10 @@
 use delone_predicates::Sign;
 use delone_predicates::proximity::shorter;
 
-use crate::error::Result;
-use crate::memory::{copied, filled, with_room, zeroed};
-use crate::parallel;
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::{copied, filled, with_room, zeroed};
+use crate::base::parallel;
+use crate::base::watch::{Pace, Watch};
 
 /// Edges, or vertices, per task.
 pub(super) const SHARE: usize = 1 << 12;

@@ -11,10 +11,10 @@ use delone_predicates::proximity::spheres;
 use super::edges::{SHARE, joined, sorted};
 use super::nearest::each;
 use super::tree::{Tree, squared_gap};
-use crate::error::Result;
-use crate::memory::push;
-use crate::parallel;
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::push;
+use crate::base::parallel;
+use crate::base::watch::{Pace, Watch};
 
 /// Points between two checks for interruption.
 const LOT: usize = 1 << 8;

@@ -12,6 +12,7 @@
 //! part, so that the result is independent of the number of threads.
 
 mod antipodes;
+pub mod cluster;
 mod components;
 mod edges;
 mod influence;

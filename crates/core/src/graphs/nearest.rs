@@ -10,10 +10,10 @@ use delone_predicates::proximity::shorter;
 
 use super::edges::{SHARE, joined, sorted};
 use super::tree::{LEAF, Tree, certainly_above, squared, squared_gap};
-use crate::error::Result;
-use crate::memory::{push, with_room};
-use crate::parallel;
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::{push, with_room};
+use crate::base::parallel;
+use crate::base::watch::{Pace, Watch};
 
 /// Tests of points between two checks for interruption.
 const LOT: usize = 1 << 14;

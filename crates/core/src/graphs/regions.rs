@@ -20,8 +20,8 @@ use delone_predicates::{Point2, Sign};
 
 use super::edges::Skeleton;
 use super::tree::{Tree, certainly_above, squared, squared_gap};
-use crate::error::Result;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::watch::Watch;
 
 /// The region of an edge that must be empty.
 #[derive(Clone, Copy)]

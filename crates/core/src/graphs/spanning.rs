@@ -19,11 +19,11 @@ use super::components::Sets;
 use super::edges::{SHARE, Skeleton, sorted};
 use super::tree::{certainly_above, squared};
 use super::triangles::filtered;
-use crate::error::Result;
-use crate::memory::{filled, with_room};
+use crate::base::error::Result;
+use crate::base::memory::{filled, with_room};
+use crate::base::parallel;
+use crate::base::watch::{Pace, Watch};
 use crate::order::{sort_by, sort_shared};
-use crate::parallel;
-use crate::watch::{Pace, Watch};
 
 /// Edges between two checks for interruption.
 const LOT: usize = 1 << 16;

@@ -8,12 +8,12 @@ use std::ops::Range;
 
 use delone_predicates::{Point2, Point3};
 
-use crate::error::Result;
-use crate::memory::with_room;
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::parallel;
+use crate::base::points::{Extent, scan};
+use crate::base::watch::Watch;
 use crate::order::{arrange, space};
-use crate::parallel;
-use crate::points::{Extent, scan};
-use crate::watch::Watch;
 
 /// Points per lowest box.
 pub(crate) const LEAF: usize = 8;

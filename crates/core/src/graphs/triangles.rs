@@ -14,10 +14,10 @@ use delone_predicates::{Point2, Sign};
 
 use super::edges::{SHARE, joined, sorted};
 use super::regions::blocks;
-use crate::error::Result;
-use crate::memory::{push, with_room};
-use crate::parallel;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::{push, with_room};
+use crate::base::parallel;
+use crate::base::watch::Watch;
 
 /// What removes an edge of a triangle.
 #[derive(Clone, Copy)]

@@ -7,8 +7,8 @@
 use delone_predicates::{Point3, Sign, orient3d};
 
 use super::insertion::{Facet, in_line};
-use crate::error::{Error, Result};
-use crate::memory::filled;
+use crate::base::error::{Error, Result};
+use crate::base::memory::filled;
 
 /// Lists of vertices, concatenated.
 #[derive(Debug, Default)]

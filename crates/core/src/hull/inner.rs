@@ -3,7 +3,7 @@
 use delone_predicates::{Point3, Sign, orient3d};
 use num_bigint::{BigInt, Sign as Turn};
 
-use crate::wide::{lowest, scaled};
+use crate::base::wide::{lowest, scaled};
 
 /// The mean of four points: rounded if that is strictly inside their tetrahedron; otherwise exact,
 /// as when two of their planes are at neighboring doubles.

@@ -26,9 +26,9 @@
 use delone_predicates::{Point3, Sign, orient2d, orient3d};
 
 use super::inner::Inner;
-use crate::error::{Error, Result};
-use crate::memory::filled;
-use crate::watch::Watch;
+use crate::base::error::{Error, Result};
+use crate::base::memory::filled;
+use crate::base::watch::Watch;
 
 /// Insertions between two checks for interruption.
 const WATCH_EVERY: usize = 1024;

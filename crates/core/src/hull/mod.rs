@@ -18,9 +18,9 @@ use delone_predicates::{Point3, lexicographic};
 
 pub use plane::hull2;
 
-use crate::error::{Error, Result};
-use crate::memory::{filled, with_room};
-use crate::watch::Watch;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, with_room};
+use crate::base::watch::Watch;
 use faces::Polygons;
 
 /// The convex hull of points in 3-D.

@@ -5,9 +5,9 @@
 
 use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::watch::{Pace, Watch};
 use crate::order::{sort, sort_by};
-use crate::watch::{Pace, Watch};
 
 /// Points between two checks for interruption.
 const LOT: usize = 1 << 16;

@@ -10,7 +10,7 @@
 
 use delone_predicates::{Point3, Sign, insphere_canonical, orient3d};
 
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 
 /// No triangle.
 const NONE: usize = usize::MAX;

@@ -9,10 +9,10 @@ use delone_predicates::{Point3, Sign, orient3d};
 
 use super::cells::{Cells, Grid};
 use super::insertion::{Facet, Hull, in_line};
-use crate::error::Result;
-use crate::memory::{filled, with_room};
+use crate::base::error::Result;
+use crate::base::memory::{filled, with_room};
+use crate::base::watch::Watch;
 use crate::order::{order_of, random};
-use crate::watch::Watch;
 
 /// The number of directions whose extreme points are inserted first, on a spiral over the sphere.
 const DIRECTIONS: usize = 40;

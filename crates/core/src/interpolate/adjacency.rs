@@ -1,6 +1,6 @@
 //! Vertex adjacency: which vertices share an edge.
 
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 
 /// The neighbors of each vertex, in compressed rows.
 #[derive(Debug, Clone, Copy)]

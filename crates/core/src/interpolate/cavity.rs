@@ -12,10 +12,10 @@
 
 use delone_predicates::{Point2, Sign, incircle};
 
-use crate::arrays::{Side, Triangles};
-use crate::error::{Error, Result};
+use crate::base::arrays::{Side, Triangles};
+use crate::base::error::{Error, Result};
+use crate::base::watch::Pace;
 use crate::locate::{next, prev};
-use crate::watch::Pace;
 
 /// Edges that are closed, by the opposite corner; empty if there are none.
 pub type Barrier<'a> = &'a [[bool; 3]];

@@ -16,8 +16,8 @@ use super::Order;
 use super::cavity::{Barrier, is_closed};
 use super::field::Field;
 use super::number::{Jet, Number};
-use crate::arrays::{Side, Triangles};
-use crate::error::Result;
+use crate::base::arrays::{Side, Triangles};
+use crate::base::error::Result;
 use crate::locate::{Batch, Located, Output, Place, barycentric, cross, next, prev, seen_from};
 
 /// The part of a triangle's cubics that is independent of values and gradients.

@@ -14,9 +14,9 @@ use num_bigint::{BigInt, Sign};
 use super::cavity::Cavity;
 use super::kind::Kind;
 use super::number::Number;
-use crate::error::Result;
-use crate::watch::Pace;
-use crate::wide::{lowest, ratio, scaled};
+use crate::base::error::Result;
+use crate::base::watch::Pace;
+use crate::base::wide::{lowest, ratio, scaled};
 
 /// Binary places of a term.
 const DIGITS: usize = 160;

@@ -1,7 +1,7 @@
 //! Values and gradients at the vertices, as columns of fields.
 
-use crate::arrays::Triangles;
-use crate::error::{Error, Result};
+use crate::base::arrays::Triangles;
+use crate::base::error::{Error, Result};
 
 /// Columns of values at the vertices, with gradients if given.
 #[derive(Debug, Clone, Copy)]

@@ -5,11 +5,11 @@ use delone_predicates::Point2;
 use super::adjacency::Adjacency;
 use super::field::Field;
 use super::hubs::Hubs;
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::memory::{filled, with_room};
+use crate::base::parallel;
+use crate::base::watch::{Pace, Watch};
 use crate::locate::{Output, in_unit, longest_side, unit_of};
-use crate::memory::{filled, with_room};
-use crate::parallel;
-use crate::watch::{Pace, Watch};
 
 /// Vertices between two checks for interruption, and per task.
 const SHARE: usize = 1 << 12;

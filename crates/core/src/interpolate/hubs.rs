@@ -13,8 +13,8 @@ use std::collections::HashMap;
 use delone_predicates::{Point2, Sign, orient2d};
 
 use super::adjacency::Adjacency;
-use crate::error::Result;
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::watch::{Pace, Watch};
 
 /// The number of neighbors above which a vertex is a hub. Among scattered points none has half as
 /// many.

@@ -15,13 +15,13 @@ use super::cavity::Cavity;
 use super::kind::Kind;
 use super::rows::Part;
 use super::weights::Weights;
-use crate::arrays::{Side, Triangles};
-use crate::delaunay2::{self, triangulate};
-use crate::error::Result;
+use crate::base::arrays::{Side, Triangles};
+use crate::base::error::Result;
+use crate::base::memory::filled;
+use crate::base::parallel;
+use crate::base::watch::{Pace, Watch};
+use crate::delaunay::plane::{self, triangulate};
 use crate::locate::{Kept, Located, Locator, barycentric_weights, next, prev};
-use crate::memory::filled;
-use crate::parallel;
-use crate::watch::{Pace, Watch};
 
 /// Vertices per task.
 const SHARE: usize = 1 << 10;
@@ -260,7 +260,7 @@ impl Hole {
         pace: &mut Pace,
     ) -> Result<()> {
         let ring = self.cavity.points.clone();
-        let made = triangulate(&ring, delaunay2::Method::Auto, 1, pace.watch())?;
+        let made = triangulate(&ring, plane::Method::Auto, 1, pace.watch())?;
         let given = Triangles {
             points: &ring,
             simplices: &made.arrays.simplices,

@@ -4,8 +4,8 @@ use delone_predicates::Point2;
 
 use super::Order;
 use super::field::Field;
-use crate::arrays::Triangles;
-use crate::error::Result;
+use crate::base::arrays::Triangles;
+use crate::base::error::Result;
 use crate::locate::{Batch, Located, Output, Place, barycentric, cross, seen_from};
 
 /// Values, or gradients, at the queries, one row each; NaN outside.

@@ -16,6 +16,8 @@ mod linear;
 mod natural;
 mod number;
 mod rows;
+pub mod space;
+pub mod sphere;
 mod weights;
 
 pub use adjacency::Adjacency;

@@ -9,10 +9,10 @@ use super::kind::Kind;
 use super::number::{Jet, Number};
 use super::rows::{Part, Rows};
 use super::weights::Weights;
-use crate::arrays::{Side, Triangles};
-use crate::error::Result;
+use crate::base::arrays::{Side, Triangles};
+use crate::base::error::Result;
+use crate::base::watch::Pace;
 use crate::locate::{Batch, Located, Output, Place, barycentric};
-use crate::watch::Pace;
 
 /// Triangles of cavities between two checks for interruption, besides those before each lot of
 /// queries: a query may have very many neighbors.

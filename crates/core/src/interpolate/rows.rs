@@ -1,11 +1,11 @@
 //! Sparse rows of weights, and their products with values.
 
 use super::field::Field;
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, zeroed};
+use crate::base::parallel;
+use crate::base::watch::{Pace, Watch};
 use crate::locate::Output;
-use crate::memory::{filled, zeroed};
-use crate::parallel;
-use crate::watch::{Pace, Watch};
 
 /// Rows per task.
 const SHARE: usize = 1 << 13;

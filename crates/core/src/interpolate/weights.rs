@@ -32,9 +32,9 @@ use super::cavity::Cavity;
 use super::exact;
 use super::kind::Kind;
 use super::number::Number;
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::watch::Pace;
 use crate::locate::{certain, in_unit, plain, seen_from};
-use crate::watch::Pace;
 
 /// Squared sine of the angle below which a new triangle counts as flat.
 const FLAT: f64 = 1e-6;

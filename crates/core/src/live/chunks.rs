@@ -12,9 +12,9 @@ use std::ops::{Index, Range};
 use std::sync::Arc;
 
 use super::journal::Journal;
-use crate::error::Result;
-use crate::memory::{filled, make_room, with_room};
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::{filled, make_room, with_room};
+use crate::base::watch::{Pace, Watch};
 
 /// Bytes of a chunk. Large chunks make scattered changes expensive, small ones long lists.
 const CHUNK: usize = 1 << 10;

@@ -7,8 +7,8 @@
 //! Items are recorded where nothing may fail. So callers make room where an edit may still fail: before
 //! each step, for all that it changes ([`Journal::room`]).
 
-use crate::error::Result;
-use crate::memory::{make_room, zeroed};
+use crate::base::error::Result;
+use crate::base::memory::{make_room, zeroed};
 
 /// Items for which there is always room: more than the steps change that do not ask for any.
 const ROOM: usize = 64;

@@ -2,7 +2,7 @@
 //!
 //! # Why every order of edits ends in the same triangles
 //!
-//! Ties are broken by coordinates only (see `delaunay2`): each point has a perturbed height that does
+//! Ties are broken by coordinates only (see `delaunay::plane`): each point has a perturbed height that does
 //! not depend on the other points, no two of which are tied. So a set of points has one triangulation,
 //! the lower hull of its lifted points, and an edit that turns the lower hull of the points before it
 //! into that of the points after it leaves nothing of the history behind. Each of the edits does:
@@ -17,7 +17,7 @@
 //!   edge, by comparisons among its corners.
 //! - *Movement.* Where the star of a vertex keeps its orientation, the moved surface is a triangulation
 //!   of the moved points, and flips turn any triangulation into the lower hull (see
-//!   `delaunay2::lawson`); a surface without an edge to flip is the lower hull already. Otherwise a
+//!   `delaunay::plane::lawson`); a surface without an edge to flip is the lower hull already. Otherwise a
 //!   movement is a removal and an insertion.
 //! - *A rebuild* computes the lower hull from the points.
 //!

@@ -4,9 +4,9 @@
 //! stores. Rows are numbered in the order of their insertion, and a number is never used again.
 
 use super::chunks::{Chunks, Image};
-use crate::error::{Error, Result};
-use crate::memory::with_room;
-use crate::watch::Watch;
+use crate::base::error::{Error, Result};
+use crate::base::memory::with_room;
+use crate::base::watch::Watch;
 
 /// No row, or no vertex.
 pub const NONE: u32 = u32::MAX;

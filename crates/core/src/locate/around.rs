@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::star::{First, Place};
-use crate::arrays::{Given, Side};
+use crate::base::arrays::{Given, Side};
 
 /// The same point in the simplex across a facet on which it is.
 fn across<const D: usize, const N: usize>(

@@ -11,8 +11,8 @@ use super::cross::{certain, plain};
 use super::range::seen_from;
 use super::star::Place;
 use super::tiling::{next, prev};
-use crate::arrays::Triangles;
-use crate::wide::{lowest, ratio, scaled};
+use crate::base::arrays::Triangles;
+use crate::base::wide::{lowest, ratio, scaled};
 
 /// Areas below this may have lost digits to underflow.
 const LEAST: f64 = 1e-250;

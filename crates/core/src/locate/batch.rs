@@ -4,12 +4,12 @@ use super::locator::{Dimension, Located, Locator};
 use super::range::is_finite;
 use super::walker::Walker;
 use super::{Output, Plane};
-use crate::error::Result;
-use crate::memory::with_room;
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::parallel;
+use crate::base::points::Extent;
+use crate::base::watch::Watch;
 use crate::order::order_of;
-use crate::parallel;
-use crate::points::Extent;
-use crate::watch::Watch;
 
 /// The fewest queries that are sorted: below, each walk starts from the tree.
 const FEW: usize = 32;

@@ -9,11 +9,11 @@ use super::boxes::Boxes;
 use super::excess::Excess;
 use super::range::seen_from;
 use super::tiling::prev;
-use crate::arrays::{Given, Side, Triangles};
-use crate::error::{Error, Result};
-use crate::points::Extent;
-use crate::watch::Watch;
-use crate::wide::{lowest, ratio, scaled, sign};
+use crate::base::arrays::{Given, Side, Triangles};
+use crate::base::error::{Error, Result};
+use crate::base::points::Extent;
+use crate::base::watch::Watch;
+use crate::base::wide::{lowest, ratio, scaled, sign};
 
 /// Simplices between two checks for interruption.
 const LOT: usize = 1 << 16;

@@ -6,11 +6,11 @@
 //! Items are sorted along the curve, eight to a box, eight boxes to the next, and so on (like an
 //! R-tree packed along the Hilbert curve: I. Kamel and C. Faloutsos, 1993).
 
-use crate::error::Result;
-use crate::memory::with_room;
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::points::Extent;
+use crate::base::watch::{Pace, Watch};
 use crate::order::order_of;
-use crate::points::Extent;
-use crate::watch::{Pace, Watch};
 
 /// Boxes, or items, per box.
 const WIDTH: usize = 8;

@@ -1,7 +1,7 @@
 //! Locates queries with barycentric coordinates; outside, with the nearest point of the boundary.
 
 use super::{Batch, Located, Output, barycentric};
-use crate::error::Result;
+use crate::base::error::Result;
 
 /// The locations of queries, row by row.
 #[derive(Debug)]

@@ -9,7 +9,7 @@
 
 use std::array::from_fn;
 
-use crate::points::Extent;
+use crate::base::points::Extent;
 
 /// Error bound of a coordinate of the nearest point of a facet, relative to the largest
 /// coordinate of its corners: weights of its corners, each with a few roundings.

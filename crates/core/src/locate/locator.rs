@@ -10,10 +10,10 @@ use super::range::is_finite;
 use super::sites::Sites;
 use super::star::{First, Place, Star};
 use super::start::Start;
-use crate::arrays::{Given, Side};
-use crate::error::Result;
-use crate::points::Extent;
-use crate::watch::Watch;
+use crate::base::arrays::{Given, Side};
+use crate::base::error::Result;
+use crate::base::points::Extent;
+use crate::base::watch::Watch;
 
 /// The location of a point; 2-D by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

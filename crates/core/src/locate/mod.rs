@@ -20,6 +20,7 @@ mod plane;
 mod range;
 mod segment;
 mod sites;
+pub mod space;
 mod star;
 mod start;
 mod straight;

@@ -13,8 +13,8 @@ use delone_predicates::{Point2, Sign, nearer};
 
 use super::range::squared;
 use super::{Batch, Locator, Output, Plane};
-use crate::arrays::{Side, Triangles};
-use crate::error::Result;
+use crate::base::arrays::{Side, Triangles};
+use crate::base::error::Result;
 
 /// Neighbors that a walk tests. Among uniform points it needs about ten, and boxes cost as much as
 /// thirty.

@@ -2,9 +2,9 @@
 
 use std::sync::atomic::{AtomicI32, AtomicU64, Ordering};
 
-use crate::error::Result;
-use crate::memory::with_room;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::watch::Watch;
 
 /// Numbers initialized between two checks for interruption: their pages are new.
 const LOT: usize = 1 << 18;

@@ -9,9 +9,9 @@ use super::locator::{Dimension, Located, Locator};
 use super::sites::Sites;
 use super::star::{First, Place, first_around};
 use super::walk::{sides_of, walk};
-use crate::arrays::Triangles;
-use crate::error::Result;
-use crate::watch::Watch;
+use crate::base::arrays::Triangles;
+use crate::base::error::Result;
+use crate::base::watch::Watch;
 
 /// What is kept of triangles.
 #[derive(Debug)]

@@ -2,7 +2,7 @@
 
 use std::array::from_fn;
 
-use crate::points::Extent;
+use crate::base::points::Extent;
 
 /// Differences within these bounds are not scaled: their fourth powers are doubles.
 const SAFE: std::ops::Range<f64> = 1e-60..1e60;

@@ -4,8 +4,8 @@ use delone_predicates::{Point2, Sign, orient2d};
 
 use super::straight::Trace;
 use super::{Located, Locator, Place, Plane, is_finite};
-use crate::arrays::Side;
-use crate::error::{Error, Result};
+use crate::base::arrays::Side;
+use crate::base::error::{Error, Result};
 
 /// The triangles that the segment from `a` to `b` meets in more than a point, in order; if `a`
 /// equals `b`, the one that contains it. Of the two triangles beside an edge on the segment the

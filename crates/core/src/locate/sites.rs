@@ -7,12 +7,12 @@
 use delone_predicates::Sign;
 
 use super::boxes::{Boxes, length};
-use crate::arrays::Given;
-use crate::error::Result;
-use crate::memory::{filled, with_room};
+use crate::base::arrays::Given;
+use crate::base::error::Result;
+use crate::base::memory::{filled, with_room};
+use crate::base::points::Extent;
+use crate::base::watch::Watch;
 use crate::order::order_of;
-use crate::points::Extent;
-use crate::watch::Watch;
 
 /// Tetrahedra between two checks for interruption.
 const LOT: usize = 1 << 16;

@@ -6,7 +6,7 @@
 
 use delone_predicates::Sign;
 
-use crate::arrays::{Side, Triangles};
+use crate::base::arrays::{Side, Triangles};
 
 /// A point in a closed simplex; 2-D by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -6,9 +6,9 @@
 //! points are dense. The tree is perfect and stored level by level, so it needs no links and its
 //! top stays in the cache.
 
-use crate::error::Result;
-use crate::memory::{filled, with_room};
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::{filled, with_room};
+use crate::base::watch::{Pace, Watch};
 
 /// The fewest simplices per node.
 const SHARE: usize = 8;

@@ -9,8 +9,8 @@
 use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 
 use super::tiling::{next, prev};
-use crate::arrays::{Side, Triangles};
-use crate::error::{Error, Result};
+use crate::base::arrays::{Side, Triangles};
+use crate::base::error::{Error, Result};
 
 /// How a trace ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

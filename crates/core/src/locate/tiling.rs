@@ -1,6 +1,6 @@
 //! The edges of a 2-D tiling, and turns around its vertices.
 
-use crate::arrays::{Side, Triangles};
+use crate::base::arrays::{Side, Triangles};
 
 /// The corner after `k`, counterclockwise.
 #[inline]

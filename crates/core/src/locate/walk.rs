@@ -11,8 +11,8 @@ use super::locator::Located;
 use super::star::Place;
 use super::straight::{End, Trace};
 use super::tiling::{next, prev};
-use crate::arrays::{Side, Triangles};
-use crate::error::Result;
+use crate::base::arrays::{Side, Triangles};
+use crate::base::error::Result;
 
 /// Steps of the visibility walk before the straight walk takes over: several times what a walk
 /// across a whole mesh of uniform points needs, which is a multiple of the square root; here of a

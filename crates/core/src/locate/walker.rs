@@ -3,8 +3,8 @@
 use super::locator::{Dimension, Located, Locator};
 use super::range::squared;
 use super::star::Star;
-use crate::arrays::Side;
-use crate::error::Result;
+use crate::base::arrays::Side;
+use crate::base::error::Result;
 
 /// The location of the last query: the next walk starts there, or from the tree if it is far away.
 pub struct Walker<'a, P: Dimension<D, N>, const D: usize, const N: usize> {

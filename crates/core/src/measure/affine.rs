@@ -9,9 +9,9 @@ use super::batch::each;
 use super::corners::{
     Corners, Integers, Measure, Number, Vectors, cross, determinant2, determinant3, in_units,
 };
-use crate::error::Result;
-use crate::watch::Watch;
-use crate::wide::{across, determinant, ratio};
+use crate::base::error::Result;
+use crate::base::watch::Watch;
+use crate::base::wide::{across, determinant, ratio};
 
 /// The maps of triangles. Entries have a relative error below 1e-13; those out of range are
 /// infinite.

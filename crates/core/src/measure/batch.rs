@@ -1,9 +1,9 @@
 //! Computes one result for each simplex, on all workers.
 
-use crate::error::Result;
-use crate::memory::{Zero, zeroed};
-use crate::parallel;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::{Zero, zeroed};
+use crate::base::parallel;
+use crate::base::watch::Watch;
 
 /// Simplices per task.
 const SHARE: usize = 1 << 14;

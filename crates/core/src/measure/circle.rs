@@ -32,7 +32,7 @@ use num_bigint::{BigInt, Sign};
 
 use super::center::{Center, Centered};
 use super::component::component;
-use crate::wide::{lowest, ratio, scaled};
+use crate::base::wide::{lowest, ratio, scaled};
 
 /// Half the distance from 1.0 to the next double.
 const U: f64 = f64::EPSILON / 2.0;

@@ -3,8 +3,8 @@
 use super::batch::each;
 use super::center::{Center, Centered};
 use super::{circle, sphere};
-use crate::error::Result;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::watch::Watch;
 
 /// The circumcenters of triangles, each coordinate within 4 units in the last place; infinite if
 /// out of range.

@@ -19,7 +19,7 @@ use std::ops::{Add, Mul, Sub};
 use delone_predicates::arithmetic::{Pair, decode_odd};
 use num_bigint::BigInt;
 
-use crate::wide::{lowest, scaled};
+use crate::base::wide::{lowest, scaled};
 
 /// Above this share of the product of the lengths, a determinant in doubles is accurate enough.
 const PLAIN: f64 = 1.0 / 32.0;

@@ -8,9 +8,9 @@ use super::corners::{
     times_power,
 };
 use super::sphere;
-use crate::error::Result;
-use crate::watch::Watch;
-use crate::wide::{across, determinant, lowest, ratio, root, scaled};
+use crate::base::error::Result;
+use crate::base::watch::Watch;
+use crate::base::wide::{across, determinant, lowest, ratio, root, scaled};
 
 /// The areas of triangles, with a relative error below 1e-14; infinite, or subnormal and rounded,
 /// if out of range.

@@ -8,10 +8,10 @@
 //! vertices by a counting sort, and the few rows of each vertex are sorted. In total O(m), in tasks
 //! that share nothing.
 
-use crate::error::{Error, Result};
-use crate::memory::{Zero, copied, filled, push, with_room, zeroed};
-use crate::parallel;
-use crate::watch::{Pace, Watch};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{Zero, copied, filled, push, with_room, zeroed};
+use crate::base::parallel;
+use crate::base::watch::{Pace, Watch};
 
 /// Edges between two checks for interruption.
 const LOT: usize = 1 << 16;

@@ -33,7 +33,7 @@ use num_bigint::{BigInt, Sign};
 
 use super::center::{Center, Centered};
 use super::component::component;
-use crate::wide::{determinant, lowest, ratio, scaled};
+use crate::base::wide::{determinant, lowest, ratio, scaled};
 
 /// Half the distance from 1.0 to the next double.
 const U: f64 = f64::EPSILON / 2.0;

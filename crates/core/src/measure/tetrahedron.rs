@@ -11,9 +11,9 @@ use super::batch::{columns, each};
 use super::corners::{
     Corners, Integers, Measure, Number, Vectors, cross, determinant3, dot, in_units,
 };
-use crate::error::Result;
-use crate::watch::Watch;
-use crate::wide::{across, angle, ratio, root};
+use crate::base::error::Result;
+use crate::base::watch::Watch;
+use crate::base::wide::{across, angle, ratio, root};
 
 /// The two faces at each edge, by their opposite corners, which are not on the edge; the edges are
 /// 01, 02, 03, 12, 13 and 23.

@@ -4,9 +4,9 @@ use num_bigint::{BigInt, Sign};
 
 use super::batch::{columns, each};
 use super::corners::{Corners, Integers, Measure, Number, Vectors, determinant2, in_units};
-use crate::error::Result;
-use crate::watch::Watch;
-use crate::wide::{angle, lowest, ratio, root, scaled};
+use crate::base::error::Result;
+use crate::base::watch::Watch;
+use crate::base::wide::{angle, lowest, ratio, root, scaled};
 
 /// Squares whose relative difference is smaller are compared exactly: about eight roundings each.
 const UNSURE: f64 = 1e-13;

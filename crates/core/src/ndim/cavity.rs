@@ -1,9 +1,9 @@
 //! Insertion of a point: locate, remove the cells in conflict, and join the point to the rim.
 
 use super::cell::{INFINITE, Mesh};
-use crate::error::{Error, Result};
-use crate::memory::{self, clear_with_room, filled};
-use crate::watch::Pace;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{self, clear_with_room, filled};
+use crate::base::watch::Pace;
 
 /// A facet of the rim: a removed cell, the number of the corner opposite, and the cell outside.
 type Side = (u32, usize, u32);

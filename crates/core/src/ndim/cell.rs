@@ -4,9 +4,9 @@ use super::filter::{Matrix, Test, U, minus};
 use super::fine::Fine;
 use super::frame::Frame;
 use super::sites::Sites;
-use crate::arrays::Given;
-use crate::error::{Error, Result};
-use crate::memory::{self, filled, is_plausible, with_room};
+use crate::base::arrays::Given;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{self, filled, is_plausible, with_room};
 
 /// The vertex at infinity. It is the last one of a ghost.
 pub const INFINITE: u32 = u32::MAX;

@@ -5,7 +5,7 @@ use super::filter::{Test, barycentric, invert, minus};
 use super::fine::Fine;
 use super::frame::Frame;
 use super::residues::is_zero;
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 
 /// Differences of at most this many bits go to integers at once: they are machine integers, and
 /// faster than residues.

@@ -16,9 +16,9 @@ use super::order::arranged;
 use super::sites::Sites;
 use super::triangulate::{simplex_of, sorted};
 use super::wrapping::wrap;
-use crate::error::Result;
-use crate::memory::{filled, push, with_room};
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::{filled, push, with_room};
+use crate::base::watch::{Pace, Watch};
 
 /// Units of work between two checks for interruption.
 const PACE: usize = 1 << 10;

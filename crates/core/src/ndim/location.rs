@@ -8,12 +8,12 @@ use num_bigint::BigInt;
 
 use super::simplex;
 use super::walk::walk;
-use crate::arrays::{Given, Side};
-use crate::error::Result;
+use crate::base::arrays::{Given, Side};
+use crate::base::error::Result;
+use crate::base::points::Extent;
+use crate::base::watch::Watch;
+use crate::base::wide::{lowest, scaled};
 use crate::locate::{self, Batch, Dimension, First, Located, Locator, Output, Place};
-use crate::points::Extent;
-use crate::watch::Watch;
-use crate::wide::{lowest, scaled};
 
 /// What is kept of simplices in `D` dimensions.
 #[derive(Debug)]

@@ -4,11 +4,11 @@
 use delone_predicates::Sign;
 
 use super::simplex;
-use crate::arrays::Given;
-use crate::consistency::{self, Fault};
-use crate::error::Result;
+use crate::base::arrays::Given;
+use crate::base::consistency::{self, Fault};
+use crate::base::error::Result;
+use crate::base::watch::Watch;
 use crate::measure::each;
-use crate::watch::Watch;
 
 /// The volumes, with a relative error below 1e-14; infinite, or subnormal and rounded, if out of range.
 pub fn volumes<const D: usize, const V: usize, const P: usize>(

@@ -1,8 +1,8 @@
 //! Delaunay triangulations in four to eight dimensions: exact, canonical, one code for all.
 //!
 //! Everything is generic over three constants: `D` coordinates, `V = D + 1` corners, and `P`, `D`
-//! rounded up to whole vector registers. In 2-D and 3-D the result is that of `delaunay2` and
-//! `delaunay3`, which tests use.
+//! rounded up to whole vector registers. In 2-D and 3-D the result is that of `delaunay::plane` and
+//! `delaunay::space`, which tests use.
 //!
 //! # The rule
 //!

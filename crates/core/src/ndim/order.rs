@@ -1,7 +1,7 @@
 //! The order of insertion: the Hilbert curve in D dimensions, in rounds of growing density.
 
-use crate::error::Result;
-use crate::memory::{filled, with_room};
+use crate::base::error::Result;
+use crate::base::memory::{filled, with_room};
 use crate::order::hilbert_n::key;
 
 /// Every 64th point of the curve, then every 8th of the others, then the rest: early points spread

@@ -14,7 +14,7 @@ use super::fine::{Fine, differences};
 use super::frame::Frame;
 use super::residues::is_zero;
 use super::sites::Sites;
-use crate::wide::{ratio, scaled};
+use crate::base::wide::{ratio, scaled};
 
 /// Differences that the filters take, if they are not zero.
 const SAFE: std::ops::Range<f64> = 1e-100..1e100;

@@ -12,9 +12,9 @@ use num_bigint::BigInt;
 use super::filter::{Matrix, dot, minus};
 use super::frame::Integers;
 use super::residues::{Points, ROWS};
-use crate::error::Result;
-use crate::memory::with_room;
-use crate::wide;
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::wide;
 
 /// Bits from the lowest to the highest of coordinates that the filters take.
 pub const WIDEST: u32 = 400;

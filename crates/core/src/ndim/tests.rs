@@ -14,8 +14,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::cell::{Counts, Mesh};
 use super::order::arranged;
 use super::triangulate::{inserted, sorted, triangulate};
-use crate::error::{Error, Result};
-use crate::watch::{IDLE, Pace, Watch};
+use crate::base::error::{Error, Result};
+use crate::base::watch::{IDLE, Pace, Watch};
 use brute::{canonical, orientation, rank};
 use sets::{Random, kinds};
 

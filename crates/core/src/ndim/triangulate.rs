@@ -8,11 +8,11 @@ use super::cell::Mesh;
 use super::frame::Integers;
 use super::order::arranged;
 use super::sites::Sites;
-use crate::error::{Error, Result};
-use crate::memory::{self, filled, with_room};
-use crate::points;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{self, filled, with_room};
+use crate::base::points;
+use crate::base::watch::{Pace, Watch};
 use crate::regular::{Heaviest, heaviest};
-use crate::watch::{Pace, Watch};
 
 /// Units of work between two checks for interruption: a cell takes a microsecond, and one with
 /// integers up to a millisecond.

@@ -14,10 +14,10 @@ use super::frame::Frame;
 use super::simplex;
 use super::sites::Sites;
 use super::triangulate::{sorted, weighted};
-use crate::arrays::{Given, Side};
-use crate::error::Result;
-use crate::memory::{filled, push};
-use crate::watch::{Pace, Watch};
+use crate::base::arrays::{Given, Side};
+use crate::base::error::Result;
+use crate::base::memory::{filled, push};
+use crate::base::watch::{Pace, Watch};
 use delone_predicates::Sign;
 
 /// Simplices between two checks for interruption: one with integers takes up to a millisecond.
@@ -312,8 +312,8 @@ fn is_over<const D: usize, const V: usize, const P: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::watch::IDLE;
     use crate::ndim::triangulate;
-    use crate::watch::IDLE;
 
     /// A triangulation as arrays of signed numbers.
     fn made(points: &[[f64; 4]]) -> (Vec<[i32; 5]>, Vec<[i32; 5]>) {

@@ -3,7 +3,7 @@
 use delone_predicates::Sign;
 
 use super::simplex;
-use crate::arrays::{Given, Side};
+use crate::base::arrays::{Given, Side};
 use crate::locate::{Located, Place};
 
 /// Steps before a walk gives up, times the number of simplices along an axis. A visibility walk ends in

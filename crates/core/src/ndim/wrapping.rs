@@ -2,9 +2,9 @@
 
 use super::cavity::Room;
 use super::cell::{INFINITE, Mesh};
-use crate::error::Result;
-use crate::memory::{filled, push};
-use crate::watch::Pace;
+use crate::base::error::Result;
+use crate::base::memory::{filled, push};
+use crate::base::watch::Pace;
 
 /// Points outside of facets, as linked lists.
 struct Waiting {

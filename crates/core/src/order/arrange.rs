@@ -7,9 +7,9 @@ use delone_predicates::Point2;
 use super::blocks::{Cuts, split};
 use super::curve::{Scratch, along_curve};
 use super::distribute::Blocks;
-use crate::error::Result;
-use crate::parallel;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::parallel;
+use crate::base::watch::Watch;
 
 /// Distinct points, numbered as vertices.
 #[derive(Debug)]

@@ -6,10 +6,10 @@
 use delone_predicates::{Point2, lexicographic};
 
 use super::distribute::{Blocks, distribute};
-use crate::error::Result;
-use crate::memory::with_room;
-use crate::points::Extent;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::points::Extent;
+use crate::base::watch::Watch;
 
 /// The most points that a block should hold: its mesh, 80 bytes per point, fits the cache of a core.
 /// Of the powers of two from 2^12 to 2^17, this is the fastest for one thread.

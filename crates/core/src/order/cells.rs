@@ -7,9 +7,9 @@
 use delone_predicates::lexicographic;
 
 use super::{hilbert, hilbert_n, hilbert3};
-use crate::error::Result;
-use crate::points::Extent;
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::points::Extent;
+use crate::base::watch::{Pace, Watch};
 
 /// The longest run of equal keys that is sorted lexicographically instead of keyed again.
 pub const CROWD: usize = 16;

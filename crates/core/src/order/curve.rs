@@ -7,10 +7,10 @@ use delone_predicates::Point2;
 
 use super::cells::{Cells, fine_bits, order_runs, row};
 use super::radix;
-use crate::error::Result;
-use crate::memory::{clear_with_room, with_room};
-use crate::points::Extent;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::{clear_with_room, with_room};
+use crate::base::points::Extent;
+use crate::base::watch::Watch;
 
 /// Buffers reused from block to block.
 #[derive(Default)]

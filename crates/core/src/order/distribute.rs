@@ -1,10 +1,10 @@
 //! Distributes points to blocks in parallel: a counting sort by block, one share of the points per
 //! task.
 
-use crate::error::Result;
-use crate::memory::{Zero, filled, zeroed};
-use crate::parallel;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::{Zero, filled, zeroed};
+use crate::base::parallel;
+use crate::base::watch::Watch;
 
 /// The fewest points per task.
 const SHARE: usize = 1 << 12;

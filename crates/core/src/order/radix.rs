@@ -2,9 +2,9 @@
 //!
 //! It is stable, so payloads in ascending order stay so within a key.
 
-use crate::error::Result;
-use crate::memory::clear_with_room;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::clear_with_room;
+use crate::base::watch::Watch;
 
 const DIGIT: u32 = 8;
 const BUCKETS: usize = 1 << DIGIT;

@@ -2,11 +2,11 @@
 
 use super::cells::{CROWD, Cells, fine_bits, order_runs, row};
 use super::radix;
-use crate::error::Result;
-use crate::memory::with_room;
-use crate::parallel;
-use crate::points::Extent;
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::parallel;
+use crate::base::points::Extent;
+use crate::base::watch::{Pace, Watch};
 
 /// The fewest points that are worth a thread.
 const SHARE: usize = 1 << 14;

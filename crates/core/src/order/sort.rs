@@ -2,9 +2,9 @@
 
 use std::cmp::Ordering;
 
-use crate::error::Result;
-use crate::parallel;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::parallel;
+use crate::base::watch::Watch;
 
 /// Items sorted without a check for interruption.
 const LOT: usize = 1 << 18;

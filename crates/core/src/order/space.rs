@@ -6,10 +6,10 @@ use delone_predicates::Point3;
 
 use super::cells::{Cells, fine_bits, order_runs, row};
 use super::radix;
-use crate::error::Result;
-use crate::memory::{push, with_room};
-use crate::points::Extent;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::{push, with_room};
+use crate::base::points::Extent;
+use crate::base::watch::Watch;
 
 /// The bounding box of a finite 3-D point set.
 pub type Extent3 = Extent<3>;

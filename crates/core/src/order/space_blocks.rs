@@ -7,10 +7,10 @@ use delone_predicates::{Point3, lexicographic};
 
 use super::distribute::{Blocks, distribute};
 use super::space::{Arranged3, Extent3, Room3, arrange, arrange_rows};
-use crate::error::Result;
-use crate::memory::with_room;
-use crate::parallel;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::parallel;
+use crate::base::watch::Watch;
 
 /// Sampled points per block. A median of this many is off by 0.3 % of the points, and so is the
 /// work of two threads with a block each; finding it costs 2 ns per point for a million points.

@@ -7,7 +7,7 @@
 use delone_predicates::arithmetic::Pair;
 use delone_predicates::{Point2, Sign, orient2d};
 
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 
 use super::pairs::{ONE, Pair3, ZERO, pair, quotient, root};
 use super::signs::above;

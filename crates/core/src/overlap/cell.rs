@@ -13,7 +13,7 @@ use delone_predicates::arithmetic::Pair;
 use delone_predicates::sphere::{Unit, leveled, same};
 use delone_predicates::{Point3, Sign, orient2d};
 
-use crate::points::Extent;
+use crate::base::points::Extent;
 
 use super::outline::{Fault, Prepared, distinct, start_at_smallest};
 use super::pairs::{Pair3, Turn, chart, chart_of, cross_of, factor, heads};

@@ -4,13 +4,13 @@ use std::collections::HashMap;
 
 use delone_predicates::arithmetic::Pair;
 
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, make_room, push, with_room};
+use crate::base::parallel::map_watched;
+use crate::base::points::Extent;
+use crate::base::watch::{Pace, Watch};
 use crate::locate::boxes::Boxes;
-use crate::memory::{filled, make_room, push, with_room};
 use crate::order::order_of;
-use crate::parallel::map_watched;
-use crate::points::Extent;
-use crate::watch::{Pace, Watch};
 
 use super::bands::Block;
 use super::cell::Cell;

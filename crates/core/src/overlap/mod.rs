@@ -22,12 +22,12 @@ mod rows;
 mod signs;
 mod walk;
 
-use crate::error::{Error, Result};
-use crate::memory::{push, with_room};
-use crate::parallel::map_watched;
-use crate::points::scan;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{push, with_room};
+use crate::base::parallel::map_watched;
+use crate::base::points::scan;
+use crate::base::watch::Watch;
 use crate::sphere::directions::check as check_vectors;
-use crate::watch::Watch;
 
 pub use bands::Rows;
 pub use gather::{Shared, overlaps, overlaps_plane};
@@ -216,7 +216,7 @@ fn check_cells<C: Prepared<D>, const D: usize>(
 }
 
 fn check_rows(rows: &Rows) -> Result<Checked> {
-    let mut areas = crate::memory::filled(rows.count, 0.0)?;
+    let mut areas = crate::base::memory::filled(rows.count, 0.0)?;
     for block in rows.checked()? {
         for row in 0..block.rows() {
             for column in 0..block.columns() {
@@ -230,9 +230,9 @@ fn check_rows(rows: &Rows) -> Result<Checked> {
     let count = rows.count;
     Ok(Checked {
         areas,
-        faults: crate::memory::filled(count, 0)?,
-        turned: crate::memory::filled(count, false)?,
-        concave: crate::memory::filled(count, false)?,
+        faults: crate::base::memory::filled(count, 0)?,
+        turned: crate::base::memory::filled(count, false)?,
+        concave: crate::base::memory::filled(count, false)?,
         repeated: 0,
     })
 }

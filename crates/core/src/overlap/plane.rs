@@ -18,7 +18,7 @@ use std::cmp::Ordering;
 use delone_predicates::arithmetic::Pair;
 use delone_predicates::{Point2, Sign, orient2d};
 
-use crate::points::Extent;
+use crate::base::points::Extent;
 
 use super::outline::{Fault, Met, Outline, Prepared, Sum, Work, distinct, meet, start_at_smallest};
 use super::pairs::{ZERO, pair, quotient};

@@ -3,7 +3,7 @@
 
 use delone_predicates::{Point2, Sign};
 
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 
 use super::bands::{Block, angle, turn2};
 

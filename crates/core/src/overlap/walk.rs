@@ -13,7 +13,7 @@
 use delone_predicates::Point3;
 use delone_predicates::arithmetic::Pair;
 
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 
 use super::bands::{Block, angle};
 use super::cell::Cell;

@@ -4,8 +4,8 @@
 
 use delone_predicates::Point2;
 
-use crate::error::Result;
-use crate::memory::filled;
+use crate::base::error::Result;
+use crate::base::memory::filled;
 
 /// Angles below this between two segments make a sharp corner: there, splits of one segment may
 /// encroach upon the other.

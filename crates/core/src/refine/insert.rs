@@ -1,12 +1,12 @@
 //! Inserts a vertex in the domain: empties its cavity, bounded by marked edges, and fills it with a
 //! star.
 //!
-//! As in `delaunay2::cavity`; labels and limits on areas are inherited.
+//! As in `delaunay::plane::cavity`; labels and limits on areas are inherited.
 
 use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
 
 use crate::constrained::marked::Marked;
-use crate::mesh2::{Code, next, prev, triangle};
+use crate::mesh::plane::{Code, next, prev, triangle};
 
 /// Triangles that a walk may visit: new vertices are near.
 const WALK: usize = 4096;

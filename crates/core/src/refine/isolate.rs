@@ -9,10 +9,10 @@ use super::gap::Base;
 use super::needles::{Fence, key};
 use super::shape::{cross, dot, minus};
 use super::work::Work;
+use crate::base::error::Result;
+use crate::base::memory::{filled, push};
 use crate::constrained::marked::turn;
-use crate::error::Result;
-use crate::memory::{filled, push};
-use crate::mesh2::{Code, next, prev, triangle};
+use crate::mesh::plane::{Code, next, prev, triangle};
 
 /// The price from which a needle is postponed: less is done quickly.
 const EXPENSIVE: f64 = 1000.0;

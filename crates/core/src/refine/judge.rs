@@ -4,9 +4,9 @@
 use delone_predicates::Point2;
 
 use super::shape::{Shape, cross, dot, minus};
-use crate::error::Result;
-use crate::memory::push;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::push;
+use crate::base::watch::Watch;
 
 /// Triangles between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 16;

@@ -32,12 +32,12 @@ pub use self::rounds::{Fresh, Rounds, Samples};
 use self::task::Rules;
 pub use self::task::{Counts, Lines, Refined, Task, Tell};
 use self::work::Work;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{copied, filled, with_room};
+use crate::base::watch::{Pace, Watch};
 use crate::constrained::marked::Marked;
-use crate::delaunay2::lawson::compact;
-use crate::error::{Error, Result};
-use crate::memory::{copied, filled, with_room};
-use crate::mesh2::{import, next, prev, triangle};
-use crate::watch::{Pace, Watch};
+use crate::delaunay::plane::lawson::compact;
+use crate::mesh::plane::{import, next, prev, triangle};
 
 /// Triangles, or segments, between two checks for interruption.
 const LOT: usize = 1 << 16;

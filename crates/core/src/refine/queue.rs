@@ -7,8 +7,8 @@
 //! Lengths go to buckets that grow by a factor of 2^(1/4); within a bucket the queue is last in,
 //! first out, so that work stays local.
 
-use crate::error::Result;
-use crate::memory::push;
+use crate::base::error::Result;
+use crate::base::memory::push;
 
 /// log2 of the buckets per factor of two of the squared length: the top bits of its fraction.
 const FINE: u32 = 1;

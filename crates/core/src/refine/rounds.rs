@@ -25,12 +25,12 @@ use delone_predicates::{Point2, Sign, orient2d};
 use super::task::{Refined, Task, Tell};
 use super::work::Work;
 use super::{LOT, begin, export};
+use crate::base::error::Result;
+use crate::base::memory::{copied, make_room, push, with_room};
+use crate::base::watch::{Pace, Watch};
 use crate::constrained::marked::turn;
-use crate::error::Result;
 use crate::measure;
-use crate::memory::{copied, make_room, push, with_room};
-use crate::mesh2::triangle;
-use crate::watch::{Pace, Watch};
+use crate::mesh::plane::triangle;
 
 /// Samples, whose location may be a long walk, between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 10;

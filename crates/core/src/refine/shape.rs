@@ -5,7 +5,7 @@ use delone_predicates::Point2;
 use delone_predicates::arithmetic::Pair;
 use num_bigint::BigInt;
 
-use crate::wide::{lowest, scaled};
+use crate::base::wide::{lowest, scaled};
 
 /// Squared cosines with a smaller relative difference are compared exactly: four roundings each.
 const UNSURE: f64 = 1e-14;

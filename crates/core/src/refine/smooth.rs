@@ -17,10 +17,10 @@ use std::collections::HashSet;
 
 use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
 
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{copied, filled, with_room};
+use crate::base::watch::{Pace, Watch};
 use crate::measure;
-use crate::memory::{copied, filled, with_room};
-use crate::watch::{Pace, Watch};
 
 /// Triangles, or flips, between two checks for interruption.
 const LOT: usize = 1 << 14;
@@ -472,8 +472,8 @@ fn targets(mesh: &Domain, rules: &Rules<'_>, watch: &Watch) -> Result<Vec<Point2
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::delaunay2::{Method, triangulate};
-    use crate::mesh2::import::adjacency;
+    use crate::delaunay::plane::{Method, triangulate};
+    use crate::mesh::plane::import::adjacency;
 
     fn turned(simplices: &[[i32; 3]]) -> Vec<[i32; 3]> {
         let first = |t: &[i32; 3]| (0..3).min_by_key(|&k| t[k]).unwrap();

@@ -2,7 +2,7 @@
 
 use delone_predicates::Point2;
 
-use crate::error::Result;
+use crate::base::error::Result;
 
 /// Lines that the segments are parts of, for example after an earlier refinement.
 #[derive(Debug, Clone, Copy)]

@@ -29,12 +29,12 @@ use super::place::{Bend, Places};
 use super::queue::{Bad, Queue};
 use super::shape::{Reason, Seen, Shape, angle, dot, minus};
 use super::task::{Counts, Rules, Tell};
+use crate::base::error::Result;
+use crate::base::memory::{copied, make_room, push, with_room};
+use crate::base::watch::Watch;
 use crate::constrained::conforming::cut;
 use crate::constrained::marked::{Marked, turn};
-use crate::error::Result;
-use crate::memory::{copied, make_room, push, with_room};
-use crate::mesh2::{Code, next, prev, triangle};
-use crate::watch::Watch;
+use crate::mesh::plane::{Code, next, prev, triangle};
 
 /// Vertices between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 12;

@@ -21,11 +21,11 @@
 use std::collections::HashMap;
 
 use super::power::Weighted;
-use crate::arrays::Arrays;
-use crate::error::{Error, Result};
-use crate::memory::{filled, push, with_room};
-use crate::parallel;
-use crate::watch::Watch;
+use crate::base::arrays::Arrays;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, push, with_room};
+use crate::base::parallel;
+use crate::base::watch::Watch;
 
 /// Simplices, or if there are none, the sites that are not hidden.
 pub type Found<const N: usize> = std::result::Result<Arrays<N>, Vec<u32>>;
@@ -429,7 +429,7 @@ mod tests {
 
     use super::super::insertion::insert_all;
     use super::*;
-    use crate::watch::IDLE;
+    use crate::base::watch::IDLE;
 
     fn numbers(n: usize, seed: u64) -> Vec<f64> {
         let mut state = seed;

@@ -28,13 +28,13 @@ use delone_predicates::Point2;
 
 use super::periodic::{Copies, of_copies};
 use super::regular;
-use crate::arrays::{Arrays, Given, Side};
-use crate::delaunay2::{Method, triangulate};
-use crate::error::{Error, Result};
-use crate::memory::{filled, with_room};
+use crate::base::arrays::{Arrays, Given, Side};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, with_room};
+use crate::base::points::{self, Extent};
+use crate::base::watch::{Pace, Watch};
+use crate::delaunay::plane::{Method, triangulate};
 use crate::order::arrange;
-use crate::points::{self, Extent};
-use crate::watch::{Pace, Watch};
 
 /// Sets with fewer points take all copies at once.
 const FEW: usize = 64;
@@ -190,7 +190,7 @@ impl Inner {
     /// The rows that triangles which are not final may have as corners.
     fn open_rows(&self, given: &Given<'_, 2, 3>, rows: &[u32]) -> Result<Vec<u32>> {
         if self.count == 0 {
-            return crate::memory::copied(rows);
+            return crate::base::memory::copied(rows);
         }
         let mut open = filled(given.points.len(), false)?;
         for (t, corners) in given.simplices.iter().enumerate() {
@@ -300,8 +300,8 @@ impl Classes {
             let first = (0..3).min_by_key(|&k| corner(k)).unwrap_or(0);
             let [a, b, c] = [0, 1, 2].map(|k| corner(first + k));
             if a.1 == [0, 0] {
-                crate::memory::push(&mut simplices, [a.0, b.0, c.0])?;
-                crate::memory::push(&mut offsets, [0, 0, b.1[0], b.1[1], c.1[0], c.1[1]])?;
+                crate::base::memory::push(&mut simplices, [a.0, b.0, c.0])?;
+                crate::base::memory::push(&mut offsets, [0, 0, b.1[0], b.1[1], c.1[0], c.1[1]])?;
             }
         }
         let own = chain.iter().map(|&copy| copy as usize);

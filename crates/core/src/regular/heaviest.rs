@@ -1,7 +1,7 @@
 //! The row that represents each distinct point: the heaviest of coincident ones, in 2-D and 3-D.
 
-use crate::error::Result;
-use crate::memory::{filled, with_room};
+use crate::base::error::Result;
+use crate::base::memory::{filled, with_room};
 
 /// Distinct points, each with the first of its heaviest rows.
 pub struct Heaviest {

@@ -14,11 +14,11 @@
 use delone_predicates::Sign;
 
 use super::records::{GHOST, NONE, Records};
-use crate::arrays::Arrays;
-use crate::error::{Error, Result};
-use crate::memory::filled;
-use crate::proof::Verdict;
-use crate::watch::Watch;
+use crate::base::arrays::Arrays;
+use crate::base::error::{Error, Result};
+use crate::base::memory::filled;
+use crate::base::proof::Verdict;
+use crate::base::watch::Watch;
 
 /// Sites inserted between two checks for interruption.
 const WATCH_EVERY: u32 = 1 << 10;

@@ -10,16 +10,17 @@ mod insertion;
 mod periodic;
 mod power;
 mod records;
+pub mod space;
 mod validate;
 mod validate_periodic;
 
 use delone_predicates::Point2;
 
-use crate::arrays::Arrays;
-use crate::error::Result;
+use crate::base::arrays::Arrays;
+use crate::base::error::Result;
+use crate::base::points;
+use crate::base::watch::Watch;
 use crate::order::arrange;
-use crate::points;
-use crate::watch::Watch;
 
 pub use blocks::{Found, in_blocks};
 pub use classes::{Periodic, periodic};

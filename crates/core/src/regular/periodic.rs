@@ -31,12 +31,12 @@ use num_bigint::BigInt;
 
 use super::insertion::{Sites, insert_all};
 use super::power::{determinant, in_line};
-use crate::arrays::Arrays;
-use crate::error::Result;
-use crate::memory::with_room;
+use crate::base::arrays::Arrays;
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::watch::Watch;
+use crate::base::wide::{lowest, scaled, sign};
 use crate::order::arrange;
-use crate::watch::Watch;
-use crate::wide::{lowest, scaled, sign};
 
 const U: f64 = f64::EPSILON / 2.0;
 /// 2^-200 and 2^200.

@@ -26,7 +26,7 @@ use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 use num_bigint::BigInt;
 
 use super::insertion::Sites;
-use crate::wide::{lowest, scaled, sign};
+use crate::base::wide::{lowest, scaled, sign};
 
 const BOUND: f64 = 14.0 * f64::EPSILON / 2.0;
 /// 2^-200 and 2^200.

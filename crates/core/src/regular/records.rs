@@ -1,8 +1,8 @@
 //! Records of simplices with ghosts during insertion, common to 2-D and 3-D.
 
-use crate::arrays::Arrays;
-use crate::error::{Error, Result};
-use crate::memory::{filled, with_room};
+use crate::base::arrays::Arrays;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, with_room};
 
 /// The vertex at infinity.
 pub const GHOST: u32 = u32::MAX;

@@ -1,7 +1,7 @@
 //! Exact validation of a 2-D regular triangulation: lists the simplices and points that are wrong.
 //!
 //! Why these checks suffice: triangles that tile the convex hull of their vertices, and are locally
-//! regular at each inner edge, are the lower hull of the lifted vertices (see `delaunay2::validate`).
+//! regular at each inner edge, are the lower hull of the lifted vertices (see `delaunay::plane::validate`).
 //! With ties broken the lower hull is strictly convex, so that no vertex should be hidden. A point that
 //! is not a vertex changes nothing exactly if its lift does not lie below the triangle that contains it,
 //! with ties broken in the same way.
@@ -15,13 +15,13 @@ use delone_predicates::Sign;
 use super::heaviest::{Heaviest, heaviest};
 use super::insertion::Sites;
 use super::power::Weighted;
-use crate::arrays::{Given, Triangles};
-use crate::delaunay2::validate::{Findings, examine};
-use crate::error::{Error, Result};
+use crate::base::arrays::{Given, Triangles};
+use crate::base::error::{Error, Result};
+use crate::base::points;
+use crate::base::proof::Expected;
+use crate::base::watch::{Pace, Watch};
+use crate::delaunay::plane::validate::{Findings, examine};
 use crate::order::arrange;
-use crate::points;
-use crate::proof::Expected;
-use crate::watch::{Pace, Watch};
 
 /// Steps of walks between two checks for interruption.
 const STEPS: usize = 1 << 14;

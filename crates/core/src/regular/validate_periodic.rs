@@ -15,12 +15,12 @@ use super::heaviest::{Heaviest, heaviest};
 use super::insertion::Sites;
 use super::periodic::Images;
 use super::validate::others;
-use crate::error::{Error, Result};
-use crate::memory::filled;
+use crate::base::error::{Error, Result};
+use crate::base::memory::filled;
+use crate::base::points;
+use crate::base::proof::{Expected, Verdict};
+use crate::base::watch::{Pace, Watch};
 use crate::order::arrange;
-use crate::points;
-use crate::proof::{Expected, Verdict};
-use crate::watch::{Pace, Watch};
 
 /// Triangles, or steps of walks, between two checks for interruption.
 const STEPS: usize = 1 << 14;

@@ -39,10 +39,10 @@ use delone_predicates::Point3;
 use delone_predicates::arithmetic::Pair;
 
 use super::sines::SINES;
-use crate::error::Result;
-use crate::memory::filled;
-use crate::parallel;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::filled;
+use crate::base::parallel;
+use crate::base::watch::Watch;
 
 /// Angles converted together.
 const SHARE: usize = 1 << 14;

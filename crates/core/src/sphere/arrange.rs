@@ -3,11 +3,11 @@
 use delone_predicates::Point3;
 
 use super::directions::{Directions, units};
-use crate::error::Result;
-use crate::memory::{filled, push, with_room, zeroed};
+use crate::base::error::Result;
+use crate::base::memory::{filled, push, with_room, zeroed};
+use crate::base::parallel;
+use crate::base::watch::Watch;
 use crate::order::order_of;
-use crate::parallel;
-use crate::watch::Watch;
 
 /// Vectors that one task takes at a time.
 const SHARE: usize = 1 << 14;

@@ -12,7 +12,7 @@ use delone_predicates::sphere::{Unit, stages};
 use num_bigint::BigInt;
 
 use super::kernel::{circle_bound, cross, dot, turn_bound};
-use crate::wide::{ratio, scaled};
+use crate::base::wide::{ratio, scaled};
 
 /// Integers are in units of 2^-LOW.
 const LOW: i64 = -1100;
@@ -58,7 +58,7 @@ fn minus(a: &[BigInt; 3], b: &[BigInt; 3]) -> [BigInt; 3] {
 }
 
 fn determinant(rows: &[[BigInt; 3]; 3]) -> BigInt {
-    crate::wide::determinant(rows.each_ref())
+    crate::base::wide::determinant(rows.each_ref())
 }
 
 /// Where true directions may be, as far from the computed ones as `radius` allows.

@@ -4,9 +4,9 @@
 //! marks, and its k boundary edges take the records of its k triangles. This happens once.
 
 use super::kernel::Kernel;
-use crate::error::{Error, Result};
-use crate::memory::{filled, push};
-use crate::mesh2::{Code, next, prev, triangle};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, push};
+use crate::mesh::plane::{Code, next, prev, triangle};
 
 impl Kernel<'_> {
     /// Whether `p`, in conflict with the ghost `seed`, is in conflict with all of them. The ghosts

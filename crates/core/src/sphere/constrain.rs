@@ -23,17 +23,17 @@ use delone_predicates::{Point3, Sign};
 
 use super::directions::Directions;
 use super::triangulate::{Built, build, join};
-use crate::arrays::Arrays;
+use crate::base::arrays::Arrays;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, push, with_room};
+use crate::base::points::NAMED_ROWS;
+use crate::base::watch::{Pace, Watch};
 use crate::constrained::Subsegments;
 use crate::constrained::inserted::{Inserted, insert_all};
 use crate::constrained::marked::Marked;
 use crate::constrained::segment::Met;
-use crate::error::{Error, Result};
-use crate::memory::{filled, push, with_room};
-use crate::mesh2::{export, next, prev, triangle};
+use crate::mesh::plane::{export, next, prev, triangle};
 use crate::order::sort;
-use crate::points::NAMED_ROWS;
-use crate::watch::{Pace, Watch};
 
 /// The most pairs of crossing arcs that are listed.
 const MOST: usize = 1 << 20;

@@ -7,10 +7,10 @@ use delone_predicates::{Point3, Sign};
 
 use super::arrange::Arranged;
 use super::directions::turn;
-use crate::error::{Error, Result};
-use crate::memory::with_room;
+use crate::base::error::{Error, Result};
+use crate::base::memory::with_room;
+use crate::base::watch::Watch;
 use crate::order::sort_by;
-use crate::watch::Watch;
 
 /// The error of directions that all lie on one great circle, with the first rows of the distinct ones in
 /// order around it, from the smallest one counterclockwise seen from the side of the larger normal.

@@ -3,12 +3,12 @@
 use delone_predicates::sphere::{Unit, incircle_of, orient_of, same, tie};
 use delone_predicates::{Point3, Sign, orient2d};
 
+use crate::base::error::{Error, Result};
+use crate::base::memory::zeroed;
+use crate::base::parallel;
+use crate::base::points::{NAMED_ROWS, scan};
+use crate::base::watch::Watch;
 use crate::constrained::sites::Sites;
-use crate::error::{Error, Result};
-use crate::memory::zeroed;
-use crate::parallel;
-use crate::points::{NAMED_ROWS, scan};
-use crate::watch::Watch;
 
 /// Vectors whose directions are computed together.
 const SHARE: usize = 1 << 14;

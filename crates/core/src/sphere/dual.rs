@@ -7,10 +7,10 @@ use delone_predicates::sphere::{Unit, incircle_of};
 use delone_predicates::{Point3, Sign};
 
 use super::directions::units;
-use crate::error::{Error, Result};
-use crate::memory::{filled, push, with_room};
-use crate::parallel;
-use crate::watch::{Pace, Watch};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, push, with_room};
+use crate::base::parallel;
+use crate::base::watch::{Pace, Watch};
 
 /// Facets that are compared together.
 const SHARE: usize = 1 << 12;

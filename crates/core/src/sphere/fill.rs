@@ -1,6 +1,6 @@
 //! Inserts the directions of a block, one after the other.
 //!
-//! The order is that of `delaunay2::bowyer_watson`. Here no other method takes over where cavities are
+//! The order is that of `delaunay::plane::bowyer_watson`. Here no other method takes over where cavities are
 //! large: any input ends, as each insertion does, but some take quadratic time.
 
 use std::ops::Range;
@@ -9,10 +9,10 @@ use delone_predicates::Sign;
 
 use super::directions::Directions;
 use super::kernel::Kernel;
-use crate::error::Result;
-use crate::mesh2::{Code, Patch, triangle};
+use crate::base::error::Result;
+use crate::base::watch::Watch;
+use crate::mesh::plane::{Code, Patch, triangle};
 use crate::order::Rounds;
-use crate::watch::Watch;
 
 /// Strides of the rounds, as in 2-D.
 const STRIDES: [u32; 3] = [64, 8, 1];

@@ -21,11 +21,11 @@ use delone_predicates::Sign;
 use super::arrange::Halves;
 use super::directions::{Directions, turn};
 use super::fill::{Filled, fill};
-use crate::error::{Error, Result};
-use crate::memory::{push, with_room};
-use crate::mesh2::{Code, Mesh2, Patch, next, prev, triangle};
-use crate::parallel;
-use crate::watch::{Pace, Watch};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{push, with_room};
+use crate::base::parallel;
+use crate::base::watch::{Pace, Watch};
+use crate::mesh::plane::{Code, Mesh2, Patch, next, prev, triangle};
 
 /// Flips between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 12;

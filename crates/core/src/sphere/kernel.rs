@@ -2,7 +2,7 @@
 //!
 //! A. Bowyer, "Computing Dirichlet tessellations", and D. F. Watson, "Computing the n-dimensional
 //! Delaunay tessellation", both The Computer Journal 24 (1981). The structure, and why the triangles of
-//! a cavity form a tree, are those of `delaunay2::cavity`; `close` has the one insertion where they do not.
+//! a cavity form a tree, are those of `delaunay::plane::cavity`; `close` has the one insertion where they do not.
 //!
 //! # Bounds of the filters
 //!
@@ -29,10 +29,10 @@ use delone_predicates::{Point3, Sign};
 
 use super::directions::Directions;
 use super::walk::walk;
-use crate::error::Result;
-use crate::memory::push;
-use crate::mesh2::{Code, Patch, next, prev, triangle};
-use crate::watch::{Pace, Watch};
+use crate::base::error::Result;
+use crate::base::memory::push;
+use crate::base::watch::{Pace, Watch};
+use crate::mesh::plane::{Code, Patch, next, prev, triangle};
 
 /// Half the distance from 1.0 to the next double.
 const U: f64 = f64::EPSILON / 2.0;

@@ -16,12 +16,12 @@ use delone_predicates::{Point3, Sign};
 
 use super::directions::{check, units};
 use super::kernel::{cross, dot, turn_bound};
-use crate::arrays::Arrays;
-use crate::error::{Error, Result};
-use crate::memory::{filled, push, with_room};
+use crate::base::arrays::Arrays;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, push, with_room};
+use crate::base::parallel;
+use crate::base::watch::{Pace, Watch};
 use crate::order::{order_of, sort_by};
-use crate::parallel;
-use crate::watch::{Pace, Watch};
 
 /// Work between two checks for interruption; a step of a walk is one.
 const WATCH_EVERY: usize = 1 << 12;

@@ -6,11 +6,11 @@ use delone_predicates::sphere::{Unit, leveled};
 use num_bigint::BigInt;
 
 use super::directions::units;
-use crate::error::Result;
-use crate::memory::filled;
-use crate::parallel;
-use crate::watch::Watch;
-use crate::wide::{determinant, lowest, ratio, root, scaled};
+use crate::base::error::Result;
+use crate::base::memory::filled;
+use crate::base::parallel;
+use crate::base::watch::Watch;
+use crate::base::wide::{determinant, lowest, ratio, root, scaled};
 
 /// Triangles that are measured together.
 const SHARE: usize = 1 << 12;

@@ -20,11 +20,11 @@ use num_bigint::BigInt;
 
 use super::directions::units;
 use super::measure::{cross, minus, pairs, size};
-use crate::error::Result;
-use crate::memory::filled;
-use crate::parallel;
-use crate::watch::Watch;
-use crate::wide::{angle, determinant, lowest, ratio, root, scaled};
+use crate::base::error::Result;
+use crate::base::memory::filled;
+use crate::base::parallel;
+use crate::base::watch::Watch;
+use crate::base::wide::{angle, determinant, lowest, ratio, root, scaled};
 
 /// Ridges that are measured together.
 const SHARE: usize = 1 << 10;

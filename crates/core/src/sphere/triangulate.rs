@@ -7,12 +7,12 @@ use super::degenerate::degenerate;
 use super::directions::check;
 use super::fill::fill;
 use super::join::in_halves;
-use crate::arrays::Arrays;
-use crate::error::Result;
-use crate::memory::with_room;
-use crate::mesh2::{Code, Mesh2, export};
+use crate::base::arrays::Arrays;
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::watch::Watch;
+use crate::mesh::plane::{Code, Mesh2, export};
 use crate::order::sort;
-use crate::watch::Watch;
 
 /// Triangles in the rows of the input.
 #[derive(Debug)]
@@ -127,7 +127,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
-    use crate::error::Error;
+    use crate::base::error::Error;
 
     /// Scattered vectors of different lengths, with z of at least `low`.
     fn scattered(n: u32, low: f64) -> Vec<Point3> {

@@ -15,10 +15,10 @@ use delone_predicates::sphere::{Unit, compare, incircle_of, tie};
 use delone_predicates::{Point3, Sign};
 
 use super::directions::units;
-use crate::arrays::Arrays;
-use crate::error::{Error, Result};
-use crate::memory::{copied, filled, push, with_room};
-use crate::watch::{Pace, Watch};
+use crate::base::arrays::Arrays;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{copied, filled, push, with_room};
+use crate::base::watch::{Pace, Watch};
 
 /// No half-edge.
 const NONE: u32 = u32::MAX;

@@ -9,7 +9,7 @@
 use delone_predicates::Sign;
 
 use super::directions::Directions;
-use crate::mesh2::{Patch, next, prev, triangle};
+use crate::mesh::plane::{Patch, next, prev, triangle};
 
 /// The triangle whose closed area contains `p`, or a ghost with `p` strictly outside its edge, by a walk
 /// from triangle `from`; and the number of triangles visited on the way.

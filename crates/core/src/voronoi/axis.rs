@@ -16,7 +16,7 @@
 use delone_predicates::Point2;
 use num_bigint::BigInt;
 
-use crate::wide::{lowest, ratio, scaled};
+use crate::base::wide::{lowest, ratio, scaled};
 
 /// Half the distance from 1.0 to the next double.
 const U: f64 = f64::EPSILON / 2.0;

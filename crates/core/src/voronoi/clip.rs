@@ -16,10 +16,10 @@
 use delone_predicates::Point2;
 
 use super::axis::{crossing, foot};
-use crate::error::{Error, Result};
-use crate::memory::{push, with_room};
-use crate::parallel;
-use crate::watch::Watch;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{push, with_room};
+use crate::base::parallel;
+use crate::base::watch::Watch;
 
 /// Cells per task.
 const SHARE: usize = 1 << 12;

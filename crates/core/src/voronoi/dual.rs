@@ -6,10 +6,10 @@ use super::given::Given;
 use super::regions::{Regions, Walk};
 use super::ridges::{OWNED, Ridges, ridges};
 use super::vertices::{centers, masks, number};
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::watch::Watch;
 use crate::measure::circle::Corners;
 use crate::regular::power_sign;
-use crate::watch::Watch;
 
 /// The dual of the triangles, edges and points of a triangulation.
 #[derive(Debug)]

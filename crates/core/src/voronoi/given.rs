@@ -1,6 +1,6 @@
 //! The triangulation whose dual is computed, in 2-D or 3-D.
 
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 
 /// A triangulation as arrays: vertices are rows of points, neighbors simplices or -1. With weights,
 /// one for each point, it is the regular triangulation.

@@ -5,10 +5,10 @@
 
 use delone_predicates::Point2;
 
-use crate::error::Result;
-use crate::memory::{filled, zeroed};
-use crate::parallel;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::{filled, zeroed};
+use crate::base::parallel;
+use crate::base::watch::Watch;
 
 /// Polygons per task.
 const SHARE: usize = 1 << 13;

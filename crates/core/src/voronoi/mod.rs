@@ -16,6 +16,7 @@ mod outline;
 mod pieces;
 mod regions;
 mod ridges;
+pub mod space;
 mod torus;
 pub(crate) mod vertices;
 

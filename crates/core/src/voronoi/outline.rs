@@ -6,9 +6,9 @@
 
 use delone_predicates::Point2;
 
-use crate::error::Result;
-use crate::memory::{copied, filled, with_room};
-use crate::points::Extent;
+use crate::base::error::Result;
+use crate::base::memory::{copied, filled, with_room};
+use crate::base::points::Extent;
 
 /// The most columns and rows of the grid.
 const MOST: f64 = 1024.0;

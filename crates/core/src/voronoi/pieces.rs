@@ -19,12 +19,12 @@ use delone_predicates::{Point2, Sign, orient2d};
 
 use super::measure::{Measures, ring as ring_measures};
 use super::outline::{Grid, sorted};
+use crate::base::error::Result;
+use crate::base::memory::{push, with_room};
+use crate::base::parallel;
+use crate::base::points::Extent;
+use crate::base::watch::Watch;
 use crate::constrained::intersection::intersection;
-use crate::error::Result;
-use crate::memory::{push, with_room};
-use crate::parallel;
-use crate::points::Extent;
-use crate::watch::Watch;
 
 /// Cells per task.
 const SHARE: usize = 1 << 7;

@@ -2,10 +2,10 @@
 
 use super::given::Given;
 use super::ridges::{OWNED, SHARED};
-use crate::error::{Error, Result};
-use crate::memory::{filled, with_room, zeroed};
-use crate::parallel;
-use crate::watch::Watch;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, with_room, zeroed};
+use crate::base::parallel;
+use crate::base::watch::Watch;
 
 /// Cells per task.
 const SHARE: usize = 1 << 12;

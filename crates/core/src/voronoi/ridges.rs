@@ -5,10 +5,10 @@
 use delone_predicates::Point2;
 
 use super::given::Given;
-use crate::error::Result;
-use crate::memory::{push, with_room, zeroed};
-use crate::parallel;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::{push, with_room, zeroed};
+use crate::base::parallel;
+use crate::base::watch::Watch;
 
 /// The mask of a triangle: bit k if it shares its center across edge k, bit 3 + k if the ridge of
 /// edge k is numbered with it.

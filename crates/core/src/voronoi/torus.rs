@@ -4,13 +4,13 @@
 
 use delone_predicates::{Point2, Sign};
 
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, zeroed};
+use crate::base::parallel;
+use crate::base::watch::Watch;
 use crate::measure::center::Center;
 use crate::measure::circle::meeting;
-use crate::memory::{filled, zeroed};
-use crate::parallel;
 use crate::regular::{Images, Sites};
-use crate::watch::Watch;
 
 /// Triangles per task.
 const SHARE: usize = 1 << 10;

@@ -1,11 +1,11 @@
 //! Voronoi vertices: the centers of simplices, and which neighboring simplices share theirs.
 
 use super::given::Given;
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::memory::{filled, make_room, push, zeroed};
+use crate::base::parallel;
+use crate::base::watch::Watch;
 use crate::measure::center::{Center, Centered};
-use crate::memory::{filled, make_room, push, zeroed};
-use crate::parallel;
-use crate::watch::Watch;
 
 /// Simplices per task.
 const SHARE: usize = 1 << 14;

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::tier::cases;
 use delone_core::Point2;
+use delone_core::base::error::{Error, Result};
+use delone_core::base::watch::Watch;
 use delone_core::constrained::{Constrained, Options, Rule, constrain, polygon};
-use delone_core::delaunay2::Method;
-use delone_core::error::{Error, Result};
-use delone_core::watch::Watch;
+use delone_core::delaunay::plane::Method;
 use delone_predicates::{Sign, angle, incircle_canonical, lexicographic, orient2d};
 use proptest::prelude::*;
 

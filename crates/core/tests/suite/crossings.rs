@@ -2,10 +2,10 @@
 
 use crate::tier::cases;
 use delone_core::Point2;
+use delone_core::base::error::Error;
+use delone_core::base::watch::Watch;
 use delone_core::constrained::intersection::{crosses, intersection};
 use delone_core::constrained::pairs::{crossing_pairs, crossing_pairs_above};
-use delone_core::error::Error;
-use delone_core::watch::Watch;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 use proptest::prelude::*;

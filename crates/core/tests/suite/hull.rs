@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use crate::tier::cases;
 use delone_core::Point3;
+use delone_core::base::watch::Watch;
 use delone_core::hull::{Hull3, hull2, hull3};
-use delone_core::watch::Watch;
 use delone_predicates::{Point2, Sign, orient2d, orient3d};
 use proptest::prelude::*;
 

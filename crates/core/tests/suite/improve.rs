@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use delone_core::Point3;
-use delone_core::error::{Error, Result};
-use delone_core::improve::{Improved, Task, improve};
-use delone_core::watch::Watch;
+use delone_core::base::error::{Error, Result};
+use delone_core::base::watch::Watch;
+use delone_core::solids::improve::{Improved, Task, improve};
 use delone_predicates::{Sign, orient3d};
 use num_rational::BigRational;
 use num_traits::Zero;

@@ -1,14 +1,14 @@
 //! Interpolation against the functions that it must reproduce, at every scale.
 
 use delone_core::Point2;
-use delone_core::arrays::Triangles;
-use delone_core::delaunay2::{Method, triangulate};
+use delone_core::base::arrays::Triangles;
+use delone_core::base::watch::{IDLE, Watch};
+use delone_core::delaunay::plane::{Method, triangulate};
 use delone_core::interpolate::{
     Field, Kind, Method as Left, Order, Table, clough_tocher, leave_one_out, linear, natural,
     natural_values,
 };
 use delone_core::locate::{Batch, Kept, Located, Locator};
-use delone_core::watch::{IDLE, Watch};
 use proptest::prelude::*;
 
 /// A triangulation and its cache.

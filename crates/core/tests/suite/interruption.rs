@@ -3,17 +3,21 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use delone_core::Point2;
-use delone_core::arrays::{Given, Tetrahedra, Triangles};
+use delone_core::base::arrays::{Given, Tetrahedra, Triangles};
+use delone_core::base::error::{Error, Result};
+use delone_core::base::watch::{IDLE, Watch};
 use delone_core::constrained::{Options, constrain};
-use delone_core::delaunay2::lawson::lawson;
-use delone_core::delaunay2::validate::validate;
-use delone_core::delaunay2::{Method, triangulate};
-use delone_core::error::{Error, Result};
+use delone_core::delaunay::plane::lawson::lawson;
+use delone_core::delaunay::plane::validate::validate;
+use delone_core::delaunay::plane::{Method, triangulate};
+use delone_core::delaunay::space as delaunay3;
+use delone_core::interpolate::space as interpolate3;
 use delone_core::interpolate::{self, Field, Kind, Method as Left, Order, global_gradients};
+use delone_core::locate::space as locate3;
 use delone_core::locate::{self, Batch, Kept, Locator};
+use delone_core::regular::space as regular3;
 use delone_core::regular::{PeriodicFindings, Wrapped, validate_periodic};
-use delone_core::watch::{IDLE, Watch};
-use delone_core::{delaunay3, hull, interpolate3, locate3, measure, order, regular, regular3};
+use delone_core::{hull, measure, order, regular};
 
 /// More tasks than any of these calls has.
 const TASKS: usize = 100;

@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::tier::cases;
 use delone_core::Point2;
-use delone_core::delaunay2::{Method, triangulate};
+use delone_core::base::watch::Watch;
+use delone_core::delaunay::plane::{Method, triangulate};
 use delone_core::live::plane::Plane;
-use delone_core::watch::Watch;
 use proptest::prelude::*;
 
 fn idle() -> Watch<'static> {

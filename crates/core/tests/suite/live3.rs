@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::tier::cases;
 use delone_core::Point3;
-use delone_core::delaunay3::triangulate;
+use delone_core::base::watch::Watch;
+use delone_core::delaunay::space::triangulate;
 use delone_core::live::space::Space;
-use delone_core::watch::Watch;
 use proptest::prelude::*;
 
 fn idle() -> Watch<'static> {

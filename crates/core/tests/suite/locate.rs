@@ -1,10 +1,10 @@
 //! Point location against its definition, on triangulations of every kind.
 
 use delone_core::Point2;
-use delone_core::arrays::Given;
-use delone_core::delaunay2::{Method, triangulate};
+use delone_core::base::arrays::Given;
+use delone_core::base::watch::{IDLE, Watch};
+use delone_core::delaunay::plane::{Method, triangulate};
 use delone_core::locate::{Batch, Kept, Located, Locator, along, coordinates, find, nearest};
-use delone_core::watch::{IDLE, Watch};
 use delone_predicates::{Sign, orient2d};
 use proptest::prelude::*;
 

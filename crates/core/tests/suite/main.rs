@@ -4,8 +4,8 @@
 
 mod constrained;
 mod crossings;
-mod delaunay2;
-mod delaunay3;
+mod delaunay_plane;
+mod delaunay_space;
 mod hull;
 mod improve;
 mod interpolate;
@@ -13,7 +13,7 @@ mod interruption;
 mod live;
 mod live3;
 mod locate;
-mod locate3;
+mod locate_space;
 mod ndim;
 mod overlap;
 mod refine;

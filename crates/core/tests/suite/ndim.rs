@@ -1,11 +1,11 @@
 //! The triangulation in any dimension is that of the plane and of space where there is one.
 
-use delone_core::delaunay2::{Method, triangulate as plane};
-use delone_core::delaunay3::triangulate as space;
-use delone_core::error::Error;
+use delone_core::base::error::Error;
+use delone_core::base::watch::IDLE;
+use delone_core::delaunay::plane::{Method, triangulate as plane};
+use delone_core::delaunay::space::triangulate as space;
 use delone_core::hull::hull3 as solid;
 use delone_core::ndim::{hull, triangulate};
-use delone_core::watch::IDLE;
 
 /// Numbers with few or with many bits: ties, duplicates and general position.
 fn points<const D: usize>(n: usize, seed: u64) -> Vec<[f64; D]> {

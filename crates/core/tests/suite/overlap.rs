@@ -1,9 +1,9 @@
 //! Areas that cells share: sums, invariants that hold bit for bit, interruption.
 
 use delone_core::Point3;
-use delone_core::error::Error;
+use delone_core::base::error::Error;
+use delone_core::base::watch::Watch;
 use delone_core::overlap::{Fault, Grid, Polygons, Rows, Shared, check, overlaps};
-use delone_core::watch::Watch;
 use std::f64::consts::PI;
 
 /// The sides of a cube, each in n x n cells.

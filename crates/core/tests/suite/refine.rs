@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use delone_core::Point2;
+use delone_core::base::watch::Watch;
 use delone_core::constrained::{Options, components, constrain};
-use delone_core::delaunay2::Method;
+use delone_core::delaunay::plane::Method;
 use delone_core::measure;
 use delone_core::refine::{Lines, Refined, Rounds, Samples, Task, refine};
-use delone_core::watch::Watch;
 use delone_predicates::{Sign, incircle_canonical, orient2d};
 
 /// A triangulation with labels.

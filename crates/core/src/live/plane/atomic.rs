@@ -4,7 +4,7 @@
 
 use super::Plane;
 use super::mesh::Mesh;
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 use crate::live::rows::Rows;
 
 impl Plane {

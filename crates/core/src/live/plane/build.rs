@@ -3,14 +3,14 @@
 use delone_predicates::{Point2, lexicographic};
 
 use super::mesh::{Counts, INFINITE, Mesh, Record, Site};
-use crate::delaunay2::{Built, Clock, Method, mesh};
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, with_room};
+use crate::base::watch::{Pace, Watch};
+use crate::delaunay::plane::{Built, Clock, Method, mesh};
 use crate::live::chunks::Chunks;
 use crate::live::rows::{NONE, Rows};
-use crate::memory::{filled, with_room};
-use crate::mesh2::{Code, triangle};
+use crate::mesh::plane::{Code, triangle};
 use crate::order::sort_by;
-use crate::watch::{Pace, Watch};
 
 /// Triangles, or rows, between two checks for interruption.
 const LOT: usize = 1 << 16;

@@ -39,11 +39,11 @@ use super::marks::{CROSSED, Reach, STRAIGHT};
 use super::remove::Removed;
 use super::segments::Detached;
 use super::walk::Place;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, push, with_room};
+use crate::base::watch::{Pace, Watch};
 use crate::constrained::passes;
-use crate::error::{Error, Result};
-use crate::memory::{filled, push, with_room};
 use crate::order::{order_of, sort};
-use crate::watch::{Pace, Watch};
 
 /// Edits between two checks for interruption.
 const LOT: usize = 1 << 6;

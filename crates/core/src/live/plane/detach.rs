@@ -15,8 +15,8 @@ use super::constrained::Outcome;
 use super::marks::CROSSED;
 use super::remove::Removed;
 use super::segments::{Crossed, Detached};
-use crate::error::{Error, Result};
-use crate::memory::{filled, push, with_room};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, push, with_room};
 
 impl Plane {
     /// Takes a segment out of the mesh: marks of edges go that no other segment needs.

@@ -13,9 +13,9 @@
 use delone_predicates::{Point2, Sign, orient2d};
 
 use super::mesh::{INFINITE, Mesh};
-use crate::error::{Error, Result};
-use crate::memory::push;
-use crate::mesh2::{Code, next, prev};
+use crate::base::error::{Error, Result};
+use crate::base::memory::push;
+use crate::mesh::plane::{Code, next, prev};
 
 impl Mesh {
     /// Fills the hole in `rim`, which a vertex at `p` has left, with records in `dead`, two of which

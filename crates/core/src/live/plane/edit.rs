@@ -8,12 +8,12 @@ use super::mesh::Mesh;
 use super::remove::Removed;
 use super::walk::Place;
 use super::{Plane, build};
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, push, with_room};
+use crate::base::points::{self, LIMIT2};
+use crate::base::watch::{IDLE, Pace, Watch};
 use crate::live::rows::NONE;
-use crate::memory::{filled, push, with_room};
 use crate::order::{order_of, sort};
-use crate::points::{self, LIMIT2};
-use crate::watch::{IDLE, Pace, Watch};
 
 /// A batch of more than this share of the vertices, and more points than this, is a rebuild.
 const SHARE_INSERTED: usize = 3;
@@ -146,7 +146,7 @@ impl Plane {
         let target = match place {
             Ok(i) => self.line[i],
             Err(i) => {
-                crate::memory::make_room(&mut self.line, 1)?;
+                crate::base::memory::make_room(&mut self.line, 1)?;
                 let v = self.mesh.take_site(p)?;
                 self.line.insert(i, v);
                 self.mesh.counts.vertices += 1;

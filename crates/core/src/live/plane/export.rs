@@ -4,11 +4,11 @@ use delone_predicates::Point2;
 
 use super::Plane;
 use super::mesh::INFINITE;
-use crate::arrays::Arrays;
-use crate::error::Result;
+use crate::base::arrays::Arrays;
+use crate::base::error::Result;
+use crate::base::memory::{filled, with_room};
+use crate::base::watch::{Pace, Watch};
 use crate::live::rows::NONE;
-use crate::memory::{filled, with_room};
-use crate::watch::{Pace, Watch};
 
 /// Records, or rows, between two checks for interruption.
 const LOT: usize = 1 << 16;
@@ -54,7 +54,7 @@ impl Plane {
             let head = self.mesh.sites[v as usize].head;
             if head != row {
                 let pair = [row, head].map(|row| ranks[row as usize] as u32);
-                crate::memory::push(&mut duplicates, pair)?;
+                crate::base::memory::push(&mut duplicates, pair)?;
             }
         }
         Ok(Exported {

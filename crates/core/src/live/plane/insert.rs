@@ -1,11 +1,11 @@
-//! Insertion: the cavity of a point is emptied and filled with a star (see `delaunay2::cavity`).
+//! Insertion: the cavity of a point is emptied and filled with a star (see `delaunay::plane::cavity`).
 
 use delone_predicates::Point2;
 
 use super::mesh::{INFINITE, Mesh};
-use crate::error::Result;
-use crate::memory::push;
-use crate::mesh2::{next, prev, triangle};
+use crate::base::error::Result;
+use crate::base::memory::push;
+use crate::mesh::plane::{next, prev, triangle};
 
 impl Mesh {
     /// Inserts vertex `v`, whose place is in triangle or ghost `seed`. If memory is refused, nothing
@@ -62,7 +62,7 @@ impl Mesh {
         self.work += self.dead.len();
         // For each edge around the cavity a triangle, what is beyond, and a vertex.
         self.room(3 * self.rim.len())?;
-        crate::memory::make_room(&mut self.dead, 2)?;
+        crate::base::memory::make_room(&mut self.dead, 2)?;
         Ok(ghosts)
     }
 

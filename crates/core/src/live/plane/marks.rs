@@ -7,9 +7,9 @@ use delone_predicates::{Sign, lexicographic, orient2d};
 
 use super::mesh::{INFINITE, Mesh};
 use super::shift::FLIP;
-use crate::error::{Error, Result};
-use crate::memory::push;
-use crate::mesh2::{Code, next, prev, triangle};
+use crate::base::error::{Error, Result};
+use crate::base::memory::push;
+use crate::mesh::plane::{Code, next, prev, triangle};
 
 /// The bits of an edge that is part of a segment.
 pub const STRAIGHT: u32 = 1;

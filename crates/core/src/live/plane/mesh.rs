@@ -1,15 +1,15 @@
-//! The mesh of a live triangulation: records with ghosts as in `mesh2`, vertices, and lists of free
+//! The mesh of a live triangulation: records with ghosts as in `mesh::plane`, vertices, and lists of free
 //! ones, all in arrays with snapshots.
 //!
 //! The vertex at infinity is vertex 0, so that its number does not depend on how many others there are.
 
 use delone_predicates::{Point2, Sign, incircle_canonical, lexicographic, orient2d};
 
-use crate::error::Result;
+use crate::base::error::Result;
 use crate::live::chunks::Chunks;
 use crate::live::rows::NONE;
 use crate::locate::Start;
-use crate::mesh2::{Code, next, prev, triangle};
+use crate::mesh::plane::{Code, next, prev, triangle};
 
 /// The vertex at infinity; its coordinates are NaN.
 pub const INFINITE: u32 = 0;

@@ -26,11 +26,11 @@ pub use export::Exported;
 pub use query::Corners;
 pub use state::{Changes, State};
 
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::points;
+use crate::base::watch::Watch;
 use crate::live::rows::Rows;
-use crate::memory::with_room;
-use crate::points;
-use crate::watch::Watch;
 use mesh::Mesh;
 use segments::Segments;
 

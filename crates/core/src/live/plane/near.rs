@@ -5,12 +5,12 @@ use std::collections::BTreeSet;
 use delone_predicates::{Sign, orient2d};
 
 use super::mesh::{INFINITE, Mesh};
+use crate::base::error::Result;
+use crate::base::memory::push;
+use crate::base::points::Extent;
 use crate::constrained::pairs::overlap;
 use crate::constrained::{Band, in_direction, is_near, passes};
-use crate::error::Result;
-use crate::memory::push;
-use crate::mesh2::{next, prev, triangle};
-use crate::points::Extent;
+use crate::mesh::plane::{next, prev, triangle};
 
 impl Mesh {
     /// Whether a marked edge passes through the pixel of vertex `w`, at which none ends. It suffices to

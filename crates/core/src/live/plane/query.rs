@@ -6,12 +6,12 @@ use delone_predicates::{Point2, Sign, nearer, orient2d};
 
 use super::Plane;
 use super::mesh::{INFINITE, Mesh};
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::memory::{push, with_room};
+use crate::base::watch::{Pace, Watch};
 use crate::live::rows::NONE;
 use crate::locate::{barycentric_weights, is_finite, squared};
-use crate::memory::{push, with_room};
-use crate::mesh2::{Code, next, triangle};
-use crate::watch::{Pace, Watch};
+use crate::mesh::plane::{Code, next, triangle};
 
 /// Queries between two checks for interruption.
 const LOT: usize = 1 << 10;

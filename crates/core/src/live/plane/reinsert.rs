@@ -15,12 +15,12 @@ use super::constrained::{Outcome, are_apart};
 use super::marks::{CROSSED, Reach};
 use super::segments::{Crossed, Detached};
 use super::walk::Place;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{copied, push, with_room};
+use crate::base::watch::Watch;
 use crate::constrained::intersection::intersection;
 use crate::constrained::pairs::crossing_pairs_above;
 use crate::constrained::passes;
-use crate::error::{Error, Result};
-use crate::memory::{copied, push, with_room};
-use crate::watch::Watch;
 
 /// With more segments than this, and one in so many, all are triangulated again; and so with more
 /// pairs that cross than this for each of them.

@@ -8,10 +8,10 @@
 use delone_predicates::{Sign, incircle_canonical, orient2d};
 
 use super::mesh::{INFINITE, Mesh};
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{make_room, push};
 use crate::live::rows::NONE;
-use crate::memory::{make_room, push};
-use crate::mesh2::{Code, next, triangle};
+use crate::mesh::plane::{Code, next, triangle};
 
 /// Tests for each vertex of the mesh that cost as much as a rebuild, and how many are always right.
 const HUB: usize = 16;

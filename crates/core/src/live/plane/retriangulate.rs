@@ -12,12 +12,12 @@ use super::constrained::{Input, Outcome};
 use super::marks::{CROSSED, Reach};
 use super::segments::{Crossed, Detached};
 use super::{Plane, build};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, make_room, push, with_room};
+use crate::base::watch::{Pace, Watch};
 use crate::constrained::{Constrained, Options, constrain};
-use crate::delaunay2::Method;
-use crate::error::{Error, Result};
-use crate::memory::{filled, make_room, push, with_room};
+use crate::delaunay::plane::Method;
 use crate::order::{sort, sort_by};
-use crate::watch::{Pace, Watch};
 
 /// The most vertices that crossings may add.
 const MOST_CROSSINGS: usize = 4_000_000;

@@ -8,11 +8,11 @@ use std::sync::Arc;
 
 use delone_predicates::Point2;
 
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
+use crate::base::memory::with_room;
+use crate::base::watch::Watch;
 use crate::live::chunks::{Chunks, Image};
 use crate::live::rows::NONE;
-use crate::memory::with_room;
-use crate::watch::Watch;
 
 /// A segment. A link is the number of a segment, doubled, plus 1 for its second end.
 #[derive(Debug, Clone, Copy)]

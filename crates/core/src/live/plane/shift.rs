@@ -3,9 +3,9 @@
 use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
 
 use super::mesh::{INFINITE, Mesh};
-use crate::error::Result;
-use crate::memory::{clear_with_room, push};
-use crate::mesh2::{Code, next, prev, triangle};
+use crate::base::error::Result;
+use crate::base::memory::{clear_with_room, push};
+use crate::mesh::plane::{Code, next, prev, triangle};
 
 /// Records and vertices that a flip changes, with some to spare.
 pub const FLIP: usize = 16;
@@ -81,7 +81,7 @@ impl Mesh {
         incircle_canonical(a, b, c, d) == Sign::Positive
     }
 
-    /// Flips the edge `e` (see `mesh2::flip`), which is not marked.
+    /// Flips the edge `e` (see `mesh::plane::flip`), which is not marked.
     pub fn flip(&mut self, e: Code) -> Code {
         let o = self.opposite(e);
         let (p, q) = (self.vertex(e), self.vertex(o));

@@ -1,13 +1,13 @@
-//! Where a point is: a start that is near, and a visibility walk (see `delaunay2::walk`).
+//! Where a point is: a start that is near, and a visibility walk (see `delaunay::plane::walk`).
 
 use delone_predicates::{Point2, Sign, orient2d};
 
 use super::mesh::{INFINITE, Mesh};
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
+use crate::base::watch::Watch;
 use crate::live::rows::NONE;
 use crate::locate::{Start, squared};
-use crate::mesh2::{next, prev, triangle};
-use crate::watch::Watch;
+use crate::mesh::plane::{next, prev, triangle};
 
 /// How far a walk goes from the last triangle, in lengths of its edge, squared, before a start is
 /// looked up.

@@ -3,14 +3,14 @@
 use delone_predicates::{Point3, lexicographic};
 
 use super::mesh::{Counts, INFINITE, Mesh, Record, Site};
-use crate::arrays::Arrays;
-use crate::delaunay3::triangulate;
-use crate::error::{Error, Result};
+use crate::base::arrays::Arrays;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, with_room};
+use crate::base::watch::{Pace, Watch};
+use crate::delaunay::space::triangulate;
 use crate::live::rows::{NONE, Rows};
-use crate::memory::{filled, with_room};
-use crate::mesh3::{FACETS, LIMIT, corner, tetrahedron};
+use crate::mesh::space::{FACETS, LIMIT, corner, tetrahedron};
 use crate::order::{order_of, sort, sort_by};
-use crate::watch::{Pace, Watch};
 
 /// Tetrahedra, or rows, between two checks for interruption.
 const LOT: usize = 1 << 16;

@@ -8,12 +8,12 @@ use super::mesh::Mesh;
 use super::remove::Removed;
 use super::walk::Place;
 use super::{Space, build};
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, make_room, push, with_room};
+use crate::base::points::{self, LIMIT3, collinear};
+use crate::base::watch::{IDLE, Pace, Watch};
 use crate::live::rows::NONE;
-use crate::memory::{filled, make_room, push, with_room};
 use crate::order::{order_of, sort};
-use crate::points::{self, LIMIT3, collinear};
-use crate::watch::{IDLE, Pace, Watch};
 
 /// A batch of more than this share of the vertices, and more points than this, is a rebuild, which takes
 /// 2 us per vertex: a point is inserted in 8, removed in 17, and moved in 12 to 26.

@@ -4,10 +4,10 @@ use delone_predicates::Point3;
 
 use super::Space;
 use super::mesh::INFINITE;
-use crate::arrays::Arrays;
-use crate::error::Result;
-use crate::memory::{filled, with_room};
-use crate::watch::{Pace, Watch};
+use crate::base::arrays::Arrays;
+use crate::base::error::Result;
+use crate::base::memory::{filled, with_room};
+use crate::base::watch::{Pace, Watch};
 
 /// Records, or rows, between two checks for interruption.
 const LOT: usize = 1 << 16;
@@ -50,7 +50,7 @@ impl Space {
             let head = self.mesh.sites[v as usize].head;
             if head != row {
                 let pair = [row, head].map(|row| ranks[row as usize] as u32);
-                crate::memory::push(&mut duplicates, pair)?;
+                crate::base::memory::push(&mut duplicates, pair)?;
             }
         }
         Ok(Exported {

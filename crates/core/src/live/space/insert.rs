@@ -1,10 +1,10 @@
-//! Insertion: the cavity of a point is emptied and filled with a star (see `delaunay3::cavity`).
+//! Insertion: the cavity of a point is emptied and filled with a star (see `delaunay::space::cavity`).
 
 use super::mesh::Mesh;
-use crate::error::Result;
-use crate::memory::push;
-use crate::mesh3::tetrahedron;
-use crate::watch::Pace;
+use crate::base::error::Result;
+use crate::base::memory::push;
+use crate::base::watch::Pace;
+use crate::mesh::space::tetrahedron;
 
 impl Mesh {
     /// Inserts vertex `v`, whose place is in tetrahedron or ghost `seed`. On an error nothing has

@@ -5,9 +5,9 @@
 
 use super::mesh::{INFINITE, Mesh, Record};
 use super::patch::{Patch, Side};
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 use crate::live::rows::NONE;
-use crate::mesh3::{Code, LIMIT, corner, tetrahedron};
+use crate::mesh::space::{Code, LIMIT, corner, tetrahedron};
 
 impl Mesh {
     /// Opens the facets of the rim, seen from inside of the hole.
@@ -43,7 +43,7 @@ impl Mesh {
         }
         self.records.reserve(more)?;
         patch.numbers.clear();
-        crate::memory::make_room(&mut patch.numbers, patch.made.len())?;
+        crate::base::memory::make_room(&mut patch.numbers, patch.made.len())?;
         let reused = patch.dead.len().min(patch.made.len());
         patch.numbers.extend_from_slice(&patch.dead[..reused]);
         for _ in 0..more {

@@ -1,4 +1,4 @@
-//! The mesh of a live 3-D triangulation: records with ghosts as in `mesh3`, vertices, and lists of
+//! The mesh of a live 3-D triangulation: records with ghosts as in `mesh::space`, vertices, and lists of
 //! free ones, in arrays with snapshots.
 //!
 //! The vertex at infinity is vertex 0, so that its number does not depend on how many others there
@@ -8,12 +8,12 @@ use delone_predicates::{Point3, Sign, insphere_canonical, orient3d};
 
 pub use super::patch::INFINITE;
 use super::patch::Patch;
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::memory::{make_room, push, zeroed};
 use crate::live::chunks::Chunks;
 use crate::live::rows::NONE;
 use crate::locate::Start;
-use crate::memory::{make_room, push, zeroed};
-use crate::mesh3::{Code, FACETS, corner, tetrahedron};
+use crate::mesh::space::{Code, FACETS, corner, tetrahedron};
 
 /// Four vertices, positively oriented, then the codes of the facets as seen from the other sides.
 pub type Record = [u32; 8];
@@ -160,7 +160,7 @@ impl Mesh {
         match orient3d(a, b, c, p) {
             Sign::Positive => true,
             Sign::Negative => false,
-            // See `delaunay3::cavity`.
+            // See `delaunay::space::cavity`.
             Sign::Zero => self.conflicts(tetrahedron(self.opposites(t)[k]), p),
         }
     }

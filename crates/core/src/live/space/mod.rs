@@ -1,7 +1,7 @@
 //! A live Delaunay triangulation in 3-D.
 //!
 //! Every state is the lower hull of the lifted points at heights that depend on coordinates only (see
-//! the head of `live`, and of `delaunay3::cavity` for ghosts over coplanar hull facets): so any order of
+//! the head of `live`, and of `delaunay::space::cavity` for ghosts over coplanar hull facets): so any order of
 //! edits ends in the tetrahedra of a fresh build. `insert` empties the cavity of a point and fills it
 //! with a star; `remove` empties the star of a vertex and fills the hole, and its head says why that is
 //! the lower hull; `link` puts both into the mesh. Points in one plane have no tetrahedron; they are kept in
@@ -25,11 +25,11 @@ pub use export::Exported;
 pub use query::Corners;
 pub use state::{Changes, State};
 
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::points;
+use crate::base::watch::Watch;
 use crate::live::rows::Rows;
-use crate::memory::with_room;
-use crate::points;
-use crate::watch::Watch;
 use mesh::Mesh;
 
 /// A live Delaunay triangulation of points in 2-D.

@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::hash::{BuildHasherDefault, Hasher};
 
-use crate::error::{Error, Result};
-use crate::memory::push;
-use crate::mesh3::{Code, FACETS};
+use crate::base::error::{Error, Result};
+use crate::base::memory::push;
+use crate::mesh::space::{Code, FACETS};
 
 /// The vertex at infinity; its coordinates are NaN.
 pub const INFINITE: u32 = 0;

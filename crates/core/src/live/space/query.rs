@@ -4,14 +4,14 @@ use delone_predicates::{Point3, Sign, nearer3, orient3d};
 
 use super::Space;
 use super::mesh::{INFINITE, Mesh};
-use crate::arrays::Given;
-use crate::error::Result;
+use crate::base::arrays::Given;
+use crate::base::error::Result;
+use crate::base::memory::{make_room, push, with_room};
+use crate::base::watch::{Pace, Watch};
 use crate::live::rows::NONE;
 use crate::locate::is_finite;
-use crate::locate3::{Place, barycentric};
-use crate::memory::{make_room, push, with_room};
-use crate::mesh3::FACETS;
-use crate::watch::{Pace, Watch};
+use crate::locate::space::{Place, barycentric};
+use crate::mesh::space::FACETS;
 
 /// Queries between two checks for interruption.
 const LOT: usize = 1 << 10;

@@ -26,11 +26,11 @@
 use delone_predicates::{Point3, Sign, insphere_canonical, orient3d};
 
 use super::mesh::{INFINITE, Mesh};
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::points::collinear;
+use crate::base::watch::Pace;
 use crate::live::rows::NONE;
-use crate::memory::with_room;
-use crate::points::collinear;
-use crate::watch::Pace;
 
 /// Tests for each vertex of the mesh that cost as much as a rebuild, and how many are always right.
 const HUB: usize = 64;

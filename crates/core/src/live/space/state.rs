@@ -4,12 +4,12 @@ use delone_predicates::lexicographic;
 
 use super::Space;
 use super::mesh::{Counts, FREE, INFINITE, Record, Site};
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::memory::{filled, push, with_room};
+use crate::base::watch::{Pace, Watch};
 use crate::live::chunks::Image;
 use crate::live::rows::{NONE, RowsImage};
-use crate::memory::{filled, push, with_room};
 use crate::order::{sort, sort_by};
-use crate::watch::{Pace, Watch};
 
 /// Records between two checks for interruption.
 const LOT: usize = 1 << 16;

@@ -1,4 +1,4 @@
-//! Where a point is: a start that is near, and a visibility walk (see `delaunay3::cavity`).
+//! Where a point is: a start that is near, and a visibility walk (see `delaunay::space::cavity`).
 //!
 //! A walk starts where the last one ended. If that is far away, vertices are sampled, as many as balance
 //! the walk from the nearest of them (E. P. Mücke, I. Saias and B. Zhu, "Fast randomized point location
@@ -8,12 +8,12 @@
 use delone_predicates::{Point3, Sign, orient3d};
 
 use super::mesh::{INFINITE, Mesh};
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
+use crate::base::watch::{Pace, Watch};
 use crate::live::rows::NONE;
 use crate::locate::{Start, squared};
-use crate::mesh3::{FACETS, corner, tetrahedron};
+use crate::mesh::space::{FACETS, corner, tetrahedron};
 use crate::order::random;
-use crate::watch::{Pace, Watch};
 
 /// How far a walk goes from the last tetrahedron, in lengths of its edge, squared, before vertices are
 /// sampled.

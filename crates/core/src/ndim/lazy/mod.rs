@@ -20,10 +20,10 @@ pub use search::Counts;
 
 use search::{Search, Worker};
 
-use crate::error::Result;
-use crate::memory::filled;
-use crate::parallel::map_watched;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::memory::filled;
+use crate::base::parallel::map_watched;
+use crate::base::watch::Watch;
 
 /// Queries of one task: neighbors in a batch are often in the same simplex.
 const SHARE: usize = 64;

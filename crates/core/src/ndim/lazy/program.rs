@@ -8,8 +8,8 @@
 
 use super::proven::{dot, invert, reduce};
 use super::sites::Around;
-use crate::error::Result;
-use crate::memory::{filled, make_room, with_room};
+use crate::base::error::Result;
+use crate::base::memory::{filled, make_room, with_room};
 
 /// In the basis: not a site.
 const ARTIFICIAL: u32 = u32::MAX;

@@ -11,9 +11,9 @@ use super::super::decide::FEW_BITS;
 use super::super::filter::{LEAST_RESIDUAL, LEAST_VALUE, ROUNDED, U};
 use super::super::frame::{Frame, Integers};
 use super::sites::Around;
-use crate::error::{Error, Result};
-use crate::memory::{copied, filled, with_room};
-use crate::wide::ratio;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{copied, filled, with_room};
+use crate::base::wide::ratio;
 
 /// Rounded solutions and bounds, row by row.
 struct Rounded {

@@ -10,9 +10,9 @@ use super::super::triangulate::independent;
 use super::program::{End, Program};
 use super::proven::Proven;
 use super::sites::{Around, Sites};
-use crate::error::{Error, Result};
-use crate::memory::{copied, filled, push, with_room};
-use crate::watch::{Pace, Watch};
+use crate::base::error::{Error, Result};
+use crate::base::memory::{copied, filled, push, with_room};
+use crate::base::watch::{Pace, Watch};
 
 /// Proposals before exact steps take over.
 const PROPOSALS: usize = 60;

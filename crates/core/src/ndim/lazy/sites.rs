@@ -9,10 +9,10 @@ use num_bigint::BigInt;
 use super::super::frame::Integers;
 use super::super::sites::{SMALL, WIDEST, factor};
 use super::tree::Tree;
-use crate::error::{Error, Result};
-use crate::memory::{copied, filled, push, with_room};
-use crate::points::{LIMIT3, finite};
-use crate::wide;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{copied, filled, push, with_room};
+use crate::base::points::{LIMIT3, finite};
+use crate::base::wide;
 
 /// The exponents of the lowest and, plus 1, of the highest bit of numbers.
 #[derive(Clone, Copy)]

@@ -6,8 +6,8 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
-use crate::error::Result;
-use crate::memory::{make_room, push, with_room};
+use crate::base::error::Result;
+use crate::base::memory::{make_room, push, with_room};
 
 /// The most points of a leaf.
 const LEAF: usize = 24;

@@ -8,7 +8,7 @@ use num_traits::{Signed, ToPrimitive, Zero};
 use super::super::filter::{Test, barycentric, invert, minus};
 use super::super::fine::Fine;
 use super::sets::Random;
-use crate::wide::scaled;
+use crate::base::wide::scaled;
 
 /// The lowest exponent of the coordinates here.
 const LOW: i64 = -200;

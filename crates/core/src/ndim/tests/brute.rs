@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use num_bigint::BigInt;
 
-use crate::wide::{lowest, scaled};
+use crate::base::wide::{lowest, scaled};
 
 /// Points as integers.
 pub fn integers<const D: usize>(points: &[[f64; D]]) -> Vec<Vec<BigInt>> {

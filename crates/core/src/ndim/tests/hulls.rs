@@ -3,8 +3,8 @@
 use super::super::{hull, triangulate};
 use super::brute;
 use super::sets::{Random, kinds};
-use crate::error::Error;
-use crate::watch::{IDLE, Watch};
+use crate::base::error::Error;
+use crate::base::watch::{IDLE, Watch};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Whether rows of points have some point strictly on the side of a facet where `inside` is not.

@@ -9,8 +9,8 @@ use super::super::lazy::{Counts, Lazy, Located};
 use super::super::{Simplices, triangulate};
 use super::brute::{canonical, integers, orientation, rank};
 use super::sets::{Random, kinds};
-use crate::error::Error;
-use crate::watch::{IDLE, Watch};
+use crate::base::error::Error;
+use crate::base::watch::{IDLE, Watch};
 
 fn add(all: &mut Counts, some: Counts) {
     all.again += some.again;

@@ -9,10 +9,10 @@ use super::super::{regular, triangulate};
 use super::brute;
 use super::numbers;
 use super::sets::{Random, kinds};
-use crate::arrays::Given;
-use crate::error::Error;
-use crate::watch::IDLE;
-use crate::wide::{lowest, scaled};
+use crate::base::arrays::Given;
+use crate::base::error::Error;
+use crate::base::watch::IDLE;
+use crate::base::wide::{lowest, scaled};
 
 /// Weights of one kind: none, small integers, random, close to the squares of lengths, huge,
 /// tiny.
@@ -145,7 +145,7 @@ fn they_are_those_of_the_plane_and_of_space() {
             .map(|p| [p[0], p[1], r.below(9) as f64])
             .collect();
         let (made, stands_for) = regular::<3, 4, 4>(&solid, &weights, &IDLE).unwrap();
-        let space = crate::regular3::regular(&solid, &weights, 1, &IDLE).unwrap();
+        let space = crate::regular::space::regular(&solid, &weights, 1, &IDLE).unwrap();
         assert_eq!(stands_for, space.stands_for);
         let right: Vec<_> = space
             .tetrahedra

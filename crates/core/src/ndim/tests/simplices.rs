@@ -9,9 +9,9 @@ use super::super::simplex::{circumcenter, orientation, sides, transform, volume,
 use super::super::{Hyper, Weighed, nearest, triangulate, within};
 use super::brute;
 use super::sets::{Random, kinds};
-use crate::arrays::Given;
+use crate::base::arrays::Given;
+use crate::base::watch::IDLE;
 use crate::locate::{Batch, Cache, Locator, find};
-use crate::watch::IDLE;
 
 fn exact(x: f64) -> BigRational {
     BigRational::from_float(x).unwrap()

@@ -1,0 +1,12 @@
+//! What all rooms stand on: errors, arrays, points, refused memory, interruption and workers.
+
+pub mod arrays;
+pub mod consistency;
+pub mod error;
+pub mod joins;
+pub mod memory;
+pub(crate) mod parallel;
+pub mod points;
+pub mod proof;
+pub mod watch;
+pub(crate) mod wide;

@@ -1,0 +1,4 @@
+//! Meshes with ghosts: topology alone, neither coordinates nor predicates.
+
+pub mod plane;
+pub mod space;

@@ -1,0 +1,59 @@
+//! Improves tetrahedral meshes: edge and face removal and smoothing, while the worst tetrahedron
+//! gets better.
+//!
+//! L. A. Freitag and C. Ollivier-Gooch, "Tetrahedral mesh improvement using swapping and smoothing",
+//! International Journal for Numerical Methods in Engineering 40 (1997); J. R. Shewchuk, "Two
+//! discrete optimization algorithms for the topological improvement of tetrahedral meshes" (2002);
+//! B. M. Klingner and J. R. Shewchuk, "Aggressive tetrahedral mesh improvement", 16th International
+//! Meshing Roundtable (2007).
+//!
+//! # Invariants
+//!
+//! Tetrahedra are positively oriented, exactly; walls do not change. A change is made only if the
+//! bounds of `measure` prove, rounding included, that the worst quality of the new tetrahedra is
+//! above that of the old ones, and that their smallest dihedral angle is not smaller. So the
+//! smallest angle of the mesh never decreases. Since old and new tetrahedra fill the same region
+//! and all new ones are positive, they cover it once.
+//!
+//! # Why it terminates
+//!
+//! Each change makes the ascending list of all qualities lexicographically larger, so no mesh
+//! repeats, and there are finitely many meshes on doubles. The number of passes is also limited,
+//! and a pass that gains nothing is the last one.
+//!
+//! # Determinism
+//!
+//! Vertices and tetrahedra are first sorted by coordinates, and everything runs in that order on
+//! one thread: the result is independent of the order of the rows.
+
+mod edge;
+mod exude;
+mod face;
+mod measure;
+mod order;
+mod smooth;
+mod store;
+mod task;
+mod work;
+
+pub(crate) use order::{Imported, import, rotated};
+pub use task::{Counts, Improved, Task, Tell};
+
+use crate::base::error::{Error, Result};
+use crate::base::watch::Watch;
+
+/// Improves tetrahedra.
+pub fn improve(task: Task, watch: &Watch, tell: Tell) -> Result<Improved> {
+    for (given, n, name) in [
+        (task.labels.len(), task.simplices.len(), "labels"),
+        (task.fixed.len(), task.points.len(), "fixed"),
+    ] {
+        if given != 0 && given != n {
+            return Err(Error::Shape(format!("{name} has {given} entries, not {n}")));
+        }
+    }
+    let imported = import(task)?;
+    let mut work = work::Work::new(imported.store, task)?;
+    let exhausted = !work.run(watch, tell)?;
+    order::export(work, task, imported.rows, imported.scale, exhausted)
+}

@@ -1,0 +1,251 @@
+//! A mutable tetrahedral mesh: corners, the neighbor across each face, one tetrahedron per vertex.
+//!
+//! Stores coordinates but does not use them.
+//!
+//! Corner `k` of a positively oriented tetrahedron lies on the positive side of its face [`FACES`]`[k]`.
+//! A face is a *wall* if nothing lies behind it, or a tetrahedron with another label. Walls never
+//! change, except that [`Store::replace`] may flip two of them in one plane.
+
+use delone_predicates::Point3;
+
+pub use crate::base::arrays::FACETS as FACES;
+use crate::base::error::{Error, Result};
+use crate::base::memory::{filled, push, with_room};
+
+/// No tetrahedron, or no vertex.
+pub const NONE: u32 = u32::MAX;
+
+/// Vertices of a tetrahedron, positively oriented.
+pub type Corners = [u32; 4];
+
+/// Tetrahedra over points.
+#[derive(Debug)]
+pub struct Store {
+    /// Coordinates of the vertices.
+    pub points: Vec<Point3>,
+    /// The corners of each tetrahedron; [`NONE`] if it was removed.
+    pub corners: Vec<Corners>,
+    /// The tetrahedron across the face opposite each corner.
+    pub across: Vec<[u32; 4]>,
+    /// The label of each.
+    pub label: Vec<i32>,
+    /// A measure of each, maintained by the code that changes coordinates or requests a
+    /// replacement.
+    pub quality: Vec<f64>,
+    /// A tetrahedron of each vertex.
+    pub at: Vec<u32>,
+    /// Vertices that do not move.
+    pub fixed: Vec<bool>,
+    free: Vec<u32>,
+    faces: Vec<Side>,
+}
+
+/// A face with its vertices ascending, and the tetrahedron and corner from which it is seen.
+type Side = ([u32; 3], u32, usize);
+
+/// Three numbers, ascending.
+fn ascending(mut v: [u32; 3]) -> [u32; 3] {
+    v.sort_unstable();
+    v
+}
+
+impl Store {
+    /// Links tetrahedra by their faces. Rejects a face that belongs to three of them.
+    pub fn new(points: Vec<Point3>, corners: Vec<Corners>, label: Vec<i32>) -> Result<Self> {
+        let (n, m) = (points.len(), corners.len());
+        let mut at = filled(n, NONE)?;
+        let mut sides: Vec<Side> = with_room(4 * m)?;
+        for (t, v) in (0..).zip(&corners) {
+            for k in 0..4 {
+                at[v[k] as usize] = t;
+                sides.push((ascending(FACES[k].map(|i| v[i])), t, k));
+            }
+        }
+        sides.sort_unstable();
+        let mut across = filled(m, [NONE; 4])?;
+        let mut fixed = filled(n, false)?;
+        let mut rest = sides.as_slice();
+        while let Some((&(face, t, k), others)) = rest.split_first() {
+            let same = others.iter().take_while(|other| other.0 == face).count();
+            let mut wall = true;
+            match (same, others) {
+                (0, _) => {}
+                (1, [(_, u, i), ..]) => {
+                    across[t as usize][k] = *u;
+                    across[*u as usize][*i] = t;
+                    wall = label[t as usize] != label[*u as usize];
+                }
+                _ => {
+                    let [a, b, c] = face;
+                    return Err(Error::Shape(format!(
+                        "more than two tetrahedra share the face of vertices {a}, {b} and {c}"
+                    )));
+                }
+            }
+            if wall {
+                for v in face {
+                    fixed[v as usize] = true;
+                }
+            }
+            rest = &others[same..];
+        }
+        let quality = filled(m, 0.0)?;
+        Ok(Self {
+            points,
+            corners,
+            across,
+            label,
+            quality,
+            at,
+            fixed,
+            free: Vec::new(),
+            faces: Vec::new(),
+        })
+    }
+
+    /// How many slots for tetrahedra there are, empty ones included.
+    pub fn places(&self) -> u32 {
+        self.corners.len() as u32
+    }
+
+    /// Whether there is a tetrahedron in a slot.
+    #[inline]
+    pub fn is_there(&self, t: u32) -> bool {
+        self.corners[t as usize][0] != NONE
+    }
+
+    /// The coordinates of corners.
+    #[inline]
+    pub fn places_of(&self, v: Corners) -> [Point3; 4] {
+        v.map(|v| self.points[v as usize])
+    }
+
+    /// Which corner of a tetrahedron a vertex is.
+    #[inline]
+    pub fn corner(&self, t: u32, v: u32) -> Option<usize> {
+        self.corners[t as usize].iter().position(|&x| x == v)
+    }
+
+    /// The tetrahedron across the face opposite a corner, unless that is a wall.
+    #[inline]
+    pub fn beyond(&self, t: u32, k: usize) -> Option<u32> {
+        let u = self.across[t as usize][k];
+        (u != NONE && self.label[u as usize] == self.label[t as usize]).then_some(u)
+    }
+
+    /// Collects the tetrahedra of a vertex that are connected to `at[v]` by faces that are not
+    /// walls.
+    pub fn star(&self, v: u32, found: &mut Vec<u32>) -> Result<()> {
+        found.clear();
+        push(found, self.at[v as usize])?;
+        let mut next = 0;
+        while let Some(&t) = found.get(next) {
+            next += 1;
+            for k in 0..4 {
+                if self.corners[t as usize][k] == v {
+                    continue;
+                }
+                if let Some(u) = self.beyond(t, k)
+                    && !found.contains(&u)
+                {
+                    push(found, u)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Replaces old tetrahedra of one label by new ones, and returns their numbers in `made`. Both
+    /// fill the same region; with `turning` two walls in one plane may differ.
+    pub fn replace(
+        &mut self,
+        old: &[u32],
+        new: &[Corners],
+        turning: bool,
+        made: &mut Vec<u32>,
+    ) -> Result<()> {
+        let mut faces = std::mem::take(&mut self.faces);
+        faces.clear();
+        // The outer faces of the old tetrahedra, as seen from the outside.
+        for &t in old {
+            for (k, corners) in FACES.iter().enumerate() {
+                let u = self.across[t as usize][k];
+                if u != NONE && old.contains(&u) {
+                    continue;
+                }
+                let face = corners.map(|i| self.corners[t as usize][i]);
+                let back = match u {
+                    NONE => 0,
+                    _ => (0..4)
+                        .find(|&i| self.across[u as usize][i] == t)
+                        .ok_or_else(|| {
+                            Error::Internal("a face whose neighbor does not link back".into())
+                        })?,
+                };
+                push(&mut faces, (ascending(face), u, back))?;
+            }
+        }
+        // Reuse the old slots for the new tetrahedra and add all of their faces.
+        let label = self.label[old[0] as usize];
+        for &t in old {
+            self.corners[t as usize] = [NONE; 4];
+        }
+        made.clear();
+        for (i, &v) in new.iter().enumerate() {
+            let t = self.place(old.get(i).copied())?;
+            push(made, t)?;
+            self.corners[t as usize] = v;
+            self.label[t as usize] = label;
+            for k in 0..4 {
+                self.at[v[k] as usize] = t;
+                push(&mut faces, (ascending(FACES[k].map(|i| v[i])), t, k))?;
+            }
+        }
+        for &t in old.iter().skip(new.len()) {
+            push(&mut self.free, t)?;
+        }
+        // Sorting brings the two sides of each face together.
+        faces.sort_unstable();
+        let joined = self.join(&faces, turning);
+        self.faces = faces;
+        joined
+    }
+
+    /// A slot for a tetrahedron: the one offered, an empty one or a new one.
+    fn place(&mut self, offered: Option<u32>) -> Result<u32> {
+        if let Some(t) = offered.or_else(|| self.free.pop()) {
+            return Ok(t);
+        }
+        push(&mut self.corners, [NONE; 4])?;
+        push(&mut self.across, [NONE; 4])?;
+        push(&mut self.label, 0)?;
+        push(&mut self.quality, 0.0)?;
+        Ok(self.places() - 1)
+    }
+
+    /// Links the sides of faces, sorted: two per face, or one if walls are flipped.
+    fn join(&mut self, faces: &[Side], turning: bool) -> Result<()> {
+        let mut rest = faces;
+        while let Some((&(face, t, k), others)) = rest.split_first() {
+            match others.first() {
+                Some(&(other, u, i)) if other == face => {
+                    if t != NONE {
+                        self.across[t as usize][k] = u;
+                    }
+                    if u != NONE {
+                        self.across[u as usize][i] = t;
+                    }
+                    rest = &others[1..];
+                }
+                _ if turning => {
+                    if t != NONE {
+                        self.across[t as usize][k] = NONE;
+                    }
+                    rest = others;
+                }
+                _ => return Err(Error::Internal("a face without a partner".into())),
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,74 @@
+//! The input and the result of an improvement.
+
+use delone_predicates::Point3;
+
+use crate::base::error::Result;
+
+/// Tetrahedra to improve, and options.
+#[derive(Debug, Clone, Copy)]
+pub struct Task<'a> {
+    /// Rows of coordinates, finite.
+    pub points: &'a [Point3],
+    /// Positively oriented tetrahedra that do not overlap.
+    pub simplices: &'a [[i32; 4]],
+    /// A label of each; faces between labels are kept. Empty if all have the same.
+    pub labels: &'a [i32],
+    /// For each row, whether it is fixed. Empty if none is.
+    pub fixed: &'a [bool],
+    /// Tetrahedra with a smaller dihedral angle, in degrees, are improved; so are those with an
+    /// obtuse angle of a smaller weighted sine.
+    pub min_angle: f64,
+    /// Whether edges and faces are removed.
+    pub flips: bool,
+    /// Whether vertices move.
+    pub smooth: bool,
+    /// Whether interior vertices get weights, before all else.
+    pub exude: bool,
+    /// Whether coplanar faces of the boundary may be flipped.
+    pub turn: bool,
+    /// The limit on passes.
+    pub passes: usize,
+}
+
+/// Changes by kind.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Edges removed.
+    pub edges: usize,
+    /// Edges of the boundary among them.
+    pub boundary: usize,
+    /// Removals of faces.
+    pub faces: usize,
+    /// Moves of vertices.
+    pub moves: usize,
+    /// Weights assigned.
+    pub weights: usize,
+    /// Passes.
+    pub passes: usize,
+    /// Changes that would have raised the worst quality but were not made: a smallest angle would
+    /// have become smaller, or rounding left it undecided.
+    pub refused: usize,
+}
+
+/// Improved tetrahedra.
+#[derive(Debug)]
+pub struct Improved {
+    /// Rows of coordinates, with the moved ones at their new positions.
+    pub points: Vec<Point3>,
+    /// Tetrahedra in rows.
+    pub simplices: Vec<[i32; 4]>,
+    /// The tetrahedron opposite each corner, -1 outside.
+    pub neighbors: Vec<[i32; 4]>,
+    /// The label of each.
+    pub labels: Vec<i32>,
+    /// The weight of each row, zero for most.
+    pub weights: Vec<f64>,
+    /// Counts of the changes.
+    pub counts: Counts,
+    /// Whether the limit on passes ended it while it still gained.
+    pub exhausted: bool,
+}
+
+/// Called after each pass with its number and the number of tetrahedra below the bound; an error
+/// ends the work.
+pub type Tell<'a> = &'a mut dyn FnMut(usize, usize) -> Result<()>;

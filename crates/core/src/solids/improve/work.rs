@@ -1,0 +1,340 @@
+//! The passes: removals for each tetrahedron below the bound, worst first; then moves of its
+//! vertices.
+
+use super::edge::{self, Plan, Ring};
+use super::measure::{Bounds, are_positive, bounds, quality};
+use super::smooth::Star;
+use super::store::{FACES, NONE, Store};
+use super::task::{Counts, Task, Tell};
+use super::{exude, face};
+use crate::base::error::Result;
+use crate::base::memory::{filled, push, with_room};
+use crate::base::watch::Watch;
+
+/// Tetrahedra or vertices between two checks for interruption.
+const WATCH_EVERY: usize = 1 << 10;
+/// A removal must gain more than this factor.
+const GAIN: f64 = 1.0 + 1e-9;
+/// A pass that removes a smaller share of the total shortfall from the bound counts as stalled. For
+/// flat point sets, such as terrain surveys, half of the tetrahedra stay below the bound, and every
+/// pass takes as long as the one before: with a hundredth here, half of the time went into the last
+/// twentieth of the gain.
+const STALLED: f64 = 3e-2;
+/// This many stalled passes end the work.
+const PATIENCE: usize = 2;
+/// The edges of a tetrahedron.
+const EDGES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+
+/// The state of an improvement.
+pub struct Work<'a> {
+    pub store: Store,
+    pub counts: Counts,
+    /// The weight of each vertex.
+    pub weights: Vec<f64>,
+    task: Task<'a>,
+    /// The quality below which a tetrahedron is improved.
+    bound: f64,
+    ring: Ring,
+    star: Star,
+    made: Vec<u32>,
+    around: Vec<u32>,
+    /// The number of the next attempt: what has not changed since its last attempt is not tried
+    /// again.
+    clock: u64,
+    /// For each vertex, when a tetrahedron at it last changed, and when a move was last tried.
+    touched: Vec<u64>,
+    moved: Vec<u64>,
+    /// For each tetrahedron, when its removal was last tried.
+    tried: Vec<u64>,
+}
+
+/// The measure of progress: how many are below the bound, and by how much in total.
+type Standing = (usize, f64);
+
+impl<'a> Work<'a> {
+    /// Measures all tetrahedra.
+    pub fn new(mut store: Store, task: Task<'a>) -> Result<Self> {
+        for t in 0..store.corners.len() {
+            store.quality[t] = quality(store.places_of(store.corners[t]));
+        }
+        let (n, m) = (store.points.len(), store.corners.len());
+        Ok(Self {
+            clock: 1,
+            weights: filled(n, 0.0)?,
+            touched: filled(n, 1)?,
+            moved: filled(n, 0)?,
+            tried: filled(m, 0)?,
+            store,
+            counts: Counts::default(),
+            bound: task.min_angle.to_radians().sin(),
+            task,
+            ring: Ring::default(),
+            star: Star::default(),
+            made: Vec::new(),
+            around: Vec::new(),
+        })
+    }
+
+    /// Runs passes until all are above the bound (true), nothing more is gained (true), or the
+    /// limit is reached (false).
+    pub fn run(&mut self, watch: &Watch, tell: Tell) -> Result<bool> {
+        if self.task.exude {
+            self.weigh_all(watch)?;
+        }
+        let mut standing = self.standing();
+        let mut stalled = 0;
+        while standing.0 > 0 {
+            if self.counts.passes == self.task.passes {
+                return Ok(false);
+            }
+            let changes = self.changes();
+            if self.task.flips {
+                self.remove_all(watch)?;
+            }
+            if self.task.smooth {
+                self.move_all(watch)?;
+            }
+            self.counts.passes += 1;
+            let now = self.standing();
+            tell(self.counts.passes, now.0)?;
+            let gained = standing.1 - now.1 > STALLED * standing.1;
+            stalled = if gained { 0 } else { stalled + 1 };
+            if self.changes() == changes || stalled == PATIENCE {
+                break;
+            }
+            standing = now;
+        }
+        Ok(true)
+    }
+
+    /// Whether a tetrahedron is to be improved.
+    fn is_below(&self, t: u32) -> bool {
+        self.store.is_there(t) && self.store.quality[t as usize] < self.bound
+    }
+
+    fn changes(&self) -> usize {
+        self.counts.edges + self.counts.faces + self.counts.moves
+    }
+
+    fn standing(&self) -> Standing {
+        let all = (0..self.store.places()).filter(|&t| self.store.is_there(t));
+        let missing = all.map(|t| self.bound - self.store.quality[t as usize]);
+        missing
+            .filter(|&m| m > 0.0)
+            .fold((0, 0.0), |(count, sum), m| (count + 1, sum + m))
+    }
+
+    /// The tetrahedra below the bound, worst first.
+    fn below(&self) -> Result<Vec<u32>> {
+        let store = &self.store;
+        let all = (0..store.places()).filter(|&t| self.is_below(t));
+        let mut found: Vec<u32> = with_room(all.clone().count())?;
+        found.extend(all);
+        found.sort_by(|&t, &u| {
+            let [t, u] = [t, u].map(|t| store.quality[t as usize]);
+            t.total_cmp(&u)
+        });
+        Ok(found)
+    }
+
+    /// Tries to remove an edge or faces of each tetrahedron below the bound, and of the new ones.
+    fn remove_all(&mut self, watch: &Watch) -> Result<()> {
+        let mut waiting = self.below()?;
+        waiting.reverse();
+        let mut steps = 0;
+        while let Some(t) = waiting.pop() {
+            steps += 1;
+            if steps % WATCH_EVERY == 0 {
+                watch.check()?;
+            }
+            if !self.is_below(t) {
+                continue;
+            }
+            self.clock += 1;
+            let corners = self.store.corners[t as usize];
+            let changed = corners.map(|v| self.touched[v as usize]).into_iter().max();
+            let tried = std::mem::replace(&mut self.tried[t as usize], self.clock);
+            if changed < Some(tried) {
+                continue;
+            }
+            if self.remove_at(t)? {
+                for &t in self.made.iter().filter(|&&t| self.is_below(t)) {
+                    push(&mut waiting, t)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes the best removal at a tetrahedron, if there is one.
+    fn remove_at(&mut self, t: u32) -> Result<bool> {
+        let own = self.store.quality[t as usize];
+        let mut best = Plan {
+            least: own * GAIN,
+            ..Plan::default()
+        };
+        let mut kind = None;
+        for (i, j) in EDGES {
+            let found = edge::remove(
+                &self.store,
+                &mut self.ring,
+                (t, i, j),
+                best.least,
+                self.task.turn,
+            );
+            if let Some(plan) = found {
+                (best, kind) = (plan, Some(true));
+            }
+        }
+        for k in 0..4 {
+            if let Some(plan) = face::remove(&self.store, (t, k), best.least)
+                && plan.least > best.least
+            {
+                (best, kind) = (plan, Some(false));
+            }
+        }
+        let Some(is_edge) = kind else {
+            return Ok(false);
+        };
+        if !self.carry_out(&best)? {
+            self.counts.refused += 1;
+            return Ok(false);
+        }
+        if is_edge {
+            self.counts.edges += 1;
+            self.counts.boundary += usize::from(best.turning);
+        } else {
+            self.counts.faces += 1;
+        }
+        Ok(true)
+    }
+
+    /// Replaces tetrahedra if the new ones are certainly better.
+    fn carry_out(&mut self, plan: &Plan) -> Result<bool> {
+        let store = &mut self.store;
+        let new = || plan.new.iter().map(|&v| store.places_of(v));
+        let old = plan.old.iter().map(|&t| store.corners[t as usize]);
+        let now = bounds(old.map(|v| store.places_of(v)));
+        if !bounds(new()).surely_better(now) || !are_positive(new()) {
+            return Ok(false);
+        }
+        store.replace(&plan.old, &plan.new, plan.turning, &mut self.made)?;
+        self.tried.resize(store.corners.len(), 0);
+        for &t in &self.made {
+            let t = t as usize;
+            store.quality[t] = quality(store.places_of(store.corners[t]));
+            self.tried[t] = 0;
+            for v in store.corners[t] {
+                self.touched[v as usize] = self.clock;
+            }
+        }
+        Ok(true)
+    }
+
+    /// Assigns weights to free vertices of tetrahedra below the bound, each at most once.
+    fn weigh_all(&mut self, watch: &Watch) -> Result<()> {
+        let mut met = filled(self.store.points.len(), false)?;
+        let mut steps = 0;
+        for t in self.below()? {
+            // A slot that was reused has other corners now.
+            if !self.is_below(t) {
+                continue;
+            }
+            for v in self.store.corners[t as usize] {
+                let fixed = self.store.fixed[v as usize];
+                if fixed || std::mem::replace(&mut met[v as usize], true) {
+                    continue;
+                }
+                self.weigh_one(v)?;
+                steps += 1;
+                if steps % WATCH_EVERY == 0 {
+                    watch.check()?;
+                }
+                if !self.is_below(t) || self.store.corner(t, v).is_none() {
+                    break;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Assigns a vertex a weight if the new tetrahedra are certainly better.
+    fn weigh_one(&mut self, v: u32) -> Result<()> {
+        self.store.star(v, &mut self.around)?;
+        let found = exude::pump(&self.store, &self.weights, v, &self.around, 0.0)?;
+        if let Some((plan, weight)) = found {
+            if self.carry_out(&plan)? {
+                self.weights[v as usize] = weight;
+                self.counts.weights += 1;
+            } else {
+                self.counts.refused += 1;
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves each free vertex of a tetrahedron below the bound.
+    fn move_all(&mut self, watch: &Watch) -> Result<()> {
+        let mut met = filled(self.store.points.len(), false)?;
+        let mut steps = 0;
+        for t in self.below()? {
+            for v in self.store.corners[t as usize] {
+                if met[v as usize] || self.store.fixed[v as usize] {
+                    continue;
+                }
+                met[v as usize] = true;
+                if self.touched[v as usize] < self.moved[v as usize] {
+                    continue;
+                }
+                self.clock += 1;
+                self.moved[v as usize] = self.clock;
+                self.counts.moves += usize::from(self.move_one(v)?);
+                steps += 1;
+                if steps % WATCH_EVERY == 0 {
+                    watch.check()?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves a vertex if the tetrahedra around it are certainly better afterwards.
+    fn move_one(&mut self, v: u32) -> Result<bool> {
+        let store = &mut self.store;
+        store.star(v, &mut self.around)?;
+        self.star.clear();
+        for &t in &self.around {
+            let corners = store.corners[t as usize];
+            let k = (0..4).find(|&k| corners[k] == v).unwrap_or(0);
+            let face = FACES[k].map(|i| store.points[corners[i] as usize]);
+            self.star.push(face);
+        }
+        let here = store.points[v as usize];
+        let Some((there, _)) = self.star.climb(here) else {
+            return Ok(false);
+        };
+        let now = star_bounds(store, &self.around);
+        store.points[v as usize] = there;
+        let then = star_bounds(store, &self.around);
+        let places = self.around.iter().map(|&t| store.corners[t as usize]);
+        if !then.surely_better(now) || !are_positive(places.map(|v| store.places_of(v))) {
+            store.points[v as usize] = here;
+            self.counts.refused += 1;
+            return Ok(false);
+        }
+        for &t in &self.around {
+            let t = t as usize;
+            store.quality[t] = quality(store.places_of(store.corners[t]));
+            for v in store.corners[t] {
+                self.touched[v as usize] = self.clock;
+            }
+        }
+        Ok(true)
+    }
+}
+
+fn star_bounds(store: &Store, star: &[u32]) -> Bounds {
+    let all = star.iter().map(|&t| store.corners[t as usize]);
+    debug_assert!(all.clone().all(|v| v[0] != NONE));
+    bounds(all.map(|v| store.places_of(v)))
+}

@@ -1,0 +1,319 @@
+//! The bands between levels as polygons with holes.
+//!
+//! Band b consists of what is above level b - 1 and not above level b, so that b is the rank of the
+//! vertices in it. Its boundary consists of contours and of pieces of the outline. A *piece* is the
+//! part of a triangle in one band; pieces that share a part of an edge with a length, or have only a
+//! collapsed piece of another band between them, belong together. Together they have one ring around them, and each further ring is a hole of that one:
+//! no search for the polygon of a hole is needed.
+
+use delone_predicates::lexicographic;
+
+use super::lines::rotate;
+use super::link::{Edge, Linker, is_counterclockwise};
+use super::nodes::{Crossed, Nodes};
+use super::untangle::untangle;
+use crate::base::arrays::Triangles;
+use crate::base::error::Result;
+use crate::base::memory::{filled, make_room, push, with_room};
+use crate::base::watch::Watch;
+use delone_predicates::Point2;
+
+/// Triangles between two checks for interruption.
+const WATCH_EVERY: usize = 1 << 14;
+
+/// Polygons as runs of rings, which are runs of coordinates.
+#[derive(Debug, Default)]
+pub struct Bands {
+    /// Triangles in which contours would cross; if there are any, there is nothing else.
+    pub tangled: Vec<i32>,
+    /// Coordinates of all rings. Each ends with its first point.
+    pub points: Vec<Point2>,
+    /// The start of each ring in `points`, and the end of the last.
+    pub rings: Vec<i64>,
+    /// The start of each polygon in the rings: counterclockwise, then its holes.
+    pub polygons: Vec<i64>,
+    /// The band of each polygon, ascending: 0 is below all levels.
+    pub bands: Vec<i32>,
+}
+
+/// A ring in the list of places of a band.
+struct Ring {
+    piece: u32,
+    hole: bool,
+    start: usize,
+    end: usize,
+}
+
+/// The bands of ascending `levels`. For `collapsed` see `Nodes::new`, for `far` see `untangle`.
+pub fn bands(
+    given: Triangles,
+    heights: &[f64],
+    (levels, collapsed): (&[f64], &[bool]),
+    far: bool,
+    limit: usize,
+    watch: &Watch,
+) -> Result<Bands> {
+    let mut nodes = Nodes::new(given, heights, (levels, collapsed), limit, watch)?;
+    let tangled = untangle(&mut nodes, far, watch)?;
+    if !tangled.is_empty() {
+        return Ok(Bands {
+            tangled,
+            ..Bands::default()
+        });
+    }
+    let mut pieces = Pieces::new(&nodes, watch)?;
+    let (starts, edges) = boundaries(&nodes, &pieces, watch)?;
+    let mut linker = Linker::new(nodes.len())?;
+    let mut found = Bands::default();
+    push(&mut found.rings, 0)?;
+    push(&mut found.polygons, 0)?;
+    for (band, range) in starts.windows(2).enumerate() {
+        watch.check()?;
+        let mut rings = Vec::new();
+        let mut places = Vec::new();
+        linker.link(&nodes, &edges[range[0]..range[1]], |line, piece| {
+            // What bounds a region is closed.
+            if line.first() != line.last() {
+                return Ok(());
+            }
+            let start = places.len();
+            make_room(&mut places, line.len())?;
+            places.extend_from_slice(line);
+            rotate(&nodes, &mut places[start..]);
+            let ring = Ring {
+                piece,
+                hole: !is_counterclockwise(&nodes, &places[start..]),
+                start,
+                end: places.len(),
+            };
+            push(&mut rings, ring)
+        })?;
+        for &[a, b] in &linker.joined {
+            pieces.unite(a, b);
+        }
+        for ring in &mut rings {
+            ring.piece = pieces.find(ring.piece);
+        }
+        found.add(&nodes, &places, rings, band as i32)?;
+    }
+    Ok(found)
+}
+
+impl Bands {
+    /// Adds the polygons of a band in the order of their first points.
+    fn add(
+        &mut self,
+        nodes: &Nodes,
+        places: &[u32],
+        mut rings: Vec<Ring>,
+        band: i32,
+    ) -> Result<()> {
+        let at = |ring: &Ring| [ring.start, ring.start + 1].map(|k| nodes.at(places[k]));
+        rings.sort_by(|a, b| {
+            let ([p, q], [r, s]) = (at(a), at(b));
+            lexicographic(p, r).then_with(|| lexicographic(q, s))
+        });
+        // The outer ring of each set of pieces comes first; stable, so that holes keep their order.
+        let mut rank: Vec<(u32, u32)> = with_room(rings.len())?;
+        rank.extend(
+            rings
+                .iter()
+                .enumerate()
+                .filter(|(_, ring)| !ring.hole)
+                .map(|(k, ring)| (ring.piece, k as u32)),
+        );
+        rank.sort_unstable();
+        rings.sort_by_cached_key(|ring| {
+            let found = rank.binary_search_by_key(&ring.piece, |each| each.0);
+            (found.map_or(u32::MAX, |k| rank[k].1), ring.hole)
+        });
+        make_room(&mut self.points, places.len())?;
+        for (k, ring) in rings.iter().enumerate() {
+            if !ring.hole && k > 0 {
+                push(&mut self.polygons, self.rings.len() as i64 - 1)?;
+            }
+            if !ring.hole {
+                push(&mut self.bands, band)?;
+            }
+            let run = &places[ring.start..ring.end];
+            self.points.extend(run.iter().map(|&place| nodes.at(place)));
+            push(&mut self.rings, self.points.len() as i64)?;
+        }
+        if !rings.is_empty() {
+            push(&mut self.polygons, self.rings.len() as i64 - 1)?;
+        }
+        Ok(())
+    }
+}
+
+/// The pieces of triangles in bands, and which belong together.
+struct Pieces {
+    /// The first piece of each triangle: one for each rank from the lowest to the highest.
+    first: Vec<u32>,
+    parents: Vec<u32>,
+}
+
+impl Pieces {
+    fn new(nodes: &Nodes, watch: &Watch) -> Result<Self> {
+        let mut first = with_room(nodes.triangles())?;
+        let mut count = 0;
+        for t in 0..nodes.triangles() {
+            let crossed = nodes.crossed(t);
+            first.push(count);
+            count += crossed.ranks[2] - crossed.ranks[0] + 1;
+        }
+        let mut parents = with_room(count as usize)?;
+        parents.extend(0..count);
+        let mut pieces = Self { first, parents };
+        for t in 0..nodes.triangles() {
+            if t.is_multiple_of(WATCH_EVERY) {
+                watch.check()?;
+            }
+            for k in 0..3 {
+                if let Some((u, _)) = nodes.twin(t, k).filter(|&(u, _)| u < t) {
+                    along(nodes, t, k, |band, from, to| {
+                        if from != to {
+                            let [a, b] = [t, u].map(|t| pieces.of(nodes, t, band));
+                            pieces.unite(a, b);
+                        }
+                    });
+                }
+            }
+        }
+        Ok(pieces)
+    }
+
+    /// The piece of a triangle in a band.
+    fn of(&self, nodes: &Nodes, t: usize, band: u32) -> u32 {
+        self.first[t] + band - nodes.crossed(t).ranks[0]
+    }
+
+    /// The representative of a piece, with halved paths.
+    fn find(&mut self, mut piece: u32) -> u32 {
+        while self.parents[piece as usize] != piece {
+            let above = self.parents[self.parents[piece as usize] as usize];
+            self.parents[piece as usize] = above;
+            piece = above;
+        }
+        piece
+    }
+
+    fn unite(&mut self, a: u32, b: u32) {
+        let [a, b] = [a, b].map(|piece| self.find(piece));
+        self.parents[a.max(b) as usize] = a.min(b);
+    }
+}
+
+/// Calls `part` with the part of an edge in each band, from end to end with the triangle to its
+/// left: the band and both representatives, which may be the same.
+fn along(nodes: &Nodes, t: usize, k: usize, mut part: impl FnMut(u32, u32, u32)) {
+    let [a, b] = nodes.ends(t, k);
+    let [from, to] = [a, b].map(|v| nodes.rank(v));
+    let mut last = a;
+    if from <= to {
+        for band in from..to {
+            let node = nodes.find(nodes.node(t, k, band));
+            part(band, last, node);
+            last = node;
+        }
+    } else {
+        for band in (to..from).rev() {
+            let node = nodes.find(nodes.node(t, k, band));
+            part(band + 1, last, node);
+            last = node;
+        }
+    }
+    part(to, last, b);
+}
+
+/// The boundaries of all bands: the start of each band, and the edges, owned by pieces.
+fn boundaries(nodes: &Nodes, pieces: &Pieces, watch: &Watch) -> Result<(Vec<usize>, Vec<Edge>)> {
+    let bands = nodes.levels + 1;
+    let mut starts = filled(bands + 1, 0)?;
+    each_side(nodes, pieces, watch, |band, _| {
+        starts[band as usize + 1] += 1
+    })?;
+    for band in 0..bands {
+        starts[band + 1] += starts[band];
+    }
+    let none = Edge {
+        from: 0,
+        to: 0,
+        owner: 0,
+    };
+    let mut edges = filled(starts[bands], none)?;
+    let mut next = starts.clone();
+    each_side(nodes, pieces, watch, |band, edge| {
+        edges[next[band as usize]] = edge;
+        next[band as usize] += 1;
+    })?;
+    Ok((starts, edges))
+}
+
+/// Calls `side` with each edge that has a length and its band to the left.
+fn each_side(
+    nodes: &Nodes,
+    pieces: &Pieces,
+    watch: &Watch,
+    mut side: impl FnMut(u32, Edge),
+) -> Result<()> {
+    for t in 0..nodes.triangles() {
+        if t.is_multiple_of(WATCH_EVERY) {
+            watch.check()?;
+        }
+        let crossed = nodes.crossed(t);
+        each_chord(nodes, t, &crossed, pieces.first[t], &mut side);
+        for k in 0..3 {
+            if nodes.twin(t, k).is_none() {
+                along(nodes, t, k, |band, from, to| {
+                    if from != to {
+                        let owner = pieces.first[t] + band - crossed.ranks[0];
+                        side(band, Edge { from, to, owner });
+                    }
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Calls `side` with both directions of each contour in a triangle: once for the band above it, and
+/// once for the band below.
+fn each_chord(
+    nodes: &Nodes,
+    t: usize,
+    crossed: &Crossed,
+    first: u32,
+    side: &mut impl FnMut(u32, Edge),
+) {
+    for level in crossed.ranks[0]..crossed.ranks[2] {
+        let [left, right] = nodes
+            .chord(t, crossed, level)
+            .map(|place| nodes.find(place));
+        if left == right {
+            continue;
+        }
+        let (from, to) = if crossed.even {
+            (left, right)
+        } else {
+            (right, left)
+        };
+        let below = first + level - crossed.ranks[0];
+        side(
+            level + 1,
+            Edge {
+                from,
+                to,
+                owner: below + 1,
+            },
+        );
+        side(
+            level,
+            Edge {
+                from: to,
+                to: from,
+                owner: below,
+            },
+        );
+    }
+}
