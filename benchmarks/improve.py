@@ -11,7 +11,7 @@ import time
 import numpy as np
 
 import delone
-from delone.space.quality import measured
+from delone._tiling.space.quality import measured
 
 GOALS = (15, 20, 25)
 

@@ -145,7 +145,7 @@ LIBRARIES = {
 
 def one(library: str, file: str, cap: float) -> dict:
     """Mesh once, and measure what came out by one and the same code."""
-    from delone.plane.quality import below, measured
+    from delone._tiling.plane.quality import below, measured
 
     seconds, corners = LIBRARIES[library](lines.load(file), cap)
     points = np.ascontiguousarray(corners.reshape(-1, 2))

@@ -26,6 +26,10 @@ except ImportError as error:
         "and platform with pip; it cannot be imported from a zip archive"
     ) from error
 from delone import predicates
+from delone._base.georeference import CRSWarning, GeographicWarning
+from delone._base.units import UnitsWarning
+from delone._tiling.plane.quality import Quality
+from delone._tiling.space.quality import TetQuality
 from delone.delaunay import Delaunay
 from delone.errors import (
     BudgetExceededError,
@@ -52,11 +56,7 @@ from delone.errors import (
     OutsideError,
     ShapeError,
 )
-from delone.georeference import CRSWarning, GeographicWarning
 from delone.memory import TooLargeError
-from delone.plane.quality import Quality
-from delone.space.quality import TetQuality
-from delone.units import UnitsWarning
 from delone.validation import ValidationReport
 
 if TYPE_CHECKING:
@@ -74,6 +74,7 @@ if TYPE_CHECKING:
         testing,
     )
     from delone import io as io
+    from delone._tiling.location import Location
     from delone.alpha.concave import concave_hull
     from delone.alpha.filtration import AlphaComplex
     from delone.alpha.shape import AlphaShape, ConcaveHull
@@ -93,16 +94,16 @@ if TYPE_CHECKING:
     from delone.refine.refine import mesh
     from delone.refine.report import MeshReport
     from delone.regular import RegularTriangulation
-    from delone.surface.check import check_surface
-    from delone.surface.report import SurfaceCheck
-    from delone.surface.resolve import resolve_touches
-    from delone.tetmesh.improvement import improve
-    from delone.tetmesh.recovery import RecoveryReport
-    from delone.tetmesh.refinement import RefinementReport
-    from delone.tetmesh.report import ImproveReport
-    from delone.tetmesh.tetmesh import TetMesh
-    from delone.tetmesh.validation import TetMeshReport
-    from delone.tetrahedra.filling import tetrahedralize
+    from delone.solids.surface.check import check_surface
+    from delone.solids.surface.report import SurfaceCheck
+    from delone.solids.surface.resolve import resolve_touches
+    from delone.solids.tetmesh.improvement import improve
+    from delone.solids.tetmesh.recovery import RecoveryReport
+    from delone.solids.tetmesh.refinement import RefinementReport
+    from delone.solids.tetmesh.report import ImproveReport
+    from delone.solids.tetmesh.tetmesh import TetMesh
+    from delone.solids.tetmesh.validation import TetMeshReport
+    from delone.solids.tetrahedra.filling import tetrahedralize
     from delone.voronoi.centroidal import LloydResult, lloyd
     from delone.voronoi.diagram import Voronoi
 
@@ -141,6 +142,7 @@ __all__ = [
     "LawsonResult",
     "LimitError",
     "LloydResult",
+    "Location",
     "Mesh",
     "MeshReport",
     "MissingExtraError",
@@ -215,12 +217,10 @@ _MODULES = {
     "reference",
     "refine",
     "regular",
+    "solids",
     "sphere",
-    "surface",
     "terrain",
     "testing",
-    "tetmesh",
-    "tetrahedra",
     "voronoi",
 }
 _HOMES = {
@@ -234,7 +234,8 @@ _HOMES = {
     "Dynamic": "dynamic.dynamic",
     "Editing": "constrained.editing",
     "Estimate": "estimation",
-    "ImproveReport": "tetmesh.report",
+    "ImproveReport": "solids.tetmesh.report",
+    "Location": "_tiling.location",
     "LawsonResult": "flips",
     "LloydResult": "voronoi.centroidal",
     "Mesh": "refine.meshed",
@@ -243,25 +244,25 @@ _HOMES = {
     "Overlaps": "areal.overlaps",
     "PeriodicDelaunay": "periodic",
     "PolygonTriangles": "constrained.polygons",
-    "RecoveryReport": "tetmesh.recovery",
-    "RefinementReport": "tetmesh.refinement",
+    "RecoveryReport": "solids.tetmesh.recovery",
+    "RefinementReport": "solids.tetmesh.refinement",
     "RegularTriangulation": "regular",
     "SegmentReport": "constrained.segments",
-    "SurfaceCheck": "surface.report",
-    "TetMesh": "tetmesh.tetmesh",
-    "TetMeshReport": "tetmesh.validation",
+    "SurfaceCheck": "solids.surface.report",
+    "TetMesh": "solids.tetmesh.tetmesh",
+    "TetMeshReport": "solids.tetmesh.validation",
     "Voronoi": "voronoi.diagram",
-    "check_surface": "surface.check",
+    "check_surface": "solids.surface.check",
     "concave_hull": "alpha.concave",
     "estimate": "estimation",
     "explore": "explorer.widget",
     "from_geometry": "constrained.polygons",
-    "improve": "tetmesh.improvement",
+    "improve": "solids.tetmesh.improvement",
     "lawson": "flips",
     "lloyd": "voronoi.centroidal",
     "mesh": "refine.refine",
-    "resolve_touches": "surface.resolve",
-    "tetrahedralize": "tetrahedra.filling",
+    "resolve_touches": "solids.surface.resolve",
+    "tetrahedralize": "solids.tetrahedra.filling",
     "triangulate_polygon": "constrained.polygons",
 }
 

@@ -9,15 +9,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Never, TypedDict, Unpack
 
 from delone import _core
-from delone._arrays import as_workers
-from delone.counting import counted
+from delone._base.arrays import as_workers
+from delone._base.counting import counted
+from delone._base.georeference import warn_of_degrees
+from delone._base.immutable import own_copy
+from delone._tiling.higher.dimension import MOST
+from delone._tiling.higher.size import require_room
+from delone._tiling.space.plane import plane_of
+from delone._tiling.triangulation import PointTriangulation
 from delone.errors import DegenerateInputError, DtypeError, InputError, InternalError
-from delone.georeference import warn_of_degrees
-from delone.higher.dimension import MOST
-from delone.higher.size import require_room
-from delone.immutable import own_copy
-from delone.space.plane import plane_of
-from delone.triangulation import PointTriangulation
 from delone.validation import HigherReport, SpaceReport, ValidationReport
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Indices
+    from delone._base.types import Indices
 
 __all__ = ["Delaunay"]
 

@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone._arrays import require_finite
-from delone.counting import grouped
+from delone._base.arrays import require_finite
+from delone._base.counting import grouped
+from delone._base.immutable import own_copy
+from delone._tiling.higher.dimension import MOST
+from delone._tiling.higher.size import peak_bytes, sample_size
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError
-from delone.higher.dimension import MOST
-from delone.higher.size import peak_bytes, sample_size
-from delone.immutable import own_copy
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["Estimate", "estimate"]
 

@@ -16,15 +16,15 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_flag, as_points, as_simplices
-from delone.counting import counted
+from delone._base.arrays import as_flag, as_points, as_simplices
+from delone._base.counting import counted
+from delone._base.immutable import ReadOnly
 from delone.errors import LimitError
-from delone.immutable import ReadOnly
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
     IntegerPoint: TypeAlias = tuple[int, int]
 

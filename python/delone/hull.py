@@ -8,22 +8,23 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from delone import _core, measures, predicates
-from delone._arrays import as_queries, as_workers, require_finite
-from delone.complex import Complex
-from delone.counting import counted
+from delone import _core, predicates
+from delone._base.arrays import as_queries, as_workers, require_finite
+from delone._base.counting import counted
+from delone._base.extras import require
+from delone._base.immutable import kept, own_copy, sealed
+from delone._tiling import measures
+from delone._tiling.complex import Complex
+from delone._tiling.dimension import only
+from delone._tiling.higher import hull as higher
+from delone._tiling.higher.dimension import MOST
+from delone._tiling.higher.hull import hull_arrays
+from delone._tiling.higher.size import require_room
+from delone._tiling.plane import geometry as plane
+from delone._tiling.plane.topology import vertex_to_simplex
+from delone._tiling.space import geometry as space
 from delone.delaunay import Delaunay
-from delone.dimension import only
 from delone.errors import InputError, InternalError
-from delone.extras import require
-from delone.higher import hull as higher
-from delone.higher.dimension import MOST
-from delone.higher.hull import hull_arrays
-from delone.higher.size import require_room
-from delone.immutable import kept, own_copy, sealed
-from delone.plane import geometry as plane
-from delone.plane.topology import vertex_to_simplex
-from delone.space import geometry as space
 from delone.validation import ValidationReport, no_pairs, no_rows
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Bools, Floats, Indices, Rows
+    from delone._base.types import Bools, Floats, Indices, Rows
     from delone.exchange.parts import Parts
 
 __all__ = ["ConvexHull"]
@@ -536,7 +537,7 @@ def _in_space(points: Floats) -> dict[str, NDArray[Any]] | None:
     }
 
 
-# By the number of coordinates; the others are those of `delone.higher`.
+# By the number of coordinates; the others are those of `delone._tiling.higher`.
 _ARRAYS_OF: dict[int, Callable[[Floats], dict[str, NDArray[Any]] | None]] = {
     2: _in_plane,
     3: _in_space,

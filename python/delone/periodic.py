@@ -13,14 +13,15 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone import _core, measures
-from delone._arrays import as_number, as_workers, require_finite
-from delone.complex import Complex
-from delone.counting import counted
-from delone.duplicates import first_rows
+from delone import _core
+from delone._base.arrays import as_number, as_workers, require_finite
+from delone._base.counting import counted
+from delone._base.duplicates import first_rows
+from delone._base.immutable import kept, own_copy, sealed
+from delone._tiling import measures
+from delone._tiling.complex import Complex
+from delone._tiling.plane.dimension import PLANE
 from delone.errors import DegenerateInputError, InputError, InternalError
-from delone.immutable import kept, own_copy, sealed
-from delone.plane.dimension import PLANE
 from delone.regular import as_weights
 from delone.regular_validation import PeriodicReport, validate_periodic
 
@@ -29,9 +30,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
+    from delone._tiling.plane.quality import Quality
     from delone.exchange.parts import Parts
-    from delone.plane.quality import Quality
 
 __all__ = ["PeriodicDelaunay"]
 

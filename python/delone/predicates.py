@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_vectors, require_finite
+from delone._base.arrays import as_vectors, require_finite
 from delone.errors import InputError, ShapeError
 
 if TYPE_CHECKING:

@@ -11,21 +11,21 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_plain_array, as_vectors, as_workers
-from delone.counting import agreed, counted
+from delone._base.arrays import as_plain_array, as_vectors, as_workers
+from delone._base.counting import agreed, counted
+from delone._base.georeference import warn_of_degrees
+from delone._base.immutable import kept, own_copy, sealed
+from delone._tiling.higher.dimension import MOST
+from delone._tiling.higher.size import require_room
+from delone._tiling.space.plane import plane_of, repeated_rows
+from delone._tiling.triangulation import PointTriangulation
 from delone.errors import DegenerateInputError, InternalError, NonFiniteError, ShapeError
-from delone.georeference import warn_of_degrees
-from delone.higher.dimension import MOST
-from delone.higher.size import require_room
-from delone.immutable import kept, own_copy, sealed
 from delone.regular_validation import validate_regular
-from delone.space.plane import plane_of, repeated_rows
-from delone.triangulation import PointTriangulation
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.regular_validation import RegularHigherReport, RegularReport, RegularSpaceReport
 
 __all__ = ["RegularTriangulation"]

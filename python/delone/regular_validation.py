@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from delone import _core
-from delone.space.plane import repeated_rows
+from delone._tiling.space.plane import repeated_rows
 from delone.validation import (
     SENTENCES,
     HigherReport,
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["PeriodicReport", "RegularHigherReport", "RegularReport", "RegularSpaceReport"]
 

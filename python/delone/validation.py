@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_neighbors, as_points, as_simplices, require_finite
-from delone.higher import topology as higher
-from delone.higher.dimension import MOST
-from delone.immutable import ReadOnly
-from delone.plane import topology
-from delone.space import topology as space
+from delone._base.arrays import as_neighbors, as_points, as_simplices, require_finite
+from delone._base.immutable import ReadOnly
+from delone._tiling.higher import topology as higher
+from delone._tiling.higher.dimension import MOST
+from delone._tiling.plane import topology
+from delone._tiling.space import topology as space
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -10,7 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from delone import Delaunay, _arrays, _values, interpolate
+from delone import Delaunay, interpolate
+from delone._base import arrays as _arrays
+from delone._base import values as _values
 from delone.errors import DtypeError, InputError, LimitError, NonFiniteError, ShapeError
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])

@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 
 import delone
-from delone import distributed, interpolate, io, location, sphere, terrain
-from delone.dimension import _Only
-from delone.renames import Renamed
+from delone import distributed, interpolate, io, sphere, terrain
+from delone._base.renames import Renamed
+from delone._tiling import location
+from delone._tiling.dimension import _Only
 from delone.terrain import TIN
 
 # Names of tuples, which named tuples have.
@@ -30,8 +31,6 @@ PUBLIC = (
     "graphs",
     "interpolate",
     "io",
-    "location",
-    "measures",
     "sphere",
     "terrain",
     "validation",

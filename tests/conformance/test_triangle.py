@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from delone._tiling.plane.quality import below
 from delone.compat import triangle as drop_in
-from delone.plane.quality import below
 
 package = pytest.importorskip("triangle")
 

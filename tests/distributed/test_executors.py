@@ -232,7 +232,7 @@ except MissingExtraError as error:
 
 
 def test_the_cores_of_this_process_are_used_and_no_others(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("delone._arrays._usable_cores", lambda: 3)
+    monkeypatch.setattr("delone._base.arrays._usable_cores", lambda: 3)
     assert executors.Processes().workers == executors.Serial().threads == 3
     assert executors.Processes(2).workers == 2
     with pytest.raises(InputError, match="workers must be"):

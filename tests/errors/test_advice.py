@@ -161,7 +161,7 @@ def test_extra_points_are_no_seeds():
 
 
 def test_faces_without_room_advise_the_surface():
-    from delone.tetrahedra.filling import _Stages
+    from delone.solids.tetrahedra.filling import _Stages
 
     assert 'boundary="surface"' in _Stages(None, "faces", "winding", None, None)._advice()
     assert not _Stages(None, "surface", "winding", None, None)._advice()

@@ -282,7 +282,7 @@ def test_geometries_are_made_in_blocks(kind: str, monkeypatch: pytest.MonkeyPatc
         return make(corners)
 
     monkeypatch.setattr(shapely, name, counted)
-    monkeypatch.setattr(delone.blocks, "ROWS", 3)
+    monkeypatch.setattr(delone._base.blocks, "ROWS", 3)
     assert to_geopandas(parts).equals(whole)
     assert sum(sizes) == len(whole) > 3 >= max(sizes)
 

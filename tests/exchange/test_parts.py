@@ -118,11 +118,11 @@ def test_no_class_is_known_to_the_room() -> None:
     """Also not for types: what is imported of delone is named here."""
     room = Path(delone.__file__).parent / "exchange"
     allowed = {
-        "delone._arrays",
-        "delone._types",
-        "delone.blocks",
+        "delone._base.arrays",
+        "delone._base.types",
+        "delone._base.blocks",
         "delone.errors",
-        "delone.extras",
+        "delone._base.extras",
         "delone.exchange",
     }
     for path in room.glob("*.py"):

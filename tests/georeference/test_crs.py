@@ -13,8 +13,8 @@ import pytest
 
 import delone
 from delone import ConstrainedDelaunay, CRSWarning, Delaunay
+from delone._base.georeference import as_crs, crs_of
 from delone.errors import DtypeError, FileFormatError, InputError
-from delone.georeference import as_crs, crs_of
 from delone.interpolate import grid
 from delone.io import GeometrySet, read_geometries, read_points, write_mesh, write_raster
 
@@ -206,6 +206,6 @@ def test_systems_that_do_not_exist_are_refused(crs: Any) -> None:
 
 
 def test_without_pyproj_any_name_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(delone.georeference, "_has_pyproj", lambda: False)
+    monkeypatch.setattr(delone._base.georeference, "_has_pyproj", lambda: False)
     ring = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (1, 1), (0, 0)]]}
     assert delone.from_geometry(ring, crs="nope").crs == "nope"

@@ -14,10 +14,16 @@ import pytest
 
 import delone
 from delone import Delaunay, GeographicWarning, PeriodicDelaunay, datasets
+from delone._base.georeference import (
+    degrees_in,
+    is_geographic,
+    may_be_degrees,
+    names_degrees,
+    same_crs,
+)
 from delone.compat import scipy as like_scipy
 from delone.compat import triangle as like_triangle
 from delone.errors import DtypeError
-from delone.georeference import degrees_in, is_geographic, may_be_degrees, names_degrees, same_crs
 from delone.interpolate import (
     CloughTocher,
     Linear,
@@ -245,7 +251,7 @@ def test_point_sets_are_arrays() -> None:
 def test_what_is_recognized_without_pyproj(monkeypatch: pytest.MonkeyPatch) -> None:
     for missing in (False, True):
         if missing:
-            monkeypatch.setattr("delone.georeference._has_pyproj", lambda: False)
+            monkeypatch.setattr("delone._base.georeference._has_pyproj", lambda: False)
         else:
             pytest.importorskip("pyproj")
         assert is_geographic("EPSG:4326") and is_geographic("OGC:CRS84")

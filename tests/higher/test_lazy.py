@@ -135,7 +135,7 @@ def test_what_cannot_be_lazy_is_refused() -> None:
 def test_what_does_not_fit_into_memory_is_lazy(monkeypatch: pytest.MonkeyPatch) -> None:
     random = np.random.default_rng(0)
     points = random.random((3000, 6))
-    monkeypatch.setattr("delone.higher.size.free_memory", lambda: 10**8)
+    monkeypatch.setattr("delone._tiling.higher.size.free_memory", lambda: 10**8)
     field = Linear(points, points.sum(axis=1))
     assert repr(field) == "<Linear on 3000 points in 6-D>"
     assert field(np.full(6, 0.5)) == pytest.approx(3, rel=1e-12)

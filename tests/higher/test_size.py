@@ -10,7 +10,7 @@ import pytest
 
 import delone
 from delone import ConvexHull, Delaunay
-from delone.higher import size
+from delone._tiling.higher import size
 
 GIVEN = {2: 2.0, 3: 6.77, 4: 31.8, 5: 187, 6: 1296, 8: 90_425}
 

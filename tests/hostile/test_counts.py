@@ -19,7 +19,8 @@ import pytest
 import shapely
 
 import delone
-from delone import FileFormatError, bounded, distributed
+from delone import FileFormatError, distributed
+from delone._base import bounded
 from delone.io import read_mesh, read_points
 from delone.io.gmsh import needed_sections
 from delone.io.triangle import read_triangle

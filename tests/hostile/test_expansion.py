@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 import delone
-from delone import FileFormatError, bounded
+from delone import FileFormatError
+from delone._base import bounded
 from delone.distributed.store.files import Store
 from delone.io import read_mesh, read_points
 from delone.terrain import TIN

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from delone import ConvexHull, Delaunay, improve
+from delone._tiling.space.quality import dihedral_angles, measured
 from delone.errors import DtypeError, InputError
-from delone.space.quality import dihedral_angles, measured
 
 REGULAR = np.array([(1.0, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
 CORNER = np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from delone import ConstrainedDelaunay, Delaunay
+from delone._tiling.plane import slivers
 from delone.interpolate import CloughTocher, Linear, NaturalNeighbor
-from delone.plane import slivers
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

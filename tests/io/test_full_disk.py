@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, Mesh, OutputError, Voronoi, mesh
-from delone.atomic import replacing
+from delone._base.atomic import replacing
 from delone.cli import run
 from delone.cli.tables import write_table
 from delone.distributed import triangulate

@@ -19,7 +19,7 @@ from delone import (
     Voronoi,
     improve,
 )
-from delone.atomic import replacing
+from delone._base.atomic import replacing
 from delone.compat.scipy import Delaunay as DropIn
 from delone.io import input_suffixes, output_suffixes, read_mesh, read_points, write_mesh
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from delone import FileFormatError, InputError, NonFiniteError
-from delone._arrays import require_finite
+from delone._base.arrays import require_finite
 from delone.io import line_numbers, read_points
 
 XY = [[4.25, 52.0], [4.5, 52.5], [-1e-3, 1e5]]
@@ -209,7 +209,7 @@ PACKED = [(".gz", gzip.compress), (".xz", lzma.compress), (".bz2", bz2.compress)
 
 @pytest.mark.parametrize(("suffix", "compress"), PACKED)
 def test_what_expands_beyond_measure(tmp_path, monkeypatch, suffix, compress):
-    monkeypatch.setattr("delone.bounded._ALWAYS_TEXT", 1 << 20)
+    monkeypatch.setattr("delone._base.bounded._ALWAYS_TEXT", 1 << 20)
     rows = b"0 0\n" * (1 << 18)
     small = tmp_path / f"a.xyz{suffix}"
     small.write_bytes(compress(rows + b"1 0\n"))
@@ -223,7 +223,7 @@ def test_what_expands_beyond_measure(tmp_path, monkeypatch, suffix, compress):
 
 @pytest.mark.parametrize(("suffix", "compress"), PACKED)
 def test_what_expands_beyond_measure_as_geojson(tmp_path, monkeypatch, suffix, compress):
-    monkeypatch.setattr("delone.bounded._ALWAYS_TEXT", 1 << 20)
+    monkeypatch.setattr("delone._base.bounded._ALWAYS_TEXT", 1 << 20)
     text = b'{"type": "Point", "coordinates": [1, 2' + b" " * (1 << 20) + b"]}"
     small = tmp_path / f"a.geojson{suffix}"
     small.write_bytes(compress(text))

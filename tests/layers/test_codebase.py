@@ -97,12 +97,12 @@ OWN_ALIASES = {"dynamic", "reference", "testing", "datasets"}
 
 
 def test_types_of_arrays_have_one_module() -> None:
-    """`delone._types` has them: one name, one type, in all modules."""
+    """`delone._base.types` has them: one name, one type, in all modules."""
     own = [
         name_of(path)
         for path in SOURCES
         if PACKAGE in path.parents
-        and path.name != "_types.py"
+        and path.relative_to(PACKAGE) != Path("_base/types.py")
         and path.relative_to(PACKAGE).parts[0] not in OWN_ALIASES
         and ALIAS.search(path.read_text(encoding="utf-8"))
     ]
@@ -155,7 +155,7 @@ PUBLIC_MODULES = (
     "delone.explorer.widget",
     "delone.interpolate",
     "delone.io",
-    "delone.location",
+    "delone._tiling.location",
     "delone.periodic",
     "delone.plot",
     "delone.constrained.polygons",
@@ -220,7 +220,8 @@ loaded = {name.split(".")[0] for name in set(sys.modules) - before}
 allowed = set(sys.stdlib_module_names) | {"delone", "numpy"}
 print(sorted(loaded - allowed))
 late = ["delone.testing", "delone.datasets", "delone.io", "delone.plot", "delone.compat",
-        "delone.reference", "delone.interpolate", "delone.distributed", "delone.archive", "zipfile"]
+        "delone.reference", "delone.interpolate", "delone.distributed", "delone._tiling.archive",
+        "zipfile"]
 print([name for name in late if name in set(sys.modules) - before])
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

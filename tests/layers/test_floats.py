@@ -37,7 +37,7 @@ ALLOWED: dict[str, dict[str, str]] = {
     "areal/shared.py": {"areas > 0": EMPTY},
     "cli/areal.py": {"areas > 0": EMPTY},
     "alpha/concave.py": {"length < 0": CHECK},
-    "archive/directions.py": {"areas > 0": CHECK},
+    "_tiling/archive/directions.py": {"areas > 0": CHECK},
     "cli/show.py": {"area < 1000000.0": CHECK},
     "compat/interpolate.py": {
         "len(lengths) > 1": CHECK,
@@ -74,7 +74,7 @@ ALLOWED: dict[str, dict[str, str]] = {
     },
     "io/landxml_survey.py": {"np.hypot(*away) <= max(_GAP, _SAME * length)": CHECK},
     "io/registry.py": {"distance > 0": CHECK},
-    "location.py": {
+    "_tiling/location.py": {
         "distance + error <= limit": FILTER,
         "distance - error > limit": FILTER,
         "_squared_distance(_exact(queries[row]), exact) <= Fraction(limit) ** 2": EXACT,
@@ -86,7 +86,7 @@ ALLOWED: dict[str, dict[str, str]] = {
     "compat/tetgen.py": {"volume >= 0": CHECK},
     "compat/tetgen_switches.py": {"volume <= 0": CHECK},
     # Where sizes are asked for at further positions.
-    "tetmesh/lengths.py": {"np.linalg.norm(ends, axis=2).max(axis=1) > self._large": WANTED},
+    "solids/tetmesh/lengths.py": {"np.linalg.norm(ends, axis=2).max(axis=1) > self._large": WANTED},
     "sphere/circle.py": {"x * abs(x) * dot(b, b) > y * abs(y) * dot(a, a)": EXACT},
     "sphere/clipping.py": {
         # Documented: parts narrower than 2e-15 come from rounded vertices.
@@ -177,7 +177,7 @@ ALLOWED: dict[str, dict[str, str]] = {
     "terrain/smoothing.py": {"simplex.barycentric < 1e-09": VALUE},
     "terrain/snapping.py": {"way < length - limit": DRAWN},
     "terrain/volumes.py": {"area > 0": EMPTY},
-    "units.py": {"abs(length - meters) <= _SAME * length": CHECK},
+    "_base/units.py": {"abs(length - meters) <= _SAME * length": CHECK},
     "voronoi/dual.py": {"square > _SMALLEST": FILTER, "square < _LARGEST": FILTER},
     "voronoi/outline.py": {"shapely.area(in_units) > 0": CHECK},
     "voronoi/overlay.py": {
@@ -185,7 +185,7 @@ ALLOWED: dict[str, dict[str, str]] = {
     },
     # Documented: cells as thin as their rounding are named in a warning, and none is removed.
     "voronoi/space.py": {"areas > 0": EMPTY, "areas < _SMALL": WANTED},
-    "higher/spheres.py": {
+    "_tiling/higher/spheres.py": {
         "np.abs(centers[t] - centers[u]) > size * _APART + _LEAST": FILTER,
     },
     "voronoi/thin.py": {

@@ -13,7 +13,7 @@ import pytest
 from delone import ConstrainedDelaunay, Delaunay
 
 if TYPE_CHECKING:
-    from delone.location import Location
+    from delone._tiling.location import Location
 
 CASE = Path(__file__).parents[1] / "corpus" / "corners-nearest-to-queries.json"
 

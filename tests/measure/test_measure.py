@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, _core, datasets
-from delone.plane.geometry import total
-from delone.plane.quality import below, squared_cosine
+from delone._tiling.plane.geometry import total
+from delone._tiling.plane.quality import below, squared_cosine
 from rational import area, cross, dot, exact, minus, ulps
 
 if TYPE_CHECKING:

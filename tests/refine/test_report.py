@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import delone
-from delone.plane import quality
+from delone._tiling.plane import quality
 from delone.refine.report import judged
 
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from delone import Delaunay
-from delone.plane.quality import measured
+from delone._tiling.plane.quality import measured
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

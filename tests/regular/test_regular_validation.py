@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from delone import Delaunay
+from delone._tiling.plane import topology
+from delone._tiling.space import topology as space
 from delone.errors import DegenerateInputError
-from delone.plane import topology
 from delone.regular import RegularTriangulation
 from delone.regular_validation import RegularReport, RegularSpaceReport
-from delone.space import topology as space
 from lifted import regular
 from rational import exact
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, _core, datasets, predicates
+from delone._tiling.space import topology
 from delone.errors import FileFormatError, ShapeError
-from delone.space import topology
 from delone.validation import validate
 from rational import cross, dot
 

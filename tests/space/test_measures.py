@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, improve
-from delone.space.quality import EDGES, dihedral_angles, measured
+from delone._tiling.space.quality import EDGES, dihedral_angles, measured
 from rational import cross, dot, minus
 
 if TYPE_CHECKING:

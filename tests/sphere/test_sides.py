@@ -120,6 +120,6 @@ def test_projected_polygons_without_pyproj(monkeypatch: pytest.MonkeyPatch) -> N
     class Meters(dict):  # type: ignore[type-arg]
         crs = "EPSG:3857"
 
-    monkeypatch.setattr("delone.georeference._has_pyproj", lambda: False)
+    monkeypatch.setattr("delone._base.georeference._has_pyproj", lambda: False)
     with pytest.raises(InputError, match=r"clip: longitudes .* EPSG:3857 has others: transform"):
         area(Meters(box(0, 0, 10, 10)))

@@ -11,7 +11,7 @@ import pytest
 
 import directions as oracle
 from delone import datasets, sphere
-from delone.plane import topology
+from delone._tiling.plane import topology
 from delone.sphere.exact import _sign_of_roots, circles, turns, turns_at, whole
 from delone.sphere.validation import validate
 

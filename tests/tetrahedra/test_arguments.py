@@ -12,7 +12,7 @@ import pytest
 import delone
 import solids
 from delone import TetMesh, tetrahedralize
-from delone.tetrahedra import filling
+from delone.solids.tetrahedra import filling
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -147,7 +147,7 @@ def test_pairs_beyond_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     """Faces that overlap count, however many pairs there are."""
     void = solids.box((0, 0, 0), (1, 1, 1))
     points, faces = solids.joined(CUBE, (void[0], void[1][:, ::-1]))
-    monkeypatch.setattr("delone.tetrahedra.filling._LISTED", 1)
+    monkeypatch.setattr("delone.solids.tetrahedra.filling._LISTED", 1)
     mesh = tetrahedralize(points, faces)
     assert solids.filled(mesh.points, mesh.simplices) == 63
 
@@ -301,17 +301,17 @@ def test_validation_finds_faults() -> None:
 
 def test_six_volumes_of_many(monkeypatch: pytest.MonkeyPatch) -> None:
     """Beyond the first block, too."""
-    from delone.tetmesh import validation
+    from delone.solids.tetmesh import validation
 
     mesh = tetrahedralize(*solids.torus())
     whole = validation.six_volumes(mesh.points, mesh.simplices)
     assert whole == validation.six_volumes(mesh.points, mesh.boundary) > 0
-    monkeypatch.setattr("delone.blocks.ROWS", 7)
+    monkeypatch.setattr("delone._base.blocks.ROWS", 7)
     assert validation.six_volumes(mesh.points, mesh.simplices) == whole
 
 
 def test_six_volumes_of_extreme_coordinates() -> None:
-    from delone.tetmesh.validation import six_volumes
+    from delone.solids.tetmesh.validation import six_volumes
 
     points, faces = solids.box((5e-324, -1e300, 1e-300), (1e-10, 1e300, 3e-300))
     mesh = tetrahedralize(points, faces)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import delone
 import solids
-from delone.tetmesh.planes import differing
+from delone.solids.tetmesh.planes import differing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_flag, as_number, as_workers, require_finite
+from delone._base.arrays import as_flag, as_number, as_workers, require_finite
+from delone._base.georeference import warn_of_degrees
+from delone._base.immutable import own_copy, sealed
+from delone._tiling.complex import Stored, points_alone
 from delone.alpha.shape import ConcaveHull
-from delone.complex import Stored, points_alone
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, InputError
-from delone.georeference import warn_of_degrees
-from delone.immutable import own_copy, sealed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_flag, as_least, as_number, as_workers, require_finite
+from delone._base.arrays import as_flag, as_least, as_number, as_workers, require_finite
+from delone._base.counting import counted
+from delone._base.extras import require
+from delone._base.georeference import warn_of_degrees
+from delone._base.immutable import kept, own_copy, sealed
+from delone._tiling.complex import Stored, points_alone
 from delone.alpha.shape import AlphaShape
 from delone.alpha.values import Given, Valued, known_mesh, of_periodic, of_points, simplices_of
-from delone.complex import Stored, points_alone
-from delone.counting import counted
 from delone.errors import InputError
-from delone.extras import require
-from delone.georeference import warn_of_degrees
-from delone.immutable import kept, own_copy, sealed
 from delone.periodic import PeriodicDelaunay
 from delone.regular import RegularTriangulation, as_weights
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["AlphaComplex"]
 

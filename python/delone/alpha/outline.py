@@ -12,7 +12,7 @@ from delone import _core
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["Outline", "rings_of"]
 

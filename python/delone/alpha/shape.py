@@ -6,22 +6,23 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone import _core, measures
-from delone._arrays import as_workers
+from delone import _core
+from delone._base.arrays import as_workers
+from delone._base.counting import counted
+from delone._base.immutable import kept, made_by, sealed
+from delone._tiling import measures
+from delone._tiling.complex import Exchanged, Filed
+from delone._tiling.plane import geometry as plane
+from delone._tiling.space import geometry as space
+from delone._tiling.space.topology import FACES
 from delone.alpha.outline import rings_of
 from delone.alpha.values import Given, Valued, simplices_of
-from delone.complex import Exchanged, Filed
-from delone.counting import counted
 from delone.errors import InputError
-from delone.immutable import kept, made_by, sealed
-from delone.plane import geometry as plane
-from delone.space import geometry as space
-from delone.space.topology import FACES
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
     from delone.exchange.parts import Parts
 
 __all__ = ["AlphaShape", "ConcaveHull", "Kept"]
@@ -515,7 +516,7 @@ class ConcaveHull(Kept):
         >>> delone.concave_hull([(0, 0), (4, 0), (4, 4), (0, 4)], ratio=0).polygon().area
         16.0
         """
-        from delone.extras import require
+        from delone._base.extras import require
 
         found = self.polygons()
         if len(found):

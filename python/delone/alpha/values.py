@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_count
+from delone._base.arrays import as_count
+from delone._base.duplicates import first_rows
+from delone._base.immutable import sealed
 from delone.delaunay import Delaunay
-from delone.duplicates import first_rows
 from delone.errors import DegenerateInputError, InputError
-from delone.immutable import sealed
 from delone.periodic import PeriodicDelaunay, as_periods
 from delone.regular import RegularTriangulation, as_weights, triangulated
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = [
     "Given",

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
+from delone._base.counting import agreed, counted
+from delone._base.georeference import as_crs, common_crs, is_geographic, transformed
 from delone.constrained.geodata import EXTERIOR, INTERIOR, parts_of, require_finite_parts
-from delone.counting import agreed, counted
 from delone.errors import CrossingSegmentsError, DtypeError, InputError
-from delone.georeference import as_crs, common_crs, is_geographic, transformed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
 
 __all__ = ["Cells", "as_cells"]
 

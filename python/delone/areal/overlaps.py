@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
+from delone._base.immutable import sealed
+from delone._base.renames import renamed
+from delone._tiling.complex import Stored
 from delone.areal.cells import as_cells
 from delone.areal.shared import OverlapReport, SharedAreas
 from delone.areal.weights import AreaWeights
-from delone.complex import Stored
 from delone.errors import InputError, ShapeError
-from delone.immutable import sealed
-from delone.renames import renamed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
-    from delone._types import Rows
+    from delone._base.types import Rows
 
 __all__ = ["AreaWeights", "OverlapReport", "Overlaps"]
 

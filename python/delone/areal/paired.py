@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.extras import require
-from delone.immutable import Immutable
+from delone._base.extras import require
+from delone._base.immutable import Immutable
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
 
 __all__ = ["Paired", "added", "row_sums"]
 

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
 
 import numpy as np
 
-from delone._arrays import as_choice
+from delone._base.arrays import as_choice
+from delone._base.counting import counted
+from delone._base.immutable import ReadOnly, kept, sealed
 from delone.areal.paired import Paired, row_sums
 from delone.areal.weights import METHODS, AreaWeights, as_mask
-from delone.counting import counted
-from delone.immutable import ReadOnly, kept, sealed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
 
 __all__ = ["OverlapReport", "SharedAreas"]
 

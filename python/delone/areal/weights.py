@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_number, as_plain_array, as_workers
+from delone._base.arrays import as_number, as_plain_array, as_workers
+from delone._base.counting import agreed, counted
+from delone._base.immutable import sealed
 from delone.areal.paired import Paired, row_sums
-from delone.counting import agreed, counted
 from delone.errors import DtypeError, InputError, ShapeError
-from delone.immutable import sealed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
 
 __all__ = ["METHODS", "OTHER", "AreaWeights", "as_mask"]
 

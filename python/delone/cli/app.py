@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from delone import __version__
+from delone._base.counting import agreed
 from delone.cli.commands import Commands
 from delone.cli.exits import MEANINGS, Exit, Failure, as_options, code_of, os_message
-from delone.counting import agreed
 from delone.errors import MissingExtraError, NonFiniteError, OutputError
 
 if TYPE_CHECKING:

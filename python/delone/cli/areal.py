@@ -10,7 +10,10 @@ import numpy as np
 import typer
 
 from delone import Overlaps, __version__
-from delone.atomic import check_target, replacing
+from delone._base.atomic import check_target, replacing
+from delone._base.counting import counted
+from delone._base.extras import require
+from delone._base.georeference import is_geographic, same_crs
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import note
 from delone.cli.options import Json, Quiet, Workers, outputs, split
@@ -18,9 +21,6 @@ from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import print_json, print_report, spinner
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
-from delone.counting import counted
-from delone.extras import require
-from delone.georeference import is_geographic, same_crs
 from delone.io import read_geometries
 
 if TYPE_CHECKING:

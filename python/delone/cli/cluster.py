@@ -11,7 +11,7 @@ import numpy as np
 import typer
 
 from delone import __version__, cluster
-from delone.atomic import replacing
+from delone._base.atomic import replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import note
 from delone.cli.options import (

@@ -9,7 +9,7 @@ import numpy as np
 import typer
 
 from delone import __version__, distributed
-from delone.atomic import check_target
+from delone._base.atomic import check_target
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.outputs import write_all
 from delone.cli.referenced import require_known

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from delone import __version__, terrain
-from delone.atomic import check_target
+from delone._base.atomic import check_target
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
 from delone.cli.outputs import write_all

@@ -11,7 +11,9 @@ import numpy as np
 import typer
 
 from delone import __version__, graphs
-from delone.atomic import check_target, replacing
+from delone._base.atomic import check_target, replacing
+from delone._base.counting import counted
+from delone._base.extras import require
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import note
 from delone.cli.options import (
@@ -33,8 +35,6 @@ from delone.cli.rows import ROW_SUFFIXES, carried, read_rows, ready_rows, renami
 from delone.cli.show import print_json, print_report, spinner
 from delone.cli.solid import is_space
 from delone.cli.tables import TABLE_SUFFIXES, write_table
-from delone.counting import counted
-from delone.extras import require
 
 if TYPE_CHECKING:
     from collections.abc import Callable

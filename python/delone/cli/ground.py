@@ -10,7 +10,7 @@ import numpy as np
 import typer
 
 from delone import __version__
-from delone.atomic import check_target, replacing
+from delone._base.atomic import check_target, replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
 from delone.cli.options import Json, Quiet, Workers

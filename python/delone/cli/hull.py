@@ -10,7 +10,8 @@ import numpy as np
 import typer
 
 from delone import AlphaComplex, Delaunay, __version__, concave_hull
-from delone.atomic import replacing
+from delone._base.atomic import replacing
+from delone._base.extras import require
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.options import (
     Classes,
@@ -28,7 +29,6 @@ from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import print_json, print_report, spinner
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
-from delone.extras import require
 from delone.io import read_points
 
 if TYPE_CHECKING:

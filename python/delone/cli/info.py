@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.counting import agreed
 from delone.cli.constraints import read_input
 from delone.cli.exits import reading
 from delone.cli.options import (
@@ -26,7 +27,6 @@ from delone.cli.referenced import Crs, referenced, require_known
 from delone.cli.report import finite_or_none
 from delone.cli.show import print_json, print_rows, spinner
 from delone.cli.solid import is_space
-from delone.counting import agreed
 from delone.io import GeometrySet
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import numpy as np
 import typer
 
 from delone import __version__
-from delone.atomic import check_target
+from delone._base.atomic import check_target
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.options import Classes, Json, Layer, Quiet, Workers, outputs, split
 from delone.cli.outputs import write_all

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ParamSpec
 
 import numpy as np
 
-from delone.counting import agreed
+from delone._base.counting import agreed
 from delone.errors import (
     ConflictingValuesError,
     DirectionError,

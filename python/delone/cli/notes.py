@@ -7,9 +7,9 @@ import warnings
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from delone.georeference import CRSWarning
+from delone._base.georeference import CRSWarning
+from delone._base.units import UnitsWarning
 from delone.io import LeftOutWarning
-from delone.units import UnitsWarning
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from typing import TYPE_CHECKING, Any
 
-from delone.atomic import check_target, replacing
+from delone._base.atomic import check_target, replacing
 from delone.cli.exits import writing
 from delone.io.registry import writer
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.atomic import check_target, replacing
+from delone._base.atomic import check_target, replacing
+from delone._base.extras import require
 from delone.cli.exits import Exit, Failure, protect_inputs, writing
-from delone.extras import require
 from delone.io import write_drawing
 from delone.terrain import CrossSections
 

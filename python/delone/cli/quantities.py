@@ -6,15 +6,15 @@ import math
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
-from delone.atomic import check_target, replacing
+from delone._base.atomic import check_target, replacing
+from delone._base.extras import require
+from delone._base.units import lengths_of_crs
 from delone.cli.exits import protect_inputs, writing
 from delone.cli.notes import note
 from delone.cli.surfaces import curves_of
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
-from delone.extras import require
 from delone.io import read_geometries
 from delone.terrain import Volumes
-from delone.units import lengths_of_crs
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
-from delone.cli.exits import Exit, Failure
-from delone.cli.notes import note
-from delone.georeference import (
+from delone._base.georeference import (
     degrees_in,
     is_known,
     may_be_degrees,
     message_of_degrees,
     same_crs,
 )
+from delone.cli.exits import Exit, Failure
+from delone.cli.notes import note
 from delone.io import GeometrySet, PointSet, SurfaceFile
 from delone.io.referencing import left_out
 

@@ -12,13 +12,13 @@ import numpy as np
 import typer
 
 from delone import __version__, datasets, sphere
-from delone.atomic import check_target, replacing
+from delone._base.atomic import check_target, replacing
+from delone._base.extras import require
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import note
 from delone.cli.options import Json, Quiet, Workers, outputs, split
 from delone.cli.report import Stopwatch, peak_memory
 from delone.cli.show import print_json, print_report, spinner
-from delone.extras import require
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

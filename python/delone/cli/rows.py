@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.atomic import check_target
+from delone._base.atomic import check_target
+from delone._base.counting import counted
+from delone._base.extras import require
 from delone.cli.exits import Exit, Failure
 from delone.cli.options import class_numbers, split
 from delone.cli.referenced import referenced
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
-from delone.counting import counted
-from delone.extras import require
 from delone.io import read_points
 
 if TYPE_CHECKING:

@@ -13,7 +13,8 @@ import numpy as np
 import typer
 
 from delone import __version__
-from delone.atomic import replacing
+from delone._base.atomic import replacing
+from delone._base.extras import require
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
 from delone.cli.outputs import write_all
@@ -38,7 +39,6 @@ from delone.cli.surfaces import (
 )
 from delone.cli.tables import ready_table
 from delone.cli.terrain import write_lines
-from delone.extras import require
 from delone.io import read_geometries
 from delone.io.raster import raster_writer
 from delone.terrain import difference

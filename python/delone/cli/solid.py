@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import Delaunay, improve
+from delone._base.counting import counted
 from delone.cli.exits import Exit, Failure
 from delone.cli.report import finite_or_none, repeated_rows
-from delone.counting import counted
 from delone.errors import FileFormatError
 from delone.io import PointSet, read_mesh
 

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from delone import __version__, datasets, sphere
-from delone.atomic import check_target
+from delone._base.atomic import check_target
+from delone._base.extras import require
+from delone._base.georeference import is_geographic
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import note
 from delone.cli.options import (
@@ -29,8 +31,6 @@ from delone.cli.outputs import write_all
 from delone.cli.referenced import Crs, require_known
 from delone.cli.report import Stopwatch, peak_memory
 from delone.cli.show import print_json, print_report, spinner
-from delone.extras import require
-from delone.georeference import is_geographic
 from delone.io import input_suffixes, read_points
 from delone.io.registry import writer
 

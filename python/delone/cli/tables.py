@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from delone.atomic import check_target
+from delone._base.atomic import check_target
+from delone._base.extras import require
 from delone.cli.exits import Exit, Failure
 from delone.cli.notes import note
 from delone.errors import FileFormatError
-from delone.extras import require
 from delone.io.vector import write_layer
 
 if TYPE_CHECKING:

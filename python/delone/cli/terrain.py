@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 import typer
 
-from delone.atomic import check_target, replacing
+from delone._base.atomic import check_target, replacing
+from delone._base.extras import require
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
 from delone.cli.options import outputs
@@ -46,7 +47,6 @@ from delone.cli.surfaces import (
     with_surface,
 )
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
-from delone.extras import require
 from delone.io import read_geometries, write_drawing
 from delone.terrain import Volumes
 from delone.terrain.contouring import MOST

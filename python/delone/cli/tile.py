@@ -14,14 +14,14 @@ import numpy as np
 import typer
 
 from delone import __version__, distributed
+from delone._base.extras import require
+from delone._base.georeference import is_geographic
 from delone.cli.exits import Exit, Failure, os_message, reading
 from delone.cli.options import Classes, Json, Quiet, class_numbers, split
 from delone.cli.referenced import Crs, Planar, note_degrees, require_known
 from delone.cli.show import memory_text, print_json, print_rows
 from delone.distributed.run.executors import Processes
 from delone.errors import DeloneError, OutputError
-from delone.extras import require
-from delone.georeference import is_geographic
 from delone.io import input_suffixes
 
 if TYPE_CHECKING:

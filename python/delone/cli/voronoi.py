@@ -10,7 +10,8 @@ import numpy as np
 import typer
 
 from delone import Voronoi, __version__
-from delone.atomic import replacing
+from delone._base.atomic import replacing
+from delone._base.extras import require
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.options import Json, Layer, PlaneColumns, Quiet, Workers, outputs, split
 from delone.cli.referenced import Crs, Planar, referenced, require_known
@@ -18,7 +19,6 @@ from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import print_json, print_report, spinner
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
 from delone.errors import DegenerateInputError, FileFormatError, InputError, NonFiniteError
-from delone.extras import require
 from delone.io import input_suffixes, read_geometries, read_points
 from delone.io.gdal import DRIVERS
 from delone.io.vector import attribute_names

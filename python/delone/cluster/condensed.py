@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
+from delone._base.immutable import sealed
 from delone.graphs.scale import rescaled
-from delone.immutable import sealed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["CondensedTree", "binary", "condensed_tree"]
 

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_least, as_workers
+from delone._base.arrays import as_least, as_workers
 from delone.cluster.estimator import Clusterer, as_reach, numbered
 from delone.graphs.scale import rescaled
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["DBSCAN"]
 

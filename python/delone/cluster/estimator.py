@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._arrays import (
+from delone._base.arrays import (
     as_number,
     as_plain_array,
     require_finite,
 )
+from delone._base.georeference import crs_of, warn_of_degrees
+from delone._base.immutable import own_copy
 from delone.errors import DtypeError, InputError, ShapeError
-from delone.georeference import crs_of, warn_of_degrees
-from delone.immutable import own_copy
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["Clusterer", "as_reach", "numbered"]
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone._arrays import as_choice, as_flag, as_least, as_workers
+from delone._base.arrays import as_choice, as_flag, as_least, as_workers
 from delone.cluster.condensed import binary, condensed_tree
 from delone.cluster.estimator import Clusterer, as_reach, numbered
 from delone.cluster.selection import labeled, memberships, selected
@@ -15,7 +15,7 @@ from delone.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["HDBSCAN"]
 

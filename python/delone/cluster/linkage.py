@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_count, as_number, as_workers
-from delone.counting import counted
+from delone._base.arrays import as_count, as_number, as_workers
+from delone._base.counting import counted
+from delone._base.immutable import Immutable, kept, sealed
 from delone.errors import InputError
 from delone.graphs import Graph, minimum_spanning_tree
-from delone.immutable import Immutable, kept, sealed
 
 if TYPE_CHECKING:
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.graphs.skeleton import Points
 
 __all__ = ["SingleLinkage", "single_linkage"]

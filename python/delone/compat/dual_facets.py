@@ -23,14 +23,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core, predicates
+from delone._tiling.higher.rational import kernel
+from delone._tiling.higher.topology import distinct
 from delone.errors import DegenerateInputError
-from delone.higher.rational import kernel
-from delone.higher.topology import distinct
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from delone._types import Floats, Indices, Rows
+    from delone._base.types import Floats, Indices, Rows
 
 __all__ = ["Corners", "Facets", "cone_facets", "corners", "first_of_equal", "rounded"]
 

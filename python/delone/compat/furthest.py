@@ -18,7 +18,7 @@ from delone.predicates import incircle, orient2d
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
 
 __all__ = ["furthest_site"]
 

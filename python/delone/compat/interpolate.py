@@ -21,12 +21,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import delaunay
-from delone._masks import is_masked
+from delone._base.extras import require
+from delone._base.masks import is_masked
+from delone._tiling.higher.dimension import MOST
 from delone.compat.qhull import DimensionError, QhullError, as_low_points, unboxed, unmasked
 from delone.compat.scipy_delaunay import Delaunay
 from delone.errors import DegenerateInputError, InputError, ShapeError
-from delone.extras import require
-from delone.higher.dimension import MOST
 from delone.interpolate import CloughTocher, Linear
 from delone.interpolate.values import as_field
 from delone.memory import TooLargeError
@@ -34,7 +34,7 @@ from delone.memory import TooLargeError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = [
     "CloughTocher2DInterpolator",

@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import delaunay
-from delone._arrays import as_points, as_vectors
-from delone._masks import is_masked
+from delone._base.arrays import as_points, as_vectors
+from delone._base.masks import is_masked
+from delone._tiling.plane import topology
 from delone.compat.furthest import furthest_site as furthest_triangles
 from delone.compat.qhull_options import DELAUNAY, QhullOptionError, QhullOptions
 from delone.errors import DegenerateInputError, DtypeError, InputError, NonFiniteError, ShapeError
-from delone.plane import topology
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
     class QhullError(RuntimeError):
         """Degenerate input or an unknown option: ``scipy.spatial.QhullError``."""

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import delaunay
-from delone._arrays import as_number
+from delone._base.arrays import as_number
+from delone._tiling.dimension import FLAT_OR_SOLID
+from delone._tiling.higher.dimension import MOST
 from delone.compat.qhull import Incremental, as_queries, told_as_qhull_does, triangulate
-from delone.dimension import FLAT_OR_SOLID
 from delone.dynamic import Dynamic
 from delone.errors import DtypeError
-from delone.higher.dimension import MOST
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["Delaunay", "tsearch"]
 

@@ -31,17 +31,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import hull
-from delone._masks import is_masked
+from delone._base.masks import is_masked
+from delone._tiling.higher.dimension import MOST
 from delone.compat import dual_facets as duals
 from delone.compat.qhull import DimensionError, QhullError, read_options, told_as_qhull_does
 from delone.compat.qhull_options import HALFSPACES
 from delone.errors import DtypeError, NonFiniteError, ShapeError
-from delone.higher.dimension import MOST
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["HalfspaceIntersection"]
 

@@ -24,16 +24,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core, hull, predicates
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
+from delone._tiling.higher.dimension import MOST
 from delone.compat.qhull import Incremental, QhullError, told_as_qhull_does
 from delone.compat.qhull_options import HULL
 from delone.errors import InputError
-from delone.higher.dimension import MOST
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["ConvexHull"]
 

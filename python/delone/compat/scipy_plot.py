@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from delone._base.extras import require
 from delone.errors import ShapeError
-from delone.extras import require
 
 __all__ = ["convex_hull_plot_2d", "delaunay_plot_2d", "framed", "points_and_axes"]
 

@@ -21,14 +21,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers, require_finite
+from delone._base.arrays import as_workers, require_finite
 from delone.compat.qhull import DimensionError
 from delone.voronoi.rows import as_lists
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["SphericalVoronoi"]
 

@@ -19,21 +19,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
+from delone._base.duplicates import first_rows
+from delone._base.extras import require
+from delone._tiling.higher.dimension import MOST
+from delone._tiling.higher.dual import DiagramN
 from delone.compat.qhull import Incremental, triangulate
 from delone.compat.qhull_options import VORONOI
 from delone.compat.scipy_plot import framed, points_and_axes
-from delone.duplicates import first_rows
-from delone.extras import require
-from delone.higher.dimension import MOST
-from delone.higher.dual import DiagramN
 from delone.voronoi.higher import of_mesh
 from delone.voronoi.rows import as_lists, from_the_gap, one_gap
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["Voronoi", "voronoi_plot_2d"]
 

@@ -13,27 +13,27 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_count, as_flag, as_number, as_plain_array, as_points
-from delone.atomic import replacing
+from delone._base.arrays import as_count, as_flag, as_number, as_plain_array, as_points
+from delone._base.atomic import replacing
+from delone._tiling.space.locking import cells, sides
 from delone.compat.tetgen_switches import Wishes, of_arguments, of_switches
 from delone.errors import DtypeError, FileFormatError, InputError, ShapeError
 from delone.exchange.parts import Parts
 from delone.exchange.pyvista import to_pyvista
 from delone.exchange.second import of_order
 from delone.io.tetgen import SECOND
-from delone.space.locking import cells, sides
-from delone.surface import check_surface
-from delone.surface.check import as_faces
-from delone.tetmesh.tetmesh import TetMesh
-from delone.tetrahedra.filling import tetrahedralize
-from delone.tetrahedra.sources import given
+from delone.solids.surface import check_surface
+from delone.solids.surface.check import as_faces
+from delone.solids.tetmesh.tetmesh import TetMesh
+from delone.solids.tetrahedra.filling import tetrahedralize
+from delone.solids.tetrahedra.sources import given
 
 if TYPE_CHECKING:
     import os
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["MeshNotTetrahedralizedError", "TetGen"]
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_count, as_flag, as_number
+from delone._base.arrays import as_count, as_flag, as_number
 from delone.errors import DtypeError, InputError
 
 __all__ = ["Wishes", "of_arguments", "of_switches"]

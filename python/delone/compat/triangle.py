@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import LARGEST_LIMIT, as_points, as_segments
+from delone._base.arrays import LARGEST_LIMIT, as_points, as_segments
+from delone._tiling.plane import topology
 from delone.compat.triangle_input import (
     Given,
     Switches,
@@ -28,7 +29,6 @@ from delone.compat.triangle_input import (
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
-from delone.plane import topology
 from delone.refine.meshed import Mesh
 from delone.refine.refine import as_rows, filled
 from delone.refine.rounds import MOST_ADDED, Limits, as_min_angle
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["convex_hull", "delaunay", "triangulate", "voronoi"]
 

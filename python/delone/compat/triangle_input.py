@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_segments, as_simplices
-from delone.counting import counted, listed
-from delone.duplicates import first_rows
+from delone._base.arrays import as_segments, as_simplices
+from delone._base.counting import counted, listed
+from delone._base.duplicates import first_rows
+from delone._tiling.plane import topology
 from delone.errors import InputError, ShapeError
-from delone.plane import topology
 from delone.refine import domains
 from delone.refine.domains import Domain, Lines
 from delone.refine.meshed import Mesh
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Indices, Rows
+    from delone._base.types import Bools, Floats, Indices, Rows
 
 __all__ = ["Given", "Switches", "again", "interpolated", "keys_of", "not_reached", "rows_of"]
 

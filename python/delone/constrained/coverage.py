@@ -13,8 +13,8 @@ import numpy as np
 from delone import _core
 
 if TYPE_CHECKING:
+    from delone._base.types import Bools, Indices, Rows
     from delone._core import ConstrainedTriangulation
-    from delone._types import Bools, Indices, Rows
 
 __all__ = ["beside", "closed_rings", "containing", "first_polygon", "odd_pairs"]
 

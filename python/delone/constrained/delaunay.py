@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone import _core, location
-from delone._arrays import (
+from delone import _core
+from delone._base.arrays import (
     as_choice,
     as_flag,
     as_limit,
@@ -22,20 +22,21 @@ from delone._arrays import (
     as_segments,
     as_workers,
 )
+from delone._base.counting import agreed, counted
+from delone._base.georeference import crs_of, warn_of_degrees
+from delone._base.immutable import kept, own_copy, sealed
+from delone._tiling import location
+from delone._tiling.plane import topology
 from delone.constrained import regions
 from delone.constrained.editing import Editing
 from delone.constrained.segmented import Given, Options, Origin, Segmented
 from delone.constrained.validation import ConstrainedReport, validate
-from delone.counting import agreed, counted
 from delone.errors import InputError, InternalError
-from delone.georeference import crs_of, warn_of_degrees
-from delone.immutable import kept, own_copy, sealed
-from delone.plane import topology
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.exchange.parts import Parts
 
 __all__ = ["ConstrainedDelaunay"]

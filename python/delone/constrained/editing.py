@@ -16,19 +16,19 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
 
-from delone._arrays import as_points, as_segments, require_finite
+from delone._base.arrays import as_points, as_segments, require_finite
+from delone._base.counting import agreed, counted
+from delone._base.duplicates import first_rows
+from delone._tiling.plane.topology import among, edge_keys
 from delone.constrained.segmented import Origin, Segmented
-from delone.counting import agreed, counted
-from delone.duplicates import first_rows
 from delone.errors import DeloneError, DtypeError, InputError, ShapeError
-from delone.plane.topology import among, edge_keys
 
 if TYPE_CHECKING:
     from types import TracebackType
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["EditRows", "Editing"]
 

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_points
-from delone._masks import refuse_masks
-from delone.counting import agreed
+from delone._base.arrays import as_points
+from delone._base.counting import agreed
+from delone._base.masks import refuse_masks
 from delone.errors import DtypeError, InputError, NonFiniteError, ShapeError
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = [
     "EXTERIOR",

@@ -9,7 +9,7 @@ import numpy as np
 from delone.constrained import coverage
 
 if TYPE_CHECKING:
-    from delone._types import Bools, Indices, Rows
+    from delone._base.types import Bools, Indices, Rows
     from delone.constrained.segmented import Segmented
 
 __all__ = ["containing", "inside"]

@@ -13,19 +13,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_choice, as_flag, as_points, require_finite
+from delone._base.arrays import as_choice, as_flag, as_points, require_finite
+from delone._base.duplicates import first_rows
+from delone._base.georeference import as_known_crs, common_crs, is_geographic, warn_of_degrees
 from delone.constrained import geodata
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.segmented import Origin
-from delone.duplicates import first_rows
 from delone.errors import InputError
 from delone.exchange.parts import Parts
-from delone.georeference import as_known_crs, common_crs, is_geographic, warn_of_degrees
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["PolygonTriangles", "from_geometry", "triangulate_polygon"]
 

@@ -16,7 +16,7 @@ from delone import _core
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
 
 __all__ = [
     "Tiling",

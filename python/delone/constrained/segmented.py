@@ -13,17 +13,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
+from delone._base.duplicates import vertices_of
+from delone._base.immutable import kept, sealed
+from delone._base.renames import renamed
+from delone._tiling.triangulation import PointTriangulation
 from delone.constrained import coverage, regions, segments
-from delone.duplicates import vertices_of
-from delone.immutable import kept, sealed
-from delone.renames import renamed
-from delone.triangulation import PointTriangulation
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
     from delone.constrained.segments import SegmentReport
 
 __all__ = ["Given", "Options", "Origin", "Segmented"]

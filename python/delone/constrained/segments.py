@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.immutable import ReadOnly
-from delone.plane.topology import among
+from delone._base.immutable import ReadOnly
+from delone._tiling.plane.topology import among
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._base.types import Bools, Indices
     from delone._core import ConstrainedTriangulation
-    from delone._types import Bools, Indices
 
 __all__ = ["SegmentArrays", "SegmentReport"]
 

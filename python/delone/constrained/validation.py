@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from delone import _core
-from delone.plane.topology import among, edge_keys
+from delone._tiling.plane.topology import among, edge_keys
 from delone.validation import SENTENCES, ValidationReport, no_pairs, no_rows, not_across
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
 
 __all__ = ["ConstrainedReport"]
 

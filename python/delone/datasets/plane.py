@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone._arrays import as_count
+from delone._base.arrays import as_count
 from delone.errors import InputError
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import frozen
-from delone.counting import counted
+from delone._base.arrays import frozen
+from delone._base.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone._arrays import as_count
+from delone._base.arrays import as_count
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

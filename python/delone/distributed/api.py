@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_callback, as_choice, as_count, as_flag, as_least
+from delone._base.arrays import as_callback, as_choice, as_count, as_flag, as_least
+from delone._base.extras import require
+from delone._base.georeference import as_crs, is_geographic, warn_of_degrees
 from delone.distributed.arguments import as_classes, as_names, as_path
 from delone.distributed.read.opened import TiledDelaunay, open
 from delone.distributed.run.costs import Plan, estimate
@@ -18,8 +20,6 @@ from delone.distributed.run.run import Progress, Run
 from delone.distributed.run.sources import Choice, find
 from delone.distributed.store.files import Store
 from delone.errors import InputError
-from delone.extras import require
-from delone.georeference import as_crs, is_geographic, warn_of_degrees
 
 if TYPE_CHECKING:
     import os

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from delone._arrays import as_count
+from delone._base.arrays import as_count
 from delone.errors import DtypeError, InputError
 
 __all__ = ["as_classes", "as_names", "as_path"]

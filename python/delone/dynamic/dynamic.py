@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any, Literal, Self, overload
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_choice, as_limit, as_workers
-from delone.complex import Drawn, Filed
+from delone._base.arrays import as_choice, as_limit, as_workers
+from delone._base.counting import counted
+from delone._base.georeference import crs_of, warn_of_degrees
+from delone._base.immutable import own_copy
+from delone._tiling.complex import Drawn, Filed
 from delone.constrained import ConstrainedDelaunay
-from delone.counting import counted
 from delone.delaunay import Delaunay
 from delone.dynamic.given import as_ndim, given_points, own_points
 from delone.dynamic.measured import Measured
@@ -19,8 +21,6 @@ from delone.dynamic.results import Changes, Snapshot
 from delone.dynamic.saving import State, require_few_handles
 from delone.dynamic.segments import FEW, as_handles, given_segments, refuse
 from delone.errors import DtypeError, EditConflictError, InputError, ShapeError
-from delone.georeference import crs_of, warn_of_degrees
-from delone.immutable import own_copy
 
 if TYPE_CHECKING:
     import os
@@ -503,7 +503,7 @@ class Dynamic(Measured, Drawn, Filed):
         ...     Dynamic.load(path).handles
         array([1, 2, 3])
         """
-        from delone import archive
+        from delone._tiling import archive
 
         most = None if max_handles is None else as_limit(max_handles, name="max_handles")
         arrays = archive.read(path, Dynamic.__name__)

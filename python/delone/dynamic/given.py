@@ -6,19 +6,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_plain_array, as_points, as_queries
-from delone._masks import hides
-from delone.complex import Stored
+from delone._base.arrays import as_plain_array, as_points, as_queries
+from delone._base.immutable import own_copy
+from delone._base.masks import hides
+from delone._tiling.complex import Stored
 from delone.constrained import ConstrainedDelaunay
 from delone.delaunay import Delaunay
 from delone.dynamic.segments import FEW
 from delone.errors import DtypeError, InputError, ShapeError
-from delone.immutable import own_copy
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["as_any_values", "as_ndim", "as_values", "given_points", "own_points"]
 

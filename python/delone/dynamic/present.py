@@ -6,24 +6,25 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import _core, location
-from delone._arrays import as_queries
+from delone import _core
+from delone._base.arrays import as_queries
+from delone._base.immutable import sealed
+from delone._base.renames import renamed
+from delone._tiling import location
+from delone._tiling.plane.dimension import PLANE
+from delone._tiling.space.dimension import SPACE
 from delone.delaunay import Delaunay
 from delone.dynamic.given import as_any_values, as_values
 from delone.dynamic.results import DynamicArrays
 from delone.dynamic.segments import Segmented, as_handles, refuse
 from delone.errors import HandleError, ShapeError
-from delone.immutable import sealed
-from delone.plane.dimension import PLANE
-from delone.renames import renamed
-from delone.space.dimension import SPACE
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
-    from delone.dimension import Dimension, Locator
-    from delone.location import Location
+    from delone._base.types import Floats, Indices
+    from delone._tiling.dimension import Dimension, Locator
+    from delone._tiling.location import Location
 
     Handles = NDArray[np.int64]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from delone import _core
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
 from delone.dynamic.saving import State
 from delone.errors import DtypeError
 

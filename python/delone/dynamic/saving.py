@@ -12,7 +12,7 @@ from delone.errors import FileFormatError, InputError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
     Handles = NDArray[np.int64]
 
@@ -49,7 +49,7 @@ class State(NamedTuple):
     @classmethod
     def unpickled(cls, saved: Any) -> State:
         """Return the state in a pickle, checked as that of a file is."""
-        from delone.archive.checks import ContradictionError, check_live
+        from delone._tiling.archive.checks import ContradictionError, check_live
 
         try:
             state = _of_kinds(saved)
@@ -123,7 +123,7 @@ class State(NamedTuple):
 
 def _of_kinds(saved: Any) -> State:
     """Return the parts of a pickle, each of the kind that `State` says."""
-    from delone.archive.checks import require
+    from delone._tiling.archive.checks import require
 
     require(isinstance(saved, tuple) and len(saved) == len(State._fields), "a part is missing")
     state = State(*saved)

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_plain_array, as_workers
+from delone._base.arrays import as_plain_array, as_workers
+from delone._base.immutable import sealed
 from delone.constrained import ConstrainedDelaunay
 from delone.dynamic import validation
 from delone.errors import DtypeError, HandleError, InputError, ShapeError
-from delone.immutable import sealed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Indices
+    from delone._base.types import Indices
     from delone.dynamic.validation import DynamicReport
 
     Handles = NDArray[np.int64]

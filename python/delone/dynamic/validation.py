@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from delone import _core
+from delone._base.duplicates import first_rows
+from delone._tiling.plane.topology import among, edge_keys
 from delone.constrained import ConstrainedDelaunay
 from delone.constrained.validation import ConstrainedReport
-from delone.duplicates import first_rows
-from delone.plane.topology import among, edge_keys
 from delone.validation import no_rows, no_triples, not_across
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats
+    from delone._base.types import Bools, Floats
 
     Handles = NDArray[np.int64]
 

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.blocks import blocks
+from delone._base.blocks import blocks
+from delone._base.extras import require
 from delone.errors import InputError
 from delone.exchange.parts import parts_of
-from delone.extras import require
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

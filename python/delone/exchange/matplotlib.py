@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from delone._base.extras import require
 from delone.exchange.parts import kind_of, parts_of
-from delone.extras import require
 
 if TYPE_CHECKING:
     from delone.exchange.parts import Given

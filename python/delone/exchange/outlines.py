@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from delone.extras import require
+from delone._base.extras import require
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.extras import require
 from delone.exchange.parts import kind_of, parts_of, with_third
 from delone.exchange.second import as_order, of_order
-from delone.extras import require
 
 if TYPE_CHECKING:
     from delone.exchange.parts import Given

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Indices
+    from delone._base.types import Indices
 
 __all__ = ["SIDES", "as_order", "middles", "of_order"]
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from delone._arrays import as_choice
-from delone._values import as_values
+from delone._base.arrays import as_choice
+from delone._base.values import as_values
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.delaunay import Delaunay
 from delone.errors import InputError, ShapeError
@@ -26,7 +26,7 @@ from delone.voronoi.diagram import Voronoi
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
     Explorable: TypeAlias = (
         Delaunay | ConstrainedDelaunay | Mesh | RegularTriangulation | PeriodicDelaunay | Voronoi

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._values import as_values
+from delone._base.counting import counted
+from delone._base.values import as_values
 from delone.constrained.delaunay import ConstrainedDelaunay
-from delone.counting import counted
 from delone.delaunay import Delaunay
 from delone.errors import InputError, NonFiniteError
 from delone.explorer.scene import QUALITIES, as_explorable, packed, scene_of
@@ -23,7 +23,7 @@ from delone.voronoi.diagram import Voronoi
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats
+    from delone._base.types import Floats
     from delone.explorer.scene import Explorable, Scene
 
 __all__ = ["Exploration"]

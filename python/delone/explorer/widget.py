@@ -6,11 +6,11 @@ import functools
 import re
 from typing import TYPE_CHECKING, Any
 
-from delone._arrays import as_least
+from delone._base.arrays import as_least
+from delone._base.extras import require
 from delone.errors import DeloneError, InputError
 from delone.explorer import script
 from delone.explorer.state import Exploration
-from delone.extras import require
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

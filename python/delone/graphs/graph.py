@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone import _core
-from delone._arrays import (
+from delone._base.arrays import (
     as_choice,
     as_flag,
     as_number,
@@ -15,18 +15,18 @@ from delone._arrays import (
     as_segments,
     require_finite,
 )
-from delone.complex import Exchanged, Stored
-from delone.counting import counted, listed
-from delone.duplicates import vertices_of
+from delone._base.counting import counted, listed
+from delone._base.duplicates import vertices_of
+from delone._base.immutable import kept, own_copy, sealed
+from delone._tiling.complex import Exchanged, Stored
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.graphs.coincident import clique, repeated
 from delone.graphs.lengths import lengths_of, lowest, squares, up_to
-from delone.immutable import kept, own_copy, sealed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.exchange.graphs import Links
     from delone.exchange.parts import Parts
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from delone import _core
-from delone._arrays import as_choice, as_flag, as_least, as_workers
-from delone.counting import counted
+from delone._base.arrays import as_choice, as_flag, as_least, as_workers
+from delone._base.counting import counted
 from delone.errors import InputError
 from delone.graphs.coincident import repeated
 from delone.graphs.graph import Graph

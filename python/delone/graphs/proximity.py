@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_choice, as_number
+from delone._base.arrays import as_choice, as_number
 from delone.errors import InputError
 from delone.graphs.graph import Graph
 from delone.graphs.skeleton import joined, skeleton

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["rescaled"]
 

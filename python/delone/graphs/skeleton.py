@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers, require_finite
-from delone.complex import Stored, points_alone
+from delone._base.arrays import as_workers, require_finite
+from delone._base.georeference import warn_of_degrees
+from delone._base.immutable import own_copy
+from delone._tiling.complex import Stored, points_alone
+from delone._tiling.dimension import FLAT_OR_SOLID
 from delone.delaunay import Delaunay
-from delone.dimension import FLAT_OR_SOLID
 from delone.errors import DegenerateInputError, InputError
-from delone.georeference import warn_of_degrees
 from delone.graphs.coincident import repeated
 from delone.graphs.scale import rescaled
-from delone.immutable import own_copy
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
     Points = ArrayLike | Stored
 

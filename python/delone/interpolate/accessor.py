@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_flag
+from delone._base.arrays import as_flag
+from delone._base.georeference import caller_level, warn_of_degrees
 from delone.errors import DtypeError, InputError, MissingExtraError
-from delone.georeference import caller_level, warn_of_degrees
 from delone.interpolate.base import as_max_distance
 from delone.interpolate.components import is_component, lone_message, vector_pairs
 from delone.interpolate.methods import interpolator

@@ -16,14 +16,17 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from delone import location, measures
-from delone._arrays import as_flag, as_number, as_queries, as_workers
-from delone.counting import agreed
+from delone._base.arrays import as_flag, as_number, as_queries, as_workers
+from delone._base.counting import agreed
+from delone._base.georeference import crs_of, warn_of_degrees
+from delone._base.immutable import own_copy
+from delone._base.renames import renamed
+from delone._tiling import location, measures
+from delone._tiling.higher.dimension import MOST
+from delone._tiling.plane import slivers, topology
+from delone._tiling.triangulation import Triangulation
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
-from delone.georeference import crs_of, warn_of_degrees
-from delone.higher.dimension import MOST
-from delone.immutable import own_copy
 from delone.interpolate.hull import summed
 from delone.interpolate.policies import Policies
 from delone.interpolate.repeated import repeated
@@ -37,18 +40,15 @@ from delone.interpolate.values import (
 )
 from delone.interpolate.weights import joined
 from delone.periodic import PeriodicDelaunay
-from delone.plane import slivers, topology
-from delone.renames import renamed
-from delone.triangulation import Triangulation
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Bools, Floats, Indices, Rows
+    from delone._base.types import Bools, Floats, Indices, Rows
+    from delone._tiling.location import Location
     from delone.interpolate.hull import Terms
     from delone.interpolate.repeated import Repeated
     from delone.interpolate.weights import Table, Weights
-    from delone.location import Location
 
     # A field, and interpolators of parts of its values.
     Parts = tuple[Field, list[tuple[Rows, Any]]]

@@ -15,7 +15,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from delone._types import Floats, Indices, Rows
+    from delone._base.types import Floats, Indices, Rows
 
     # Rows of corners of queries, (k, d + 1), -1 outside, and their weights.
     Within = Callable[[Floats], tuple[Indices, Floats]]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
 from delone.interpolate.smooth import Smooth
 from delone.interpolate.space import refuse
 from delone.interpolate.weights import Weights
@@ -21,9 +21,9 @@ from delone.interpolate.weights import Weights
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats
+    from delone._base.types import Floats
+    from delone._tiling.triangulation import Triangulation
     from delone.periodic import PeriodicDelaunay
-    from delone.triangulation import Triangulation
 
 __all__ = ["CloughTocher"]
 

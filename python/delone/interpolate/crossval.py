@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_callback, as_least, as_optional_flag, as_points, as_workers
+from delone._base.arrays import as_callback, as_least, as_optional_flag, as_points, as_workers
+from delone._base.georeference import warn_of_degrees
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, DtypeError, InputError
-from delone.georeference import warn_of_degrees
 from delone.interpolate.methods import METHODS, interpolator, require_options
 from delone.interpolate.values import (
     DUPLICATES,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
 
 __all__ = ["CrossValidation", "cross_validate"]
 

@@ -14,8 +14,8 @@ import numpy as np
 from delone import _core
 
 if TYPE_CHECKING:
-    from delone._types import Floats, Indices
-    from delone.location import Location
+    from delone._base.types import Floats, Indices
+    from delone._tiling.location import Location
 
 __all__ = ["Terms", "edge_terms", "plane_gradients", "summed"]
 

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone.blocks import ROWS, blocks
-from delone.higher.dimension import MOST
+from delone._base.blocks import ROWS, blocks
+from delone._tiling.higher.dimension import MOST
 from delone.interpolate.space import slopes
 
 if TYPE_CHECKING:
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["Lazily"]
 

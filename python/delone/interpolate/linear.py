@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from delone._arrays import as_workers
-from delone.blocks import blocks
+from delone._base.arrays import as_workers
+from delone._base.blocks import blocks
+from delone._tiling.higher.dimension import MOST
+from delone._tiling.location import Location
 from delone.errors import InputError
-from delone.higher.dimension import MOST
 from delone.interpolate.base import Interpolator
 from delone.interpolate.beyond import nearest_in_box, nearest_terms
 from delone.interpolate.hull import Terms, edge_terms, plane_gradients, summed
@@ -18,15 +19,14 @@ from delone.interpolate.rectilinear import Rectilinear, rectilinear
 from delone.interpolate.space import SPACE, face_terms, hull_gradients, slopes
 from delone.interpolate.values import chosen
 from delone.interpolate.weights import Weights, rectangular
-from delone.location import Location
 from delone.memory import TooLargeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
+    from delone._tiling.triangulation import Triangulation
     from delone.periodic import PeriodicDelaunay
-    from delone.triangulation import Triangulation
 
 __all__ = ["Linear"]
 

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
+    from delone._tiling.triangulation import Triangulation
     from delone.interpolate.base import Interpolator
     from delone.periodic import PeriodicDelaunay
-    from delone.triangulation import Triangulation
 
 __all__ = ["METHODS", "interpolator", "require_options"]
 

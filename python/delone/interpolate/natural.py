@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
 from delone.delaunay import Delaunay
 from delone.errors import InputError
 from delone.interpolate.hull import Terms, edge_terms, plane_gradients
@@ -26,9 +26,9 @@ from delone.interpolate.weights import Weights
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats
+    from delone._base.types import Floats
+    from delone._tiling.triangulation import Triangulation
     from delone.periodic import PeriodicDelaunay
-    from delone.triangulation import Triangulation
 
 __all__ = ["KINDS", "NaturalNeighbor"]
 

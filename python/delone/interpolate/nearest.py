@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from delone import location
-from delone._arrays import as_workers
-from delone.higher.dimension import MOST
+from delone._base.arrays import as_workers
+from delone._tiling import location
+from delone._tiling.higher.dimension import MOST
 from delone.interpolate.base import Interpolator
 from delone.interpolate.weights import Weights, rectangular
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
+    from delone._tiling.triangulation import Triangulation
     from delone.periodic import PeriodicDelaunay
-    from delone.triangulation import Triangulation
 
 __all__ = ["Nearest"]
 

@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone.counting import agreed, counted
+from delone._base.counting import agreed, counted
+from delone._base.extras import require
+from delone._base.georeference import may_be_degrees, names_degrees
+from delone._base.units import METERS, as_units
 from delone.errors import InputError, NonFiniteError
-from delone.extras import require
-from delone.georeference import may_be_degrees, names_degrees
-from delone.units import METERS, as_units
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
 
 __all__ = ["MISSING", "Places", "places_of", "source_rows", "target_points"]
 

@@ -16,7 +16,7 @@ from delone.interpolate.values import require_finite_values
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices, Rows
+    from delone._base.types import Floats, Indices, Rows
     from delone.interpolate.values import Field
 
 __all__ = ["Policies"]

@@ -16,24 +16,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_callback, as_count, as_number, as_plain_array
-from delone.counting import gigabytes, grouped
-from delone.decimals import exact, multiples, outer, spacing
+from delone._base.arrays import as_callback, as_count, as_number, as_plain_array
+from delone._base.counting import gigabytes, grouped
+from delone._base.decimals import exact, multiples, outer, spacing
+from delone._base.renames import renamed
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.interpolate.base import Interpolator, as_max_distance
 from delone.interpolate.methods import interpolator
 from delone.interpolate.space import SPACE, refuse
 from delone.memory import free_memory
-from delone.renames import renamed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
+    from delone._tiling.triangulation import Triangulation
     from delone.periodic import PeriodicDelaunay
-    from delone.triangulation import Triangulation
 
 __all__ = ["Grid", "grid", "raster_nodes", "require_memory"]
 
@@ -112,7 +112,7 @@ class Grid:
         >>> ramp.to_xarray(name="height").sel(x=1, y=2).item()
         3.0
         """
-        from delone.extras import require
+        from delone._base.extras import require
 
         xarray = require("xarray", extra="xarray", what="a DataArray")
         further = [f"value{k}" for k in range(self.values.ndim - 2)]

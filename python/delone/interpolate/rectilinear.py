@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from delone.blocks import blocks
+from delone._base.blocks import blocks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
 
 __all__ = ["Rectilinear", "rectilinear"]
 

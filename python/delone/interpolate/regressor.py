@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from delone._base.georeference import names_degrees, warn_of_degrees
 from delone.errors import DtypeError, MissingExtraError
-from delone.georeference import names_degrees, warn_of_degrees
 from delone.interpolate.methods import interpolator
 
 try:

@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone import measures
+from delone._tiling import measures
 from delone.errors import InputError, LimitError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
     from delone.periodic import PeriodicDelaunay
 
 __all__ = ["Repeated", "repeated"]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_limit, as_number, as_workers
+from delone._base.arrays import as_limit, as_number, as_workers
 from delone.errors import InputError
 from delone.interpolate.base import Interpolator, Sheet, shaped_derivatives
 from delone.interpolate.hull import Terms, edge_terms
@@ -23,9 +23,9 @@ from delone.interpolate.values import chosen
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
+    from delone._tiling.triangulation import Triangulation
     from delone.periodic import PeriodicDelaunay
-    from delone.triangulation import Triangulation
 
 __all__ = ["GRADIENTS", "GradientWarning", "Smooth", "cut"]
 

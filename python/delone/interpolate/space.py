@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone import _core, measures
+from delone import _core
+from delone._tiling import measures
 from delone.errors import InputError
 from delone.interpolate.hull import Terms
 
 if TYPE_CHECKING:
-    from delone._types import Floats, Indices
-    from delone.location import Location
-    from delone.triangulation import Triangulation
+    from delone._base.types import Floats, Indices
+    from delone._tiling.location import Location
+    from delone._tiling.triangulation import Triangulation
 
 __all__ = ["SPACE", "face_terms", "hull_gradients", "refuse", "slopes"]
 

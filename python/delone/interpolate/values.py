@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_plain_array
-from delone._masks import hides
-from delone.counting import agreed, counted
+from delone._base.arrays import as_plain_array
+from delone._base.counting import agreed, counted
+from delone._base.masks import hides
 from delone.errors import ConflictingValuesError, DtypeError, InputError, NonFiniteError, ShapeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["DUPLICATES", "NAN", "Field", "as_field", "chosen", "require_finite_values"]
 

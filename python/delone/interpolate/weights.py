@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
+from delone._base.extras import require
+from delone._base.renames import renamed
 from delone.errors import InputError
-from delone.extras import require
 from delone.interpolate.values import as_field
-from delone.renames import renamed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.interpolate.hull import Terms
     from delone.interpolate.policies import Policies
 

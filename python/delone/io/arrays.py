@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_points, as_simplices
-from delone._values import as_values
-from delone.bounded import archived, read_array, require_claim
+from delone._base.arrays import as_points, as_simplices
+from delone._base.bounded import archived, read_array, require_claim
+from delone._base.values import as_values
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import FileFormatError, InputError
 from delone.io.heights import split_attributes

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.georeference import parsed
 from delone.errors import FileFormatError
-from delone.georeference import parsed
 from delone.io.content import content
 from delone.io.systems import check_system
 from delone.predicates import orient2d
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.exchange.parts import HasParts
 
 __all__ = ["require_libraries", "write_mesh"]

@@ -10,7 +10,7 @@ import zlib
 from contextlib import contextmanager
 from typing import IO, TYPE_CHECKING, Any
 
-from delone.bounded import EXPANSION, largest
+from delone._base.bounded import EXPANSION, largest
 from delone.errors import FileFormatError
 
 if TYPE_CHECKING:

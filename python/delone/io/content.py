@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._values import as_values
+from delone._base.values import as_values
 from delone.exchange.parts import Parts, parts_of, with_third
 from delone.exchange.second import middles, of_order
 from delone.io.heights import split_attributes

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_least, as_number
-from delone.counting import counted
+from delone._base.arrays import as_least, as_number
+from delone._base.counting import counted
+from delone._base.extras import require
+from delone._base.georeference import caller_level
 from delone.errors import DeloneError, FileFormatError, InputError
-from delone.extras import require
-from delone.georeference import caller_level
 from delone.io.companions import require_companion
 from delone.io.netcdf import Heights, is_netcdf, read_heights
 from delone.io.nodata import as_nodata, is_nodata, require_declared
@@ -30,7 +30,7 @@ from delone.io.systems import check_system
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["as_bounds", "is_raster", "read_cells", "read_points", "read_raster"]
 

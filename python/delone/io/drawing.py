@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_number
-from delone.atomic import replacing
+from delone._base.arrays import as_number
+from delone._base.atomic import replacing
+from delone._base.extras import require
+from delone._base.units import as_units, lengths_of_crs
 from delone.errors import FileFormatError, InputError
-from delone.extras import require
-from delone.units import as_units, lengths_of_crs
 
 if TYPE_CHECKING:
     import os
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
 
 __all__ = ["write_drawing"]
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.extras import require
 from delone.errors import DeloneError, FileFormatError
-from delone.extras import require
 from delone.io.dxf_entities import KINDS, Drawn
 from delone.io.surfacefile import SurfaceFile
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
     from delone.io.geometryset import GeometrySet
     from delone.io.pointset import PointSet
 

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.extras import require
 from delone.errors import FileFormatError
-from delone.extras import require
 from delone.io.facets import facet_triangles
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["KINDS", "Drawn"]
 

@@ -16,7 +16,7 @@ from delone.errors import DeloneError, FileFormatError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["facet_triangles", "normal_axis"]
 

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.extras import require
 from delone.errors import FileFormatError
 from delone.exchange.meshio import TAGS, to_meshio
 from delone.exchange.parts import boundary, boundary_segments, kind_of
-from delone.extras import require
 from delone.io.content import content
 
 if TYPE_CHECKING:

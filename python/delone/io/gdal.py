@@ -19,9 +19,9 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from delone.bounded import largest
+from delone._base.bounded import largest
+from delone._base.extras import require
 from delone.errors import FileFormatError
-from delone.extras import require
 from delone.io.companions import require_companions
 from delone.io.compressed import SUFFIXES, Bounded, corrupt_is_an_error, opened
 from delone.io.systems import check_system

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from delone._values import as_values
-from delone.counting import agreed, counted
+from delone._base.counting import agreed, counted
+from delone._base.extras import require
+from delone._base.renames import renamed
+from delone._base.values import as_values
 from delone.errors import FileFormatError
-from delone.extras import require
 from delone.io.pointset import PointSet
 from delone.io.systems import check_system
-from delone.renames import renamed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["GeometrySet"]
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.extras import require
+from delone._base.extras import require
 from delone.io.systems import plain_system
 
 if TYPE_CHECKING:

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.units import METERS, lengths_of_crs
 from delone.errors import FileFormatError, InputError
 from delone.io.content import content
-from delone.units import METERS, lengths_of_crs
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.exchange.parts import HasParts
 
 __all__ = ["require_libraries", "write_local", "write_mesh"]

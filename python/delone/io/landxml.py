@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.extras import require
 from delone.errors import FileFormatError, InputError
-from delone.extras import require
 from delone.io.geometryset import GeometrySet
 from delone.io.landxml_parts import ORDERS, Draft, Head
 from delone.io.landxml_survey import Survey
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
     from pathlib import Path
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["read_geometries", "read_points", "read_surface", "require_libraries", "write_mesh"]
 

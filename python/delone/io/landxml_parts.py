@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.units import as_units
 from delone.errors import FileFormatError, InputError
 from delone.io.surfacefile import SurfaceFile
-from delone.units import as_units
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["ORDERS", "Draft", "Head"]
 

@@ -18,7 +18,7 @@ from delone.io.landxml_parts import ORDERS, Head
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["Alignment", "Survey"]
 

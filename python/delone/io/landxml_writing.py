@@ -10,12 +10,12 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from delone._base.georeference import caller_level, parsed
+from delone._base.units import UnitsWarning, as_units, lengths_of_crs
 from delone.errors import FileFormatError
 from delone.exchange.parts import boundary
-from delone.georeference import caller_level, parsed
 from delone.io.content import content
 from delone.io.systems import check_system
-from delone.units import UnitsWarning, as_units, lengths_of_crs
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.exchange.parts import HasParts
 
 __all__ = ["require_libraries", "write_mesh"]

@@ -13,8 +13,8 @@ from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.extras import require
 from delone.errors import DeloneError, FileFormatError
-from delone.extras import require
 from delone.io.pointset import PointSet
 from delone.io.systems import check_system
 

@@ -18,7 +18,7 @@ from delone.io.numbered import as_markers, as_rows, parsed, read_text
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["read"]
 

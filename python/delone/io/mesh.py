@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_points, as_simplices
-from delone._values import as_values
+from delone._base.arrays import as_points, as_simplices
+from delone._base.extras import require
+from delone._base.values import as_values
 from delone.errors import DeloneError, FileFormatError, InputError
 from delone.exchange.meshio import TAGS, to_meshio
-from delone.extras import require
 from delone.io import gmsh_groups, medit, msh, obj, ply, vtk, vtu
 from delone.io.cells import POLYGONS, Cells, ReadMesh
 from delone.io.content import content

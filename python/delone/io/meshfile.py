@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from delone.counting import counted
+from delone._base.counting import counted
 
 if TYPE_CHECKING:
     import numpy as np

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from delone._base.extras import require
 from delone.errors import DeloneError, FileFormatError, InputError
-from delone.extras import require
 from delone.io.nodata import is_nodata, require_declared
 from delone.io.systems import check_system
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["Heights", "heights_of_array", "is_array", "is_netcdf", "read_heights"]
 

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_number
-from delone.counting import counted
+from delone._base.arrays import as_number
+from delone._base.counting import counted
 from delone.errors import FileFormatError, InputError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools
+    from delone._base.types import Bools
 
 __all__ = ["as_nodata", "is_nodata", "require_declared"]
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone._arrays import as_points, as_simplices
+from delone._base.arrays import as_points, as_simplices
 from delone.errors import FileFormatError, InputError
 from delone.io.content import content
 from delone.io.facets import facet_triangles
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats
+    from delone._base.types import Floats
     from delone.exchange.parts import HasParts
 
 __all__ = ["read_mesh", "read_points", "require_libraries", "write_mesh"]

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_points
-from delone._values import as_values
+from delone._base.arrays import as_points
+from delone._base.extras import require
+from delone._base.values import as_values
 from delone.errors import DeloneError, FileFormatError, InputError
-from delone.extras import require
 from delone.io.pointset import PointSet, choose_columns, find_column
 from delone.io.systems import check_system
 from delone.io.vector import from_frame, geometries_of

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.extras import require
 from delone.errors import FileFormatError
-from delone.extras import require
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.counting import counted
+from delone._base.counting import counted
 from delone.errors import FileFormatError
 from delone.io.systems import check_system
 

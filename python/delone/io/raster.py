@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from delone.atomic import replacing
-from delone.decimals import outer, spacing
+from delone._base.atomic import replacing
+from delone._base.decimals import outer, spacing
+from delone._base.extras import require
+from delone._base.georeference import as_crs
 from delone.errors import FileFormatError, InputError
-from delone.extras import require
-from delone.georeference import as_crs
 from delone.io.geotiff import write_geotiff
 from delone.io.pointset import names_height
 from delone.io.referencing import cf_attributes, warn_if_left_out
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["raster_suffixes", "raster_writer", "write_raster"]
 

@@ -6,9 +6,9 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from delone._base.extras import require
+from delone._base.georeference import CRSWarning
 from delone.errors import FileFormatError
-from delone.extras import require
-from delone.georeference import CRSWarning
 
 if TYPE_CHECKING:
     import os

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_choice, as_count, as_flag, as_number, as_plain_array
-from delone.atomic import replacing
+from delone._base.arrays import as_choice, as_count, as_flag, as_number, as_plain_array
+from delone._base.atomic import replacing
+from delone._base.georeference import as_crs, crs_of
 from delone.errors import DtypeError, FileFormatError, InputError
 from delone.exchange.second import as_order
-from delone.georeference import as_crs, crs_of
 from delone.io.compressed import SUFFIXES
 from delone.io.referencing import warn_if_left_out
 

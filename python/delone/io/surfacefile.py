@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.counting import counted
+from delone._base.counting import counted
+from delone._base.extras import require
+from delone._base.georeference import parsed
 from delone.errors import FileFormatError
-from delone.extras import require
-from delone.georeference import parsed
 from delone.io.geometryset import GeometrySet
 from delone.io.pointset import PointSet
 from delone.io.systems import check_system
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["LeftOutWarning", "SurfaceFile"]
 

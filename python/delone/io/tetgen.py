@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_points
+from delone._base.arrays import as_points
 from delone.errors import FileFormatError, InputError
 from delone.exchange.parts import boundary
 from delone.io.companions import require_companion
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.exchange.parts import HasParts
 
 __all__ = ["SECOND", "is_solid", "read_mesh", "read_nodes", "require_libraries", "write_mesh"]

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["line_numbers", "read_points"]
 

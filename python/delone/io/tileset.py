@@ -14,19 +14,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_plain_array
-from delone.atomic import replacing
+from delone._base.arrays import as_plain_array
+from delone._base.atomic import replacing
+from delone._base.extras import require
+from delone._base.units import METERS
 from delone.errors import InputError
-from delone.extras import require
 from delone.io.gltf import write_local
-from delone.units import METERS
 
 if TYPE_CHECKING:
     import os
 
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["write_tileset"]
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_points, as_simplices
+from delone._base.arrays import as_points, as_simplices
 from delone.errors import FileFormatError, InputError
 from delone.exchange.parts import boundary
 from delone.exchange.second import of_order
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
     from delone.exchange.parts import HasParts, Parts
     from delone.io.content import Content
 

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.extras import require
 from delone.errors import DeloneError, FileFormatError
 from delone.exchange.geopandas import to_geopandas
-from delone.extras import require
 from delone.io.compressed import SUFFIXES
 from delone.io.content import content
 from delone.io.gdal import admitted, check_driver, local_name

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Rows
+    from delone._base.types import Rows
 
 __all__ = ["read"]
 

@@ -17,7 +17,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from delone.bounded import largest
+from delone._base.bounded import largest
 from delone.errors import FileFormatError
 from delone.io.cells import POLYGONS, Cells, ReadMesh, name_of_polygon
 from delone.io.markup import decoded, refuse_document_type

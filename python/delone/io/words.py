@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.counting import counted
+from delone._base.counting import counted
 from delone.errors import FileFormatError
 
 if TYPE_CHECKING:

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.extras import require
 from delone.errors import DtypeError, InputError
-from delone.extras import require
 
 if TYPE_CHECKING:
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = [
     "axis_names",

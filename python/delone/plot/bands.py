@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_flag
-from delone.extras import require
+from delone._base.arrays import as_flag
+from delone._base.extras import require
 from delone.plot.axes import frame, new_axes, require_bounds
 from delone.plot.colors import as_cmap
 from delone.plot.style import require_style, restyle
@@ -15,7 +15,7 @@ from delone.plot.style import require_style, restyle
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["plot_bands"]
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.extras import require
+from delone._base.extras import require
 from delone.plot.axes import thin
 from delone.plot.colors import show
 from delone.plot.shading import facet_values
@@ -21,7 +21,7 @@ from delone.plot.style import EDGES
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.plot.protocols import Segmented
 
 __all__ = ["color_of_regions", "draw_boundary", "draw_regions", "draw_segments"]

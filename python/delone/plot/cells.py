@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_flag, as_number, as_optional_flag
-from delone._values import as_values
+from delone._base.arrays import as_flag, as_number, as_optional_flag
+from delone._base.extras import require
+from delone._base.values import as_values
 from delone.errors import InputError
-from delone.extras import require
 from delone.plot.axes import draw_dots, new_axes, require_bounds, thin
 from delone.plot.colors import as_cmap
 from delone.plot.plotter import add_points, as_pyvista_cmap, new_plotter
@@ -19,7 +19,7 @@ from delone.plot.style import EDGES
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats
+    from delone._base.types import Floats
     from delone.plot.protocols import Cells2, Cells3
 
 __all__ = ["plot_cells2", "plot_cells3"]

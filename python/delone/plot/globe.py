@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["plot_globe"]
 

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_flag, as_optional_flag
-from delone._values import as_values
+from delone._base.arrays import as_flag, as_optional_flag
+from delone._base.extras import require
+from delone._base.values import as_values
 from delone.errors import InputError
-from delone.extras import require
 from delone.plot.axes import draw_dots, frame, new_axes, require_bounds, thin
 from delone.plot.plotter import add_points, as_pyvista_cmap, new_plotter
 from delone.plot.style import EDGES

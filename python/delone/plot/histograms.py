@@ -9,7 +9,7 @@ import numpy as np
 from delone.plot.axes import new_axes
 
 if TYPE_CHECKING:
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["draw_angles", "draw_histograms"]
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_optional_flag
-from delone.extras import require
+from delone._base.arrays import as_optional_flag
+from delone._base.extras import require
 from delone.plot.axes import draw_dots, frame, new_axes, require_bounds
 from delone.plot.style import EDGES
 

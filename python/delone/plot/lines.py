@@ -13,7 +13,7 @@ from delone.plot.style import require_style, restyle
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["plot_labels", "plot_lines", "plot_profile", "plot_profiles", "plot_stations"]
 

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_flag, as_optional_flag
-from delone.extras import require
+from delone._base.arrays import as_flag, as_optional_flag
+from delone._base.extras import require
 from delone.plot.axes import draw_dots, frame, new_axes, require_bounds, thin
 from delone.plot.style import EDGES
 
 if TYPE_CHECKING:
-    from delone._types import Floats
+    from delone._base.types import Floats
     from delone.plot.protocols import Periodic
 
 __all__ = ["plot_periodic"]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
-from delone._values import as_values
-from delone.atomic import replacing
+from delone._base.atomic import replacing
+from delone._base.extras import require
+from delone._base.values import as_values
 from delone.errors import InputError
-from delone.extras import require
 from delone.plot.axes import axis_names, figure_size
 from delone.plot.protocols import has, is_quality_mesh
 from delone.plot.triangles import plot, require_drawable, require_flat

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_optional_flag
+from delone._base.arrays import as_optional_flag
+from delone._base.extras import require
 from delone.errors import DtypeError, InputError
-from delone.extras import require
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_flag, as_number, as_optional_flag
+from delone._base.arrays import as_flag, as_number, as_optional_flag
+from delone._base.extras import require
 from delone.errors import InputError
-from delone.extras import require
 from delone.plot.axes import axis_names, figure_size, new_axes
 from delone.plot.colors import add_bar, as_cmap, scale, shaded, show
 from delone.plot.shading import Raster, relief
@@ -16,7 +16,7 @@ from delone.plot.shading import Raster, relief
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["draw_difference", "draw_raster", "plot_difference", "plot_raster"]
 

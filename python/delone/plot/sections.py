@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from delone._arrays import as_count
+from delone._base.arrays import as_count
+from delone._base.extras import require
 from delone.errors import InputError
-from delone.extras import require
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["draw_sections"]
 

@@ -17,7 +17,7 @@ from delone.plot.protocols import segmented
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
     from delone.plot.protocols import Triangles
 
 __all__ = ["Raster", "facet_light", "facet_values", "point_density", "rasterize", "relief"]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from delone._base.extras import require
 from delone.errors import InputError
-from delone.extras import require
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_choice, as_flag, as_number, as_plain_array
-from delone._values import as_values
+from delone._base.arrays import as_choice, as_flag, as_number, as_plain_array
+from delone._base.extras import require
+from delone._base.values import as_values
 from delone.errors import InputError
-from delone.extras import require
 from delone.plot.plotter import add_points, as_pyvista_cmap, new_plotter
 from delone.plot.protocols import has, hint, kind_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
     from delone.plot.protocols import Simplices
 
 __all__ = ["plot"]

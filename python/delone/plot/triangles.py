@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from delone._arrays import as_flag, as_optional_flag
-from delone._values import as_values
+from delone._base.arrays import as_flag, as_optional_flag
+from delone._base.extras import require
+from delone._base.values import as_values
 from delone.errors import InputError
-from delone.extras import require
 from delone.plot import cartography
 from delone.plot.axes import draw_dots, frame, new_axes, pixels, require_bounds, thin
 from delone.plot.circles import bounds_with_circles, draw_circles, require_few
@@ -21,7 +21,7 @@ from delone.plot.style import EDGES
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats
+    from delone._base.types import Floats
     from delone.plot.protocols import Hulled, Triangles
 
 __all__ = ["plot", "require_drawable", "require_flat"]

@@ -19,7 +19,7 @@ from fractions import Fraction
 from itertools import combinations, pairwise, product
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from delone.counting import agreed
+from delone._base.counting import agreed
 from delone.errors import CrossingSegmentsError, InputError
 from delone.reference.exact import exact_point, exact_rows, first_rows, orient
 from delone.reference.flips import Edge, apexes, flip, make_delaunay, triangles_of

@@ -15,7 +15,7 @@ from math import lcm
 from numbers import Rational
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
-from delone.counting import agreed
+from delone._base.counting import agreed
 from delone.errors import DegenerateInputError, NonFiniteError, ShapeError
 
 if TYPE_CHECKING:

@@ -12,24 +12,24 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from delone import measures
-from delone._arrays import as_callback, as_limit, as_number
+from delone._base.arrays import as_callback, as_limit, as_number
+from delone._tiling import measures
+from delone._tiling.plane import topology
+from delone._tiling.sizes import chosen
 from delone.errors import InputError, InternalError
-from delone.plane import topology
 from delone.refine import domains
 from delone.refine.domains import Counts
 from delone.refine.rounds import MOST_ADDED, Limits, as_min_angle, rounds
 from delone.refine.sizing import EQUILATERAL
 from delone.refine.smoothing import rebuilt, worse
 from delone.refine.state import MeshState
-from delone.sizes import chosen
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Bools, Floats
+    from delone._base.types import Bools, Floats
 
 __all__ = ["coarsened", "finer"]
 

@@ -14,15 +14,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers
-from delone.plane import topology
+from delone._base.arrays import as_workers
+from delone._tiling.plane import topology
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
     from delone.constrained.segmented import Segmented
 
     # Called with the number of added points and the smallest angle.

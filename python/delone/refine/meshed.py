@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from delone.immutable import made_by
+from delone._base.immutable import made_by
 from delone.refine.adaptivity import coarsened, finer
 from delone.refine.smoothing import smoothed
 from delone.refine.state import MeshState

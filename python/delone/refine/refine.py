@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_callback, as_count, as_flag, as_limit, as_plain_array, as_workers
-from delone._masks import refuse_masks
+from delone._base.arrays import as_callback, as_count, as_flag, as_limit, as_plain_array, as_workers
+from delone._base.counting import listed
+from delone._base.masks import refuse_masks
 from delone.constrained import geodata
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.polygons import inside_of
 from delone.constrained.segments import open_ends
-from delone.counting import listed
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.refine import domains
 from delone.refine.domains import Domain
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from delone._types import Bools, Indices
+    from delone._base.types import Bools, Indices
 
 __all__ = ["as_rows", "filled", "mesh"]
 

@@ -17,17 +17,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone import _core, measures
-from delone.counting import counted, listed
-from delone.immutable import ReadOnly
-from delone.plane import quality
+from delone import _core
+from delone._base.counting import counted, listed
+from delone._base.immutable import ReadOnly
+from delone._tiling import measures
+from delone._tiling.plane import quality
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.refine.domains import Lines
 
 __all__ = ["CAUSES", "MeshReport", "judged", "reported"]

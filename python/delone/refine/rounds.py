@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_number, as_workers
+from delone._base.arrays import as_number, as_workers
 from delone.errors import InputError
 from delone.refine import domains
 from delone.refine.domains import Counts, Domain

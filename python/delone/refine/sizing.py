@@ -16,15 +16,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import _core, measures
-from delone._arrays import as_workers
+from delone import _core
+from delone._base.arrays import as_workers
+from delone._tiling import measures
+from delone._tiling.sizes import checked, evaluator, formatted, is_number, positive, rounded
 from delone.errors import BudgetExceededError, InputError, LimitError
-from delone.sizes import checked, evaluator, formatted, is_number, positive, rounded
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.refine.domains import Domain
 
 __all__ = ["EQUILATERAL", "Sizing"]

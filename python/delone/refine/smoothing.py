@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_choice, as_limit, as_workers
-from delone.plane import quality
+from delone._base.arrays import as_choice, as_limit, as_workers
+from delone._tiling.plane import quality
 from delone.refine import domains
 from delone.refine.state import MeshState
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.refine.domains import Domain
 
 __all__ = ["METHODS", "rebuilt", "smoothed", "worse"]

@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone.counting import counted
-from delone.immutable import kept, sealed
-from delone.plane import topology
+from delone._base.counting import counted
+from delone._base.immutable import kept, sealed
+from delone._tiling.plane import topology
+from delone._tiling.triangulation import HullTiling
 from delone.refine import domains
 from delone.refine.domains import Counts, Domain, Lines
 from delone.refine.report import reported
-from delone.triangulation import HullTiling
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
     from delone.exchange.parts import Parts
     from delone.refine.report import MeshReport
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from delone import _core
-from delone.plane.topology import boundary_edges, unjoined
+from delone._tiling.plane.topology import boundary_edges, unjoined
 from delone.validation import SENTENCES, ValidationReport, not_across
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
 
 __all__ = ["MeshValidation", "validate"]
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
 
 if TYPE_CHECKING:
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.sphere.delaunay import Delaunay
 
 __all__ = ["Cells", "cells_of", "lunes"]

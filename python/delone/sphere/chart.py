@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_number, as_workers
+from delone._base.arrays import as_number, as_workers
+from delone._base.extras import require
 from delone.areal.paired import row_sums
 from delone.errors import DtypeError, InputError, ShapeError
-from delone.extras import require
 from delone.plot.axes import new_axes, thin
 from delone.sphere.coordinates import lonlat_of
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["plot_grid"]
 

@@ -10,7 +10,7 @@ from delone.sphere.cells import Cells, lunes
 from delone.sphere.exact import cross, dot, whole
 
 if TYPE_CHECKING:
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.sphere.exact import Vector
 
 __all__ = ["cells_of_few", "first_rows", "nearest_of_few"]

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
+from delone._tiling.plane.topology import half_edges
 from delone.errors import InputError
-from delone.plane.topology import half_edges
 from delone.sphere.constrained import WINDINGS, ConstrainedDelaunay, Given, most_added
 from delone.sphere.geometry import read
 from delone.sphere.sides import Origin
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Indices, Rows
+    from delone._base.types import Bools, Floats, Indices, Rows
     from delone.sphere.cells import Cells
 
 __all__ = [

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_choice, as_flag, as_limit, as_segments, as_workers
+from delone._base.arrays import as_choice, as_flag, as_limit, as_segments, as_workers
+from delone._base.counting import counted
+from delone._base.immutable import kept, sealed
+from delone._base.renames import renamed
 from delone.constrained import segments
-from delone.counting import counted
 from delone.errors import CrossingSegmentsError, DirectionError, InternalError
-from delone.immutable import kept, sealed
-from delone.renames import renamed
 from delone.sphere.coordinates import directions_of, lonlat_of
 from delone.sphere.crossings import split
 from delone.sphere.delaunay import Delaunay
@@ -22,7 +22,7 @@ from delone.sphere.sides import Origin
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
     from delone.constrained.segments import SegmentReport
     from delone.sphere.validation import ConstrainedSphereReport
 

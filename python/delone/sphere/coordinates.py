@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_plain_array, as_points, as_vectors, as_workers, require_finite
-from delone.counting import agreed, counted
+from delone._base.arrays import as_plain_array, as_points, as_vectors, as_workers, require_finite
+from delone._base.counting import agreed, counted
+from delone._base.georeference import caller_level, crs_of, parsed
+from delone._base.immutable import own_copy
 from delone.errors import DirectionError, DtypeError, InputError, ShapeError
-from delone.georeference import caller_level, crs_of, parsed
-from delone.immutable import own_copy
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Bools, Floats
+    from delone._base.types import Bools, Floats
 
 __all__ = ["LongitudeWarning", "directions_of", "lonlat_of", "numbers_of", "queries_of", "units_of"]
 

@@ -20,7 +20,7 @@ from delone.sphere.exact import cross, dot, whole
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["Split", "split"]
 

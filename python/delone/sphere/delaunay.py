@@ -6,15 +6,16 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone import _core, measures
-from delone._arrays import as_flag, as_workers
-from delone.counting import counted
-from delone.duplicates import vertices_of
+from delone import _core
+from delone._base.arrays import as_flag, as_workers
+from delone._base.counting import counted
+from delone._base.duplicates import vertices_of
+from delone._base.immutable import kept, sealed
+from delone._tiling import measures
+from delone._tiling.location import as_tolerance
+from delone._tiling.plane import topology
 from delone.errors import InternalError
 from delone.exchange.parts import Parts
-from delone.immutable import kept, sealed
-from delone.location import as_tolerance
-from delone.plane import topology
 from delone.sphere.coordinates import directions_of, queries_of
 from delone.sphere.globe import OnGlobe
 from delone.sphere.nearby import nearby
@@ -22,7 +23,7 @@ from delone.sphere.nearby import nearby
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices, Rows
+    from delone._base.types import Floats, Indices, Rows
     from delone.sphere.validation import SphereReport
 
 __all__ = ["Delaunay"]

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
-from delone.blocks import blocks
+from delone._base.blocks import blocks
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
     Signs = NDArray[np.int8]
     Vector = tuple[int, int, int]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_simplices
+from delone._base.arrays import as_simplices
 from delone.errors import FileFormatError, InputError
 from delone.sphere.coordinates import units_of
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
     from delone.sphere.grid_report import GridReport
 
 __all__ = ["median_dual", "read_text"]

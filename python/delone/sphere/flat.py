@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.extras import require
+from delone._base.extras import require
 from delone.predicates import orient2d
 from delone.sphere.coordinates import lonlat_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["flat_polygon"]
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_choice, as_flag
+from delone._base.arrays import as_choice, as_flag
+from delone._base.duplicates import first_rows
+from delone._base.georeference import as_degrees, common_crs
 from delone.constrained import geodata
-from delone.duplicates import first_rows
 from delone.errors import DirectionError, InputError
-from delone.georeference import as_degrees, common_crs
 from delone.sphere.constrained import WINDINGS, ConstrainedDelaunay, Given, most_added
 from delone.sphere.coordinates import directions_of
 from delone.sphere.sides import SIDES, Origin, divided, whole_sphere
@@ -19,7 +19,7 @@ from delone.sphere.sides import SIDES, Origin, divided, whole_sphere
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["from_geometry", "read"]
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from delone.complex import Stored
-from delone.immutable import kept, sealed
+from delone._base.immutable import kept, sealed
+from delone._tiling.complex import Stored
 from delone.sphere.coordinates import lonlat_of, units_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["OnGlobe"]
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._arrays import as_choice, as_flag, as_number, as_workers
+from delone._base.arrays import as_choice, as_flag, as_number, as_workers
 from delone.errors import InputError
 from delone.sphere import rings as rings_of
 from delone.sphere.coordinates import directions_of, lonlat_of
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
     from delone.sphere.formats import Cells
     from delone.sphere.voronoi import Voronoi
 

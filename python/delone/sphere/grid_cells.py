@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_number, as_workers
-from delone.complex import Stored
-from delone.counting import agreed, counted
+from delone._base.arrays import as_number, as_workers
+from delone._base.counting import agreed, counted
+from delone._base.immutable import kept, sealed
+from delone._tiling.complex import Stored
 from delone.errors import DirectionError, InputError, ShapeError
-from delone.immutable import kept, sealed
 from delone.sphere import rings as rings_of
 from delone.sphere.coordinates import lonlat_of, units_of
 from delone.sphere.grid_report import GridFaults, GridReport
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
 
 __all__ = ["GridCells"]
 

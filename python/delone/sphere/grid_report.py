@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from delone.counting import counted
-from delone.immutable import ReadOnly
-from delone.renames import renamed
+from delone._base.counting import counted
+from delone._base.immutable import ReadOnly
+from delone._base.renames import renamed
 
 if TYPE_CHECKING:
-    from delone._types import Rows
+    from delone._base.types import Rows
 
 __all__ = ["GridFaults", "GridReport"]
 

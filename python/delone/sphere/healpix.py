@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_least
+from delone._base.arrays import as_least
 from delone.errors import InputError
 
 if TYPE_CHECKING:
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
 
 __all__ = ["healpix_corners"]
 

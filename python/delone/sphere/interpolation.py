@@ -14,16 +14,16 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_flag, as_number, as_plain_array, as_workers
-from delone.counting import agreed
+from delone._base.arrays import as_flag, as_number, as_plain_array, as_workers
+from delone._base.counting import agreed
+from delone._base.renames import renamed
+from delone._tiling.location import as_tolerance
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.interpolate.base import as_max_distance, shaped_derivatives
 from delone.interpolate.hull import Terms
 from delone.interpolate.policies import Policies
 from delone.interpolate.values import DUPLICATES, NAN, as_field, chosen
 from delone.interpolate.weights import Weights, joined, rectangular
-from delone.location import as_tolerance
-from delone.renames import renamed
 from delone.sphere.coordinates import numbers_of, queries_of
 from delone.sphere.delaunay import Delaunay
 from delone.sphere.outside import arc_weights
@@ -32,7 +32,7 @@ from delone.sphere.vectors import VectorInterpolation, polar_rows
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Bools, Floats, Indices, Rows
+    from delone._base.types import Bools, Floats, Indices, Rows
     from delone.interpolate.values import Field
     from delone.interpolate.weights import Table
 

@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from delone._base.counting import agreed, counted
+from delone._base.georeference import caller_level
+from delone._tiling.plane import topology
 from delone.constrained.coverage import beside, closed_rings, containing
-from delone.counting import agreed, counted
 from delone.errors import InputError
-from delone.georeference import caller_level
-from delone.plane import topology
 from delone.sphere.sides import Origin, PolygonWarning
 
 if TYPE_CHECKING:
+    from delone._base.types import Bools, Floats, Indices, Rows
     from delone._core import ConstrainedTriangulation
-    from delone._types import Bools, Floats, Indices, Rows
 
 __all__ = ["Origin", "Rings", "first_polygon"]
 

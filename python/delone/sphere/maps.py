@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.atomic import replacing
+from delone._base.extras import require
 from delone.areal.paired import added, row_sums
-from delone.atomic import replacing
 from delone.errors import FileFormatError, InputError
-from delone.extras import require
 from delone.sphere.coordinates import lonlat_of
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats
+    from delone._base.types import Bools, Floats
     from delone.sphere.grid import Grid
 
     Grids = tuple[Grid | None, Grid | None]

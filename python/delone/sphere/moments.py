@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
 from delone.sphere import rings as rings_of
 from delone.sphere.coordinates import units_of
 
 if TYPE_CHECKING:
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
     from delone.sphere.grid import Grid
 
 __all__ = ["moments_of_cells", "moments_of_parts"]

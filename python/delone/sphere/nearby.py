@@ -15,7 +15,7 @@ from delone.sphere.exact import cross, dot, whole
 from delone.sphere.outside import chords
 
 if TYPE_CHECKING:
-    from delone._types import Floats, Indices, Rows
+    from delone._base.types import Floats, Indices, Rows
     from delone.sphere.exact import Vector
 
 __all__ = ["nearby"]

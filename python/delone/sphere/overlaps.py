@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Self
 
-from delone._arrays import as_choice, as_flag, as_workers
+from delone._base.arrays import as_choice, as_flag, as_workers
+from delone._tiling.complex import Stored
 from delone.areal.shared import OverlapReport, SharedAreas
 from delone.areal.weights import as_mask
-from delone.complex import Stored
 from delone.errors import DtypeError, InputError
 from delone.sphere.grid import Grid
 from delone.sphere.weights import Weights

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from delone._tiling.plane.topology import vertex_neighbor_vertices
 from delone.errors import InputError
-from delone.plane.topology import vertex_neighbor_vertices
 from delone.sphere.coordinates import directions_of, units_of
 from delone.sphere.delaunay import Delaunay
 from delone.sphere.interpolation import Linear, NaturalNeighbor
@@ -15,7 +15,7 @@ from delone.sphere.quadrilaterals import between_corners
 from delone.sphere.voronoi import Voronoi
 
 if TYPE_CHECKING:
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
     from delone.sphere.grid import Grid
 
 __all__ = ["POINTWISE", "Entries", "pointwise"]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
 from delone.errors import InputError
 from delone.sphere.coordinates import directions_of, units_of
 from delone.sphere.exact import turns
@@ -21,7 +21,7 @@ from delone.sphere.exact import turns
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
     from delone.sphere.grid import Grid
 
 __all__ = ["between_corners"]

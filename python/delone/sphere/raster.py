@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_number
+from delone._base.arrays import as_number
 from delone.interpolate.raster import raster_nodes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from delone._types import Floats
+    from delone._base.types import Floats
     from delone.sphere.delaunay import Delaunay
 
 __all__ = ["globe_nodes"]

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_choice, as_flag, as_number
+from delone._base.arrays import as_choice, as_flag, as_number
+from delone._base.counting import counted
+from delone._base.extras import require
+from delone._base.georeference import caller_level
+from delone._base.immutable import Immutable
 from delone.areal.weights import METHODS
-from delone.counting import counted
 from delone.errors import DtypeError, InputError, ShapeError
-from delone.extras import require
-from delone.georeference import caller_level
-from delone.immutable import Immutable
 from delone.sphere.formats import Choices
 from delone.sphere.grid import Grid
 from delone.sphere.overlaps import Overlaps

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_points, as_workers, require_finite
+from delone._base.arrays import as_points, as_workers, require_finite
+from delone._base.extras import require
+from delone._base.georeference import crs_of, is_geographic
 from delone.errors import InputError, ShapeError
-from delone.extras import require
-from delone.georeference import crs_of, is_geographic
 from delone.sphere.coordinates import directions_of, units_of
 from delone.sphere.flat import flat_polygon
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
     from delone.sphere.voronoi import Voronoi
 
 __all__ = [

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
+from delone._base.immutable import sealed
+from delone._tiling.plane.topology import vertex_neighbor_vertices
 from delone.areal.paired import added
 from delone.errors import DeloneError, InputError
-from delone.immutable import sealed
-from delone.plane.topology import vertex_neighbor_vertices
 from delone.sphere.coordinates import directions_of, units_of
 from delone.sphere.delaunay import Delaunay
 from delone.sphere.moments import moments_of_cells, moments_of_parts
@@ -26,7 +26,7 @@ from delone.sphere.weights import Weights
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
     from delone.sphere.grid import Grid
 
 __all__ = ["SecondOrderWeights", "second_order"]

@@ -14,16 +14,16 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from delone import _core
+from delone._base.counting import agreed, counted
+from delone._base.duplicates import first_rows
+from delone._base.georeference import caller_level
 from delone.constrained import geodata
-from delone.counting import agreed, counted
-from delone.duplicates import first_rows
 from delone.errors import InputError
-from delone.georeference import caller_level
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
     from delone.constrained.geodata import Parts
 
 __all__ = ["SIDES", "Origin", "PolygonWarning", "divided", "whole_sphere"]

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from delone._base.extras import require
 from delone.errors import DtypeError
-from delone.extras import require
 from delone.sphere.formats import (
     Choices,
     describing,

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from delone._tiling.plane import topology
 from delone.constrained.validation import bent_rows, uncovered_rows
-from delone.plane import topology
 from delone.sphere.exact import circles, cross, dot, turns, turns_at, whole
 from delone.validation import SENTENCES, ValidationReport, no_pairs, no_rows
 
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from delone._base.types import Bools, Floats, Indices
     from delone._core import ConstrainedTriangulation
-    from delone._types import Bools, Floats, Indices
 
     Rows = NDArray[np.integer]
 

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_plain_array, as_workers
-from delone.blocks import blocks
+from delone._base.arrays import as_plain_array, as_workers
+from delone._base.blocks import blocks
 from delone.errors import InputError, ShapeError
 from delone.interpolate.base import as_max_distance
 from delone.interpolate.values import as_field
@@ -25,7 +25,7 @@ from delone.sphere.coordinates import numbers_of
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
     from delone.interpolate.values import Field
     from delone.interpolate.weights import Weights
     from delone.sphere.delaunay import Delaunay

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._arrays import as_number, as_workers
-from delone.counting import counted
+from delone._base.arrays import as_number, as_workers
+from delone._base.counting import counted
+from delone._base.extras import require
+from delone._base.immutable import kept, sealed
 from delone.errors import DegenerateInputError, DtypeError, InputError
-from delone.extras import require
-from delone.immutable import kept, sealed
 from delone.sphere.cells import Cells, cells_of
 from delone.sphere.circle import cells_of_few, first_rows, nearest_of_few
 from delone.sphere.clipping import (
@@ -31,7 +31,7 @@ from delone.voronoi.rows import as_lists, of_pairs
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.sphere.clipping import Clipped, Region
     from delone.sphere.validation import SphereReport
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
-from delone._arrays import as_choice, as_least, as_number
+from delone._base.arrays import as_choice, as_least, as_number
 from delone.areal.paired import added
 from delone.areal.weights import AreaWeights, as_mask
 from delone.errors import InputError
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from delone._types import Bools, Floats
+    from delone._base.types import Bools, Floats
     from delone.sphere.grid import Grid
 
 __all__ = ["SlopedWeights", "Weights"]

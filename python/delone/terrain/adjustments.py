@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone.counting import counted
-from delone.immutable import ReadOnly
+from delone._base.counting import counted
+from delone._base.immutable import ReadOnly
 
 if TYPE_CHECKING:
-    from delone._types import Floats
+    from delone._base.types import Floats
     from delone.terrain.joining import Joined
     from delone.terrain.leveling import Level
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from delone._base.immutable import ReadOnly
 from delone.errors import InputError
-from delone.immutable import ReadOnly
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Bools
+    from delone._base.types import Bools
 
 __all__ = ["Agreement", "agreement"]
 

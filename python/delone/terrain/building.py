@@ -9,11 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_choice, as_flag, as_number, as_points, as_workers, require_finite
-from delone.constrained.delaunay import ConstrainedDelaunay
-from delone.constrained.membership import inside
-from delone.errors import ConflictingValuesError, InputError, ShapeError
-from delone.georeference import (
+from delone._base.arrays import as_choice, as_flag, as_number, as_points, as_workers, require_finite
+from delone._base.georeference import (
     as_known_crs,
     caller_level,
     common_crs,
@@ -23,7 +20,18 @@ from delone.georeference import (
     warn_of_degrees,
     warn_of_unknown,
 )
-from delone.plane.topology import among, edge_keys, triangles_among
+from delone._base.units import (
+    UnitsWarning,
+    as_units,
+    heights_of_crs,
+    lengths_of_crs,
+    require_same_units,
+    warn_of_units,
+)
+from delone._tiling.plane.topology import among, edge_keys, triangles_among
+from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.constrained.membership import inside
+from delone.errors import ConflictingValuesError, InputError, ShapeError
 from delone.terrain.adjustments import Adjustments, adjustments_of
 from delone.terrain.extent import Part, refuse_crossing_rings, within, without_outer
 from delone.terrain.gathering import LEVEL, SOFT, Lines, gathered
@@ -39,21 +47,13 @@ from delone.terrain.joining import joined
 from delone.terrain.leveling import Level, leveled, require_level
 from delone.terrain.lines import Ring, lines_of, rings_of
 from delone.terrain.merging import as_snap
-from delone.units import (
-    UnitsWarning,
-    as_units,
-    heights_of_crs,
-    lengths_of_crs,
-    require_same_units,
-    warn_of_units,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
     from delone.terrain.surface import Surface
 
 __all__ = [

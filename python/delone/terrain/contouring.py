@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from delone import _core
-from delone._arrays import LARGEST_LIMIT, as_count, as_number, as_plain_array
-from delone.complex import Filed
-from delone.counting import counted
-from delone.decimals import exact, multiples
+from delone._base.arrays import LARGEST_LIMIT, as_count, as_number, as_plain_array
+from delone._base.counting import counted
+from delone._base.decimals import exact, multiples
+from delone._base.extras import require
+from delone._base.immutable import ReadOnly, sealed
+from delone._base.renames import renamed
+from delone._tiling.complex import Filed
 from delone.errors import BudgetExceededError, DtypeError, InputError
-from delone.extras import require
-from delone.immutable import ReadOnly, sealed
-from delone.renames import renamed
 from delone.terrain.labeling import Labels, labels_of
 from delone.terrain.layer import Layer
 from delone.terrain.slivers import drawn
@@ -28,7 +28,7 @@ from delone.terrain.surface import on_surface
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
     from delone.exchange.parts import Parts
     from delone.terrain.surface import Surface
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Self, cast
 
+from delone._tiling.triangulation import HullTiling
 from delone.terrain import simplifying
-from delone.triangulation import HullTiling
 
 if TYPE_CHECKING:
     from delone.terrain.building import Built

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from delone.counting import counted
-from delone.immutable import ReadOnly
+from delone._base.counting import counted
+from delone._base.immutable import ReadOnly
 
 if TYPE_CHECKING:
-    from delone._types import Bools, Floats, Indices, Rows
+    from delone._base.types import Bools, Floats, Indices, Rows
     from delone.constrained.delaunay import ConstrainedDelaunay
 
 __all__ = ["Deviations", "deviations"]

@@ -13,20 +13,20 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone.counting import counted
-from delone.decimals import spacing
+from delone._base.counting import counted
+from delone._base.decimals import spacing
+from delone._base.georeference import as_known_crs, is_geographic, same_crs, warn_of_unknown
+from delone._base.immutable import ReadOnly
+from delone._base.units import area_units, as_units, require_same_units, volume_units
+from delone._tiling.plane.geometry import total
 from delone.errors import InputError
-from delone.georeference import as_known_crs, is_geographic, same_crs, warn_of_unknown
-from delone.immutable import ReadOnly
-from delone.plane.geometry import total
 from delone.terrain.slopes import cells_of
 from delone.terrain.volumes import plane_of
-from delone.units import area_units, as_units, require_same_units, volume_units
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["Difference", "difference"]
 

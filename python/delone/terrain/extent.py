@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from delone._base.counting import counted
+from delone._tiling.plane.topology import triangles_among
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.membership import inside
-from delone.counting import counted
 from delone.errors import CrossingSegmentsError
-from delone.plane.topology import triangles_among
 from delone.terrain.gathering import BOUNDARY, HOLE, HULL, ISLAND, off_ground
 
 if TYPE_CHECKING:
-    from delone._types import Bools, Floats
+    from delone._base.types import Bools, Floats
     from delone.terrain.gathering import Lines
     from delone.terrain.lines import Ring
 

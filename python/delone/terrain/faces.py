@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_choice
+from delone._base.arrays import as_choice
+from delone._base.counting import counted
+from delone._base.georeference import warn_of_degrees
+from delone._tiling.plane import topology
 from delone.constrained.delaunay import ConstrainedDelaunay
-from delone.counting import counted
 from delone.errors import CrossingSegmentsError, InputError
-from delone.georeference import warn_of_degrees
-from delone.plane import topology
 from delone.predicates import orient2d
 from delone.terrain import building
 from delone.terrain.gathering import HARD, SOFT, Lines
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
     from delone.io import SurfaceFile
 
 __all__ = ["build_faces", "with_lines"]

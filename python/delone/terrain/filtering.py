@@ -17,19 +17,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_flag, as_least, as_number
-from delone.counting import agreed, counted
+from delone._base.arrays import as_flag, as_least, as_number
+from delone._base.counting import agreed, counted
+from delone._base.immutable import ReadOnly, sealed
+from delone._base.units import METERS, lengths_of_crs
 from delone.dynamic.dynamic import Dynamic
 from delone.errors import InputError
-from delone.immutable import ReadOnly, sealed
 from delone.terrain import building, slopes
 from delone.terrain.agreement import Agreement, agreement
-from delone.units import METERS, lengths_of_crs
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Bools, Floats, Indices, Rows
+    from delone._base.types import Bools, Floats, Indices, Rows
 
 __all__ = ["Ground", "ground"]
 

@@ -25,7 +25,7 @@ from delone.predicates import orient2d
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
 
 __all__ = ["simplified"]
 

@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from delone.counting import counted
+from delone._base.counting import counted
 from delone.errors import ConflictingValuesError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
     from delone.constrained.delaunay import ConstrainedDelaunay
 
 __all__ = [

@@ -11,7 +11,7 @@ from delone.terrain.heights import conflict
 from delone.terrain.merging import merged, near_segments, onto
 
 if TYPE_CHECKING:
-    from delone._types import Bools, Floats, Indices, Rows
+    from delone._base.types import Bools, Floats, Indices, Rows
 
 __all__ = ["Joined", "joined"]
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from delone._arrays import as_number
-from delone.counting import counted
+from delone._base.arrays import as_number
+from delone._base.counting import counted
+from delone._base.extras import require
+from delone._base.immutable import ReadOnly
 from delone.errors import InputError
-from delone.extras import require
-from delone.immutable import ReadOnly
 from delone.terrain.layer import Layer
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
 
 __all__ = ["Labels", "labels_of"]
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import Any
 
-    from delone._types import Bools, Floats
+    from delone._base.types import Bools, Floats
     from delone.constrained.delaunay import ConstrainedDelaunay
     from delone.terrain.surface import Surface
 

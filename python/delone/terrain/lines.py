@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_plain_array, as_points, require_finite
+from delone._base.arrays import as_plain_array, as_points, require_finite
+from delone._base.extras import require
+from delone._base.georeference import transformed
 from delone.constrained.geodata import is_shapely
 from delone.errors import InputError, ShapeError
-from delone.extras import require
-from delone.georeference import transformed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = [
     "LOOSE",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
+from delone._tiling.triangulation import HullTiling
 from delone.terrain import regions as regions_
 from delone.terrain import sections
-from delone.triangulation import HullTiling
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_number
-from delone.counting import counted
+from delone._base.arrays import as_number
+from delone._base.counting import counted
 from delone.errors import BudgetExceededError, InputError
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
 
 __all__ = ["Moves", "as_snap", "merged", "near_segments", "onto"]
 

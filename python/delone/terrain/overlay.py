@@ -23,7 +23,7 @@ from delone.terrain.pads import inside, plane_at
 from delone.terrain.snapping import closeness, threaded
 
 if TYPE_CHECKING:
-    from delone._types import Bools, Floats, Indices, Rows
+    from delone._base.types import Bools, Floats, Indices, Rows
     from delone.terrain.pads import Facets, Pad
     from delone.terrain.surface import Surface
 

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_number
+from delone._base.arrays import as_number
 from delone.errors import InputError
 from delone.terrain.extent import inside_of_rings, refuse_crossing_rings
 from delone.terrain.lines import rings_of
 
 if TYPE_CHECKING:
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
     from delone.constrained.delaunay import ConstrainedDelaunay
 
 __all__ = ["CORNERS", "Facets", "Pad", "facets_of", "inside", "pad_of", "plane_at"]

@@ -7,18 +7,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone import _core, measures
-from delone._arrays import as_number, as_points, require_finite
+from delone import _core
+from delone._base.arrays import as_number, as_points, require_finite
+from delone._base.extras import require
+from delone._base.immutable import ReadOnly
+from delone._base.renames import renamed
+from delone._tiling import measures
 from delone.errors import InputError, ShapeError
-from delone.extras import require
-from delone.immutable import ReadOnly
-from delone.renames import renamed
 from delone.terrain.lines import line_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.terrain.surface import Surface
 
 __all__ = ["Profile", "Sight", "drape", "parts_of", "profile", "sight"]

@@ -14,23 +14,23 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers
-from delone.counting import agreed, counted
+from delone._base.arrays import as_workers
+from delone._base.counting import agreed, counted
+from delone._base.extras import require
+from delone._base.georeference import caller_level
+from delone._base.immutable import ReadOnly, sealed
+from delone._base.units import area_units, volume_units
+from delone._tiling.measures import sizes
+from delone._tiling.plane.geometry import total
 from delone.errors import DegenerateInputError
-from delone.extras import require
-from delone.georeference import caller_level
-from delone.immutable import ReadOnly, sealed
-from delone.measures import sizes
-from delone.plane.geometry import total
 from delone.terrain.layer import Layer
 from delone.terrain.lines import LOOSE, rings_by_feature
 from delone.terrain.volumes import Region, goal_of, region_of
-from delone.units import area_units, volume_units
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
     from delone.terrain.lines import Ring
     from delone.terrain.surface import Sheet, Surface
 

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_choice, as_number
+from delone._base.arrays import as_choice, as_number
+from delone._tiling.plane.topology import among, edge_keys, triangles_among
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import InputError
-from delone.plane.topology import among, edge_keys, triangles_among
 from delone.terrain.building import Built
 from delone.terrain.heights import claims_of_lines
 from delone.terrain.overlay import GROUND, PAD, Overlay, overlaid
@@ -26,7 +26,7 @@ from delone.terrain.snapping import closeness, settled
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Indices, Rows
+    from delone._base.types import Bools, Floats, Indices, Rows
     from delone.terrain.pads import Pad
     from delone.terrain.surface import Surface
 

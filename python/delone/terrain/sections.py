@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from delone._arrays import as_number, as_plain_array
-from delone.counting import counted
+from delone._base.arrays import as_number, as_plain_array
+from delone._base.counting import counted
+from delone._base.extras import require
+from delone._base.immutable import ReadOnly, sealed
 from delone.errors import BudgetExceededError, DtypeError, InputError
-from delone.extras import require
-from delone.immutable import ReadOnly, sealed
 from delone.terrain.layer import Layer
 from delone.terrain.lines import line_of
 from delone.terrain.profiles import profile
@@ -23,7 +23,7 @@ from delone.terrain.volumes import goal_of
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
     from delone.terrain.surface import Surface
 
 __all__ = ["CrossSections", "Profiles", "cross_sections", "profiles"]

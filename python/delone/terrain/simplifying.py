@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_choice, as_least, as_number, as_workers
+from delone._base.arrays import as_choice, as_least, as_number, as_workers
+from delone._base.counting import counted
+from delone._base.immutable import ReadOnly
+from delone._tiling.plane.topology import among, edge_keys
 from delone.constrained.delaunay import ConstrainedDelaunay
-from delone.counting import counted
 from delone.errors import InputError
-from delone.immutable import ReadOnly
-from delone.plane.topology import among, edge_keys
 from delone.terrain.building import Built
 from delone.terrain.deviations import Deviations, deviations
 from delone.terrain.surface import on_surface
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Indices, Rows
+    from delone._base.types import Bools, Floats, Indices, Rows
     from delone.terrain.surface import Surface
 
 __all__ = ["KEEP", "Ground", "Simplification", "ground_of", "ground_of_points", "simplified"]

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone.plane import slivers
+from delone._tiling.plane import slivers
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
     from delone.terrain.surface import Sheet
 
 __all__ = ["drawn"]

@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import measures
-from delone._arrays import as_callback, as_choice, as_number, as_queries
+from delone._base.arrays import as_callback, as_choice, as_number, as_queries
+from delone._tiling import measures
+from delone._tiling.location import as_tolerance
 from delone.errors import InputError
 from delone.interpolate.raster import Grid, raster_nodes, require_memory
-from delone.location import as_tolerance
 from delone.terrain.surface import on_surface
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.terrain.surface import Surface
 
 __all__ = [

@@ -17,7 +17,7 @@ from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import CrossingSegmentsError, InputError
 
 if TYPE_CHECKING:
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
     from delone.terrain.surface import Surface
 
 __all__ = ["smoothed"]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
     from delone.terrain.pads import Pad
     from delone.terrain.surface import Surface
 

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._arrays import as_flag
+from delone._base.arrays import as_flag
+from delone._tiling.triangulation import HullTiling
 from delone.errors import InputError
 from delone.terrain import building, simplifying, slopes
 from delone.terrain import faces as faces_
-from delone.triangulation import HullTiling
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["Sources"]
 

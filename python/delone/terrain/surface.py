@@ -9,8 +9,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Bools, Floats, Indices
-    from delone.plane.location import Stretch
+    from delone._base.types import Bools, Floats, Indices
+    from delone._tiling.plane.location import Stretch
 
 __all__ = ["Located", "Sheet", "Surface", "on_surface"]
 

@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone.immutable import kept, sealed
-from delone.plane.location import stretches
+from delone._base.immutable import kept, sealed
+from delone._tiling.plane.location import stretches
+from delone._tiling.triangulation import HullTiling
 from delone.terrain.adjustments import Adjustments
-from delone.triangulation import HullTiling
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
+    from delone._tiling.plane.location import Stretch
     from delone.exchange.parts import Parts
-    from delone.plane.location import Stretch
 
 __all__ = ["Surveyed"]
 

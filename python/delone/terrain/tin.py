@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from delone.counting import counted
-from delone.immutable import kept, made_by, sealed
-from delone.plane import topology
+from delone._base.counting import counted
+from delone._base.immutable import kept, made_by, sealed
+from delone._base.renames import renamed
+from delone._tiling.plane import topology
 from delone.refine.validation import MeshValidation, validate
-from delone.renames import renamed
 from delone.terrain import building, contouring, profiles, slopes, volumes
 from delone.terrain.detail import Detailed
 from delone.terrain.earthworks import Earthworks
@@ -22,7 +22,7 @@ from delone.terrain.surveyed import Surveyed
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
     from delone.interpolate.raster import Grid
 
 __all__ = ["TIN"]

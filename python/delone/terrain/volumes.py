@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_number, as_workers
+from delone._base.arrays import as_number, as_workers
+from delone._base.georeference import caller_level, same_crs
+from delone._base.immutable import ReadOnly, sealed
+from delone._base.units import area_units, require_same_units, volume_units
+from delone._tiling.plane.geometry import total
 from delone.errors import InputError
-from delone.georeference import caller_level, same_crs
-from delone.immutable import ReadOnly, sealed
-from delone.plane.geometry import total
 from delone.terrain.extent import inside_of_rings
 from delone.terrain.lines import require_areas, rings_of
-from delone.units import area_units, require_same_units, volume_units
 
 if TYPE_CHECKING:
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.terrain.lines import Ring
     from delone.terrain.surface import Sheet, Surface
 

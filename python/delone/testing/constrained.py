@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from delone._arrays import as_flag, as_points, require_finite
+from delone._base.arrays import as_flag, as_points, require_finite
 from delone.testing.checks import (
     assert_counter_clockwise,
     assert_hull_and_area,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from delone._arrays import as_flag, as_points, require_finite
+from delone._base.arrays import as_flag, as_points, require_finite
 from delone.testing.checks import (
     assert_counter_clockwise,
     assert_hull_and_area,

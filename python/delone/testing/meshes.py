@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from delone._arrays import as_points, as_simplices
+from delone._base.arrays import as_points, as_simplices
 from delone.testing.constrained import (
     ConstrainedArrays,
     ConstrainedMesh,

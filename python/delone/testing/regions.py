@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from delone._arrays import as_points, require_finite
+from delone._base.arrays import as_points, require_finite
 from delone.testing.exact import (
     Mesh,
     as_rows,

@@ -9,8 +9,8 @@ import numpy as np
 from delone import _core
 
 if TYPE_CHECKING:
+    from delone._base.types import Floats, Indices
     from delone._core import ClippedCells3, Diagram3
-    from delone._types import Floats, Indices
     from delone.voronoi.polyhedra import Polyhedron
 
 __all__ = ["Bodies", "Body"]

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_workers
-from delone.immutable import sealed
+from delone._base.arrays import as_workers
+from delone._base.immutable import sealed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
     from delone.delaunay import Delaunay
     from delone.periodic import PeriodicDelaunay
     from delone.regular import RegularTriangulation

@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_callback, as_choice, as_limit, as_number
+from delone._base.arrays import as_callback, as_choice, as_limit, as_number
+from delone._base.immutable import ReadOnly
 from delone.errors import DtypeError, InputError
-from delone.immutable import ReadOnly
 from delone.voronoi import outline
 from delone.voronoi.diagram import Voronoi
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
     Density = Callable[[Floats], ArrayLike]
 

@@ -22,8 +22,8 @@ from delone.voronoi.overlay import as_polygons, intersections, with_shared_corne
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._base.types import Floats, Indices
     from delone._core import Diagram2
-    from delone._types import Floats, Indices
     from delone.voronoi.outline import Clip
     from delone.voronoi.torus import PeriodicDual
 

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._arrays import as_flag, as_queries, as_workers
-from delone.complex import Drawn, Stored
-from delone.counting import counted
-from delone.dimension import FLAT_OR_SOLID, only
+from delone._base.arrays import as_flag, as_queries, as_workers
+from delone._base.counting import counted
+from delone._base.georeference import crs_of, warn_of_degrees
+from delone._base.immutable import kept, own_copy, sealed
+from delone._tiling.complex import Drawn, Stored
+from delone._tiling.dimension import FLAT_OR_SOLID, only
+from delone._tiling.higher.dimension import MOST
 from delone.errors import InputError
-from delone.georeference import crs_of, warn_of_degrees
-from delone.higher.dimension import MOST
-from delone.immutable import kept, own_copy, sealed
 from delone.regular import as_weights
 from delone.validation import ValidationReport
 from delone.voronoi import line, outline, thin
@@ -30,7 +30,7 @@ from delone.voronoi.space import SpaceCells
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
     from delone.delaunay import Delaunay
     from delone.periodic import PeriodicDelaunay
     from delone.regular import RegularTriangulation

@@ -22,7 +22,7 @@ import numpy as np
 from delone._core import Diagram2
 
 if TYPE_CHECKING:
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["foot", "of_chain"]
 

@@ -29,7 +29,7 @@ from delone.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
     Row = tuple[int, ...]
 

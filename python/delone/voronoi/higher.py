@@ -1,7 +1,7 @@
 """The cells of a diagram in four to eight dimensions: their vertices, without measures.
 
-`delone.higher.dual` computes the arrays. The vertices of a ridge have no cyclic order from 4-D on,
-so they are in ascending order.
+The core computes the arrays. The vertices of a ridge have no cyclic order from 4-D on, so they
+are in ascending order.
 """
 
 from __future__ import annotations
@@ -9,16 +9,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self
 
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
+from delone._tiling.higher.dual import DiagramN, dual
 from delone.delaunay import Delaunay
 from delone.errors import InputError
-from delone.higher.dual import DiagramN, dual
 from delone.voronoi.cells import Cells
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["HigherCells", "of_mesh"]
 

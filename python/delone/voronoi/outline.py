@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.georeference import transformed
 from delone.constrained.geodata import is_shapely, rings_of_numbers
 from delone.errors import InputError
 from delone.exchange.geopandas import shapely_or_say
-from delone.georeference import transformed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = [
     "Clip",

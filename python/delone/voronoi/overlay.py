@@ -18,7 +18,7 @@ from delone.voronoi.outline import areal_parts, next_corner, times, unit_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["as_polygons", "intersections", "with_shared_corners"]
 

@@ -13,8 +13,8 @@ from delone.voronoi.outline import next_corner
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._base.types import Floats, Indices
     from delone._core import CellPieces2
-    from delone._types import Floats, Indices
     from delone.voronoi.outline import Clip
 
 __all__ = ["Pieces", "cut"]

@@ -21,8 +21,8 @@ from delone.voronoi.rows import one_gap
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._base.types import Floats, Indices
     from delone._core import Diagram2
-    from delone._types import Floats, Indices
     from delone.voronoi.clipping import Clipped
     from delone.voronoi.torus import PeriodicDual
 

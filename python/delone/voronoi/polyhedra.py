@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_vectors
+from delone._base.arrays import as_vectors
+from delone._tiling.space.geometry import face_normals
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, DeloneError, InputError
 from delone.hull import ConvexHull
-from delone.space.geometry import face_normals
 from delone.voronoi.halfspaces import common_part
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["Polyhedron", "as_polyhedron", "loaded", "saved"]
 

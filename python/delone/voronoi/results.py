@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from delone.errors import DtypeError
 
 if TYPE_CHECKING:
-    from delone._types import Floats, Indices
+    from delone._base.types import Floats, Indices
 
 __all__ = ["Cell", "Neighbors", "PolyhedralCell", "Rays", "as_site"]
 

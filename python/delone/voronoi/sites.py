@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
+from delone._base.duplicates import first_rows
 from delone.delaunay import Delaunay
-from delone.duplicates import first_rows
 from delone.errors import DegenerateInputError
 from delone.periodic import PeriodicDelaunay, as_periods, vertex_of
 from delone.regular import RegularTriangulation, triangulated
 from delone.voronoi import dual, torus
 
 if TYPE_CHECKING:
+    from delone._base.types import Floats
     from delone._core import Diagram2, Diagram3
-    from delone._types import Floats
 
 __all__ = ["in_plane", "in_space", "repeated"]
 

@@ -27,8 +27,8 @@ from delone.voronoi.rows import from_the_gap
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._base.types import Floats, Indices
     from delone._core import Diagram3
-    from delone._types import Floats, Indices
 
     Arrays = dict[str, NDArray[Any]]
 

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.georeference import caller_level
+from delone._base.georeference import caller_level
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
 
 __all__ = ["ThinCellWarning", "among", "warn"]
 

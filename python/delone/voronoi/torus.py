@@ -18,14 +18,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
+from delone._base.immutable import sealed
 from delone._core import Diagram2
 from delone.errors import LimitError, ShapeError
-from delone.immutable import sealed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Indices, Rows
+    from delone._base.types import Floats, Indices, Rows
     from delone.periodic import PeriodicDelaunay
 
 __all__ = ["PeriodicDual", "of_line", "of_periodic", "require_room", "unrolled"]

@@ -19,7 +19,7 @@ from delone import _core
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from delone._types import Bools, Floats, Indices, Rows
+    from delone._base.types import Bools, Floats, Indices, Rows
     from delone.distributed.pure.tiles import Tiles
 
 __all__ = ["Known", "corners_of"]

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices
     from delone.distributed.pure.certify import Known
     from delone.distributed.pure.rows import Rows
 

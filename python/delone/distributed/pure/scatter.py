@@ -11,7 +11,7 @@ from delone.distributed.pure.rows import coordinates, widen
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats
+    from delone._base.types import Bools, Floats
     from delone.distributed.pure.layout import Layout
     from delone.distributed.pure.rows import Rows
 

@@ -14,11 +14,11 @@ from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.atomic import replacing
-from delone.counting import gigabytes, grouped
+from delone._base.atomic import replacing
+from delone._base.counting import gigabytes, grouped
+from delone._base.extras import require
 from delone.distributed.arguments import as_path
 from delone.errors import FileFormatError
-from delone.extras import require
 from delone.interpolate.raster import raster_nodes
 from delone.io.geotiff import write_geotiff
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone import _core
-    from delone._types import Floats
+    from delone._base.types import Floats
     from delone.distributed.read.folder import TileFolder
     from delone.distributed.read.tile import Tile
 

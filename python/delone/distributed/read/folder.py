@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._arrays import as_count
+from delone._base.arrays import as_count
 from delone.distributed.arguments import as_path
 from delone.distributed.pure.tiles import Tiles
 from delone.distributed.read.tile import Tile, read_tile

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_queries
+from delone._base.arrays import as_queries
+from delone._base.georeference import as_crs
+from delone._base.renames import renamed
 from delone.distributed.read.dem import write_dem
 from delone.distributed.read.folder import TileFolder
 from delone.distributed.read.proof import prove
 from delone.distributed.read.tables import dask_frame, write_geoparquet
 from delone.distributed.read.tile import Tile
-from delone.georeference import as_crs
-from delone.renames import renamed
 
 if TYPE_CHECKING:
     import os
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone import _core
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
     from delone.distributed.read.proof import TiledReport
 
 __all__ = ["TiledDelaunay", "open"]

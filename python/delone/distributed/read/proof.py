@@ -26,7 +26,7 @@ from delone.errors import FileFormatError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
     from delone.distributed.read.folder import TileFolder
     from delone.distributed.read.tile import Tile
 

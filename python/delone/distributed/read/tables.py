@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from delone._arrays import as_choice
+from delone._base.arrays import as_choice
+from delone._base.extras import require
 from delone.distributed.arguments import as_path
 from delone.distributed.read.folder import TileFolder
 from delone.errors import InputError
-from delone.extras import require
 
 __all__ = ["dask_frame", "write_geoparquet"]
 

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
+from delone._base.extras import require
 from delone.distributed.store.output import tile_names
 from delone.errors import FileFormatError
-from delone.extras import require
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
     from delone.distributed.store.files import Store
 
 __all__ = ["Tile", "read_columns", "read_tile"]

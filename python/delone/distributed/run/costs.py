@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from delone._base.renames import renamed
 from delone.distributed.pure.tiles import HALO
 from delone.distributed.run.sources import PIECE
-from delone.renames import renamed
 
 __all__ = ["Plan", "estimate"]
 

@@ -11,9 +11,9 @@ import contextlib
 import time
 from typing import TYPE_CHECKING, Any
 
+from delone._base.extras import require
 from delone.distributed.run.stages import perform
 from delone.errors import DeloneError, InputError
-from delone.extras import require
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -10,7 +10,7 @@ from collections import deque
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from typing import TYPE_CHECKING, Any, Protocol
 
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
 from delone.distributed.run.stages import perform
 from delone.distributed.run.worker import Worker, WorkerDiedError
 from delone.errors import DeloneError

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.counting import agreed
+from delone._base.counting import agreed
+from delone._base.renames import renamed
 from delone.distributed.pure.hull import extreme_rows
 from delone.distributed.pure.layout import Layout
 from delone.distributed.pure.rows import make_rows, widen, widened
@@ -26,7 +27,6 @@ from delone.errors import (
     LimitError,
     NonFiniteError,
 )
-from delone.renames import renamed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from delone._arrays import as_points
+from delone._base.arrays import as_points
 from delone.distributed.pure.rows import make_rows
 from delone.errors import FileFormatError, InputError
 from delone.io import PointSet, las, parquet, read_points

@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.atomic import FULL
-from delone.bounded import archived, read_array, require_claim
+from delone._base.atomic import FULL
+from delone._base.bounded import archived, read_array, require_claim
 from delone.errors import FileFormatError, OutputError
 
 if TYPE_CHECKING:

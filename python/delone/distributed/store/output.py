@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.extras import require
 from delone.distributed.pure.rows import coordinates, first_of_each
 from delone.distributed.store.files import digest
-from delone.extras import require
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Indices
+    from delone._base.types import Indices
     from delone.distributed.pure.rows import Rows
     from delone.distributed.store.files import Store
 

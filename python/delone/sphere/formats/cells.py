@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
 
 __all__ = ["Cells", "Choices", "flags_of"]
 

@@ -19,7 +19,7 @@ from delone.sphere.formats.variables import (
 )
 
 if TYPE_CHECKING:
-    from delone._types import Floats, Rows
+    from delone._base.types import Floats, Rows
     from delone.sphere.formats.cells import Choices
 
     Variables = dict[str, Any]

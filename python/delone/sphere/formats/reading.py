@@ -14,7 +14,7 @@ from delone.sphere.formats.variables import in_degrees, numbers, variables_of
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from delone._types import Floats
+    from delone._base.types import Floats
     from delone.sphere.formats.cells import Cells, Choices
 
     Variables = dict[str, Any]

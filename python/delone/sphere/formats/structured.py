@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_workers
+from delone._base.arrays import as_workers
 from delone.errors import InputError, ShapeError
 from delone.interpolate.places import is_angle
 from delone.sphere.coordinates import units_of
@@ -19,7 +19,7 @@ from delone.sphere.rings import as_bounds
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Floats
+    from delone._base.types import Floats
     from delone.sphere.formats.cells import Choices
 
     Variables = dict[str, Any]

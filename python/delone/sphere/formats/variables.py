@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.counting import agreed, counted
+from delone._base.counting import agreed, counted
 from delone.errors import DirectionError, DtypeError, InputError, NonFiniteError, ShapeError
 from delone.interpolate.places import unit_of
 from delone.sphere.coordinates import directions_of
@@ -14,7 +14,7 @@ from delone.sphere.coordinates import directions_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._types import Bools, Floats, Rows
+    from delone._base.types import Bools, Floats, Rows
     from delone.sphere.formats.cells import Choices
 
 __all__ = [

@@ -1,0 +1,1 @@
+"""What all parts stand on: arrays, checks of arguments, errors of files, units, immutability."""

@@ -1,0 +1,1 @@
+"""What triangulations of every dimension share: classes, measures, location, archives."""

@@ -1,8 +1,0 @@
-"""Saving and loading: NumPy's .npz files, with every array checked when it is read.
-
-`file` writes and reads, `kinds` has the layouts, `checks` the checks of their content.
-"""
-
-from delone.archive.file import read, refusal, write
-
-__all__ = ["read", "refusal", "write"]

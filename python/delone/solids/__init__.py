@@ -1,0 +1,1 @@
+"""Closed surfaces and the tetrahedra inside them: checked, filled, improved and refined."""

@@ -1,0 +1,274 @@
+"""The report of an improvement: changes by kind, angles before and after, and what is left."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._base.counting import counted, listed
+from delone._base.immutable import ReadOnly
+from delone._tiling.space import quality
+from delone._tiling.space.quality import EDGES
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone._base.types import Floats, Indices
+    from delone._core import ImprovedMesh
+
+__all__ = ["CAUSES", "COUNTS", "ImproveReport", "report"]
+
+CAUSES = ("angle", "boundary", "budget", "other", "rounding")
+_ANGLE, _BOUNDARY, _BUDGET, _OTHER, _ROUNDING = range(5)
+# Coordinates of points that were turned have some roundings each: a product for every axis, their
+# sum, and a shift. Of thin tetrahedra, four points are off their plane.
+_ROUNDINGS = 16
+# The fields of a report that are counts.
+COUNTS = (
+    "edge_removals",
+    "boundary_flips",
+    "face_removals",
+    "moves",
+    "exudations",
+    "refused",
+    "passes",
+    "exhausted",
+)
+_SHOWN = 5
+_BAR = 40
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ImproveReport(ReadOnly):
+    """The result of an improvement; truthy if no dihedral angle is below the goal.
+
+    Parameters
+    ----------
+    min_angle : float
+        The goal for the smallest dihedral angles, in degrees.
+    smallest_before, smallest_after, largest_before, largest_after : float
+        The smallest and the largest dihedral angle, in degrees.
+    bounds : ndarray of float64, shape (k + 1,)
+        Bin edges of the histograms of smallest dihedral angles, in degrees.
+    before, after : ndarray of int64, shape (k,)
+        Number of tetrahedra in each bin, before and after.
+    edge_removals, boundary_flips, face_removals, moves : int
+        Numbers of removals of interior edges (3-2, 4-4 and so on), of boundary edges (2-2 and so
+        on), of the faces between two vertices (2-3 and so on), and of moves of vertices.
+    exudations : int
+        Number of vertices that got a weight.
+    weights : ndarray of float64, shape (n,)
+        These weights, in the square of the unit of the points; 0 for other points.
+    refused : int
+        Number of changes that would have raised the worst quality but were rejected: a smallest
+        angle would have become smaller, or rounding left it undecided.
+    passes : int
+        Number of passes.
+    exhausted : bool
+        Whether the limit on passes was reached while passes still made progress.
+    below : ndarray of int64, shape (j,)
+        The tetrahedra below the goal, ascending.
+    cause : ndarray of str, shape (j,)
+        For each of these, ``"rounding"`` (it is as thin as the rounding errors of coordinates: up
+        to 16 times that of the largest), ``"angle"`` (the boundary has this angle), ``"boundary"``
+        (all four vertices are on the boundary, or fixed), ``"budget"`` (the limit on passes) or
+        ``"other"`` (no single removal or move is an improvement).
+
+    Attributes
+    ----------
+    ok : bool
+        True if no tetrahedron is below the goal.
+
+    Examples
+    --------
+    >>> import delone
+    >>> flat = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0.3, 0.3, 0.01)], [(0, 1, 2, 3)]
+    >>> report = delone.improve(flat).report
+    >>> bool(report), report.cause.tolist()
+    (False, ['angle'])
+    """
+
+    min_angle: float
+    smallest_before: float
+    smallest_after: float
+    largest_before: float
+    largest_after: float
+    bounds: Floats
+    before: NDArray[np.int64]
+    after: NDArray[np.int64]
+    edge_removals: int
+    boundary_flips: int
+    face_removals: int
+    moves: int
+    exudations: int
+    weights: Floats
+    refused: int
+    passes: int
+    exhausted: bool
+    below: NDArray[np.int64]
+    cause: NDArray[np.str_]
+
+    @property
+    def ok(self) -> bool:
+        """True if no tetrahedron is below the goal."""
+        return not len(self.below)
+
+    def __bool__(self) -> bool:
+        return self.ok
+
+    def __str__(self) -> str:
+        lines = [
+            f"dihedral angles from {self.smallest_before:.4g} to {self.largest_before:.4g} degrees "
+            f"before, {self.smallest_after:.4g} to {self.largest_after:.4g} after",
+            f"{counted(self.edge_removals + self.boundary_flips, 'edge')} and "
+            f"{counted(self.face_removals, 'set')} of faces removed, "
+            f"{counted(self.moves, 'vertex move')} in {counted(self.passes, 'pass')}",
+        ]
+        if self.exudations:
+            lines.append(f"{counted(self.exudations, 'weight')} assigned to vertices")
+        lines += self._histogram()
+        for cause, what in _SENTENCES.items():
+            rows = self.below[self.cause == cause]
+            if len(rows):
+                noun = counted(len(rows), "tetrahedron")
+                shown = listed(rows, _SHOWN)
+                lines.append(f"{noun} below {self.min_angle:.4g} {what}: {shown}")
+        if self.exhausted:
+            lines.append("stopped at the limit on passes")
+        return "\n".join(lines)
+
+    def _histogram(self) -> list[str]:
+        largest = max(int(self.before.max(initial=0)), int(self.after.max(initial=0)), 1)
+        lines = ["smallest dihedral angle    before     after"]
+        for low, high, before, after in zip(
+            self.bounds[:-1], self.bounds[1:], self.before, self.after, strict=True
+        ):
+            bar = "#" * int(np.ceil(_BAR * after / largest))
+            lines.append(f"{low:10.4g} to {high:<10.4g}{before:>10}{after:>10}  {bar}".rstrip())
+        return lines
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw histograms of the smallest dihedral angles (extra ``plot``).
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; by default on new axes.
+
+        Returns
+        -------
+        matplotlib Axes
+            The axes.
+
+        Raises
+        ------
+        MissingExtraError
+            matplotlib is not installed.
+
+        Examples
+        --------
+        >>> import delone
+        >>> corner = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 1, 2, 3)]
+        >>> delone.improve(corner).report.plot().get_ylabel()
+        'tetrahedra'
+        """
+        from delone.plot import draw_histograms
+
+        return draw_histograms(
+            self.bounds, {"before": self.before, "after": self.after}, ax=ax, bound=self.min_angle
+        )
+
+
+_SENTENCES = {
+    "rounding": "as thin as the rounding of coordinates",
+    "angle": "because of the angle of the boundary",
+    "boundary": "with all vertices fixed or on the boundary",
+    "budget": "because of the limit on passes",
+    "other": "that no single change improves",
+}
+
+
+def report(
+    before: quality.TetQuality, made: ImprovedMesh, fixed: NDArray[np.bool_], min_angle: float
+) -> tuple[ImproveReport, quality.TetQuality]:
+    """Return the report of an improvement, and the measures of the result.
+
+    `before` are the measures of the input, `fixed`, (n,), the points that must not move.
+    """
+    points, simplices, counts = made.points, made.simplices, made.counts
+    after = quality.measured(points, simplices)
+    histogram_before, bounds = before.histogram()
+    histogram_after, _ = after.histogram()
+    below = np.flatnonzero(after.smallest_dihedral < min_angle)
+    walls = _walls(made.neighbors, made.labels)
+    cause = np.full(len(below), _BUDGET if made.exhausted else _OTHER)
+    held = _on_walls(simplices, walls, len(points)) | fixed
+    cause[held[simplices[below]].all(axis=1)] = _BOUNDARY
+    cause[_forced(points, simplices[below], walls[below], min_angle)] = _ANGLE
+    cause[_thin(points, simplices[below], after.volume[below])] = _ROUNDING
+    judged = ImproveReport(
+        min_angle=min_angle,
+        smallest_before=float(before.smallest_dihedral.min(initial=180.0)),
+        smallest_after=float(after.smallest_dihedral.min(initial=180.0)),
+        largest_before=float(before.largest_dihedral.max(initial=0.0)),
+        largest_after=float(after.largest_dihedral.max(initial=0.0)),
+        bounds=bounds,
+        before=histogram_before,
+        after=histogram_after,
+        edge_removals=counts.edges - counts.boundary,
+        boundary_flips=counts.boundary,
+        face_removals=counts.faces,
+        moves=counts.moves,
+        exudations=counts.weights,
+        weights=made.weights,
+        refused=counts.refused,
+        passes=counts.passes,
+        exhausted=made.exhausted,
+        below=below,
+        cause=np.array(CAUSES)[cause],
+    )
+    return judged, after
+
+
+def _thin(points: Floats, simplices: Indices, volume: Floats) -> NDArray[np.bool_]:
+    """Return which tetrahedra are as thin as the rounding of the largest coordinate."""
+    corners = points[simplices]
+    spread = np.abs(corners).max(initial=0.0)
+    # Relative to a corner, in units of the largest coordinate: products stay within the doubles.
+    unit = spread if spread > 0 else 1.0
+    sides = (corners[:, 1:] - corners[:, :1]) / unit
+    a, b, c = sides[:, 0], sides[:, 1], sides[:, 2]
+    doubled = [np.cross(a, b), np.cross(b, c), np.cross(c, a), np.cross(b - a, c - a)]
+    largest = np.max([np.sqrt((each**2).sum(axis=1)) for each in doubled], axis=0)
+    height = 6 * (volume / unit / unit / unit)
+    rounding = _ROUNDINGS * np.finfo(np.float64).eps / 2
+    found: NDArray[np.bool_] = height <= rounding * largest
+    return found
+
+
+def _walls(neighbors: Indices, region: Indices) -> NDArray[np.bool_]:
+    """Return which faces are on the boundary or between two regions."""
+    outside = neighbors < 0
+    between: NDArray[np.bool_] = region[neighbors] != region[:, None]
+    return outside | between
+
+
+def _on_walls(simplices: Indices, walls: NDArray[np.bool_], npoints: int) -> NDArray[np.bool_]:
+    held = np.zeros(npoints, dtype=bool)
+    for k, face in enumerate(quality.FACES):
+        held[simplices[walls[:, k]][:, list(face)]] = True
+    return held
+
+
+def _forced(
+    points: Floats, simplices: Indices, walls: NDArray[np.bool_], min_angle: float
+) -> NDArray[np.bool_]:
+    """Return which tetrahedra have a small dihedral angle between two walls."""
+    angles = quality.dihedral_angles(points, simplices)
+    forced = np.zeros(len(simplices), dtype=bool)
+    for e, (i, j) in enumerate(EDGES):
+        k, m = (c for c in range(4) if c not in (i, j))
+        forced |= walls[:, k] & walls[:, m] & (angles[:, e] < min_angle)
+    return forced
