@@ -147,14 +147,16 @@ wheel: $(STAMPS)/tools | need
 
 # What would be published for Linux is built, installed without a compiler and tested; nothing is
 # published. The wheel for the other processor is linked with zig, and needs the standard library of
-# Rust for it; that for free-threaded Python needs such an interpreter. What cannot be fetched is
-# left out, and said. TAG=vX.Y.Z judges changelog and pages as those of a release.
+# Rust for it; that for free-threaded Python is tested where such an interpreter is found. What cannot
+# be fetched is left out; the last lines say so, once. TAG=vX.Y.Z judges changelog and pages as those
+# of a release.
 TAG ?=
 release-check: $(STAMPS)/tools | need
-	-@$(BIN)/python -m pip install --quiet ziglang abi3audit uv
-	-@$(BIN)/python -m uv python install --quiet 3.14t
-	-@command -v rustup > /dev/null && \
-		rustup --quiet target add x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu
+	@for tool in ziglang abi3audit uv; do \
+		$(BIN)/python -m pip install --quiet $$tool 2> /dev/null || true; \
+	done
+	@$(BIN)/python -m uv python install --quiet 3.14t 2> /dev/null || true
+	@rustup --quiet target add x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu 2> /dev/null || true
 	$(BIN)/python .github/rehearse.py $(if $(TAG),--tag $(TAG))
 
 # A module of JavaScript over the core in WebAssembly. Without a compiler for it the tests of the

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.metadata
+import os
 import re
 import shutil
 import subprocess
@@ -272,12 +273,27 @@ def test_a_rehearsal_says_what_it_leaves_out(monkeypatch: pytest.MonkeyPatch) ->
     assert rehearse.plans(made) == [("x86_64", sys.executable)]
     said = "\n".join(made.left_out)
     assert len(made.left_out) == 3
-    assert all(word in said for word in ("aarch64", "zig", "global lock", "abi3audit"))
+    assert all(word in said for word in ("aarch64", "zig", "free-threaded", "abi3audit"))
     monkeypatch.setattr(rehearse, "has", lambda _: True)
     made = rehearse.Rehearsal(Path(), Path())
-    rehearse.plans(made)
+    assert rehearse.plans(made) == [("x86_64", sys.executable), ("x86_64", "3.14t")]
     assert "rustup target add aarch64-unknown-linux-gnu" in made.left_out[0]
+    assert made.left_out[1].startswith("tests of the wheel for free-threaded Python: ")
     assert "uv python install 3.14t" in made.left_out[1]
+
+
+def test_zig_is_found_beside_the_interpreter(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also where its environment is not activated, as in `make release-check`."""
+    rehearse = script("rehearse")
+    ran = []
+    monkeypatch.setattr(rehearse, "has", lambda _: True)
+    monkeypatch.setattr(rehearse, "run", lambda *command, **rest: ran.append((command, rest)))
+    assert rehearse.build(tmp_path, tmp_path, "aarch64", "3.14t") == []
+    [(command, rest)] = ran
+    assert "--zig" in command and "aarch64-unknown-linux-gnu" in command
+    assert rest["PATH"].split(os.pathsep)[0] == str(Path(sys.executable).parent)
 
 
 def test_a_rehearsal_builds_all_wheels_for_linux_that_it_can(
