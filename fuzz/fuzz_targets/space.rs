@@ -18,14 +18,14 @@ const MOST: usize = 40;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     if let Ok(points) = read(&mut Unstructured::new(bytes)) {
-        let backwards: Vec<Point3> = points.iter().rev().copied().collect();
+        let reversed: Vec<Point3> = points.iter().rev().copied().collect();
         let turned: Vec<Point3> = points[points.len() / 3..]
             .iter()
             .chain(&points)
             .copied()
             .collect();
         let answer = tetrahedra(&points);
-        assert_eq!(answer, tetrahedra(&backwards), "{points:?}");
+        assert_eq!(answer, tetrahedra(&reversed), "{points:?}");
         assert_eq!(answer, tetrahedra(&turned), "{points:?}");
     }
 });

@@ -1738,7 +1738,7 @@ class SphereWeights:
         """Their weights, (k,)."""
     @property
     def slopes(self) -> NDArray[np.float64] | None:
-        """Derivatives of the weights towards east and north, per radian, (k, 2); None if not
+        """Derivatives of the weights toward east and north, per radian, (k, 2); None if not
         wanted.
         """
 

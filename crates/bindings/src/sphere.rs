@@ -230,7 +230,7 @@ pub struct SphereWeights {
     pub indices: Column<i32>,
     /// Their weights, (k,).
     pub weights: Column<f64>,
-    /// Derivatives of the weights towards east and north, per radian, (k, 2); None if not wanted.
+    /// Derivatives of the weights toward east and north, per radian, (k, 2); None if not wanted.
     pub slopes: Option<Table<f64>>,
 }
 

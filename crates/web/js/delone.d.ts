@@ -165,7 +165,7 @@ export interface Steps {
   /** steps.length: there are the states 0 (nothing, or the given triangles) to `length`. */
   length: number;
   /** The triangles after the first k steps, sorted; the last state is the triangulation. Moves from
-   * the last state asked for, forwards or backwards. */
+   * the last state asked for, forward or backward. */
   at(k: number): Int32Array;
 }
 

@@ -36,7 +36,7 @@ def plot_diagram(diagram: Any, ax: Any, points: bool | None, options: dict[str, 
     if left is None:
         one, other = (sites[diagram.ridge_points[:, k]] for k in (0, 1))
         start = diagram.vertices[diagram.ridge_vertices[:, 0]]
-        arcs = start, _towards(start, one - other), diagram.ridge_lengths / diagram.radius
+        arcs = start, _toward(start, one - other), diagram.ridge_lengths / diagram.radius
         found = diagram._nearest
     else:
         arcs = _between(*(left.mesh.points[ends] for ends in left.border_edges()))
@@ -61,10 +61,10 @@ def _between(tails: Floats, heads: Floats) -> tuple[Floats, Floats, Floats]:
     """Where arcs start, where they lead from there, and their lengths."""
     steps = heads - tails
     length = 2 * np.arcsin(np.minimum(np.linalg.norm(steps, axis=1) / 2, 1.0))
-    return tails, _towards(tails, np.cross(tails, steps)), length
+    return tails, _toward(tails, np.cross(tails, steps)), length
 
 
-def _towards(start: Floats, normals: Floats) -> Floats:
+def _toward(start: Floats, normals: Floats) -> Floats:
     """The unit vectors at the start of arcs with these normals to their left."""
     ahead = np.cross(normals, start)
     found: Floats = ahead / np.maximum(np.linalg.norm(ahead, axis=1), 1e-300)[:, None]

@@ -2,7 +2,7 @@
 //!
 //! In the plane segments are straight; on the sphere they are the shorter arcs of great circles. The
 //! arguments of `segment` carry over. The vertices on one side of an arc are in an open half-space,
-//! whose central projection to a plane keeps the sides of all great circles; tilted slightly towards the
+//! whose central projection to a plane keeps the sides of all great circles; tilted slightly toward the
 //! middle of the arc, it holds the ends, too. So each half of a cavity is a polygon in a plane.
 
 use delone_predicates::{Point2, Sign, incircle_canonical, lexicographic, orient2d};

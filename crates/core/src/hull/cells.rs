@@ -18,9 +18,9 @@
 use delone_predicates::{Point3, Sign};
 
 use super::inner::Inner;
-use super::insertion::{Hull, Towards};
-use crate::base::error::Result;
-use crate::base::watch::Watch;
+use super::insertion::{Hull, Toward};
+use crate::error::Result;
+use crate::watch::Watch;
 
 /// Points between two checks for interruption.
 const LOT: usize = 1 << 16;
@@ -170,14 +170,14 @@ fn depth_along(hull: &Hull, o: Point3, way: Point3, end: f64, near: &mut u32) ->
     let mut depth = end;
     for _ in 0..TRIES {
         let at = [0, 1, 2].map(|k| o[k] + depth * way[k]);
-        match hull.towards(at, *near) {
-            Towards::Before(facet) => {
+        match hull.toward(at, *near) {
+            Toward::Before(facet) => {
                 *near = facet;
                 // A point on a facet might be extreme.
                 let inside = hull.side(at, facet) == Sign::Negative;
                 return if inside { depth } else { 0.0 };
             }
-            Towards::Beyond(facet) => {
+            Toward::Beyond(facet) => {
                 *near = facet;
                 let [a, b, c] = hull.corners(facet).map(|p| [0, 1, 2].map(|k| p[k] - o[k]));
                 let (u, v) = (

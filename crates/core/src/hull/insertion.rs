@@ -70,7 +70,7 @@ pub struct Hull<'a> {
 }
 
 /// The result of a walk.
-pub enum Towards {
+pub enum Toward {
     /// Outside, strictly beyond this facet.
     Beyond(u32),
     /// In the hull, on the ray from the inner point to this facet.
@@ -106,9 +106,9 @@ impl<'a> Hull<'a> {
             if done % WATCH_EVERY == 0 {
                 watch.check()?;
             }
-            match self.towards(self.at(p), self.near) {
-                Towards::Before(facet) => self.near = facet,
-                Towards::Beyond(facet) => {
+            match self.toward(self.at(p), self.near) {
+                Toward::Before(facet) => self.near = facet,
+                Toward::Beyond(facet) => {
                     self.find_horizon(p, facet);
                     self.build_cone(p)?;
                 }
@@ -149,14 +149,14 @@ impl<'a> Hull<'a> {
     }
 
     /// Locates `p` by a walk from a facet.
-    pub fn towards(&self, p: Point3, near: u32) -> Towards {
+    pub fn toward(&self, p: Point3, near: u32) -> Toward {
         let mut facet = near;
         let mut from = NONE;
         // Far more steps than walks between consecutive points on the curve need, except across
         // thin facets side by side; and fewer than testing all facets is worth.
         for step in 0..64 + self.facets.len() / 8 {
             if self.side(p, facet) == Sign::Positive {
-                return Towards::Beyond(facet);
+                return Toward::Beyond(facet);
             }
             let beyond = self.facets[facet as usize].beyond;
             let corners = self.corners(facet);
@@ -167,14 +167,14 @@ impl<'a> Hull<'a> {
             };
             match turned.iter().find(|k| leaves(k)) {
                 Some(&k) => (from, facet) = (facet, beyond[k]),
-                None => return Towards::Before(facet),
+                None => return Toward::Before(facet),
             }
         }
         let alive = (0..self.facets.len() as u32).filter(|&f| self.facets[f as usize].alive);
         let seen = alive
             .into_iter()
             .find(|&f| self.side(p, f) == Sign::Positive);
-        seen.map_or(Towards::Before(near), Towards::Beyond)
+        seen.map_or(Toward::Before(near), Toward::Beyond)
     }
 
     /// Finds the facets that `p` sees, marks them as removed, and collects the horizon with the

@@ -206,7 +206,7 @@ impl<'a> Trace<'a> {
         }
     }
 
-    /// From a vertex on the segment into the triangle, or along the edge, towards `b`.
+    /// From a vertex on the segment into the triangle, or along the edge, toward `b`.
     fn leave_vertex(&self, at: Side, meet: &mut impl FnMut(usize)) -> Result<State> {
         let p = self.given.at(at);
         let mut found = None;

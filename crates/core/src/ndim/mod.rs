@@ -23,7 +23,7 @@
 //!
 //! | stage | file | decides |
 //! |---|---|---|
-//! | rounded, with a bound proven afterwards | `filter` | nearly everything |
+//! | rounded, with a bound proven afterward | `filter` | nearly everything |
 //! | double-double, with the same proof | `fine` | points near a sphere |
 //! | residues modulo primes | `residues` | that a value is zero |
 //! | integers | `frame` | the rest |

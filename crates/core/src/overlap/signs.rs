@@ -268,7 +268,7 @@ pub fn eastward(e: Side) -> bool {
     if found != 0 { found > 0 } else { first(&n) < 0 }
 }
 
-/// The sign with which the latitude grows at the start of a moved side, towards its end; at its end
+/// The sign with which the latitude grows at the start of a moved side, toward its end; at its end
 /// if `ends`.
 ///
 /// At a it is that of f = (n x a)_z = b_z a^2 - a_z (a b), and at b that of minus the same with a

@@ -42,7 +42,7 @@ struct Side {
     cap: f64,
 }
 
-/// Walks from triangle `from` towards `p`, across edges that are not marked.
+/// Walks from triangle `from` toward `p`, across edges that are not marked.
 pub fn walk(marked: &mut Marked, from: u32, p: Point2) -> Walk {
     let triangles = marked.triangles();
     let mesh = marked.mesh.resume(triangles);

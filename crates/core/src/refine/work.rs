@@ -185,7 +185,7 @@ impl Work {
 
     /// Refines until nothing is bad outside of needles.
     fn refine(&mut self, watch: &Watch, tell: Tell) -> Result<bool> {
-        // Everything is looked at once; afterwards only what a new vertex has changed.
+        // Everything is looked at once; afterward only what a new vertex has changed.
         for t in 0..self.marked.triangles() {
             self.enqueue_if_bad(t)?;
             for e in 8 * t..8 * t + 3 {

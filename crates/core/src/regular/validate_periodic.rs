@@ -48,7 +48,7 @@ pub struct Wrapped<'a> {
 /// Culprits by kind; all empty where the triangulation is right.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct PeriodicFindings {
-    /// Triangles whose first corner is moved, or another one by more than one period, or in a direction
+    /// Triangles whose first corner is moved, or any other by more than one period, or in a direction
     /// without a period. Where there are any, nothing else is looked at.
     pub offsets: Vec<u32>,
     /// Triangles that do not turn left.

@@ -176,7 +176,7 @@ impl<'a> Kernel<'a> {
     }
 
     /// Inserts direction `p`, or notes that it is there; the search starts at triangle `near`. Returns a
-    /// triangle at `p`, the one that points towards direction `aim` if that is known.
+    /// triangle at `p`, the one that points toward direction `aim` if that is known.
     pub fn insert(&mut self, p: u32, near: u32, aim: u32) -> Result<u32> {
         let origin = self.directions.heads[p as usize];
         let seed = match self.seed(p, near)? {

@@ -76,7 +76,7 @@ impl Polygons {
 enum End {
     At(Point2),
     /// At infinity, in this direction.
-    Towards(Point2),
+    Toward(Point2),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,7 +165,7 @@ fn add_clipped(corners: &mut Vec<Corner>, out: &mut Polygons) -> Result<()> {
     });
     let at = |(end, _): &Corner| match end {
         End::At(p) => *p,
-        End::Towards(d) => *d, // The box is bounded, so none is left.
+        End::Toward(d) => *d, // The box is bounded, so none is left.
     };
     let Some(first) = corners.first().map(at) else {
         return Ok(());
@@ -222,7 +222,7 @@ impl Cells<'_> {
         corners.clear();
         let (vertices, ridges) = self.entries(row)?;
         if vertices.is_empty() {
-            corners.extend(AXES.map(|axis| (End::Towards(axis), Edge::Infinity)));
+            corners.extend(AXES.map(|axis| (End::Toward(axis), Edge::Infinity)));
         }
         for (i, (&v, &ridge)) in vertices.iter().zip(ridges).enumerate() {
             if v >= 0 {
@@ -236,10 +236,10 @@ impl Cells<'_> {
             let before = ridges[(i + ridges.len() - 1) % ridges.len()];
             let out = self.ray(row, before, 1)?;
             let back = self.ray(row, ridge, 0)?;
-            corners.push((End::Towards(out), Edge::Infinity));
+            corners.push((End::Toward(out), Edge::Infinity));
             let between = axes_between(out, back);
-            corners.extend(between.map(|axis| (End::Towards(axis), Edge::Infinity)));
-            corners.push((End::Towards(back), Edge::Ridge(ridge)));
+            corners.extend(between.map(|axis| (End::Toward(axis), Edge::Infinity)));
+            corners.push((End::Toward(back), Edge::Ridge(ridge)));
             if self.is_line(ridge) {
                 // A whole line. One of its points tells on which side of a parallel it runs; if
                 // that is out of range, it does so only for lines along an axis.
@@ -315,7 +315,7 @@ impl Cells<'_> {
     fn crossing(&self, from: End, to: End, edge: Edge, half: Half, leaves: bool) -> End {
         let other = 1 - half.axis;
         match edge {
-            Edge::Infinity => End::Towards(half.along(leaves)),
+            Edge::Infinity => End::Toward(half.along(leaves)),
             Edge::Side(_, value) => half.at(value),
             Edge::Ridge(ridge) => {
                 let mut found = self.bisector(ridge, half);
@@ -347,7 +347,7 @@ impl Half {
     fn side(&self, end: End) -> i8 {
         let (x, value) = match end {
             End::At(p) => (p[self.axis], self.value),
-            End::Towards(d) => (d[self.axis], 0.0),
+            End::Toward(d) => (d[self.axis], 0.0),
         };
         let above = i8::from(x > value) - i8::from(x < value);
         if self.most { -above } else { above }
@@ -382,11 +382,11 @@ fn dot(a: Point2, b: Point2) -> f64 {
 fn bound(end: End, beyond: End, k: usize) -> f64 {
     match (end, beyond) {
         (End::At(p), _) => p[k],
-        (End::Towards(d), _) if d[k] > 0.0 => f64::INFINITY,
-        (End::Towards(d), _) if d[k] < 0.0 => f64::NEG_INFINITY,
+        (End::Toward(d), _) if d[k] > 0.0 => f64::INFINITY,
+        (End::Toward(d), _) if d[k] < 0.0 => f64::NEG_INFINITY,
         (_, End::At(p)) => p[k],
         // Both ends are along the other axis: this one has no bound.
-        (_, End::Towards(_)) => f64::NAN,
+        (_, End::Toward(_)) => f64::NAN,
     }
 }
 

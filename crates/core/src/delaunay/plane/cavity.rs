@@ -150,7 +150,7 @@ impl<'a> Kernel<'a> {
     }
 
     /// Inserts vertex `p`, which is not in the mesh yet; the search starts at triangle `near`.
-    /// Returns the new triangle that points towards `aim`.
+    /// Returns the new triangle that points toward `aim`.
     pub fn insert(&mut self, p: u32, near: u32, aim: Point2) -> u32 {
         let origin = self.points[p as usize];
         let aim = [aim[0] - origin[0], aim[1] - origin[1]];

@@ -12,7 +12,7 @@
 //! Lift each point to its perturbed height and each triangle with it: a surface over the hull. On
 //! the convex quadrilateral of a flip the surfaces before and after are the upper and the lower
 //! half of a tetrahedron, so the surface becomes lower inside the quadrilateral and rises nowhere.
-//! Before the flip it contained the lifted edge uv; afterwards it is strictly below it at the
+//! Before the flip it contained the lifted edge uv; afterward it is strictly below it at the
 //! crossing with pq, and stays below: an edge that was flipped away never returns. So there are at
 //! most n (n - 1) / 2 flips, one for each pair of points. If no edge needs a flip, the surface is
 //! convex at each edge, hence convex: it is the lower hull, which is the canonical triangulation and

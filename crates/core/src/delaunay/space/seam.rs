@@ -313,7 +313,7 @@ fn smallest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
 pub fn belonging(seam: &Seam, joints: &[Joint]) -> Result<Vec<bool>> {
     let neighbors = &seam.arrays.neighbors;
     let mut belongs = filled(neighbors.len(), false)?;
-    // Bits of the facets towards sound tetrahedra.
+    // Bits of the facets toward sound tetrahedra.
     let mut closed = filled(neighbors.len(), 0u8)?;
     for joint in joints {
         closed[tetrahedron(joint.outer) as usize] |= 1 << corner(joint.outer);

@@ -14,7 +14,7 @@
 //!
 //! # No square roots
 //!
-//! The share of a tetrahedron from the query to a, b and c in the face towards a consists of two
+//! The share of a tetrahedron from the query to a, b and c in the face toward a consists of two
 //! triangles. One of them lies between the midpoint of the segment to a, the center of the circle
 //! through the query, a and b, and the center of the sphere. Its legs are |a| / 2 times the
 //! cotangent at b and, with n = a x b, the height of the center m of the sphere over the plane of

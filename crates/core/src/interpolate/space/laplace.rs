@@ -6,7 +6,7 @@
 //!
 //! The corners of those faces are the centers of the spheres through the query and each face of the
 //! rim of its cavity. A rim edge from v to w lies between two of these faces, and the segment
-//! between their centers is an edge of the cell's faces towards v and towards w. So each rim edge
+//! between their centers is an edge of the cell's faces toward v and toward w. So each rim edge
 //! adds to both a triangle with the midpoint of the segment to the neighbor, counted with its sign.
 //! The areas, each in the direction of its neighbor, sum to zero around the cell: the query is the
 //! weighted mean of its neighbors.
@@ -16,7 +16,7 @@
 //! Let the query approach a face of the hull, at a height z above its plane. Outside, at depth t /
 //! z, its cell is cut by x . v <= |v|^2 / 2 - t, for each neighbor v in that plane relative to the
 //! query: the cell in the plane, whose walls move inward as t grows. The total area of the wall
-//! towards v, over all depths, diverges like the integral of its length over t. A location x beyond
+//! toward v, over all depths, diverges like the integral of its length over t. A location x beyond
 //! the wall, in what was the cell of v, is reached at t = |v|^2 / 2 - x . v, which is |v| times its
 //! distance from the wall: so that integral, over |v|, is the area that the query takes from v in
 //! the plane. Hence the limits on the hull are Sibson's weights in the plane (see
@@ -74,7 +74,7 @@ struct Room {
     size: f64,
 }
 
-/// The face of the cell towards a neighbor.
+/// The face of the cell toward a neighbor.
 #[derive(Debug, Clone, Copy, Default)]
 struct Wall {
     /// Twice its area, as a vector.
@@ -199,7 +199,7 @@ impl Room {
         true
     }
 
-    /// The segment between the centers of two faces adds to the cell's faces towards both ends of
+    /// The segment between the centers of two faces adds to the cell's faces toward both ends of
     /// their edge.
     fn add_walls(&mut self) {
         self.pair_edges(|_| true);

@@ -2,10 +2,10 @@
 //!
 //! Names are those of `frame`. In the tangent plane, the cell of q is the polygon of the y with
 //! p y <= m for all neighbors. It lies in the open hemisphere of q, so all of it is in the plane; where q
-//! comes to the boundary of a hull it becomes unbounded, and the walls towards the two ends of the
+//! comes to the boundary of a hull it becomes unbounded, and the walls toward the two ends of the
 //! edge outweigh all others, as in the plane.
 //!
-//! **Laplace**: the length of the wall towards s over |p|. A closed polygon has walls whose normals,
+//! **Laplace**: the length of the wall toward s over |p|. A closed polygon has walls whose normals,
 //! weighted by their lengths, sum to 0: so the weighted sum of the p is 0.
 //!
 //! **Sibson**: the area that the cell takes from that of s. Let h(y) be 1 minus the largest q s + p y, of all

@@ -25,7 +25,7 @@ pub struct Frame {
 /// A site in the tangent plane of the query.
 #[derive(Debug, Clone, Copy)]
 pub struct Seen<N> {
-    /// Towards east and north.
+    /// Toward east and north.
     pub p: [N; 2],
     /// Half the square of the distance.
     pub m: N,

@@ -54,7 +54,7 @@ pub struct Queries<'a> {
     pub simplices: &'a [i32],
 }
 
-/// The weights of sites at queries; if `sloped`, with their derivatives towards east and north per radian,
+/// The weights of sites at queries; if `sloped`, with their derivatives toward east and north per radian,
 /// NaN where they do not exist. Rows are empty without a triangle, and where corners are one point after
 /// rounding.
 pub fn weights(

@@ -186,7 +186,7 @@ impl Mesh {
             }
             if u != INFINITE {
                 let side = orient2d(p, q, self.at(u));
-                // On the ray towards b, and not behind a.
+                // On the ray toward b, and not behind a.
                 if side.is_zero() && lexicographic(p, self.at(u)) == lexicographic(p, q) {
                     return Ok(Way::Vertex(u));
                 }

@@ -75,7 +75,7 @@ impl Triangle {
         self.decide(&Side, [k, (k + 1) % 3, (k + 2) % 3])
     }
 
-    /// Whether the query lies ahead, as seen from one corner towards another.
+    /// Whether the query lies ahead, as seen from one corner toward another.
     pub fn along(&self, from: usize, to: usize) -> Sign {
         self.decide(&Along, [from, to, to])
     }

@@ -53,7 +53,7 @@ impl Patch<'_> {
     /// Inserts the new vertex `p` on the edge `e`. Returns the four half-edges opposite p.
     pub fn split_edge(&mut self, e: Code, p: u32) -> [Code; 4] {
         //        x                 x
-        //      / t \             /t|r\         e is u p afterwards, its opposite o is p u.
+        //      / t \             /t|r\         e is u p afterward, its opposite o is p u.
         //     u --- v    ->     u--p--v
         //      \ s /             \s|w/
         //        y                 y

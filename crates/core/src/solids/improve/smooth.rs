@@ -33,7 +33,7 @@ const TURNS: usize = 24;
 struct Cone {
     /// The corners of the face.
     corners: [Point3; 3],
-    /// The face vector, towards the vertex.
+    /// The face vector, toward the vertex.
     base: Vector,
     /// Its length.
     area: f64,
@@ -73,7 +73,7 @@ impl Cone {
     }
 
     /// Edges to the corners, six times the volume, and the face vectors opposite each corner,
-    /// towards it.
+    /// toward it.
     #[inline(always)]
     fn around(&self, x: Point3) -> ([Vector; 3], f64, [Vector; 3]) {
         let [p, q, r] = self.corners.map(|c| minus(c, x));

@@ -298,7 +298,7 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// Moves a vertex if the tetrahedra around it are certainly better afterwards.
+    /// Moves a vertex if the tetrahedra around it are certainly better afterward.
     fn move_one(&mut self, v: u32) -> Result<bool> {
         let store = &mut self.store;
         store.star(v, &mut self.around)?;

@@ -4,7 +4,7 @@
 //! in y. A point is n / w away, n = w dz - (a dx + b dy).
 //!
 //! If coordinates and heights are multiples of powers of two, and numbers are small, as on rasters, then
-//! no operation up to n rounds: a bound on the bits shows it, and the quotient is rounded upwards.
+//! no operation up to n rounds: a bound on the bits shows it, and the quotient is rounded upward.
 //!
 //! Otherwise n is computed with an error. Of the terms in w dz, each has at most 7 rounded operations on
 //! its way, those in a dx and b dy at most 8, so that the error is below 9 u (W |dz| + A |dx| + B |dy|)

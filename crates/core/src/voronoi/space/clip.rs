@@ -5,7 +5,7 @@
 //! "Voro++: a three-dimensional Voronoi cell library in C++", Chaos 19, 2009), so vertices that are
 //! far away or at infinity are not used.
 //!
-//! Corners are computed in floating point. If three planes meet at a flat angle, as those towards
+//! Corners are computed in floating point. If three planes meet at a flat angle, as those toward
 //! two close sites do with a third one, the corner is computed in integers (`meeting`).
 //!
 //! A ridge is measured once: as a whole if one of its two cells is whole, otherwise in the cell of

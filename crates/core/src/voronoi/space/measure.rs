@@ -70,7 +70,7 @@ impl<'a> Cells<'a> {
         &self.ridges[self.ridge_starts[cell] as usize..self.ridge_starts[cell + 1] as usize]
     }
 
-    /// The plane of a ridge relative to one of its sites: a vector d towards the other site, and h,
+    /// The plane of a ridge relative to one of its sites: a vector d toward the other site, and h,
     /// so that the cell of the first has (x - p) . d <= h. The largest component of d is 1 to 2, so
     /// its squares neither overflow nor underflow.
     pub(super) fn plane(&self, ridge: usize, site: i32) -> (Point3, f64) {
