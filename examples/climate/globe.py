@@ -70,7 +70,7 @@ months = values[:, None] + 5 * np.sin(np.radians(latitude))[:, None] * np.cos(
 year = table @ months
 assert year.shape == (181, 361, 12)
 steep = globe.gradient([(20.0, 50.0)], radius=6371.0)
-print("degrees C per km, towards east and north:", steep.round(4).tolist())
+print("degrees C per km, toward east and north:", steep.round(4).tolist())
 
 # %%
 # The seam and the gap are clearly visible from above the North Pole.

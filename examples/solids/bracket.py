@@ -1,9 +1,9 @@
 """
-Elasticity of a bracket, and its error
+Elasticity of a bracket, and the error
 ======================================
 
 A bracket is held at one hole and pulled down at the other. Its surface is filled with tetrahedra, scikit-fem computes
-how far it yields, with elements of first and second order, and a finer mesh tells the error of both.
+how far it bends, with elements of first and second order, and a finer mesh shows the error of both.
 
 Install: ``pip install "delone[fem,pyvista]" scipy``.
 """
@@ -40,17 +40,17 @@ for marker, center in CENTERS.items():
     markers[(np.abs(distance - RADIUS) < 1e-6).all(axis=0)] = marker
 
 # %%
-# Tetrahedra of a size. Extruded faces have no common orientation, so everything that they enclose is filled.
+# Tetrahedra of a given size. Extruded faces have no common orientation, so everything that they enclose is filled.
 
 mesh = delone.tetrahedralize(
     points, faces, inside="enclosed", face_markers=markers, boundary="surface", size=SIZE
 )
-print(mesh, f"dihedral angles from {mesh.quality().smallest_dihedral.min():.0f} degrees on")
+print(mesh, f"dihedral angles of {mesh.quality().smallest_dihedral.min():.0f} degrees or more")
 assert mesh.validate()
 
 # %%
 # Linear elasticity: the held rim does not move, and a force of 1 is spread over the pulled one. The work of the force
-# says how far the bracket yields.
+# says how far the bracket bends.
 
 
 def rim(solid, marker):
@@ -102,8 +102,8 @@ for name, solid, element in (
 assert 4 * errors["second order"] < errors["first order, refined"] < errors["first order"]
 
 # %%
-# The deformed bracket, with the nodes in the middle of edges. Degrees of freedom of scikit-fem are three for each point,
-# then three for each edge, as :meth:`delone.TetMesh.to_pyvista` has its nodes.
+# The deformed bracket, including the nodes in the middle of edges. scikit-fem has three degrees of freedom for each point,
+# then three for each edge, in the order of the nodes of :meth:`delone.TetMesh.to_pyvista`.
 
 grid = mesh.to_pyvista(order=2)
 moved = u.reshape(-1, 3)

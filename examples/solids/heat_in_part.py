@@ -59,7 +59,7 @@ for name, label in {"block": BLOCK, "plug": PLUG}.items():
     meshio.Mesh(points, [("triangle", faces)]).write(folder / f"{name}.stl", binary=False)
 
 # %%
-# Both surfaces in one: equal points are one vertex, and the common wall separates two regions, which seeds label. A
+# Both surfaces are combined: equal points are one vertex, and the common wall separates two regions, which seeds label. A
 # common mistake is to give no size: then nearly all vertices are on the surface, and the solution has no values
 # inside. With a size, points are added between the faces, and slivers are removed.
 

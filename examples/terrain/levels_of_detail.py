@@ -21,7 +21,7 @@ tin = TIN.from_points(points, max_edge=6, duplicates="min")
 
 # %%
 # One run inserts points into a coarse surface, always the point that is farthest from it. Each prefix of that order
-# is a level of detail; its error is rounded upwards, so that it holds for all points.
+# is a level of detail; its error is rounded upward, so that it holds for all points.
 
 levels = tin.simplification(max_error=0.05)
 print(levels)

@@ -139,7 +139,8 @@ PATTERNS = (
     # A tile of `distributed` knows points, in its mathematics, too; nothing else does.
     r"(?:class|code|object|file|mesh|caller|arc|triangle|point|page|grid|it) knows",
     r"turned (?:by|grid|grids|box|boxes|square|data|lattice|set)",
-    r"(?:has|have) (?:an)?other \w+ than",
+    r"(?:has|have) other \w+ than",
+    r"another \w+(?: \w+){0,2} than (?!one\b)",
     r"no \w+ any ?more",
     r"(?:geometries|polygons|pipelines|tables) of (?:shapely|geopandas|scikit-learn)",
     r"one \w+ after the other",
@@ -157,6 +158,7 @@ BRITISH = (
     r"(?:behaviour|favour|artefact)\w*",
     r"(?:label|model|travel|cancel)l(?:ed|ing)",
     r"analys(?:e|ed|ing)",
+    r"(?:to|after|up|down|for|back)wards",
     r"(?:character|discret|equal|factor|general|initial|linear|local|maxim|minim|normal|optim|organ"
     r"|parallel|quant|random|real|recogn|serial|special|standard|summar|symbol|synchron|util"
     r"|vector|visual)is(?:e|ed|es|ing|ation|ations)",
@@ -300,6 +302,8 @@ def test_each_phrase_is_in_the_table() -> None:
             ["polygons of shapely", "one ring after the other"],
         ),
         ("Clusters have other numbers than in scikit-learn.", ["have other numbers than"]),
+        ("Lines in another\nsystem than their points.", ["another system than "]),
+        ("Afterwards, it points towards the pole.", ["Afterwards", "towards"]),
         ("The side is no edge any more.", ["is no edge", "no edge any more"][:1]),
         (
             "A graph of NetworkX, the axes of matplotlib.",

@@ -57,7 +57,7 @@ _SAME = 1e-9
 
 
 class UnitsWarning(UserWarning):
-    """Heights are in another unit than x and y.
+    """Heights are in a different unit from x and y.
 
     Examples
     --------
@@ -133,7 +133,7 @@ def require_same_units(a: str | None, b: str | None, *, what: str) -> None:
 
 
 def warn_of_units(lengths: str | None, heights: str | None, *, by: str) -> None:
-    """Warn if heights are known to be in another unit than x and y, as known `by` something."""
+    """Warn if heights are known to be in a different unit from x and y, as known `by` something."""
     if lengths is None or heights is None or lengths == heights:
         return
     warnings.warn(

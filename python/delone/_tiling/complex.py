@@ -355,7 +355,7 @@ class Complex(Stored, Exchanged):
     _stages: Stages
 
     def _fill(self, arrays: Arrays, stages: Stages, workers: int | None) -> None:
-        """Set everything; afterwards nothing can be set."""
+        """Set everything; afterward nothing can be set."""
         self._hold(
             stages=stages,
             workers=workers,

@@ -108,7 +108,11 @@ def fill(
         typer.Option(help="Goal for the smallest dihedral angle in degrees; with sizes 20."),
     ] = None,
     max_points: Annotated[
-        int | None, typer.Option(help="Maximum number of added points; by default a million.")
+        int | None,
+        typer.Option(
+            help="Maximum number of added points; by default a million, and two million for sizes "
+            "and angles."
+        ),
     ] = None,
     better: Annotated[
         bool,

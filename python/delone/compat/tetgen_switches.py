@@ -23,7 +23,7 @@ _SIZES = (
 )
 _SWITCH = re.compile(r"([a-zA-Z])((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/[\d.]*)*|/[\d./]+)?")
 # Numbers from zero, silence, checks, files, neighbors, unused vertices, the tolerance of coplanar
-# points, and what TetGen does to tetrahedra afterwards: they change nothing that is promised.
+# points, and what TetGen does to tetrahedra afterward: they change nothing that is promised.
 _WITHOUT_EFFECT = "zQVCFIJNEgkBOnTWxbUX"
 _REFUSED = {
     "m": _SIZES,

@@ -4,7 +4,7 @@ A triangulation is immutable and canonical, so a changed copy is the triangulati
 input. A live triangulation behind the result would not make the cost follow the size of the edit,
 because the new object needs its own arrays. With 200,000 points and 40,000 segments, where a new
 triangulation takes 1, the live one takes 1.5 to make, a point inserted into it 0.0003, and its
-simplices and neighbors 0.3, in another order than those of a new one, and without the rows of
+simplices and neighbors 0.3, in a different order from those of a new one, and without the rows of
 segments along each edge. So a single edit would take nearly twice as long, and only chains of three
 or more would gain. For these there are blocks with many changes, and `Dynamic`.
 """

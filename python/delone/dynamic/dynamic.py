@@ -255,7 +255,7 @@ class Dynamic(Measured, Drawn, Filed):
         ----------
         points : array_like, shape (k, d)
             Finite coordinates. A point at an existing position becomes a duplicate. Points that
-            declare another reference system than `crs` are transformed, with pyproj (extra
+            declare a reference system other than `crs` are transformed, with pyproj (extra
             ``geo``).
 
         Returns
@@ -450,7 +450,7 @@ class Dynamic(Measured, Drawn, Filed):
                 return known, self._of(state.open(), *self._options)
 
     def _take(self, draft: Self, known: int) -> bool:
-        """Take the state of a draft, unless there has been another edit than those known."""
+        """Take the state of a draft, unless there has been an edit other than those known."""
         taken: bool = self._edited(_restore, self._live, draft._live.state(), known)
         if taken:
             self._system = draft._system

@@ -115,7 +115,7 @@ class Graph(Stored, Exchanged):
         self._refer(points)
 
     def _set(self, points: Floats, edges: Indices, duplicates: Indices, **others: Any) -> None:
-        """Set everything, with `directed`, `kind` and `workers`; afterwards nothing can be set."""
+        """Set everything, with `directed`, `kind` and `workers`; afterward nothing can be set."""
         self._hold(
             points=sealed(points), edges=sealed(edges), duplicates=sealed(duplicates), **others
         )

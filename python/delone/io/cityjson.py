@@ -1,9 +1,9 @@
 """CityJSON 2.0: a surface with heights as the relief of a terrain (TINRelief).
 
-Coordinates of CityJSON are whole numbers with a scale and a translation. The scale is the coarsest
-of a millimeter, a tenth of one and so on, in the unit of the points, with which no two points
-become one and no triangle turns over or loses its area, which is decided exactly. So each
-coordinate is within half of the scale of its own. The format is that of https://www.cityjson.org.
+Coordinates of CityJSON are integers with a scale and a translation. The scale is the largest of
+0.001, 0.0001 and so on, in the unit of the points, at which no two points become one and no
+triangle flips over or loses its area, which is decided exactly. So each coordinate is off by at
+most half of the scale. The format is that of https://www.cityjson.org.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ __all__ = ["require_libraries", "write_mesh"]
 
 # The first is what surveys are accurate to; further ones are tried where points are closer.
 _DIGITS = range(3, 16)
-# Whole numbers that readers hold in doubles.
+# Integers that readers hold in doubles.
 _LARGEST = 2.0**53
 # Triangles and points that become text at once.
 _BLOCK = 1 << 16
@@ -83,7 +83,7 @@ def write_mesh(
 
 
 def _rounded(points: Floats, rows: Indices) -> tuple[int, Floats, NDArray[np.int64]]:
-    """Return the digits of the scale, the translation, and coordinates as whole numbers."""
+    """Return the digits of the scale, the translation, and coordinates as integers."""
     origin = np.floor(points.min(axis=0))
     for digits in _DIGITS:
         scaled = np.rint((points - origin) * 10.0**digits)

@@ -118,7 +118,7 @@ def admitted(path: Path) -> Iterator[str]:
 
 
 def check_driver(path: Path, driver: str) -> None:
-    """Reject a file that another driver than that of its suffix opened."""
+    """Reject a file that was not opened by the driver of its suffix."""
     wanted = DRIVERS.get(path.suffix.lower(), "GeoJSON")
     if driver != wanted:
         raise FileFormatError(

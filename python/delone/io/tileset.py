@@ -1,9 +1,9 @@
 """3D Tiles 1.1: a surface for globes, in levels of detail that replace each other.
 
 Points are placed on the ellipsoid of WGS 84 (pyproj), so that a level is neither on a map nor on a
-plane, and each file has coordinates of 32 bits around a local origin, east, north and up. What map,
-curvature and rounding change is part of the error of a level: the greatest distance of a point of
-the survey from the point of the level that has its x and y. The format is that of OGC 22-025r4.
+plane, and each file has 32-bit coordinates around a local origin, east, north and up. What the map
+projection, curvature and rounding change is part of the error of a level: the largest distance of a
+point of the survey from the point of the level at its x and y. The format is that of OGC 22-025r4.
 """
 
 from __future__ import annotations
@@ -42,22 +42,22 @@ def write_tileset(
     Parameters
     ----------
     folder : str or path-like
-        The folder of ``tileset.json`` and of one GLB file for each level. It is made if it does not
-        exist; files of the same names are replaced.
+        The folder of ``tileset.json`` and of one GLB file for each level. It is created if it does
+        not exist; files with the same names are replaced.
     tin : TIN
         The surface, with a known reference system. Heights are in its `units`, or in meters where
         these are unknown, and are taken as heights above the ellipsoid: nothing is shifted by a
         geoid.
     errors : array_like of float, shape (k,)
-        For each level the greatest vertical distance of a point from its surface, coarsest first,
-        as `max_error` of `TIN.simplify`; 0 for a level that has all that are not redundant.
+        For each level, the largest vertical distance of a point from its surface, coarsest first,
+        as `max_error` of `TIN.simplify`; 0 for a level with all points that are not redundant.
 
     Returns
     -------
     tuple of float
-        The error of each level in meters: the greatest distance of a point of the survey from the
-        level in space, with all that curvature, map and rounding contribute. They are the geometric
-        errors of the tiles.
+        The error of each level in meters: the largest distance in space of a point of the survey
+        from the level, including what curvature, map projection and rounding contribute. These are
+        the geometric errors of the tiles.
 
     Raises
     ------

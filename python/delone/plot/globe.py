@@ -123,7 +123,7 @@ def _center(points: Floats) -> tuple[float, float]:
 
 
 def _frame(view: tuple[float, float]) -> Floats:
-    """The unit vectors to the right, up and towards the viewer, above a place in degrees."""
+    """The unit vectors to the right, up and toward the viewer, above a place in degrees."""
     try:
         lon, lat = np.radians(np.array(view, dtype=float))
     except (TypeError, ValueError):

@@ -67,7 +67,7 @@ class Overlaps(SharedAreas[Weights], Stored):
 
     References
     ----------
-    W. R. Franklin, "Calculating map overlay polygon' areas without explicitly calculating the
+    W. R. Franklin, "Calculating map overlay polygons' areas without explicitly calculating the
     polygons - implementation", 4th International Symposium on Spatial Data Handling (1990).
 
     Examples

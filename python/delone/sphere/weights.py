@@ -294,7 +294,7 @@ class Weights(AreaWeights):
             The file is not a map, does not have the number of cells, a cell's number is out of
             range, or it has weights of second order with gradients.
         InputError
-            A grid has another number of cells than the file, or other sides.
+            A grid does not have the number of cells or the sides of the file.
         MissingExtraError
             netCDF4 is not installed.
 
@@ -304,8 +304,8 @@ class Weights(AreaWeights):
         numbers themselves are never used to guess. Entries of one pair are added. Weights of SCRIP
         with the normalization "none" are areas, and become "conservative". Results are always sums
         of the weights times the values: fractions that a file lacks, or that contradict the sums of
-        weights, are replaced by these. If a file lists its dimensions in another order than ESMF,
-        the centers tell which one varies fastest.
+        weights, are replaced by these. If a file lists its dimensions in a different order from
+        ESMF, the centers show which one varies fastest.
 
         Weights of second order, and those with negative entries, have `order` 2: they are not
         areas, and with ``skipna=True`` missing values raise an error.

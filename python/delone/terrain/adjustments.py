@@ -26,13 +26,13 @@ class Adjustments(ReadOnly):
     Parameters
     ----------
     points_moved : int
-        The number of points that are merged with others or with lines, at another place.
+        The number of points that moved because they were merged with others or with lines.
     line_points_moved : int
-        The number of points of lines that are merged with others.
+        The number of points of lines that were merged with others.
     largest_move : float
-        The greatest distance between a point and the place that it is merged with; 0 if none is.
+        The largest distance between a point and the place to which it moved; 0 if none did.
     points_leveled : int
-        The number of points that are left out inside of level polygons or on their shores.
+        The number of points that were left out inside level polygons or on their shores.
     levels : ndarray of float64, shape (k,)
         The height of each level polygon; NaN where a feature has no geometry.
 

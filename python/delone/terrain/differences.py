@@ -51,7 +51,7 @@ class Difference(ReadOnly):
     missing : int
         The number of cells in which the raster has no height.
     missing_other : int
-        The number of cells in which the other one has none: nodata, or outside of its surface.
+        The number of cells in which the other one has no height: nodata, or outside its surface.
     crs : str, optional
         Coordinate reference system.
     units : str, optional
@@ -94,12 +94,12 @@ class Difference(ReadOnly):
 
     @property
     def min(self) -> float:
-        """The least difference; NaN if no cell has one."""
+        """The smallest difference; NaN if no cell has one."""
         return float(self._known.min()) if self.count else float("nan")
 
     @property
     def max(self) -> float:
-        """The greatest difference; NaN if no cell has one."""
+        """The largest difference; NaN if no cell has one."""
         return float(self._known.max()) if self.count else float("nan")
 
     @property
@@ -128,7 +128,7 @@ class Difference(ReadOnly):
 
     @property
     def net(self) -> float:
-        """Fill minus cut: what has to be brought in, or, if negative, taken away."""
+        """Fill minus cut: the volume to bring in, or, if negative, to take away."""
         return self.fill - self.cut
 
     @property
@@ -240,7 +240,8 @@ def difference(
     band, other_band : int or str, optional
         Of files: the band, from 1, or the variable of NetCDF, as for `delone.io.read_raster`.
     bounds : sequence of four float, optional
-        Left, bottom, right and top: only cells whose centers are inside or on the border, of both.
+        Left, bottom, right and top. Of both, only cells whose centers are inside or on the border
+        are used.
     nodata : float, optional
         The value of cells without a height, besides NaN and the one that a file declares; NaN if
         all values are heights.
@@ -267,7 +268,7 @@ def difference(
     Warns
     -----
     CRSWarning
-        Only one reference system is known, and it is taken for both.
+        Only one reference system is known, and it is assumed for both.
 
     See Also
     --------

@@ -50,8 +50,8 @@ def lines_of(given: Any, *, name: str, crs: str | None) -> list[Floats]:
     """Return lines as arrays (k, 3); heights are NaN where there are none, also in the input.
 
     Accepted are shapely geometries, GeoDataFrames, a `GeometrySet`, arrays (k, 2) or (k, 3), and
-    sequences of these. Polygons become their rings, closed. Lines that declare another reference
-    system than `crs` are transformed.
+    sequences of these. Polygons become their rings, closed. Lines that declare a reference
+    system other than `crs` are transformed.
     """
     return [line.points for line in _placed(given, name, crs)]
 

@@ -60,8 +60,8 @@ class Voronoi(Stored, Drawn):
         In 2-D: a box ``(xmin, ymin, xmax, ymax)``; a shapely polygon or multipolygon, with or
         without holes, or a GeoJSON-like mapping; one or more rings of coordinates (k, 2), by the
         even-odd rule; or a GeoDataFrame, GeoSeries or `delone.io.GeometrySet`, for the union of its
-        polygons. Its corners are transformed if it declares another reference system than the
-        points, with pyproj (extra ``geo``).
+        polygons. Its corners are transformed if it declares a reference system that differs from
+        that of the points, with pyproj (extra ``geo``).
 
         In 3-D, a convex region: a box ``((xmin, ymin, zmin), (xmax, ymax, zmax))`` of shape (2, 3);
         half-spaces of shape (k, 4) with a bounded intersection, each ``(a, b, c, d)`` for ``a x + b

@@ -19,8 +19,8 @@ use delone_predicates::{Point3, Sign};
 
 use super::inner::Inner;
 use super::insertion::{Hull, Toward};
-use crate::error::Result;
-use crate::watch::Watch;
+use crate::base::error::Result;
+use crate::base::watch::Watch;
 
 /// Points between two checks for interruption.
 const LOT: usize = 1 << 16;

@@ -68,8 +68,8 @@ class RefinementReport(ReadOnly):
     Parameters
     ----------
     on_segments, on_facets : int
-        Numbers of points that were added on edges where plane parts of the faces end, and inside
-        plane parts.
+        Numbers of points that were added on edges where planar parts of the faces end, and inside
+        planar parts.
     for_shapes, for_sizes : int
         Numbers of points that were added between the faces, for shapes and for sizes.
     exhausted : bool

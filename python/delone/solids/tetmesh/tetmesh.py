@@ -224,7 +224,7 @@ class TetMesh(Triangulation):
         max_points: int | None = None,
         progress: Callable[[int], object] | None = None,
     ) -> TetMesh:
-        """Return a mesh with smaller or better tetrahedra, in marked ones or everywhere.
+        """Return a mesh with smaller or better tetrahedra, everywhere or where they are marked.
 
         Parameters
         ----------
@@ -248,8 +248,8 @@ class TetMesh(Triangulation):
             are removed as by `delone.improve`. 0 for no such step.
         boundary : {"faces", "surface"}, optional
             What is kept: all `input_faces` and faces between regions, bit for bit; or the surface,
-            on which points may be added: plane parts are cut again, and edges between these are
-            divided.
+            on which points may be added: planar parts are triangulated again, and edges between
+            these are divided.
         max_points : int, optional
             Maximum number of added points; by default 2,000,000. Sizes that require far more raise
             an error before the refinement starts; otherwise it stops at the limit, and the report
@@ -260,8 +260,9 @@ class TetMesh(Triangulation):
         Returns
         -------
         TetMesh
-            The finer mesh. Its first points are those of this mesh, of which `min_angle` may have
-            moved some inside. Its `report` says what was added, and what misses the bounds.
+            The finer mesh. Its first points are those of this mesh; the removal of slivers may have
+            moved some that are not on faces. Its `report` says what was added, and what misses the
+            bounds.
 
         Raises
         ------
@@ -283,8 +284,8 @@ class TetMesh(Triangulation):
         added instead. For shapes, points are added between faces only: where faces have small
         angles, no point makes their tetrahedra better.
 
-        New edges are not shorter than the shortest edge of the tetrahedron that asks for them, or
-        half of its size, which ends the refinement. With ``boundary="faces"``, tetrahedra at faces
+        New edges are not shorter than the shortest edge of the tetrahedron that is refined, or half
+        of its size, so the refinement ends. With ``boundary="faces"``, tetrahedra at faces
         that are larger than the size remain, and the report lists them.
 
         Points on faces are rounded to doubles; `RefinementReport.surface_distance` is an upper
@@ -299,7 +300,7 @@ class TetMesh(Triangulation):
 
         Examples
         --------
-        A cube, in edges of about a fifth:
+        A cube with edges of about a fifth of its side:
 
         >>> import delone
         >>> corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]

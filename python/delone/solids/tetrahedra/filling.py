@@ -111,7 +111,7 @@ def tetrahedralize(
     size, max_volume : float, mapping, callable or tuple, optional
         Target edge length, and largest volume of a tetrahedron, as for ``TetMesh.refine``: by
         number, by region, by position, or by another mesh. With ``boundary="surface"``, faces are
-        divided where sizes ask for it.
+        divided where sizes require it.
     radius_edge, min_angle : float, optional
         Bounds on shapes, as for ``TetMesh.refine``. If one of these four arguments is given, the
         mesh is refined, with 2.0 and 20 degrees by default; otherwise points are added only where
