@@ -175,7 +175,7 @@ impl Live2 {
             Ok([
                 plane.len(),
                 plane.vertices(),
-                plane.triangles(),
+                plane.simplices(),
                 plane.total(),
             ])
         })

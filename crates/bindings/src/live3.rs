@@ -105,7 +105,7 @@ impl Live3 {
             Ok([
                 space.len(),
                 space.vertices(),
-                space.tetrahedra(),
+                space.simplices(),
                 space.total(),
             ])
         })

@@ -32,8 +32,130 @@
 //! state is unique, they lead to the triangles of the start. Among segments, what an edit replaces is
 //! recorded (see `journal`).
 
+//! # One code for 2-D and 3-D
+//!
+//! [`Live`] is generic over the mesh of a dimension, a [`Kernel`], which inserts, removes, moves and finds.
+//! Batches, snapshots, queries and exports are the same in both.
+
+mod build;
 pub mod chunks;
+mod edit;
+mod export;
 mod journal;
+mod kernel;
 pub mod plane;
+mod query;
 pub mod rows;
 pub mod space;
+mod state;
+mod store;
+
+pub use export::Exported;
+pub use kernel::{Built, Constraints, Kernel, Move};
+pub use query::Corners;
+pub use state::{Changes, State};
+pub use store::{Place, Removed, Store};
+
+use delone_predicates::lexicographic;
+
+use crate::base::error::Result;
+use crate::base::memory::with_room;
+use crate::base::points;
+use crate::base::watch::Watch;
+use rows::Rows;
+
+/// A live Delaunay triangulation by the mesh `K` of simplices with `N` corners of `D` coordinates.
+#[derive(Debug)]
+pub struct Live<K: Kernel<D, N>, const D: usize, const N: usize> {
+    mesh: K,
+    rows: Rows,
+    /// If there is no simplex, the vertices in lexicographic order.
+    flat: Vec<u32>,
+    /// Segments among the points; only in 2-D.
+    segments: K::Segments,
+    /// The state at the last call of `changes`.
+    seen: Option<State<K, D, N>>,
+    /// During an edit that may be taken back, what it has replaced as a whole.
+    before: Option<Option<Built<K>>>,
+}
+
+impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
+    /// The triangulation of `points`, any number, whose rows are 0, 1, and so on.
+    pub fn new(input: &[[f64; D]], workers: usize, watch: &Watch) -> Result<Self> {
+        points::scan(input)?;
+        let mut rows = with_room(input.len())?;
+        rows.extend(0..input.len() as u32);
+        Self::of(input, &rows, input.len(), workers, watch)
+    }
+
+    /// The triangulation of `points` at `rows`, ascending, where `total` rows have been inserted ever.
+    pub fn of(
+        input: &[[f64; D]],
+        rows: &[u32],
+        total: usize,
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<Self> {
+        points::scan(input)?;
+        let (mesh, rows, flat) = K::built(input, rows, total, workers, watch)?;
+        Ok(Self {
+            mesh,
+            rows,
+            flat,
+            segments: K::Segments::none()?,
+            seen: None,
+            before: None,
+        })
+    }
+
+    /// The number of rows that are there.
+    pub fn len(&self) -> usize {
+        self.rows.live()
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The number of the next row to be inserted.
+    pub fn total(&self) -> usize {
+        self.rows.total()
+    }
+
+    /// The number of distinct points.
+    pub fn vertices(&self) -> usize {
+        self.mesh.counts.vertices as usize
+    }
+
+    /// The number of triangles or tetrahedra; 0 if all points are in one line or plane.
+    pub fn simplices(&self) -> usize {
+        self.mesh.counts.simplices as usize
+    }
+
+    /// Whether a row is there.
+    pub fn has(&self, row: i64) -> bool {
+        self.rows.vertex(row).is_some()
+    }
+
+    /// Records visited so far; for measurements.
+    pub fn work(&self) -> usize {
+        self.mesh.work
+    }
+
+    /// Checks the data structure; for tests.
+    pub fn check(&self) -> std::result::Result<(), String> {
+        self.mesh.check()?;
+        let flat = self.mesh.is_flat();
+        if flat != (self.flat.len() == self.vertices()) && self.vertices() > 0 {
+            return Err(format!("{} vertices in the list", self.flat.len()));
+        }
+        let at = |v: &u32| self.mesh.at(*v);
+        let sorted = |w: &[[f64; D]]| lexicographic(w[0], w[1]).is_lt();
+        let line: Vec<_> = self.flat.iter().map(at).collect();
+        if !line.windows(2).all(sorted) {
+            return Err("the list is not in order".into());
+        }
+        Ok(())
+    }
+}

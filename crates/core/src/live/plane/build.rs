@@ -1,29 +1,23 @@
 //! A live triangulation from all of its points, by the method for points that do not change.
 
-use delone_predicates::{Point2, lexicographic};
+use delone_predicates::Point2;
 
-use super::mesh::{Counts, INFINITE, Mesh, Record, Site};
+use super::mesh::{INFINITE, Mesh};
 use crate::base::error::{Error, Result};
 use crate::base::memory::{filled, with_room};
 use crate::base::watch::{Pace, Watch};
-use crate::delaunay::plane::{Built, Clock, Method, mesh};
-use crate::live::chunks::Chunks;
+use crate::delaunay::plane::{self, Clock, Method};
+use crate::live::build::flat;
+use crate::live::kernel::Built;
 use crate::live::rows::{NONE, Rows};
+use crate::live::store::{Counts, Record, Site, Store};
 use crate::mesh::plane::{Code, triangle};
-use crate::order::sort_by;
 
 /// Triangles, or rows, between two checks for interruption.
 const LOT: usize = 1 << 16;
 
 /// The share of room that is left for insertions.
 const SPARE: usize = 3;
-
-/// The vertex at infinity.
-const AT_INFINITY: Site = Site {
-    at: [f64::NAN; 2],
-    near: NONE,
-    head: NONE,
-};
 
 /// The mesh of `points`, which are at `rows`, ascending, among `total` rows; and if there is no
 /// triangle, the vertices in order along their line.
@@ -33,64 +27,32 @@ pub fn built(
     total: usize,
     workers: usize,
     watch: &Watch,
-) -> Result<(Mesh, Rows, Vec<u32>)> {
-    match mesh(points, Method::Auto, workers, watch, &mut Clock::start()) {
+) -> Result<Built<Mesh>> {
+    match plane::mesh(points, Method::Auto, workers, watch, &mut Clock::start()) {
         Ok(built) => {
             let (mesh, rows) = imported(built, rows, total, watch)?;
             Ok((mesh, rows, Vec::new()))
         }
-        Err(Error::TooFew { .. } | Error::Collinear { .. }) => flat(points, rows, total, watch),
+        Err(Error::TooFew { .. } | Error::Collinear { .. }) => {
+            flat(points, rows, total, points.len() + 1, Mesh::of, watch)
+        }
         Err(error) => Err(error),
     }
 }
 
-/// The vertices of points on one line.
-fn flat(
-    points: &[Point2],
+/// A mesh with the vertex at infinity first, and its rows.
+fn imported(
+    built: plane::Built,
     rows: &[u32],
     total: usize,
     watch: &Watch,
-) -> Result<(Mesh, Rows, Vec<u32>)> {
-    let mut order = with_room(points.len())?;
-    order.extend(0..points.len() as u32);
-    let point = |i: u32| points[i as usize].map(|x| x + 0.0);
-    let along = |&i: &u32, &j: &u32| lexicographic(point(i), point(j)).then(i.cmp(&j));
-    sort_by(&mut order, watch, along)?;
-    let mut sites = with_room(points.len() + 1)?;
-    sites.push(AT_INFINITY);
-    let mut own = Rows::gone(total)?;
-    let mut line = with_room(points.len())?;
-    for i in order {
-        let p = point(i);
-        if sites.last().is_none_or(|last: &Site| last.at != p) {
-            line.push(sites.len() as u32);
-            sites.push(Site {
-                at: p,
-                near: NONE,
-                head: NONE,
-            });
-        }
-        let v = sites.len() - 1;
-        sites[v].head = own.attach(rows[i as usize], v as u32, sites[v].head);
-    }
-    let counts = Counts {
-        vertices: line.len() as u32,
-        ghosts: 0,
-        record: NONE,
-        site: NONE,
-    };
-    let records = Chunks::of(Vec::new())?;
-    Ok((Mesh::of(records, Chunks::of(sites)?, counts, 0), own, line))
-}
-
-/// A mesh with the vertex at infinity first, and its rows.
-fn imported(built: Built, rows: &[u32], total: usize, watch: &Watch) -> Result<(Mesh, Rows)> {
+) -> Result<(Mesh, Rows)> {
     let mut pace = Pace::new(watch, LOT);
     let mut mesh = built.mesh;
     let count = built.rows.len();
     let used = 2 * count as u32 - 2;
     let mut sites = with_room(count + 1 + count / SPARE)?;
-    sites.push(AT_INFINITY);
+    sites.push(Site::AT_INFINITY);
     let mut own = Rows::gone(total)?;
     for (v, &first) in built.rows.iter().enumerate() {
         pace.spend(1)?;
@@ -143,7 +105,7 @@ fn imported(built: Built, rows: &[u32], total: usize, watch: &Watch) -> Result<(
         pace.spend(1)?;
         let [u, v, w] = patch.corners(t);
         let [a, b, c] = [corner(u), corner(v), corner(w)];
-        ghosts += u32::from([a, b, c].contains(&INFINITE));
+        ghosts += usize::from([a, b, c].contains(&INFINITE));
         let [e, f, g] = patch.opposites(t);
         let moved = |e: Code| 8 * place[triangle(e) as usize] + (e & 3);
         records[at as usize] = [a, b, c, 0, moved(e), moved(f), moved(g), 0];
@@ -151,13 +113,7 @@ fn imported(built: Built, rows: &[u32], total: usize, watch: &Watch) -> Result<(
             sites[v as usize].near = e;
         }
     }
-    let counts = Counts {
-        vertices: count as u32,
-        ghosts,
-        record: NONE,
-        site: NONE,
-    };
+    let counts = Counts::of(count, used as usize - ghosts);
     drop(mesh);
-    let mesh = Mesh::of(Chunks::of(records)?, Chunks::of(sites)?, counts, 0);
-    Ok((mesh, own))
+    Ok((Mesh::of(Store::of(records, sites, counts)?), own))
 }

@@ -36,13 +36,14 @@ use delone_predicates::{Point2, lexicographic, orient2d};
 
 use super::Plane;
 use super::marks::{CROSSED, Reach, STRAIGHT};
-use super::remove::Removed;
 use super::segments::Detached;
-use super::walk::Place;
 use crate::base::error::{Error, Result};
 use crate::base::memory::{filled, push, with_room};
 use crate::base::watch::{Pace, Watch};
 use crate::constrained::passes;
+use crate::live::kernel::Constraints;
+use crate::live::store::Place;
+use crate::live::store::Removed;
 use crate::order::{order_of, sort};
 
 /// Edits between two checks for interruption.
@@ -440,14 +441,14 @@ impl Plane {
             self.mesh.mark(e) != 0 && orient2d(self.mesh.at(u), self.mesh.at(v), p).is_zero()
         });
         let Some(e) = on else {
-            return self.create(p, t).map(Some);
+            return self.create(p, t, &mut Pace::new(watch, LOT)).map(Some);
         };
         if self.mesh.mark(e) == CROSSED {
             return Ok(None);
         }
         let [u, w] = self.mesh.ends(e);
         self.mesh.set_mark(e, 0);
-        let v = self.create(p, t)?;
+        let v = self.create(p, t, &mut Pace::new(watch, LOT))?;
         self.mesh.add_mark(u, v, STRAIGHT)?;
         self.mesh.add_mark(v, w, STRAIGHT)?;
         Ok(Some(v))

@@ -13,10 +13,10 @@ use delone_predicates::{lexicographic, orient2d};
 use super::Plane;
 use super::constrained::Outcome;
 use super::marks::CROSSED;
-use super::remove::Removed;
 use super::segments::{Crossed, Detached};
 use crate::base::error::{Error, Result};
 use crate::base::memory::{filled, push, with_room};
+use crate::live::store::Removed;
 
 impl Plane {
     /// Takes a segment out of the mesh: marks of edges go that no other segment needs.

@@ -20,7 +20,7 @@ impl Mesh {
         }
         self.fill_star(v);
         let gained = 2 * u32::from(self.rim.iter().any(|&(_, u)| u == INFINITE));
-        self.counts.ghosts = self.counts.ghosts + gained - lost;
+        self.counts.simplices = self.counts.simplices + 2 + lost - gained;
         self.counts.vertices += 1;
         Ok(())
     }

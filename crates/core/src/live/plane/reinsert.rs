@@ -14,19 +14,22 @@ use super::Plane;
 use super::constrained::{Outcome, are_apart};
 use super::marks::{CROSSED, Reach};
 use super::segments::{Crossed, Detached};
-use super::walk::Place;
 use crate::base::error::{Error, Result};
 use crate::base::memory::{copied, push, with_room};
-use crate::base::watch::Watch;
+use crate::base::watch::{Pace, Watch};
 use crate::constrained::intersection::intersection;
 use crate::constrained::pairs::crossing_pairs_above;
 use crate::constrained::passes;
+use crate::live::store::Place;
 
 /// With more segments than this, and one in so many, all are triangulated again; and so with more
 /// pairs that cross than this for each of them.
 const FEW: usize = 64;
 const ONE_IN: usize = 8;
 const PAIRS: usize = 16;
+
+/// Crossings between two checks for interruption.
+const LOT: usize = 1 << 6;
 
 /// A segment to be put back: its number and its two vertices.
 type Reinserted = (u32, [u32; 2]);
@@ -207,7 +210,9 @@ impl Plane {
         watch: &Watch,
     ) -> Result<Option<Vec<Crossing>>> {
         let mut met = with_room(crossings.len())?;
+        let mut pace = Pace::new(watch, LOT);
         for &(pair, x) in crossings {
+            pace.spend(1)?;
             let v = match self.mesh.place(x, watch)? {
                 Place::At(v) if fresh.contains(&v) => v,
                 Place::At(_) => return Ok(None),
@@ -222,7 +227,7 @@ impl Plane {
                         return Ok(None);
                     }
                     // A crossing that stood at this place before keeps its row.
-                    let v = self.create(x, t)?;
+                    let v = self.create(x, t, &mut pace)?;
                     let known = detached.places.iter().find(|place| place.0 == x);
                     let row = match known {
                         Some(place) => place.1,

@@ -11,22 +11,12 @@ use super::mesh::{INFINITE, Mesh};
 use crate::base::error::{Error, Result};
 use crate::base::memory::{make_room, push};
 use crate::live::rows::NONE;
+use crate::live::store::Removed;
 use crate::mesh::plane::{Code, next, triangle};
 
 /// Tests for each vertex of the mesh that cost as much as a rebuild, and how many are always right.
 const HUB: usize = 16;
 const HUB_LEAST: usize = 1 << 16;
-
-/// What a removal did.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Removed {
-    /// The vertex is removed.
-    Done,
-    /// Nothing: without the vertex, all points are on one line.
-    Flat,
-    /// Nothing: a rebuild is cheaper.
-    Hub,
-}
 
 /// A part of a hole that waits: its range in `rim`, its first edge, and the code beyond its second.
 #[derive(Clone, Copy)]
@@ -51,8 +41,7 @@ impl Mesh {
             Some(&(_, INFINITE)) => 2,
             _ => 0,
         };
-        let finite = 2 * self.counts.vertices - 2 - self.counts.ghosts;
-        if lost > 0 && k as u32 - 2 == finite && self.is_line() {
+        if lost > 0 && k as u32 - 2 == self.counts.simplices && self.is_line() {
             return Ok(Removed::Flat);
         }
         // For each edge of the hole a triangle, what is beyond, and a vertex.
@@ -68,7 +57,7 @@ impl Mesh {
             self.free_record(t);
         }
         self.sites.get_mut(v as usize).near = NONE;
-        self.counts.ghosts = self.counts.ghosts + gained - lost;
+        self.counts.simplices = self.counts.simplices + lost - gained - 2;
         self.counts.vertices -= 1;
         self.work += k;
         Ok(Removed::Done)

@@ -12,6 +12,7 @@ use crate::base::error::{Error, Result};
 use crate::base::memory::with_room;
 use crate::base::watch::Watch;
 use crate::live::chunks::{Chunks, Image};
+use crate::live::kernel::Constraints;
 use crate::live::rows::NONE;
 
 /// A segment. A link is the number of a segment, doubled, plus 1 for its second end.
@@ -73,26 +74,9 @@ pub struct SegmentsImage {
 }
 
 impl Segments {
-    /// No segments.
-    pub fn new(split: bool) -> Result<Self> {
-        Ok(Self {
-            items: Chunks::of(Vec::new())?,
-            first: Chunks::of(Vec::new())?,
-            live: 0,
-            split,
-            crossed: Arc::default(),
-            before: (0, Arc::default()),
-        })
-    }
-
     /// The number of segments that are there.
     pub fn live(&self) -> usize {
         self.live
-    }
-
-    /// The number of the next segment.
-    pub fn total(&self) -> usize {
-        self.items.len()
     }
 
     /// The rows of a segment that is there.
@@ -218,12 +202,6 @@ impl Segments {
         self.first.begin()
     }
 
-    /// Makes room for another step of such an edit.
-    pub fn room(&mut self) -> Result<()> {
-        self.items.room(0)?;
-        self.first.room(0)
-    }
-
     /// Ends an edit that stays.
     pub fn commit(&mut self) {
         self.before.1 = Arc::default();
@@ -237,37 +215,6 @@ impl Segments {
         self.items.take_back() & self.first.take_back()
     }
 
-    /// A snapshot.
-    pub fn image(&mut self, watch: &Watch) -> Result<SegmentsImage> {
-        Ok(SegmentsImage {
-            items: self.items.image(watch)?,
-            first: self.first.image(watch)?,
-            live: self.live,
-            split: self.split,
-            crossed: Arc::clone(&self.crossed),
-        })
-    }
-
-    /// Reserves the memory for [`Self::restore`], with `total` numbers.
-    pub fn make_room(&mut self, image: &SegmentsImage, total: usize) -> Result<()> {
-        self.items.make_room(&image.items)?;
-        self.items.reserve(total.saturating_sub(self.items.len()))?;
-        self.first.make_room(&image.first)
-    }
-
-    /// Restores a snapshot. Numbers below `total` are not used again.
-    pub fn restore(&mut self, image: &SegmentsImage, total: usize) -> Result<()> {
-        self.items.restore(&image.items)?;
-        self.first.restore(&image.first)?;
-        self.live = image.live;
-        self.split = image.split;
-        self.crossed = Arc::clone(&image.crossed);
-        while self.items.len() < total {
-            self.push()?;
-        }
-        Ok(())
-    }
-
     /// The numbers of segments that are there, ascending, and their rows.
     pub fn listed(&self) -> Result<(Vec<i64>, Vec<[i64; 2]>)> {
         let (mut numbers, mut ends) = (with_room(self.live)?, with_room(self.live)?);
@@ -279,10 +226,59 @@ impl Segments {
     }
 }
 
-impl SegmentsImage {
-    /// Bytes that are not shared with `other`.
-    pub fn own_bytes(&self, other: &Self) -> usize {
-        self.items.own_bytes(&other.items) + self.first.own_bytes(&other.first)
+impl Constraints for Segments {
+    type Image = SegmentsImage;
+
+    fn none() -> Result<Self> {
+        Ok(Self {
+            items: Chunks::of(Vec::new())?,
+            first: Chunks::of(Vec::new())?,
+            live: 0,
+            split: false,
+            crossed: Arc::default(),
+            before: (0, Arc::default()),
+        })
+    }
+
+    fn total(&self) -> usize {
+        self.items.len()
+    }
+
+    fn room(&mut self) -> Result<()> {
+        self.items.room(0)?;
+        self.first.room(0)
+    }
+
+    fn image(&mut self, watch: &Watch) -> Result<SegmentsImage> {
+        Ok(SegmentsImage {
+            items: self.items.image(watch)?,
+            first: self.first.image(watch)?,
+            live: self.live,
+            split: self.split,
+            crossed: Arc::clone(&self.crossed),
+        })
+    }
+
+    fn make_room(&mut self, image: &SegmentsImage, total: usize) -> Result<()> {
+        self.items.make_room(&image.items)?;
+        self.items.reserve(total.saturating_sub(self.items.len()))?;
+        self.first.make_room(&image.first)
+    }
+
+    fn restore(&mut self, image: &SegmentsImage, total: usize) -> Result<()> {
+        self.items.restore(&image.items)?;
+        self.first.restore(&image.first)?;
+        self.live = image.live;
+        self.split = image.split;
+        self.crossed = Arc::clone(&image.crossed);
+        while self.items.len() < total {
+            self.push()?;
+        }
+        Ok(())
+    }
+
+    fn own_bytes(image: &SegmentsImage, other: &SegmentsImage) -> usize {
+        image.items.own_bytes(&other.items) + image.first.own_bytes(&other.first)
     }
 }
 
@@ -292,7 +288,7 @@ mod tests {
 
     #[test]
     fn lists_of_rows_follow_insertions_and_removals() {
-        let mut segments = Segments::new(false).unwrap();
+        let mut segments = Segments::none().unwrap();
         let numbers: Vec<u32> = [[0, 1], [1, 2], [2, 2], [1, 0]]
             .into_iter()
             .map(|ends| segments.insert(ends).unwrap())

@@ -3,10 +3,11 @@
 use delone_predicates::{Point2, Sign, orient2d};
 
 use super::mesh::{INFINITE, Mesh};
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
 use crate::base::watch::Watch;
 use crate::live::rows::NONE;
-use crate::locate::{Start, squared};
+use crate::live::store::Place;
+use crate::locate::squared;
 use crate::mesh::plane::{next, prev, triangle};
 
 /// How far a walk goes from the last triangle, in lengths of its edge, squared, before a start is
@@ -21,15 +22,6 @@ const BESIDE: usize = 2;
 
 /// How much work for each vertex a tree lasts.
 const LASTING: usize = 4;
-
-/// Where a point is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
-    /// At a vertex.
-    At(u32),
-    /// In a triangle or on its edge, or strictly outside of the hull edge of a ghost.
-    In(u32),
-}
 
 impl Mesh {
     /// Where `q` is, by a walk from the last triangle or from one that is nearer.
@@ -66,33 +58,13 @@ impl Mesh {
     /// A triangle near `q`, by a tree of starting points, which is built when long walks have cost as
     /// much.
     fn jump(&mut self, q: Point2, watch: &Watch) -> Result<u32> {
-        if self.jump.as_ref().is_some_and(|jump| self.work > jump.1) {
-            self.jump = None;
-        }
-        // Not the vertex at infinity.
-        let sites = &self.sites.items()[1..];
-        if self.jump.is_none() {
-            if self.strolled < (sites.len() / SHARE) as isize {
-                return Ok(self.last);
-            }
-            let start = match Start::of(sites.len(), |i| sites[i].at, watch) {
-                // A walk does without, also where memory for an edit was refused that is taken back.
-                Err(Error::Memory { .. }) => {
-                    self.strolled = 0;
-                    return Ok(self.last);
-                }
-                start => start?,
-            };
-            // Most of its vertices are still there after so much work.
-            self.jump = Some((start, self.work + LASTING * sites.len()));
-            self.strolled = 0;
-        }
-        let Some((start, _)) = &self.jump else {
+        let is_due = self.strolled >= ((self.sites.len() - 1) / SHARE) as isize;
+        let Some(i) = self.near(q, is_due, LASTING, watch)? else {
             return Ok(self.last);
         };
         // The vertex may have gone, and another one may have its place. Most of those beside it have
         // been along the curve since the triangulation was built.
-        let i = start.near(q);
+        let sites = &self.sites.items()[1..];
         let beside = &sites[i.saturating_sub(BESIDE)..sites.len().min(i + BESIDE + 1)];
         let mut best = (self.last, f64::INFINITY);
         for site in beside.iter().filter(|site| site.near != NONE) {

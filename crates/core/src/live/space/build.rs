@@ -1,26 +1,22 @@
 //! A live triangulation from all of its points, by the method for points that do not change.
 
-use delone_predicates::{Point3, lexicographic};
+use delone_predicates::Point3;
 
-use super::mesh::{Counts, INFINITE, Mesh, Record, Site};
+use super::mesh::{INFINITE, Mesh};
 use crate::base::arrays::Arrays;
 use crate::base::error::{Error, Result};
 use crate::base::memory::{filled, with_room};
 use crate::base::watch::{Pace, Watch};
 use crate::delaunay::space::triangulate;
-use crate::live::rows::{NONE, Rows};
+use crate::live::build::{Sites, flat};
+use crate::live::kernel::Built;
+use crate::live::rows::NONE;
+use crate::live::store::{Counts, Record, Site, Store};
 use crate::mesh::space::{FACETS, LIMIT, corner, tetrahedron};
-use crate::order::{order_of, sort, sort_by};
+use crate::order::{order_of, sort};
 
 /// Tetrahedra, or rows, between two checks for interruption.
 const LOT: usize = 1 << 16;
-
-/// The vertex at infinity.
-const AT_INFINITY: Site = Site {
-    at: [f64::NAN; 3],
-    near: NONE,
-    head: NONE,
-};
 
 /// The mesh of `points`, which are at `rows`, ascending, among `total` rows; and if there is no
 /// tetrahedron, the vertices in lexicographic order.
@@ -30,11 +26,12 @@ pub fn built(
     total: usize,
     workers: usize,
     watch: &Watch,
-) -> Result<(Mesh, Rows, Vec<u32>)> {
+) -> Result<Built<Mesh>> {
+    let room = roomy(points.len() + 1);
     match triangulate(points, workers, watch) {
         Ok(made) => {
             let order = order_of(points, workers, watch)?;
-            let mut sites = Sites::of(points, rows, total)?;
+            let mut sites = Sites::of(points, rows, total, room)?;
             let duplicates = made.duplicates;
             let mut vertices = filled(points.len(), 0)?;
             for &[row, _] in &duplicates {
@@ -54,7 +51,7 @@ pub fn built(
             Ok((mesh, sites.own, Vec::new()))
         }
         Err(Error::TooFewInSpace { .. } | Error::Collinear { .. } | Error::Coplanar { .. }) => {
-            flat(points, rows, total, watch)
+            flat(points, rows, total, room, Mesh::of, watch)
         }
         Err(error) => Err(error),
     }
@@ -66,80 +63,11 @@ fn roomy(n: usize) -> usize {
     n + n / 8 + 64
 }
 
-/// Vertices as they are numbered, and their rows.
-struct Sites<'a> {
-    points: &'a [Point3],
-    rows: &'a [u32],
-    sites: Vec<Site>,
-    own: Rows,
-}
-
-impl<'a> Sites<'a> {
-    fn of(points: &'a [Point3], rows: &'a [u32], total: usize) -> Result<Self> {
-        let mut sites = with_room(roomy(points.len() + 1))?;
-        sites.push(AT_INFINITY);
-        Ok(Self {
-            points,
-            rows,
-            sites,
-            own: Rows::gone(total)?,
-        })
-    }
-
-    /// Numbers point i.
-    fn add(&mut self, i: u32) -> u32 {
-        let v = self.sites.len() as u32;
-        self.sites.push(Site {
-            at: self.points[i as usize].map(|x| x + 0.0),
-            near: NONE,
-            head: NONE,
-        });
-        self.attach(i, v);
-        v
-    }
-
-    /// Puts the row of point i at vertex v.
-    fn attach(&mut self, i: u32, v: u32) {
-        let site = &mut self.sites[v as usize];
-        site.head = self.own.attach(self.rows[i as usize], v, site.head);
-    }
-}
-
-/// The vertices of points in one plane.
-fn flat(
-    points: &[Point3],
-    rows: &[u32],
-    total: usize,
-    watch: &Watch,
-) -> Result<(Mesh, Rows, Vec<u32>)> {
-    let mut order = with_room(points.len())?;
-    order.extend(0..points.len() as u32);
-    let point = |i: u32| points[i as usize];
-    let along = |&i: &u32, &j: &u32| lexicographic(point(i), point(j)).then(i.cmp(&j));
-    sort_by(&mut order, watch, along)?;
-    let mut sites = Sites::of(points, rows, total)?;
-    let mut list: Vec<u32> = with_room(points.len())?;
-    for i in order {
-        match list.last() {
-            Some(&v) if sites.sites[v as usize].at == point(i) => sites.attach(i, v),
-            _ => list.push(sites.add(i)),
-        }
-    }
-    let counts = Counts {
-        vertices: list.len() as u32,
-        tetrahedra: 0,
-        record: NONE,
-        site: NONE,
-    };
-    let mesh = Mesh::of(Vec::new(), sites.sites, counts)?;
-    Ok((mesh, sites.own, list))
-}
-
 /// A mesh of these tetrahedra, whose points have these vertices, and of ghosts.
 fn imported(
     arrays: Arrays<4>,
     vertices: &[u32],
-    mut sites: Vec<Site>,
+    mut sites: Vec<Site<3>>,
     watch: &Watch,
 ) -> Result<Mesh> {
     let Arrays {
@@ -172,13 +100,9 @@ fn imported(
     drop((simplices, neighbors));
     sites[INFINITE as usize].near = finite as u32;
     add_ghosts(&mut records, hull, watch)?;
-    let counts = Counts {
-        vertices: sites.len() as u32 - 1,
-        tetrahedra: finite as u32,
-        record: NONE,
-        site: NONE,
-    };
-    Mesh::of(records, sites, counts)
+    let counts = Counts::of(sites.len() - 1, finite);
+    let room = records.capacity();
+    Mesh::with_marks(Store::of(records, sites, counts)?, room)
 }
 
 /// Adds a ghost at each of the facets that have no other side; there is room.

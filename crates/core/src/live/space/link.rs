@@ -3,10 +3,11 @@
 //! An edit is complete before anything in the mesh changes: each facet of a new tetrahedron has met
 //! either another one or a facet around the hole. Then memory is reserved, and the rest cannot fail.
 
-use super::mesh::{INFINITE, Mesh, Record};
+use super::mesh::{INFINITE, Mesh};
 use super::patch::{Patch, Side};
 use crate::base::error::{Error, Result};
 use crate::live::rows::NONE;
+use crate::live::store::Record;
 use crate::mesh::space::{Code, LIMIT, corner, tetrahedron};
 
 impl Mesh {
@@ -55,12 +56,12 @@ impl Mesh {
     /// Writes the new records, links them, and frees those that are left over.
     fn sew(&mut self, patch: &Patch) {
         for &t in &patch.dead {
-            self.counts.tetrahedra -= u32::from(self.infinite_corner(t).is_none());
+            self.counts.simplices -= u32::from(self.infinite_corner(t).is_none());
         }
         for (&corners, &t) in patch.made.iter().zip(&patch.numbers) {
             let [a, b, c, d] = corners;
             *self.records.get_mut(t as usize) = [a, b, c, d, NONE, NONE, NONE, NONE];
-            self.counts.tetrahedra += u32::from(!corners.contains(&INFINITE));
+            self.counts.simplices += u32::from(!corners.contains(&INFINITE));
             for v in corners {
                 self.sites.get_mut(v as usize).near = t;
             }

@@ -1,69 +1,24 @@
-//! The mesh of a live 3-D triangulation: records with ghosts as in `mesh::space`, vertices, and lists of
-//! free ones, in arrays with snapshots.
-//!
-//! The vertex at infinity is vertex 0, so that its number does not depend on how many others there
-//! are.
+//! The mesh of a live triangulation in 3-D: tetrahedra and ghosts with codes as in `mesh::space`.
+
+use std::ops::{Deref, DerefMut};
 
 use delone_predicates::{Point3, Sign, insphere_canonical, orient3d};
 
-pub use super::patch::INFINITE;
 use super::patch::Patch;
 use crate::base::error::Result;
 use crate::base::memory::{make_room, push, zeroed};
-use crate::live::chunks::Chunks;
 use crate::live::rows::NONE;
-use crate::locate::Start;
+pub use crate::live::store::INFINITE;
+use crate::live::store::Store;
 use crate::mesh::space::{Code, FACETS, corner, tetrahedron};
 
-/// Four vertices, positively oriented, then the codes of the facets as seen from the other sides.
-pub type Record = [u32; 8];
-
-/// The fourth word of a record that is not a tetrahedron; its first word is the next one.
-pub const FREE: u32 = u32::MAX;
-
-/// A vertex.
-#[derive(Debug, Clone, Copy)]
-pub struct Site {
-    /// Its coordinates.
-    pub at: Point3,
-    /// A tetrahedron or ghost of which it is a corner; [`NONE`] if there is none.
-    pub near: u32,
-    /// Its smallest row; of a free site, the next one.
-    pub head: u32,
-}
-
-/// What a mesh counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Counts {
-    /// Vertices, without the one at infinity.
-    pub vertices: u32,
-    /// Tetrahedra, without ghosts; 0 if all points are in one plane.
-    pub tetrahedra: u32,
-    /// The first free record, or [`NONE`].
-    pub record: u32,
-    /// The first free site, or [`NONE`].
-    pub site: u32,
-}
-
-/// The mesh.
+/// The mesh. The first four words of a record are the vertices, positively oriented. The place of a vertex
+/// is the number of a record.
 #[derive(Debug)]
 pub struct Mesh {
-    /// Tetrahedra and ghosts.
-    pub records: Chunks<Record>,
-    /// Vertices.
-    pub sites: Chunks<Site>,
-    /// Numbers of them, and where free ones begin.
-    pub counts: Counts,
-    /// The tetrahedron or ghost where the next walk starts; always one if there is any.
-    pub last: u32,
-    /// Tetrahedra visited so far.
-    pub work: usize,
+    pub(super) store: Store<3>,
     /// Walks that started at a sampled vertex: the seed of the next sample.
-    pub samples: u32,
-    /// Steps of long walks since there is no tree.
-    pub strolled: usize,
-    /// A tree of starting points for walks, and the work when it is out of date.
-    pub jump: Option<(Start<3>, usize)>,
+    pub(super) samples: u32,
     /// The edit at hand.
     pub patch: Patch,
     /// For each record, the number of the search that met it last, plus one if it is inside.
@@ -71,37 +26,43 @@ pub struct Mesh {
     search: u32,
 }
 
+// What a mesh has in common with that of 2-D is read and written as if it were here.
+impl Deref for Mesh {
+    type Target = Store<3>;
+
+    #[inline]
+    fn deref(&self) -> &Store<3> {
+        &self.store
+    }
+}
+
+impl DerefMut for Mesh {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut Store<3> {
+        &mut self.store
+    }
+}
+
 impl Mesh {
-    /// A mesh of these records and sites.
-    pub fn of(records: Vec<Record>, sites: Vec<Site>, counts: Counts) -> Result<Self> {
-        let mut marks: Vec<u32> = zeroed(records.capacity())?;
-        marks.truncate(records.len());
-        let (records, sites) = (Chunks::of(records)?, Chunks::of(sites)?);
-        Ok(Self {
-            records,
-            sites,
-            counts,
-            last: 0,
-            work: 0,
+    /// A mesh without marks, which the next search adds.
+    pub fn of(store: Store<3>) -> Self {
+        Self {
+            store,
             samples: 0,
-            strolled: 0,
-            jump: None,
             patch: Patch::default(),
-            marks,
+            marks: Vec::new(),
             search: 0,
+        }
+    }
+
+    /// The same with marks, and with room for more.
+    pub fn with_marks(store: Store<3>, room: usize) -> Result<Self> {
+        let mut marks: Vec<u32> = zeroed(room)?;
+        marks.truncate(store.records.len());
+        Ok(Self {
+            marks,
+            ..Self::of(store)
         })
-    }
-
-    /// Whether there is no tetrahedron: all points are in one plane.
-    #[inline]
-    pub fn is_flat(&self) -> bool {
-        self.counts.tetrahedra == 0
-    }
-
-    /// The coordinates of a vertex.
-    #[inline]
-    pub fn at(&self, v: u32) -> Point3 {
-        self.sites[v as usize].at
     }
 
     /// The corners of a tetrahedron.
@@ -135,12 +96,6 @@ impl Mesh {
     #[inline]
     pub fn apex(&self, e: Code) -> u32 {
         self.records[tetrahedron(e) as usize][corner(e)]
-    }
-
-    /// Whether a record is a tetrahedron or a ghost.
-    #[inline]
-    pub fn is_live(&self, t: u32) -> bool {
-        self.records[t as usize][3] != FREE
     }
 
     /// The corner of `t` at infinity, if it is a ghost.
@@ -222,53 +177,15 @@ impl Mesh {
         }
         self.gather(v)?;
         for &t in &self.patch.dead {
-            self.records.get_mut(t as usize);
+            self.store.records.get_mut(t as usize);
         }
         Ok(())
     }
 
-    /// Takes a free site, or appends one, for a vertex at `p` without rows.
-    pub fn take_site(&mut self, p: Point3) -> Result<u32> {
-        let site = Site {
-            at: p,
-            near: NONE,
-            head: NONE,
-        };
-        let v = self.counts.site;
-        let free = self.sites.len() - 1 - self.counts.vertices as usize;
-        if v == NONE || !self.sites.is_to_be_used(v as usize, free) {
-            self.sites.push(site)?;
-            return Ok(self.sites.len() as u32 - 1);
-        }
-        self.counts.site = self.sites[v as usize].head;
-        *self.sites.get_mut(v as usize) = site;
-        Ok(v)
-    }
-
-    /// Gives a site back.
-    pub fn free_site(&mut self, v: u32) {
-        let head = self.counts.site;
-        let site = self.sites.get_mut(v as usize);
-        (site.near, site.head) = (NONE, head);
-        self.counts.site = v;
-    }
-
-    /// Gives a record back.
-    pub fn free_record(&mut self, t: u32) {
-        *self.records.get_mut(t as usize) = [self.counts.record, 0, 0, FREE, 0, 0, 0, 0];
-        self.counts.record = t;
-    }
-
     /// Takes a free record, or appends one, for which there is room.
     pub fn take_record(&mut self) -> Result<u32> {
-        let t = self.counts.record;
-        let free = self.records.len() - self.counts.tetrahedra as usize;
-        if t == NONE || !self.records.is_to_be_used(t as usize, free) {
-            self.records.push([0; 8])?;
-            return Ok(self.records.len() as u32 - 1);
-        }
-        self.counts.record = self.records[t as usize][0];
-        Ok(t)
+        let used = self.counts.simplices as usize;
+        self.store.take_record(used)
     }
 
     /// Checks the data structure; for tests.
@@ -294,25 +211,9 @@ impl Mesh {
                 }
             }
         }
-        if tetrahedra != self.counts.tetrahedra {
+        if tetrahedra != self.counts.simplices {
             return Err(format!("{tetrahedra} tetrahedra, not {:?}", self.counts));
         }
-        if used > 0 && !self.is_live(self.last) {
-            return Err("the walk starts at a free record".into());
-        }
-        let free = |first: u32, after: &dyn Fn(u32) -> u32| {
-            let listed = |i: u32| (i != NONE).then_some(i);
-            std::iter::successors(listed(first), |&i| listed(after(i)))
-                .take(self.records.len() + self.sites.len() + 1)
-                .count()
-        };
-        let records = free(self.counts.record, &|t| self.records[t as usize][0]);
-        let sites = free(self.counts.site, &|v| self.sites[v as usize].head);
-        if records + used != self.records.len()
-            || sites + 1 + self.counts.vertices as usize != self.sites.len()
-        {
-            return Err(format!("{records} free records, {sites} free sites"));
-        }
-        Ok(())
+        self.store.check(used)
     }
 }

@@ -6,10 +6,8 @@ use std::hash::{BuildHasherDefault, Hasher};
 
 use crate::base::error::{Error, Result};
 use crate::base::memory::push;
+use crate::live::store::INFINITE;
 use crate::mesh::space::{Code, FACETS};
-
-/// The vertex at infinity; its coordinates are NaN.
-pub const INFINITE: u32 = 0;
 
 /// A facet that waits for its other side.
 #[derive(Debug, Clone, Copy)]

@@ -31,21 +31,11 @@ use crate::base::memory::with_room;
 use crate::base::points::collinear;
 use crate::base::watch::Pace;
 use crate::live::rows::NONE;
+use crate::live::store::Removed;
 
 /// Tests for each vertex of the mesh that cost as much as a rebuild, and how many are always right.
 const HUB: usize = 64;
 const HUB_LEAST: usize = 1 << 20;
-
-/// What a removal did.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Removed {
-    /// The vertex is removed.
-    Done,
-    /// Nothing: without the vertex, all points are in one plane.
-    Flat,
-    /// Nothing: a rebuild is cheaper.
-    Hub,
-}
 
 impl Mesh {
     /// Removes vertex `v` from the mesh; its site stays. On an error nothing has changed. With
@@ -84,7 +74,7 @@ impl Mesh {
     /// Whether all tetrahedra are to be replaced.
     fn is_cone(&self) -> bool {
         let finite = |&&t: &&u32| self.infinite_corner(t).is_none();
-        self.patch.dead.iter().filter(finite).count() == self.counts.tetrahedra as usize
+        self.patch.dead.iter().filter(finite).count() == self.counts.simplices as usize
     }
 
     /// Fills the hole with tetrahedra of these corners and with ghosts; `false` if it takes more than

@@ -8,10 +8,11 @@
 use delone_predicates::{Point3, Sign, orient3d};
 
 use super::mesh::{INFINITE, Mesh};
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
 use crate::base::watch::{Pace, Watch};
 use crate::live::rows::NONE;
-use crate::locate::{Start, squared};
+use crate::live::store::Place;
+use crate::locate::squared;
 use crate::mesh::space::{FACETS, corner, tetrahedron};
 use crate::order::random;
 
@@ -22,17 +23,11 @@ const REACH: f64 = 400.0;
 /// Vertices per step of long walks that are worth a tree.
 const SHARE: usize = 32;
 
+/// How much work for each vertex a tree lasts.
+const LASTING: usize = 8;
+
 /// Steps of a walk between two checks for interruption.
 const LOT: usize = 1 << 14;
-
-/// Where a point is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
-    /// At a vertex.
-    At(u32),
-    /// In a tetrahedron or on its boundary, or strictly outside of the hull facet of a ghost.
-    In(u32),
-}
 
 impl Mesh {
     /// Where `q` is.
@@ -53,45 +48,29 @@ impl Mesh {
         let before = self.work;
         self.last = self.walk(from, q, &mut Pace::new(watch, LOT))?;
         if far && self.jump.is_none() {
-            self.strolled += self.work - before;
+            self.strolled += (self.work - before) as isize;
         }
         Ok(self.last)
     }
 
     /// A tetrahedron or ghost near `q`.
     fn jump(&mut self, q: Point3, watch: &Watch) -> Result<u32> {
-        if self.jump.as_ref().is_some_and(|jump| self.work > jump.1) {
-            self.jump = None;
-        }
-        // Not the vertex at infinity.
-        let sites = &self.sites.items()[1..];
-        if self.jump.is_none() && self.strolled > sites.len() / SHARE {
-            let start = match Start::of(sites.len(), |i| sites[i].at, watch) {
-                // A walk does without, also where memory for an edit was refused that is taken back.
-                Err(Error::Memory { .. }) => {
-                    self.strolled = 0;
-                    return Ok(self.sampled(q));
-                }
-                start => start?,
-            };
-            // Most of its vertices are still there after so much work.
-            self.jump = Some((start, self.work + 8 * sites.len()));
-            self.strolled = 0;
-        }
-        let near = match &self.jump {
-            Some((start, _)) => sites.get(start.near(q)).map_or(NONE, |site| site.near),
-            None => return Ok(self.sampled(q)),
+        let is_due = self.strolled > ((self.sites.len() - 1) / SHARE) as isize;
+        let Some(i) = self.near(q, is_due, LASTING, watch)? else {
+            return Ok(self.sampled(q));
         };
+        let near = self.sites.items().get(i + 1).map_or(NONE, |site| site.near);
         Ok(if near == NONE { self.last } else { near })
     }
 
     /// A tetrahedron or ghost at the nearest of a few vertices.
     fn sampled(&mut self, q: Point3) -> u32 {
-        let sites = self.sites.items();
-        let (mut best, mut least) = (self.last, f64::INFINITY);
+        let Self { store, samples, .. } = self;
+        let sites = store.sites.items();
+        let (mut best, mut least) = (store.last, f64::INFINITY);
         for _ in 0..sites.len().isqrt().isqrt() {
-            self.samples = self.samples.wrapping_add(1);
-            let v = (random(self.samples) % sites.len() as u64) as usize;
+            *samples = samples.wrapping_add(1);
+            let v = (random(*samples) % sites.len() as u64) as usize;
             let distance = squared(q, sites[v].at);
             if distance < least && sites[v].near != NONE {
                 (best, least) = (sites[v].near, distance);

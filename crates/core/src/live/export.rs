@@ -1,37 +1,35 @@
 //! The present triangulation as arrays, equal to those of a fresh build up to their order.
 
-use delone_predicates::Point2;
-
-use super::Plane;
-use super::mesh::INFINITE;
+use super::Live;
+use super::kernel::Kernel;
+use super::store::{INFINITE, corners, opposites};
 use crate::base::arrays::Arrays;
 use crate::base::error::Result;
-use crate::base::memory::{filled, with_room};
+use crate::base::memory::{filled, push, with_room};
 use crate::base::watch::{Pace, Watch};
-use crate::live::rows::NONE;
 
 /// Records, or rows, between two checks for interruption.
 const LOT: usize = 1 << 16;
 
 /// A triangulation as arrays.
 #[derive(Debug, Default)]
-pub struct Exported {
+pub struct Exported<const D: usize, const N: usize> {
     /// The coordinates of each row that is there.
-    pub points: Vec<Point2>,
+    pub points: Vec<[f64; D]>,
     /// Their numbers, ascending.
     pub rows: Vec<i64>,
-    /// Triangles, as positions in `rows`, and their neighbors.
-    pub arrays: Arrays<3>,
-    /// For each triangle and corner, whether the edge opposite is part of a segment; nothing if there
+    /// Simplices, as positions in `rows`, and their neighbors.
+    pub arrays: Arrays<N>,
+    /// For each simplex and corner, whether the facet opposite is part of a segment; nothing if there
     /// are not segments.
-    pub constrained: Vec<[bool; 3]>,
+    pub constrained: Vec<[bool; N]>,
     /// `[position, first position of the same point]`, ascending.
     pub duplicates: Vec<[u32; 2]>,
 }
 
-impl Plane {
+impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
     /// The rows that are there, ascending, and their coordinates.
-    pub fn points(&self, watch: &Watch) -> Result<(Vec<i64>, Vec<Point2>)> {
+    pub fn points(&self, watch: &Watch) -> Result<(Vec<i64>, Vec<[f64; D]>)> {
         let mut rows = with_room(self.len())?;
         let mut points = with_room(self.len())?;
         let mut pace = Pace::new(watch, LOT);
@@ -43,8 +41,8 @@ impl Plane {
         Ok((rows, points))
     }
 
-    /// The present triangulation; without triangles if all points are on one line.
-    pub fn export(&self, watch: &Watch) -> Result<Exported> {
+    /// The present triangulation; without simplices if all points are in one line or plane.
+    pub fn export(&self, watch: &Watch) -> Result<Exported<D, N>> {
         let (rows, points) = self.points(watch)?;
         let ranks = self.rows.ranks()?;
         let mut duplicates = Vec::new();
@@ -54,27 +52,28 @@ impl Plane {
             let head = self.mesh.sites[v as usize].head;
             if head != row {
                 let pair = [row, head].map(|row| ranks[row as usize] as u32);
-                crate::base::memory::push(&mut duplicates, pair)?;
+                push(&mut duplicates, pair)?;
             }
         }
         Ok(Exported {
             points,
             rows,
             arrays: self.arrays(&ranks, watch)?,
-            constrained: self.constrained(watch)?,
+            constrained: self.mesh.constrained(watch)?,
             duplicates,
         })
     }
 
-    /// The triangles by the ranks of rows.
-    fn arrays(&self, ranks: &[i32], watch: &Watch) -> Result<Arrays<3>> {
+    /// The simplices by the ranks of rows.
+    fn arrays(&self, ranks: &[i32], watch: &Watch) -> Result<Arrays<N>> {
         let records = self.mesh.records.items();
         let mut number = filled(records.len(), -1i32)?;
         let mut pace = Pace::new(watch, LOT);
         let mut count = 0;
         for (t, number) in (0u32..).zip(&mut number) {
             pace.spend(1)?;
-            if self.mesh.is_live(t) && !self.mesh.corners(t).contains(&INFINITE) {
+            let own: [u32; N] = corners(&records[t as usize]);
+            if self.mesh.is_live(t) && !own.contains(&INFINITE) {
                 *number = count;
                 count += 1;
             }
@@ -89,28 +88,11 @@ impl Plane {
         };
         for (record, _) in records.iter().zip(&number).filter(|(_, n)| **n >= 0) {
             pace.spend(1)?;
-            let [a, b, c, _, ab, bc, ca, _] = *record;
-            arrays.simplices.push([a, b, c].map(|v| rank[v as usize]));
-            let across = [ab, bc, ca].map(|e| number[(e >> 3) as usize]);
+            let simplex = corners(record).map(|v| rank[v as usize]);
+            arrays.simplices.push(simplex);
+            let across = opposites(record).map(|e| number[K::record_of(e) as usize]);
             arrays.neighbors.push(across);
         }
-        debug_assert!(NONE as usize >= ranks.len());
         Ok(arrays)
-    }
-
-    /// Which edges of the triangles are marked.
-    fn constrained(&self, watch: &Watch) -> Result<Vec<[bool; 3]>> {
-        if !self.mesh.has_segments {
-            return Ok(Vec::new());
-        }
-        let mut marked = with_room(self.triangles())?;
-        let mut pace = Pace::new(watch, LOT);
-        for t in 0..self.mesh.records.len() as u32 {
-            pace.spend(1)?;
-            if self.mesh.is_live(t) && !self.mesh.corners(t).contains(&INFINITE) {
-                marked.push([0, 1, 2].map(|k| self.mesh.mark(8 * t + k) != 0));
-            }
-        }
-        Ok(marked)
     }
 }

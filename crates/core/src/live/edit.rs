@@ -2,28 +2,19 @@
 
 use std::ops::Range;
 
-use delone_predicates::{Point2, lexicographic, orient2d};
+use delone_predicates::lexicographic;
 
-use super::mesh::Mesh;
-use super::remove::Removed;
-use super::walk::Place;
-use super::{Plane, build};
+use super::Live;
+use super::kernel::{Constraints, Kernel, Move};
+use super::rows::NONE;
+use super::store::{Place, Removed};
 use crate::base::error::{Error, Result};
-use crate::base::memory::{filled, push, with_room};
-use crate::base::points::{self, LIMIT2};
+use crate::base::memory::{filled, make_room, push, with_room};
+use crate::base::points;
 use crate::base::watch::{IDLE, Pace, Watch};
-use crate::live::rows::NONE;
-use crate::order::{order_of, sort};
+use crate::order::{order_of, sort, sort_by};
 
-/// A batch of more than this share of the vertices, and more points than this, is a rebuild.
-const SHARE_INSERTED: usize = 3;
-const SHARE_REMOVED: usize = 3;
-const SHARE_MOVED: usize = 1;
-/// The same among segments, whose rebuild costs more, while an insertion or a removal costs as much. A
-/// point that moves far is removed and inserted.
-const SHARE_INSERTED_AMONG: usize = 1;
-const SHARE_REMOVED_AMONG: usize = 3;
-const SHARE_MOVED_AMONG: usize = 2;
+/// A batch of at most this many points is never a rebuild.
 const FEW: usize = 64;
 
 /// A batch of more than this share of the vertices needs no tree of starting points.
@@ -32,7 +23,7 @@ const DENSE: usize = 64;
 /// Points between two checks for interruption.
 const LOT: usize = 1 << 10;
 
-/// Triangles that an edit may visit on average, for each doubling of the number of points; a batch
+/// Records that an edit may visit on average, for each doubling of the number of points; a batch
 /// that needs more, such as one on lines that nearly coincide, is a rebuild.
 const BUDGET: usize = 16;
 
@@ -40,32 +31,28 @@ const BUDGET: usize = 16;
 enum Outcome {
     /// It is done.
     Done,
-    /// A rebuild is cheaper, or needed because there is no triangle.
+    /// A rebuild is cheaper, or needed because there is no simplex.
     Rebuild,
 }
 
-/// A row, its vertex, and its point, in the order in which they are edited.
-type Move = (u32, u32, Point2);
-
-impl Plane {
+impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
     /// Inserts points and returns their rows. On any error nothing has changed.
     pub fn insert(
         &mut self,
-        input: &[Point2],
+        input: &[[f64; D]],
         workers: usize,
         watch: &Watch,
     ) -> Result<Range<usize>> {
         points::scan(input)?;
         let found = self.mesh.sites.len() + input.len();
-        if found > LIMIT2 {
-            let limit = LIMIT2;
+        if found > K::LIMIT {
+            let limit = K::LIMIT;
             return Err(Error::TooMany { found, limit });
         }
         let first = self.rows.total();
         self.rows.reserve(input.len())?;
-        if self.has_segments() {
-            let whole = !self.is_incremental(input.len(), SHARE_INSERTED_AMONG);
-            return self.insert_among(input, whole, workers, watch);
+        if let Some(made) = K::insert_among(self, input, workers, watch)? {
+            return Ok(made);
         }
         if let [p] = *input {
             return self.insert_one(p.map(|x| x + 0.0), watch);
@@ -73,14 +60,13 @@ impl Plane {
         if input.is_empty() {
             return Ok(first..first);
         }
-        if self.is_incremental(input.len(), SHARE_INSERTED) {
+        if self.is_incremental(input.len(), K::SHARES[0]) {
             let mut targets = filled(input.len(), NONE)?;
             let mut made = with_room(input.len())?;
-            // Along the curve, the last triangle is near.
-            let is_dense = input.len() > self.vertices() / DENSE;
-            self.mesh.strolled = if is_dense { isize::MIN / 2 } else { 0 };
+            // Along the curve, the last simplex is near.
+            self.mesh.prepare(input.len() > self.vertices() / DENSE);
             let done = self.insert_along(input, &mut targets, &mut made, watch);
-            self.mesh.strolled = 0;
+            self.mesh.prepare(false);
             let done = match done {
                 Ok(Outcome::Rebuild) => self.rebuild_with(input, workers, watch),
                 Ok(Outcome::Done) => {
@@ -91,7 +77,7 @@ impl Plane {
             };
             if done.is_err() {
                 for &v in made.iter().rev() {
-                    self.mesh.unlink(v, true)?;
+                    self.mesh.unlink(v, true, &mut Pace::new(&IDLE, LOT))?;
                     self.mesh.free_site(v);
                 }
             }
@@ -103,52 +89,48 @@ impl Plane {
     }
 
     /// Whether a batch is edited point by point.
-    fn is_incremental(&self, count: usize, share: usize) -> bool {
+    pub(super) fn is_incremental(&self, count: usize, share: usize) -> bool {
         !self.mesh.is_flat() && (count <= FEW || count <= self.vertices() / share)
     }
 
     /// Inserts one point.
-    fn insert_one(&mut self, p: Point2, watch: &Watch) -> Result<Range<usize>> {
+    fn insert_one(&mut self, p: [f64; D], watch: &Watch) -> Result<Range<usize>> {
         let row = self.rows.total();
-        if self.mesh.is_flat() && !self.insert_in_line(p)? {
+        if self.mesh.is_flat() && !self.insert_flat(p)? {
             self.rebuild_with(&[p], 1, watch)?;
         } else if !self.mesh.is_flat() {
             let target = match self.mesh.place(p, watch)? {
                 Place::At(v) => v,
-                Place::In(t) => self.create(p, t)?,
+                Place::In(t) => self.create(p, t, &mut Pace::new(watch, LOT))?,
             };
             self.attach_all(&[target])?;
         }
         Ok(row..row + 1)
     }
 
-    /// Inserts a vertex at `p`, which is in triangle or ghost `t`.
-    pub(super) fn create(&mut self, p: Point2, t: u32) -> Result<u32> {
+    /// Inserts a vertex at `p`, which is in simplex or ghost `t`.
+    pub(super) fn create(&mut self, p: [f64; D], t: u32, pace: &mut Pace) -> Result<u32> {
         let v = self.mesh.take_site(p)?;
-        if let Err(error) = self.mesh.insert(v, t) {
+        if let Err(error) = self.mesh.insert(v, t, pace) {
             self.mesh.free_site(v);
             return Err(error);
         }
         Ok(v)
     }
 
-    /// Inserts a point where there is no triangle; `false` if there will be one.
-    fn insert_in_line(&mut self, p: Point2) -> Result<bool> {
-        let at = |v: u32| self.mesh.at(v);
-        if let [a, .., b] = self.line[..]
-            && !orient2d(at(a), at(b), p).is_zero()
-        {
+    /// Inserts a point where there is no simplex; `false` if there will be one.
+    fn insert_flat(&mut self, p: [f64; D]) -> Result<bool> {
+        if self.mesh.spans(&self.flat, p) {
             return Ok(false);
         }
-        let place = self
-            .line
-            .binary_search_by(|&v| lexicographic(self.mesh.at(v), p));
-        let target = match place {
-            Ok(i) => self.line[i],
+        let mesh = &self.mesh;
+        let order = |&v: &u32| lexicographic(mesh.at(v), p);
+        let target = match self.flat.binary_search_by(order) {
+            Ok(i) => self.flat[i],
             Err(i) => {
-                crate::base::memory::make_room(&mut self.line, 1)?;
+                make_room(&mut self.flat, 1)?;
                 let v = self.mesh.take_site(p)?;
-                self.line.insert(i, v);
+                self.flat.insert(i, v);
                 self.mesh.counts.vertices += 1;
                 v
             }
@@ -160,13 +142,13 @@ impl Plane {
     /// Inserts points along the curve: the vertex of each goes to `targets`, new ones to `made`.
     fn insert_along(
         &mut self,
-        input: &[Point2],
+        input: &[[f64; D]],
         targets: &mut [u32],
         made: &mut Vec<u32>,
         watch: &Watch,
     ) -> Result<Outcome> {
         self.mesh.sites.reserve(input.len())?;
-        self.mesh.records.reserve(2 * input.len())?;
+        self.mesh.records.reserve(K::RECORDS * input.len())?;
         let mut pace = Pace::new(watch, LOT);
         let mut budget = self.budget(input.len());
         for part in order_of(input, 1, watch)? {
@@ -178,7 +160,7 @@ impl Plane {
                 targets[i as usize] = match self.mesh.place(p, watch)? {
                     Place::At(v) => v,
                     Place::In(t) => {
-                        let v = self.create(p, t)?;
+                        let v = self.create(p, t, &mut pace)?;
                         made.push(v);
                         v
                     }
@@ -223,8 +205,16 @@ impl Plane {
         self.mesh.set_head(v, head);
     }
 
+    /// Makes room for another step of an edit that may be taken back.
+    pub(super) fn room(&mut self) -> Result<()> {
+        self.mesh.records.room(0)?;
+        self.mesh.sites.room(0)?;
+        self.rows.room()?;
+        self.segments.room()
+    }
+
     /// Replaces the triangulation by that of its points and of these.
-    fn rebuild_with(&mut self, more: &[Point2], workers: usize, watch: &Watch) -> Result<()> {
+    fn rebuild_with(&mut self, more: &[[f64; D]], workers: usize, watch: &Watch) -> Result<()> {
         let total = self.rows.total();
         let mut rows = with_room(self.len() + more.len())?;
         let mut points = with_room(self.len() + more.len())?;
@@ -240,21 +230,21 @@ impl Plane {
     /// Replaces the triangulation by that of `points` at `rows`.
     fn rebuild(
         &mut self,
-        points: &[Point2],
+        points: &[[f64; D]],
         rows: &[u32],
         total: usize,
         workers: usize,
         watch: &Watch,
     ) -> Result<()> {
-        let made = build::built(points, rows, total, workers, watch)?;
-        (self.mesh, self.rows, self.line) = made;
+        let made = K::built(points, rows, total, workers, watch)?;
+        (self.mesh, self.rows, self.flat) = made;
         Ok(())
     }
 
     /// The vertices of `rows` that are there, each with its row, in the order of the vertices, which is
     /// that of the curve if most of them were built at once. A row that is gone, or named twice, is an
     /// error.
-    fn by_vertex(&self, rows: &[i64], watch: &Watch) -> Result<Vec<(u32, u32)>> {
+    pub(super) fn by_vertex(&self, rows: &[i64], watch: &Watch) -> Result<Vec<(u32, u32)>> {
         let mut pairs = with_room(rows.len())?;
         for &row in rows {
             match self.rows.vertex(row) {
@@ -272,33 +262,19 @@ impl Plane {
     /// Removes rows, at which no segments end. On any error nothing has changed.
     pub fn remove(&mut self, rows: &[i64], workers: usize, watch: &Watch) -> Result<()> {
         let pairs = self.by_vertex(rows, watch)?;
-        if self.has_segments() {
-            let whole = !self.is_incremental(pairs.len(), SHARE_REMOVED_AMONG);
-            self.remove_among(&pairs, false, whole, workers, watch)?;
-            return Ok(());
+        match K::remove_among(self, &pairs, workers, watch)? {
+            Some(()) => Ok(()),
+            None => self.remove_alone(&pairs, workers, watch),
         }
-        self.remove_alone(&pairs, workers, watch)
-    }
-
-    /// Removes rows and the segments that end there, whose numbers are returned, ascending. On any
-    /// error nothing has changed.
-    pub fn remove_with_segments(
-        &mut self,
-        rows: &[i64],
-        workers: usize,
-        watch: &Watch,
-    ) -> Result<Vec<i64>> {
-        let pairs = self.by_vertex(rows, watch)?;
-        if self.has_segments() {
-            let whole = !self.is_incremental(pairs.len(), SHARE_REMOVED_AMONG);
-            return self.remove_among(&pairs, true, whole, workers, watch);
-        }
-        self.remove_alone(&pairs, workers, watch)?;
-        Ok(Vec::new())
     }
 
     /// Removes rows where there are no segments, with their vertices.
-    fn remove_alone(&mut self, pairs: &[(u32, u32)], workers: usize, watch: &Watch) -> Result<()> {
+    pub(super) fn remove_alone(
+        &mut self,
+        pairs: &[(u32, u32)],
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<()> {
         let mut lost = with_room(pairs.len())?;
         for group in pairs.chunk_by(|a, b| a.0 == b.0) {
             let v = group[0].0;
@@ -307,9 +283,11 @@ impl Plane {
                 .has_rows(self.mesh.sites[v as usize].head, group.len())
             {
                 lost.push(v);
+            } else {
+                self.mesh.rename(v)?;
             }
         }
-        if lost.is_empty() || self.is_incremental(lost.len(), SHARE_REMOVED) {
+        if lost.is_empty() || self.is_incremental(lost.len(), K::SHARES[1]) {
             let mut done = 0;
             let outcome = match self.unlink_all(&lost, &mut done, watch) {
                 Ok(Outcome::Done) => {
@@ -339,7 +317,7 @@ impl Plane {
         let mut pace = Pace::new(watch, LOT);
         for &v in lost {
             pace.spend(1)?;
-            match self.mesh.unlink(v, false)? {
+            match self.mesh.unlink(v, false, &mut pace)? {
                 Removed::Done => *done += 1,
                 Removed::Flat | Removed::Hub => return Ok(Outcome::Rebuild),
             }
@@ -373,7 +351,7 @@ impl Plane {
     pub fn relocate(
         &mut self,
         rows: &[i64],
-        input: &[Point2],
+        input: &[[f64; D]],
         workers: usize,
         watch: &Watch,
     ) -> Result<()> {
@@ -383,7 +361,7 @@ impl Plane {
             let message = format!("{rows} rows cannot move to {points} points");
             return Err(Error::Shape(message));
         }
-        let mut moves: Vec<Move> = with_room(rows.len())?;
+        let mut moves: Vec<Move<D>> = with_room(rows.len())?;
         if let ([row], [p]) = (rows, input) {
             let (v, row) = self.by_vertex(&[*row], watch)?[0];
             moves.push((v, row, p.map(|x| x + 0.0)));
@@ -397,11 +375,10 @@ impl Plane {
                 moves.push((v, row, p.map(|x| x + 0.0)));
             }
         }
-        if self.has_segments() {
-            let whole = !self.is_incremental(moves.len(), SHARE_MOVED_AMONG);
-            return self.relocate_among(&moves, whole, workers, watch);
+        if K::relocate_among(self, &moves, workers, watch)?.is_some() {
+            return Ok(());
         }
-        let old = match self.is_incremental(moves.len(), SHARE_MOVED) {
+        let old = match self.is_incremental(moves.len(), K::SHARES[2]) {
             false => return self.rebuild_moved(moves, workers, watch),
             true => with_room(moves.len())?,
         };
@@ -411,8 +388,8 @@ impl Plane {
     /// Moves rows one after another; `old` has room for their old points.
     fn relocate_all(
         &mut self,
-        moves: Vec<Move>,
-        mut old: Vec<(u32, Point2)>,
+        moves: Vec<Move<D>>,
+        mut old: Vec<(u32, [f64; D])>,
         workers: usize,
         watch: &Watch,
     ) -> Result<()> {
@@ -448,7 +425,7 @@ impl Plane {
     }
 
     /// The point of a row that is there.
-    fn point(&self, row: u32) -> Point2 {
+    fn point(&self, row: u32) -> [f64; D] {
         let v = self.rows.vertex(i64::from(row)).unwrap_or_default();
         self.mesh.at(v)
     }
@@ -458,7 +435,7 @@ impl Plane {
     fn relocate_one(
         &mut self,
         row: u32,
-        p: Point2,
+        p: [f64; D],
         always: bool,
         watch: &Watch,
     ) -> Result<Outcome> {
@@ -468,9 +445,13 @@ impl Plane {
             return Ok(Outcome::Done);
         }
         if !self.rows.is_single(row) {
+            self.mesh.rename(v)?;
             let target = match self.mesh.place(p, watch)? {
-                Place::At(w) => w,
-                Place::In(t) => self.create(p, t)?,
+                Place::At(w) => {
+                    self.mesh.rename(w)?;
+                    w
+                }
+                Place::In(t) => self.create(p, t, &mut Pace::new(watch, LOT))?,
             };
             self.detach(row, v);
             self.attach(row, target);
@@ -479,19 +460,23 @@ impl Plane {
         if self.mesh.shift(v, p)? {
             return Ok(Outcome::Done);
         }
-        if self.mesh.unlink(v, always)? != Removed::Done {
+        let mut pace = Pace::new(watch, LOT);
+        if self.mesh.unlink(v, always, &mut pace)? != Removed::Done {
             return Ok(Outcome::Rebuild);
         }
         let placed = match self.mesh.place(p, watch) {
-            Ok(Place::At(w)) => {
-                self.detach(row, v);
-                self.mesh.free_site(v);
-                self.attach(row, w);
-                return Ok(Outcome::Done);
-            }
+            Ok(Place::At(w)) => match self.mesh.rename(w) {
+                Ok(()) => {
+                    self.detach(row, v);
+                    self.mesh.free_site(v);
+                    self.attach(row, w);
+                    return Ok(Outcome::Done);
+                }
+                Err(error) => Err(error),
+            },
             Ok(Place::In(t)) => {
                 self.mesh.sites.get_mut(v as usize).at = p;
-                self.mesh.insert(v, t)
+                self.mesh.insert(v, t, &mut pace)
             }
             Err(error) => Err(error),
         };
@@ -504,10 +489,10 @@ impl Plane {
     }
 
     /// Replaces the triangulation by that of its points after these moves.
-    fn rebuild_moved(&mut self, moves: Vec<Move>, workers: usize, watch: &Watch) -> Result<()> {
+    fn rebuild_moved(&mut self, moves: Vec<Move<D>>, workers: usize, watch: &Watch) -> Result<()> {
         let mut moved = moves;
-        let by_row = |a: &Move, b: &Move| a.1.cmp(&b.1);
-        crate::order::sort_by(&mut moved, watch, by_row)?;
+        let by_row = |a: &Move<D>, b: &Move<D>| a.1.cmp(&b.1);
+        sort_by(&mut moved, watch, by_row)?;
         let mut moved = moved.into_iter().peekable();
         let mut rows = with_room(self.len())?;
         let mut points = with_room(self.len())?;
@@ -521,9 +506,9 @@ impl Plane {
 }
 
 /// Inserts a vertex again that was removed from the mesh, at the coordinates of its site.
-fn relink(mesh: &mut Mesh, v: u32) -> Result<()> {
+fn relink<K: Kernel<D, N>, const D: usize, const N: usize>(mesh: &mut K, v: u32) -> Result<()> {
     match mesh.place(mesh.at(v), &IDLE)? {
-        Place::In(t) => mesh.insert(v, t),
+        Place::In(t) => mesh.insert(v, t, &mut Pace::new(&IDLE, LOT)),
         Place::At(_) => Err(Error::Internal("a removed vertex is still there".into())),
     }
 }
