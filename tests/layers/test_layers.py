@@ -62,6 +62,7 @@ BASE: dict[str, set[str]] = {
     "error": {"delone_predicates"},
     "memory": {"error", "libc"},
     "watch": {"error"},
+    "sets": {"error", "memory"},
     "parallel": GROUND,
     "points": {"error", "memory", "delone_predicates"},
     "proof": GROUND,

@@ -8,5 +8,6 @@ pub mod memory;
 pub(crate) mod parallel;
 pub mod points;
 pub mod proof;
+pub(crate) mod sets;
 pub mod watch;
 pub(crate) mod wide;

@@ -23,7 +23,6 @@ mod tree;
 mod triangles;
 
 pub use antipodes::antipodes;
-pub(crate) use components::Sets;
 pub use components::components;
 pub use edges::{Skeleton, not_longer};
 pub use influence::influence;

@@ -15,13 +15,13 @@ use std::cmp::Ordering;
 use delone_predicates::proximity::shorter;
 use delone_predicates::{Point2, Sign};
 
-use super::components::Sets;
 use super::edges::{SHARE, Skeleton, sorted};
 use super::tree::{certainly_above, squared};
 use super::triangles::filtered;
 use crate::base::error::Result;
 use crate::base::memory::{filled, with_room};
 use crate::base::parallel;
+use crate::base::sets::Sets;
 use crate::base::watch::{Pace, Watch};
 use crate::order::{sort_by, sort_shared};
 
@@ -86,7 +86,7 @@ fn kruskal<const D: usize>(
     for &(_, i) in &items {
         pace.spend(1)?;
         let [a, b] = edges[i as usize];
-        chosen[i as usize] = sets.join(a, b);
+        chosen[i as usize] = sets.join(a as u32, b as u32);
     }
     Ok(chosen)
 }

@@ -10,6 +10,7 @@ use super::directions::units;
 use crate::base::error::{Error, Result};
 use crate::base::memory::{filled, push, with_room};
 use crate::base::parallel;
+use crate::base::sets::Sets;
 use crate::base::watch::{Pace, Watch};
 
 /// Facets that are compared together.
@@ -119,22 +120,19 @@ impl Facets<'_> {
 
     /// The vertex of each facet, and the first facet of each vertex.
     fn vertices(&self, tied: &[u8], pace: &mut Pace) -> Result<(Vec<i32>, Vec<i32>)> {
-        let mut parent: Vec<u32> = with_room(tied.len())?;
-        parent.extend(0..tied.len() as u32);
+        // The smallest facet represents those at a vertex.
+        let mut sets = Sets::of(tied.len())?;
         for t in (0..tied.len()).filter(|&t| tied[t] != 0) {
             pace.spend(1)?;
             for k in (0..3).filter(|k| tied[t] >> k & 1 == 1) {
-                let a = root(&mut parent, t as u32);
-                let b = root(&mut parent, self.neighbors[t][k] as u32);
-                // The smallest facet represents them.
-                parent[a.max(b) as usize] = a.min(b);
+                sets.join(t as u32, self.neighbors[t][k] as u32);
             }
         }
         let mut vertex: Vec<i32> = with_room(tied.len())?;
         let mut facet = with_room(tied.len())?;
         for t in 0..tied.len() as u32 {
             pace.spend(1)?;
-            let first = root(&mut parent, t);
+            let first = sets.root(t);
             if first == t {
                 vertex.push(facet.len() as i32);
                 facet.push(t as i32);
@@ -210,13 +208,4 @@ impl Facets<'_> {
         }
         Ok(())
     }
-}
-
-/// The representative of a facet.
-fn root(parent: &mut [u32], mut t: u32) -> u32 {
-    while parent[t as usize] != t {
-        parent[t as usize] = parent[parent[t as usize] as usize];
-        t = parent[t as usize];
-    }
-    t
 }

@@ -7,8 +7,9 @@
 use delone_predicates::Point2;
 
 use crate::base::error::Result;
-use crate::base::memory::{copied, filled, with_room};
+use crate::base::memory::{copied, filled};
 use crate::base::points::Extent;
+use crate::base::sets::Sets;
 
 /// The most columns and rows of the grid.
 const MOST: f64 = 1024.0;
@@ -144,16 +145,7 @@ fn meets(cell: Extent, [ax, ay, bx, by]: [f64; 4], close: f64) -> bool {
 /// Groups of untouched polygons that are connected by common edges, numbered by their first
 /// members.
 fn groups(starts: &[i32], ridges: &[i32], free: &[bool]) -> Result<(Vec<i32>, usize)> {
-    let mut root = with_room(free.len())?;
-    root.extend(0..free.len() as u32);
-    // Path halving; roots are the least members, so paths descend.
-    fn find(root: &mut [u32], mut i: u32) -> u32 {
-        while root[i as usize] != i {
-            root[i as usize] = root[root[i as usize] as usize];
-            i = root[i as usize];
-        }
-        i
-    }
+    let mut sets = Sets::of(free.len())?;
     let most = ridges.iter().copied().max().unwrap_or(-1);
     let mut first = filled((most + 1) as usize, u32::MAX)?;
     for (i, _) in (0_u32..).zip(free).filter(|(_, free)| **free) {
@@ -164,22 +156,10 @@ fn groups(starts: &[i32], ridges: &[i32], free: &[bool]) -> Result<(Vec<i32>, us
                 *other = i;
                 continue;
             }
-            let (a, b) = (find(&mut root, *other), find(&mut root, i));
-            root[a.max(b) as usize] = a.min(b);
+            sets.join(*other, i);
         }
     }
-    let mut group = filled(free.len(), -1)?;
-    let mut count = 0;
-    for i in (0..free.len()).filter(|&i| free[i]) {
-        let top = find(&mut root, i as u32) as usize;
-        if top == i {
-            group[i] = count;
-            count += 1;
-        } else {
-            group[i] = group[top];
-        }
-    }
-    Ok((group, count as usize))
+    sets.numbered(|i| free[i])
 }
 
 #[cfg(test)]

@@ -13,8 +13,8 @@
 use super::hierarchy::Hierarchy;
 use crate::base::error::Result;
 use crate::base::memory::{filled, push, with_room};
+use crate::base::sets::Sets;
 use crate::base::watch::{Pace, Watch};
-use crate::graphs::Sets;
 
 /// Merges between two checks for interruption.
 const LOT: usize = 1 << 14;
@@ -105,8 +105,8 @@ fn merges(hierarchy: &Hierarchy, n: usize, least: u32, watch: &Watch) -> Result<
     let mut pace = Pace::new(watch, LOT);
     for (link, &level) in hierarchy.links.iter().zip(&hierarchy.levels) {
         pace.spend(1)?;
-        let roots = link.ends.map(|row| sets.root(row as i32));
-        sets.join(link.ends[0] as i32, link.ends[1] as i32);
+        let roots = link.ends.map(|row| sets.root(row));
+        sets.join(link.ends[0], link.ends[1]);
         let parts = roots.map(|root| nodes[root as usize]);
         let mut merge = Merge {
             parts,

@@ -18,8 +18,9 @@ use crate::base::error::Result;
 use crate::base::memory::{filled, with_room};
 use crate::base::parallel;
 use crate::base::points::Extent;
+use crate::base::sets::Sets;
 use crate::base::watch::{Pace, Watch};
-use crate::graphs::{Sets, Tree, certainly_above, squared, squared_gap};
+use crate::graphs::{Tree, certainly_above, squared, squared_gap};
 
 /// Points per task.
 const SHARE: usize = 1 << 10;
@@ -67,11 +68,7 @@ pub fn density<const D: usize>(
     let mut first = filled(tree.len(), i32::MAX)?;
     let mut roots = with_room(tree.len())?;
     for (place, &home) in homes.iter().enumerate() {
-        let root = if home == NONE {
-            NONE
-        } else {
-            sets.root(home as i32)
-        };
+        let root = if home == NONE { NONE } else { sets.root(home) };
         roots.push(root);
         if root != NONE {
             let row = tree.rows[place] as i32;
@@ -356,7 +353,7 @@ impl<'a, 'b, const D: usize> Joined<'a, 'b, D> {
         for a in places.clone().filter(|&a| self.cores.is_core[a]) {
             for b in a + 1..places.end {
                 if self.cores.is_core[b] && self.ball.joins(tree.points[a], tree.points[b]) {
-                    self.sets.join(a as i32, b as i32);
+                    self.sets.join(a as u32, b as u32);
                 }
             }
         }
@@ -370,7 +367,7 @@ impl<'a, 'b, const D: usize> Joined<'a, 'b, D> {
         let mut place = NONE;
         let mut see = |sets: &mut Sets, other: u32| {
             place = other;
-            let found = sets.root(other as i32);
+            let found = sets.root(other);
             *root.get_or_insert(found) == found
         };
         let is_one = if level == 0 {
@@ -413,7 +410,7 @@ impl<'a, 'b, const D: usize> Joined<'a, 'b, D> {
     /// Whether the core points of two boxes are in one cluster, as far as that is known.
     fn are_one(&mut self, a: Node, b: Node) -> bool {
         let (a, b) = (self.one[a.0][a.1], self.one[b.0][b.1]);
-        a != NONE && b != NONE && self.sets.root(a as i32) == self.sets.root(b as i32)
+        a != NONE && b != NONE && self.sets.root(a) == self.sets.root(b)
     }
 
     /// Joins core points of two lowest boxes.
@@ -423,10 +420,10 @@ impl<'a, 'b, const D: usize> Joined<'a, 'b, D> {
         self.pace.spend(ones.len() * others.len())?;
         for p in ones.filter(|&p| self.cores.is_core[p]) {
             for q in others.clone().filter(|&q| self.cores.is_core[q]) {
-                if self.sets.root(p as i32) != self.sets.root(q as i32)
+                if self.sets.root(p as u32) != self.sets.root(q as u32)
                     && self.ball.joins(tree.points[p], tree.points[q])
                 {
-                    self.sets.join(p as i32, q as i32);
+                    self.sets.join(p as u32, q as u32);
                     if self.are_one((0, a), (0, b)) {
                         return Ok(());
                     }

@@ -9,8 +9,9 @@ use std::cmp::Ordering;
 use super::link::{Link, Span};
 use crate::base::error::Result;
 use crate::base::memory::{filled, with_room};
+use crate::base::sets::Sets;
 use crate::base::watch::{Pace, Watch};
-use crate::graphs::{Sets, certainly_above};
+use crate::graphs::certainly_above;
 use crate::order::{sort_by, sort_shared};
 
 /// Edges between two checks for interruption.
@@ -129,8 +130,8 @@ pub fn linkage(hierarchy: &Hierarchy, n: usize, watch: &Watch) -> Result<Vec<[f6
     let mut pace = Pace::new(watch, LOT);
     for (i, (link, &level)) in hierarchy.links.iter().zip(&hierarchy.levels).enumerate() {
         pace.spend(1)?;
-        let roots = link.ends.map(|v| sets.root(v as i32) as usize);
-        sets.join(link.ends[0] as i32, link.ends[1] as i32);
+        let roots = link.ends.map(|v| sets.root(v) as usize);
+        sets.join(link.ends[0], link.ends[1]);
         let root = roots[0].min(roots[1]);
         let [a, b] = roots.map(|root| clusters[root]);
         let size = sizes[roots[0]] + sizes[roots[1]];

@@ -24,8 +24,9 @@ use super::link::{Link, Span};
 use crate::base::error::{Error, Result};
 use crate::base::memory::{filled, with_room};
 use crate::base::parallel;
+use crate::base::sets::Sets;
 use crate::base::watch::{Pace, Watch};
-use crate::graphs::{Sets, Tree, certainly_above, squared, squared_gap};
+use crate::graphs::{Tree, certainly_above, squared, squared_gap};
 
 /// Points per task.
 const SHARE: usize = 1 << 10;
@@ -108,7 +109,7 @@ fn spanning<const D: usize>(
         let before = links.len();
         for &place in &chosen {
             let ends = [place, known[place as usize].other];
-            if sets.join(ends[0] as i32, ends[1] as i32) {
+            if sets.join(ends[0], ends[1]) {
                 let span = forest.span(ends[0], ends[1]);
                 links.push(Link { ends, span });
             }
@@ -344,7 +345,7 @@ impl<'a, const D: usize> Forest<'a, D> {
         sizes.fill(0);
         for (place, component) in self.components.iter_mut().enumerate() {
             pace.spend(1)?;
-            *component = sets.root(place as i32);
+            *component = sets.root(place as u32);
             sizes[*component as usize] += 1;
         }
         for level in 0..self.boxes.len() {

@@ -8,7 +8,7 @@ use super::judge::{cross, dot, minus};
 use super::mesh::{Mesh, Side, edge};
 use crate::base::error::{Error, Result};
 use crate::base::memory::{push, with_room};
-use crate::graphs::Sets;
+use crate::base::sets::Sets;
 
 /// A wall at an edge: the edge, the wall's number, its third vertex, and a side of it.
 type AtEdge = ([u32; 2], u32, u32, Side);
@@ -47,7 +47,7 @@ pub fn collect(mesh: &mut Mesh, source: &[i32], markers: &[i32]) -> Result<()> {
                     // On two sides: the normals from the edge are opposite.
                     && dot(cross(minus(b, a), minus(c, a)), cross(minus(b, a), minus(d, a))) < 0.0);
             if one {
-                sets.join(first as i32, second as i32);
+                sets.join(first, second);
             }
         }
         rest = &others[same..];

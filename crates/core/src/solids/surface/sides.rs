@@ -13,9 +13,9 @@ use delone_predicates::{Point3, Sign, orient2d, orient3d};
 use super::contact::Projection;
 use super::edges::{Edges, ends};
 use crate::base::error::Result;
-use crate::base::memory::{filled, push, with_room};
+use crate::base::memory::{push, with_room};
+use crate::base::sets::Sets;
 use crate::base::watch::{Pace, Watch};
-use crate::graphs::Sets;
 
 /// Edges between two checks for interruption.
 const LOT: usize = 1 << 14;
@@ -28,23 +28,11 @@ pub fn components(faces: usize, edges: &Edges, watch: &Watch) -> Result<(Vec<i32
     for edge in edges.each() {
         pace.spend(1)?;
         for pair in edge.windows(2) {
-            sets.join((pair[0] / 3) as i32, (pair[1] / 3) as i32);
+            sets.join(pair[0] / 3, pair[1] / 3);
         }
     }
-    let mut labels = filled(faces, 0_i32)?;
-    let mut count = 0;
-    for face in 0..faces {
-        pace.spend(1)?;
-        let root = sets.root(face as i32) as usize;
-        // Roots are the first of their sets.
-        labels[face] = if root == face {
-            count += 1;
-            count as i32 - 1
-        } else {
-            labels[root]
-        };
-    }
-    Ok((labels, count))
+    let (labels, count) = sets.numbered(|_| true)?;
+    Ok((labels, count as u32))
 }
 
 /// The number of sets of sides, and the triangles with both sides in one set, ascending. The
@@ -71,7 +59,7 @@ pub fn regions(
         let low = ends(faces, edge[0]);
         let low = low[0].min(low[1]);
         // The front of a triangle faces the positive rotation around its own direction.
-        let side = |half: u32, front: bool| (2 * (half / 3) + u32::from(!front)) as i32;
+        let side = |half: u32, front: bool| 2 * (half / 3) + u32::from(!front);
         let forward = |half: u32| ends(faces, half)[0] == low;
         for (i, &half) in around.iter().enumerate() {
             let next = around[(i + 1) % around.len()];
@@ -80,12 +68,12 @@ pub fn regions(
     }
     let mut count = 0;
     let mut dangling = with_room(0)?;
-    for face in 0..faces.len() as i32 {
+    for face in 0..faces.len() as u32 {
         pace.spend(1)?;
         let [front, back] = [2 * face, 2 * face + 1].map(|side| (sets.root(side), side));
-        count += u32::from(front.0 == front.1 as u32) + u32::from(back.0 == back.1 as u32);
+        count += u32::from(front.0 == front.1) + u32::from(back.0 == back.1);
         if front.0 == back.0 {
-            push(&mut dangling, face as u32)?;
+            push(&mut dangling, face)?;
         }
     }
     Ok((count, dangling))

@@ -15,6 +15,7 @@ use super::untangle::untangle;
 use crate::base::arrays::Triangles;
 use crate::base::error::Result;
 use crate::base::memory::{filled, make_room, push, with_room};
+use crate::base::sets::Sets;
 use crate::base::watch::Watch;
 use delone_predicates::Point2;
 
@@ -89,10 +90,10 @@ pub fn bands(
             push(&mut rings, ring)
         })?;
         for &[a, b] in &linker.joined {
-            pieces.unite(a, b);
+            pieces.sets.join(a, b);
         }
         for ring in &mut rings {
-            ring.piece = pieces.find(ring.piece);
+            ring.piece = pieces.sets.root(ring.piece);
         }
         found.add(&nodes, &places, rings, band as i32)?;
     }
@@ -150,7 +151,7 @@ impl Bands {
 struct Pieces {
     /// The first piece of each triangle: one for each rank from the lowest to the highest.
     first: Vec<u32>,
-    parents: Vec<u32>,
+    sets: Sets,
 }
 
 impl Pieces {
@@ -162,9 +163,8 @@ impl Pieces {
             first.push(count);
             count += crossed.ranks[2] - crossed.ranks[0] + 1;
         }
-        let mut parents = with_room(count as usize)?;
-        parents.extend(0..count);
-        let mut pieces = Self { first, parents };
+        let sets = Sets::of(count as usize)?;
+        let mut pieces = Self { first, sets };
         for t in 0..nodes.triangles() {
             if t.is_multiple_of(WATCH_EVERY) {
                 watch.check()?;
@@ -174,7 +174,7 @@ impl Pieces {
                     along(nodes, t, k, |band, from, to| {
                         if from != to {
                             let [a, b] = [t, u].map(|t| pieces.of(nodes, t, band));
-                            pieces.unite(a, b);
+                            pieces.sets.join(a, b);
                         }
                     });
                 }
@@ -186,21 +186,6 @@ impl Pieces {
     /// The piece of a triangle in a band.
     fn of(&self, nodes: &Nodes, t: usize, band: u32) -> u32 {
         self.first[t] + band - nodes.crossed(t).ranks[0]
-    }
-
-    /// The representative of a piece, with halved paths.
-    fn find(&mut self, mut piece: u32) -> u32 {
-        while self.parents[piece as usize] != piece {
-            let above = self.parents[self.parents[piece as usize] as usize];
-            self.parents[piece as usize] = above;
-            piece = above;
-        }
-        piece
-    }
-
-    fn unite(&mut self, a: u32, b: u32) {
-        let [a, b] = [a, b].map(|piece| self.find(piece));
-        self.parents[a.max(b) as usize] = a.min(b);
     }
 }
 

@@ -7,6 +7,7 @@
 use crate::base::arrays::Triangles;
 use crate::base::error::{Densest, Error, Result};
 use crate::base::memory::{filled, with_room};
+use crate::base::sets::Sets;
 use crate::base::watch::Watch;
 use delone_predicates::Point2;
 
@@ -33,8 +34,8 @@ pub struct Nodes<'a> {
     first: Vec<[u32; 3]>,
     /// The positions of vertices and nodes.
     places: Vec<Point2>,
-    /// The representatives: a forest.
-    parents: Vec<u32>,
+    /// Vertices and nodes at the same position.
+    sets: Sets,
     pub(super) levels: usize,
 }
 
@@ -60,7 +61,7 @@ impl<'a> Nodes<'a> {
             ranks,
             first: filled(given.simplices.len(), [0; 3])?,
             places: Vec::new(),
-            parents: Vec::new(),
+            sets: Sets::default(),
             levels: levels.len(),
         };
         let count = nodes.number(watch)?;
@@ -119,8 +120,7 @@ impl<'a> Nodes<'a> {
         self.places = with_room(vertices + count)?;
         self.places.extend_from_slice(self.given.points);
         self.places.resize(vertices + count, [0.0; 2]);
-        self.parents = with_room(vertices + count)?;
-        self.parents.extend(0..(vertices + count) as u32);
+        self.sets = Sets::of(vertices + count)?;
         for t in 0..self.given.simplices.len() {
             if t.is_multiple_of(WATCH_EVERY) {
                 watch.check()?;
@@ -138,10 +138,10 @@ impl<'a> Nodes<'a> {
                     let node = self.first[t][k] + rank - from;
                     let level = levels[rank as usize];
                     if level == heights[high as usize] {
-                        self.parents[node as usize] = high;
+                        self.sets.join(node, high);
                         self.places[node as usize] = self.given.points[high as usize];
                     } else if collapses {
-                        self.parents[node as usize] = low;
+                        self.sets.join(node, low);
                         self.places[node as usize] = self.given.points[low as usize];
                     } else {
                         let [a, b] = [low, high].map(|v| v as usize);
@@ -238,11 +238,8 @@ impl<'a> Nodes<'a> {
     }
 
     /// The representative of a place.
-    pub fn find(&self, mut place: u32) -> u32 {
-        while self.parents[place as usize] != place {
-            place = self.parents[place as usize];
-        }
-        place
+    pub fn find(&self, place: u32) -> u32 {
+        self.sets.root_of(place)
     }
 
     /// The position of a representative.
@@ -253,15 +250,12 @@ impl<'a> Nodes<'a> {
     /// Unites two representatives, which takes the position of the smaller number: a vertex, if one
     /// of them is.
     pub fn unite(&mut self, a: u32, b: u32) {
-        let (root, child) = (a.min(b), a.max(b));
-        self.parents[child as usize] = root;
+        self.sets.join(a, b);
     }
 
     /// Lets each place refer to its representative directly.
     pub fn flatten(&mut self) {
-        for place in 0..self.parents.len() as u32 {
-            self.parents[place as usize] = self.find(place);
-        }
+        self.sets.flatten();
     }
 }
 
