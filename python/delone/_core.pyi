@@ -36,13 +36,10 @@ __all__ = [
     "ImprovementCounts",
     "JudgedTriangles",
     "LazyN",
-    "Live2",
-    "Live3",
-    "LiveArrays2",
-    "LiveArrays3",
-    "LiveSegments2",
-    "LiveState2",
-    "LiveState3",
+    "Live",
+    "LiveArrays",
+    "LiveSegments",
+    "LiveState",
     "Location2",
     "Location3",
     "Locator2",
@@ -891,8 +888,8 @@ class LazyN:
         """
 
 @final
-class Live2:
-    """A 2-D Delaunay triangulation that is edited."""
+class Live:
+    """A Delaunay triangulation that is edited, in 2-D or in 3-D."""
 
     def __new__(
         cls,
@@ -900,10 +897,13 @@ class Live2:
         handles: NDArray[np.int64] | None,
         total: int,
         workers: int,
-    ) -> Live2:
+    ) -> Live:
         """The triangulation of points with these handles, ascending, before the handle `total`."""
+    @property
+    def ndim(self) -> int:
+        """The number of coordinates, 2 or 3."""
     def counts(self) -> list[int]:
-        """Numbers: points, vertices, triangles, and the next handle."""
+        """Numbers: points, vertices, simplices, and the next handle."""
     @property
     def edits(self) -> int:
         """How many edits are complete."""
@@ -921,8 +921,8 @@ class Live2:
         """Which of these handles are not there, or are named earlier."""
     def points(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """The handles, ascending, and their points."""
-    def arrays(self) -> LiveArrays2:
-        """The present triangulation; no triangles if all points are on one line."""
+    def arrays(self) -> LiveArrays:
+        """The present triangulation; no simplices if all points are in one line or plane."""
     def split_crossings(self, split: bool) -> None:
         """Chooses whether crossings of segments are split."""
     def constraints(self) -> list[bool]:
@@ -941,7 +941,7 @@ class Live2:
         """Inserts segments with known handles, ascending, before the handle `total`; crossings
         at known places get their handles again.
         """
-    def segments(self) -> LiveSegments2:
+    def segments(self) -> LiveSegments:
         """The segments and their crossings."""
     def segment_faults(self, handles: NDArray[np.int64]) -> list[NDArray[np.int64]]:
         """Which of these handles of segments are not there, or are named earlier."""
@@ -949,81 +949,30 @@ class Live2:
         """Which of these handles of points are ends of segments, each with one, or crossings,
         with -1.
         """
+    def weights(
+        self, xi: NDArray[np.float64], known: int
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64], int, NDArray[np.int64] | None]:
+        """The handles of the corners of a simplex that contains each query, -1 outside, and
+        weights; the number of edits so far; and if that is not `known`, the handles of all
+        points.
+        """
     def corners(self, xi: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """The handles of the corners of a triangle that contains each query, -1 outside, and
+        """The handles of the corners of a simplex that contains each query, -1 outside, and
         weights.
         """
-    def weights(
-        self, xi: NDArray[np.float64], known: int
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64], int, NDArray[np.int64] | None]:
-        """The same, and the number of edits so far; and if that is not `known`, the handles of
-        all points.
-        """
     def nearest(self, xi: NDArray[np.float64]) -> NDArray[np.int64]:
         """The handle of the nearest point to each query, -1 if there is none."""
     def changes(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """The triangles that were removed and added since the last call, as handles."""
-    def state(self) -> LiveState2:
+        """The simplices that were removed and added since the last call, as handles."""
+    def state(self) -> LiveState:
         """The present state."""
-    def restore(self, state: LiveState2, known: int | None = None) -> bool:
-        """Restores a state; not if `known` is given and is not the number of edits so far.
-        Whether it was restored.
+    def restore(self, state: LiveState, known: int | None = None) -> bool:
+        """Restores a state of the same dimension; not if `known` is given and is not the
+        number of edits so far. Whether it was restored.
         """
 
 @final
-class Live3:
-    """A 3-D Delaunay triangulation that is edited."""
-
-    def __new__(
-        cls,
-        points: NDArray[np.float64],
-        handles: NDArray[np.int64] | None,
-        total: int,
-        workers: int,
-    ) -> Live3:
-        """The triangulation of points with these handles, ascending, before the handle `total`."""
-    def counts(self) -> list[int]:
-        """Numbers: points, vertices, tetrahedra, and the next handle."""
-    @property
-    def edits(self) -> int:
-        """How many edits are complete."""
-    def insert(self, points: NDArray[np.float64], workers: int) -> NDArray[np.int64]:
-        """Inserts points and returns their handles."""
-    def remove(self, handles: NDArray[np.int64], workers: int) -> None:
-        """Removes points."""
-    def relocate(
-        self, handles: NDArray[np.int64], points: NDArray[np.float64], workers: int
-    ) -> None:
-        """Moves points."""
-    def faults(self, handles: NDArray[np.int64]) -> list[NDArray[np.int64]]:
-        """Which of these handles are not there, or are named earlier."""
-    def points(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """The handles, ascending, and their points."""
-    def arrays(self) -> LiveArrays3:
-        """The present triangulation; no tetrahedra if all points are in one plane."""
-    def corners(self, xi: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """The handles of the corners of a tetrahedron that contains each query, -1 outside,
-        and weights.
-        """
-    def weights(
-        self, xi: NDArray[np.float64], known: int
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64], int, NDArray[np.int64] | None]:
-        """The same, and the number of edits so far; and if that is not `known`, the handles of
-        all points.
-        """
-    def nearest(self, xi: NDArray[np.float64]) -> NDArray[np.int64]:
-        """The handle of the nearest point to each query, -1 if there is none."""
-    def changes(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """The tetrahedra that were removed and added since the last call, as handles."""
-    def state(self) -> LiveState3:
-        """The present state."""
-    def restore(self, state: LiveState3, known: int | None = None) -> bool:
-        """Restores a state; not if `known` is given and is not the number of edits so far.
-        Whether it was restored.
-        """
-
-@final
-class LiveArrays2:
+class LiveArrays:
     """The present triangulation."""
 
     @property
@@ -1031,42 +980,24 @@ class LiveArrays2:
         """The handles of the points, ascending, (n,)."""
     @property
     def points(self) -> NDArray[np.float64]:
-        """The points, (n, 2)."""
+        """The points, (n, d)."""
     @property
     def simplices(self) -> NDArray[np.int32]:
-        """Triangles as rows of these, (m, 3)."""
+        """Simplices as rows of these, (m, d + 1)."""
     @property
     def neighbors(self) -> NDArray[np.int32]:
-        """The triangle opposite each vertex, -1 outside, (m, 3)."""
+        """The simplex opposite each vertex, -1 outside, (m, d + 1)."""
     @property
     def constrained(self) -> NDArray[np.bool_] | None:
-        """Whether the edge opposite each vertex is part of a segment; None without segments."""
+        """Whether the edge opposite each vertex is part of a segment, (m, 3); None without
+        segments.
+        """
     @property
     def duplicates(self) -> NDArray[np.int32]:
         """Rows that repeat earlier rows, and the first of these, (k, 2)."""
 
 @final
-class LiveArrays3:
-    """The present triangulation."""
-
-    @property
-    def handles(self) -> NDArray[np.int64]:
-        """The handles of the points, ascending, (n,)."""
-    @property
-    def points(self) -> NDArray[np.float64]:
-        """The points, (n, 3)."""
-    @property
-    def simplices(self) -> NDArray[np.int32]:
-        """Tetrahedra as rows of these, (m, 4)."""
-    @property
-    def neighbors(self) -> NDArray[np.int32]:
-        """The tetrahedron opposite each vertex, -1 outside, (m, 4)."""
-    @property
-    def duplicates(self) -> NDArray[np.int32]:
-        """Rows that repeat earlier rows, and the first of these, (k, 2)."""
-
-@final
-class LiveSegments2:
+class LiveSegments:
     """The segments of a triangulation."""
 
     @property
@@ -1086,22 +1017,16 @@ class LiveSegments2:
         """The next handle of a segment."""
 
 @final
-class LiveState2:
-    """A state of a `Live2`, which never changes."""
+class LiveState:
+    """A state of a `Live`, which never changes."""
 
-    def open(self) -> Live2:
+    @property
+    def ndim(self) -> int:
+        """The number of coordinates, 2 or 3."""
+    def open(self) -> Live:
         """A triangulation of its own in this state."""
-    def own_bytes(self, other: LiveState2) -> int:
-        """Bytes that are not shared with another state."""
-
-@final
-class LiveState3:
-    """A state of a `Live3`, which never changes."""
-
-    def open(self) -> Live3:
-        """A triangulation of its own in this state."""
-    def own_bytes(self, other: LiveState3) -> int:
-        """Bytes that are not shared with another state."""
+    def own_bytes(self, other: LiveState) -> int:
+        """Bytes that are not shared with another state of the same dimension."""
 
 @final
 class Location2:

@@ -225,6 +225,12 @@ pub fn shaped<T: Element, S: IntoDimension>(
     Ok(array.unbind())
 }
 
+/// Rows of `width` items, one after the other, as an `(n, width)` array.
+pub fn wide<T: Element>(py: Python<'_>, items: Vec<T>, width: usize) -> Outcome<Table<T>> {
+    let shape = [items.len() / width, width];
+    shaped(py, items, shape)
+}
+
 /// A list of numbers as an array.
 pub fn numbers(py: Python<'_>, numbers: Vec<u32>) -> Column<i32> {
     column(py, numbers.into_iter().map(|v| v as i32).collect())

@@ -19,7 +19,6 @@ mod interpolate;
 mod joins;
 mod lawson;
 mod live;
-mod live3;
 mod locate;
 mod locate3;
 mod locator;
@@ -93,9 +92,7 @@ mod _core {
     #[pymodule_export]
     use super::lawson::{FlippedTriangulation, lawson2, neighbors2};
     #[pymodule_export]
-    use super::live::{Live2, LiveArrays2, LiveSegments2, LiveState2};
-    #[pymodule_export]
-    use super::live3::{Live3, LiveArrays3, LiveState3};
+    use super::live::{Live, LiveArrays, LiveSegments, LiveState};
     #[pymodule_export]
     use super::locate::{Location2, Locator2, find_simplex2};
     #[pymodule_export]

@@ -1,4 +1,4 @@
-//! Live triangulations: edited by one thread at a time, from any number of threads.
+//! Live triangulations in 2-D and 3-D: edited by one thread at a time, from any number of threads.
 
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::{Mutex, TryLockError};
@@ -6,11 +6,14 @@ use std::sync::{Mutex, TryLockError};
 use delone_core::Point2;
 use delone_core::base::error::{Error, Result};
 use delone_core::base::watch::Watch;
-use delone_core::live::plane::{Plane, State};
+use delone_core::live::plane::{self, Plane};
+use delone_core::live::space::{self, Space};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, flat, number_rows, rows, table};
+use crate::arrays::{
+    Column, Table, column, columns, flat, flattened, no_dimension, number_rows, rows, table, wide,
+};
 use crate::errors::Outcome;
 use crate::signals::{watched, watched_attached};
 
@@ -22,30 +25,61 @@ type Handles<'py> = PyReadonlyArray1<'py, i64>;
 /// Corners, weights, the number of edits, and perhaps all handles.
 pub type Weights = (Table<i64>, Table<f64>, i64, Option<Column<i64>>);
 
-/// A 2-D Delaunay triangulation that is edited.
-#[pyclass(frozen, module = "delone._core")]
-pub struct Live2 {
-    live: Mutex<Plane>,
-    /// How many edits are complete; changed with the lock.
-    edits: AtomicI64,
+/// Something in 2-D or in 3-D.
+enum Either<P, S> {
+    Plane(P),
+    Space(S),
 }
 
-/// A state of a `Live2`, which never changes.
+impl<P, S> Either<P, S> {
+    /// The number of coordinates.
+    fn ndim(&self) -> usize {
+        match self {
+            Self::Plane(_) => 2,
+            Self::Space(_) => 3,
+        }
+    }
+}
+
+/// A triangulation.
+type Core = Either<Plane, Space>;
+
+/// The result of `$work` on `$live`, a triangulation of either dimension.
+macro_rules! each {
+    ($core:expr, $live:ident => $work:expr) => {
+        match $core {
+            Either::Plane($live) => $work,
+            Either::Space($live) => $work,
+        }
+    };
+}
+
+/// A Delaunay triangulation that is edited, in 2-D or in 3-D.
 #[pyclass(frozen, module = "delone._core")]
-pub struct LiveState2(State);
+pub struct Live {
+    core: Mutex<Core>,
+    /// How many edits are complete; changed with the lock.
+    edits: AtomicI64,
+    /// The number of coordinates.
+    width: usize,
+}
+
+/// A state of a `Live`, which never changes.
+#[pyclass(frozen, module = "delone._core")]
+pub struct LiveState(Either<plane::State, space::State>);
 
 /// The present triangulation.
 #[pyclass(frozen, get_all, module = "delone._core")]
-pub struct LiveArrays2 {
+pub struct LiveArrays {
     /// The handles of the points, ascending, (n,).
     pub handles: Column<i64>,
-    /// The points, (n, 2).
+    /// The points, (n, d).
     pub points: Table<f64>,
-    /// Triangles as rows of these, (m, 3).
+    /// Simplices as rows of these, (m, d + 1).
     pub simplices: Table<i32>,
-    /// The triangle opposite each vertex, -1 outside, (m, 3).
+    /// The simplex opposite each vertex, -1 outside, (m, d + 1).
     pub neighbors: Table<i32>,
-    /// Whether the edge opposite each vertex is part of a segment; None without segments.
+    /// Whether the edge opposite each vertex is part of a segment, (m, 3); None without segments.
     pub constrained: Option<Table<bool>>,
     /// Rows that repeat earlier rows, and the first of these, (k, 2).
     pub duplicates: Table<i32>,
@@ -53,7 +87,7 @@ pub struct LiveArrays2 {
 
 /// The segments of a triangulation.
 #[pyclass(frozen, get_all, module = "delone._core")]
-pub struct LiveSegments2 {
+pub struct LiveSegments {
     /// The handles of segments, ascending, (s,).
     pub handles: Column<i64>,
     /// The handles of their ends, (s, 2).
@@ -66,10 +100,11 @@ pub struct LiveSegments2 {
     pub total: usize,
 }
 
-impl Live2 {
-    fn of(plane: Plane) -> Self {
+impl Live {
+    fn of(core: Core) -> Self {
         Self {
-            live: Mutex::new(plane),
+            width: core.ndim(),
+            core: Mutex::new(core),
             edits: AtomicI64::new(0),
         }
     }
@@ -78,9 +113,9 @@ impl Live2 {
         &self,
         py: Python<'_>,
         count: usize,
-        work: impl FnOnce(&mut Plane, &Watch) -> Result<T> + Send,
+        work: impl FnOnce(&mut Core, &Watch) -> Result<T> + Send,
     ) -> Outcome<T> {
-        locked(&self.live, py, count, work)
+        locked(&self.core, py, count, work)
     }
 
     /// The same for an edit.
@@ -88,14 +123,27 @@ impl Live2 {
         &self,
         py: Python<'_>,
         count: usize,
-        work: impl FnOnce(&mut Plane, &Watch) -> Result<T> + Send,
+        work: impl FnOnce(&mut Core, &Watch) -> Result<T> + Send,
     ) -> Outcome<T> {
-        self.with(py, count, |plane, watch| {
-            let made = work(plane, watch)?;
+        self.with(py, count, |core, watch| {
+            let made = work(core, watch)?;
             self.edits.fetch_add(1, Ordering::Relaxed);
             Ok(made)
         })
     }
+}
+
+/// The triangulation in which there may be segments.
+fn plane(core: &mut Core) -> Result<&mut Plane> {
+    match core {
+        Either::Plane(plane) => Ok(plane),
+        Either::Space(_) => Err(Error::Shape("segments need points in 2-D".into())),
+    }
+}
+
+/// The error for states of different dimensions.
+fn mixed() -> Error {
+    Error::Shape("one state is in 2-D, the other in 3-D".into())
 }
 
 /// Runs `work` on a triangulation, without the GIL unless there are few items and no other thread
@@ -147,7 +195,7 @@ pub fn broken() -> Error {
 }
 
 #[pymethods]
-impl Live2 {
+impl Live {
     /// The triangulation of points with these handles, ascending, before the handle `total`.
     #[new]
     fn new(
@@ -157,27 +205,36 @@ impl Live2 {
         total: usize,
         workers: usize,
     ) -> Outcome<Self> {
-        let points = rows(&points, "points")?;
-        let given = handles.as_ref().map(|h| flat(h, "handles")).transpose();
-        let given = given?;
-        let given = given.map(|given| checked_handles(given, points.len(), total));
-        let given = given.transpose()?;
-        let plane = watched(py, |watch| match given {
-            Some(own) => Plane::of(points, &own, total, workers, watch),
-            None => Plane::new(points, workers, watch),
+        let width = columns(&points);
+        let points = flattened(&points, width, "points")?;
+        let own = handles.as_ref().map(|h| flat(h, "handles")).transpose()?;
+        let own = own.map(|own| checked_handles(own, points.len() / width.max(1), total));
+        let own = own.transpose()?;
+        let core = watched(py, |watch| {
+            let (plane, space) = (points.as_chunks().0, points.as_chunks().0);
+            match (width, own) {
+                (2, None) => Plane::new(plane, workers, watch).map(Either::Plane),
+                (3, None) => Space::new(space, workers, watch).map(Either::Space),
+                (2, Some(own)) => Plane::of(plane, &own, total, workers, watch).map(Either::Plane),
+                (3, Some(own)) => Space::of(space, &own, total, workers, watch).map(Either::Space),
+                (other, _) => Err(no_dimension(other)),
+            }
         })?;
-        Ok(Self::of(plane))
+        Ok(Self::of(core))
     }
 
-    /// Numbers: points, vertices, triangles, and the next handle.
+    /// The number of coordinates, 2 or 3.
+    #[getter]
+    fn ndim(&self) -> usize {
+        self.width
+    }
+
+    /// Numbers: points, vertices, simplices, and the next handle.
     fn counts(&self, py: Python<'_>) -> Outcome<[usize; 4]> {
-        self.with(py, 0, |plane, _| {
-            Ok([
-                plane.len(),
-                plane.vertices(),
-                plane.simplices(),
-                plane.total(),
-            ])
+        self.with(py, 0, |core, _| {
+            Ok(each!(core, live => {
+                [live.len(), live.vertices(), live.simplices(), live.total()]
+            }))
         })
     }
 
@@ -189,19 +246,23 @@ impl Live2 {
 
     /// Inserts points and returns their handles.
     fn insert(&self, py: Python<'_>, points: Points<'_>, workers: usize) -> Outcome<Column<i64>> {
-        let points = rows(&points, "points")?;
-        let made = self.edit(py, points.len(), |plane, watch| {
-            plane.insert(points, workers, watch)
-        })?;
+        let points = flattened(&points, self.width, "points")?;
+        let made = self.edit(
+            py,
+            points.len() / self.width,
+            |core, watch| each!(core, live => live.insert(points.as_chunks().0, workers, watch)),
+        )?;
         Ok(column(py, (made.start as i64..made.end as i64).collect()))
     }
 
     /// Removes points.
     fn remove(&self, py: Python<'_>, handles: Handles<'_>, workers: usize) -> Outcome<()> {
         let handles = flat(&handles, "handles")?;
-        self.edit(py, handles.len(), |plane, watch| {
-            plane.remove(handles, workers, watch)
-        })
+        self.edit(
+            py,
+            handles.len(),
+            |core, watch| each!(core, live => live.remove(handles, workers, watch)),
+        )
     }
 
     /// Removes points and the segments that end there, and returns the handles of these.
@@ -212,8 +273,8 @@ impl Live2 {
         workers: usize,
     ) -> Outcome<Column<i64>> {
         let handles = flat(&handles, "handles")?;
-        let gone = self.edit(py, usize::MAX, |plane, watch| {
-            plane.remove_with_segments(handles, workers, watch)
+        let gone = self.edit(py, usize::MAX, |core, watch| {
+            plane(core)?.remove_with_segments(handles, workers, watch)
         })?;
         Ok(column(py, gone))
     }
@@ -227,46 +288,66 @@ impl Live2 {
         workers: usize,
     ) -> Outcome<()> {
         let handles = flat(&handles, "handles")?;
-        let points = rows(&points, "points")?;
-        self.edit(py, handles.len(), |plane, watch| {
-            plane.relocate(handles, points, workers, watch)
+        let points = flattened(&points, self.width, "points")?;
+        self.edit(py, handles.len(), |core, watch| {
+            each!(core, live => live.relocate(handles, points.as_chunks().0, workers, watch))
         })
     }
 
     /// Which of these handles are not there, or are named earlier.
     fn faults(&self, py: Python<'_>, handles: Handles<'_>) -> Outcome<[Column<i64>; 2]> {
         let handles = flat(&handles, "handles")?;
-        let [gone, twice] = self.with(py, handles.len(), |plane, _| {
-            Ok(faults_of(handles, |h| plane.has(h)))
+        let [gone, twice] = self.with(py, handles.len(), |core, _| {
+            Ok(each!(core, live => faults_of(handles, |h| live.has(h))))
         })?;
         Ok([column(py, gone), column(py, twice)])
     }
 
     /// The handles, ascending, and their points.
     fn points(&self, py: Python<'_>) -> Outcome<(Column<i64>, Table<f64>)> {
-        let (handles, points) = self.with(py, usize::MAX, |plane, watch| plane.points(watch))?;
-        Ok((column(py, handles), table(py, points)?))
+        let (handles, points) = self.with(py, usize::MAX, |core, watch| {
+            each!(core, live => {
+                let (handles, points) = live.points(watch)?;
+                Ok((handles, points.into_flattened()))
+            })
+        })?;
+        Ok((column(py, handles), wide(py, points, self.width)?))
     }
 
-    /// The present triangulation; no triangles if all points are on one line.
-    fn arrays(&self, py: Python<'_>) -> Outcome<LiveArrays2> {
-        let made = self.with(py, usize::MAX, |plane, watch| plane.export(watch))?;
-        Ok(LiveArrays2 {
-            handles: column(py, made.rows),
-            points: table(py, made.points)?,
-            simplices: table(py, made.arrays.simplices)?,
-            neighbors: table(py, made.arrays.neighbors)?,
-            constrained: match made.constrained.is_empty() {
+    /// The present triangulation; no simplices if all points are in one line or plane.
+    fn arrays(&self, py: Python<'_>) -> Outcome<LiveArrays> {
+        let (handles, points, simplices, neighbors, constrained, duplicates) =
+            self.with(py, usize::MAX, |core, watch| {
+                each!(core, live => {
+                    let made = live.export(watch)?;
+                    Ok((
+                        made.rows,
+                        made.points.into_flattened(),
+                        made.arrays.simplices.into_flattened(),
+                        made.arrays.neighbors.into_flattened(),
+                        made.constrained.into_flattened(),
+                        made.duplicates,
+                    ))
+                })
+            })?;
+        let corners = self.width + 1;
+        Ok(LiveArrays {
+            handles: column(py, handles),
+            points: wide(py, points, self.width)?,
+            simplices: wide(py, simplices, corners)?,
+            neighbors: wide(py, neighbors, corners)?,
+            constrained: match constrained.is_empty() {
                 true => None,
-                false => Some(table(py, made.constrained)?),
+                false => Some(wide(py, constrained, corners)?),
             },
-            duplicates: number_rows(py, &made.duplicates)?,
+            duplicates: number_rows(py, &duplicates)?,
         })
     }
 
     /// Chooses whether crossings of segments are split.
     fn split_crossings(&self, py: Python<'_>, split: bool) -> Outcome<()> {
-        self.with(py, 0, |plane, _| {
+        self.with(py, 0, |core, _| {
+            let plane = plane(core)?;
             plane.split_crossings(split);
             Ok(())
         })
@@ -274,7 +355,8 @@ impl Live2 {
 
     /// Whether there are segments, and whether crossings are split.
     fn constraints(&self, py: Python<'_>) -> Outcome<[bool; 2]> {
-        self.with(py, 0, |plane, _| {
+        self.with(py, 0, |core, _| {
+            let plane = plane(core)?;
             Ok([plane.has_segments(), plane.splits_crossings()])
         })
     }
@@ -287,7 +369,8 @@ impl Live2 {
         workers: usize,
     ) -> Outcome<Column<i64>> {
         let ends: &[[i64; 2]] = rows(&ends, "ends")?;
-        let made = self.edit(py, usize::MAX, |plane, watch| {
+        let made = self.edit(py, usize::MAX, |core, watch| {
+            let plane = plane(core)?;
             plane.insert_segments(ends, workers, watch)
         })?;
         Ok(column(py, (made.start as i64..made.end as i64).collect()))
@@ -296,7 +379,8 @@ impl Live2 {
     /// Removes segments.
     fn remove_segments(&self, py: Python<'_>, handles: Handles<'_>, workers: usize) -> Outcome<()> {
         let handles = flat(&handles, "handles")?;
-        self.edit(py, usize::MAX, |plane, watch| {
+        self.edit(py, usize::MAX, |core, watch| {
+            let plane = plane(core)?;
             plane.remove_segments(handles, workers, watch)
         })
     }
@@ -317,7 +401,8 @@ impl Live2 {
         let given = flat(&handles, "handles")?;
         let added = flat(&added, "added")?;
         let numbers = checked_handles(given, ends.len(), total)?;
-        self.edit(py, usize::MAX, |plane, watch| {
+        self.edit(py, usize::MAX, |core, watch| {
+            let plane = plane(core)?;
             let added = checked_handles(added, places.len(), plane.total());
             let added = added.map_err(|_| Error::Shape("handles of crossings are wrong".into()))?;
             if let Some(&row) = ends.as_flattened().iter().find(|&&row| !plane.has(row)) {
@@ -332,8 +417,9 @@ impl Live2 {
     }
 
     /// The segments and their crossings.
-    fn segments(&self, py: Python<'_>) -> Outcome<LiveSegments2> {
-        let (handles, ends, crossings, added, total) = self.with(py, usize::MAX, |plane, _| {
+    fn segments(&self, py: Python<'_>) -> Outcome<LiveSegments> {
+        let (handles, ends, crossings, added, total) = self.with(py, usize::MAX, |core, _| {
+            let plane = plane(core)?;
             let (handles, ends) = plane.segments()?;
             let crossings = plane.crossings()?.into_iter().map(|c| c.map(i64::from));
             let added = plane.crossing_rows().iter().copied().map(i64::from);
@@ -341,7 +427,7 @@ impl Live2 {
             let added: Vec<_> = added.collect();
             Ok((handles, ends, crossings, added, plane.segments_total()))
         })?;
-        Ok(LiveSegments2 {
+        Ok(LiveSegments {
             handles: column(py, handles),
             ends: table(py, ends)?,
             crossings: table(py, crossings)?,
@@ -353,7 +439,8 @@ impl Live2 {
     /// Which of these handles of segments are not there, or are named earlier.
     fn segment_faults(&self, py: Python<'_>, handles: Handles<'_>) -> Outcome<[Column<i64>; 2]> {
         let handles = flat(&handles, "handles")?;
-        let [gone, twice] = self.with(py, handles.len(), |plane, _| {
+        let [gone, twice] = self.with(py, handles.len(), |core, _| {
+            let plane = plane(core)?;
             Ok(faults_of(handles, |h| plane.has_segment(h)))
         })?;
         Ok([column(py, gone), column(py, twice)])
@@ -362,7 +449,8 @@ impl Live2 {
     /// Which of these handles of points are ends of segments, each with one, or crossings, with -1.
     fn held(&self, py: Python<'_>, handles: Handles<'_>) -> Outcome<Table<i64>> {
         let handles = flat(&handles, "handles")?;
-        let held = self.with(py, handles.len(), |plane, _| {
+        let held = self.with(py, handles.len(), |core, _| {
+            let plane = plane(core)?;
             let there = handles.iter().filter(|&&h| plane.has(h));
             let held = there.filter_map(|&h| match plane.is_crossing(h as u32) {
                 true => Some([h, -1]),
@@ -376,90 +464,130 @@ impl Live2 {
         table(py, held)
     }
 
-    /// The handles of the corners of a triangle that contains each query, -1 outside, and weights.
-    fn corners(&self, py: Python<'_>, xi: Points<'_>) -> Outcome<(Table<i64>, Table<f64>)> {
-        let queries = rows(&xi, "xi")?;
-        let found = self.with(py, queries.len(), |plane, watch| {
-            plane.corners(queries, watch)
-        })?;
-        Ok((table(py, found.rows)?, table(py, found.weights)?))
-    }
-
-    /// The same, and the number of edits so far; and if that is not `known`, the handles of all points.
+    /// The handles of the corners of a simplex that contains each query, -1 outside, and weights; the
+    /// number of edits so far; and if that is not `known`, the handles of all points.
     fn weights(&self, py: Python<'_>, xi: Points<'_>, known: i64) -> Outcome<Weights> {
-        let queries = rows(&xi, "xi")?;
+        let queries = flattened(&xi, self.width, "xi")?;
         let edits = || self.edits.load(Ordering::Relaxed);
         let count = if edits() == known {
-            queries.len()
+            queries.len() / self.width
         } else {
             usize::MAX
         };
-        let (found, edit, own) = self.with(py, count, |plane, watch| {
+        let (rows, weights, edit, own) = self.with(py, count, |core, watch| {
             let edit = edits();
-            let found = plane.corners(queries, watch)?;
-            let own = if edit == known {
-                None
-            } else {
-                Some(plane.points(watch)?.0)
-            };
-            Ok((found, edit, own))
+            each!(core, live => {
+                let found = live.corners(queries.as_chunks().0, watch)?;
+                let (rows, weights) = (found.rows.into_flattened(), found.weights.into_flattened());
+                let own = match edit == known {
+                    true => None,
+                    false => Some(live.points(watch)?.0),
+                };
+                Ok((rows, weights, edit, own))
+            })
         })?;
-        let weights = table(py, found.weights)?;
-        let own = own.map(|own| column(py, own));
-        Ok((table(py, found.rows)?, weights, edit, own))
+        let corners = self.width + 1;
+        let (rows, weights) = (wide(py, rows, corners)?, wide(py, weights, corners)?);
+        Ok((rows, weights, edit, own.map(|own| column(py, own))))
+    }
+
+    /// The handles of the corners of a simplex that contains each query, -1 outside, and weights.
+    fn corners(&self, py: Python<'_>, xi: Points<'_>) -> Outcome<(Table<i64>, Table<f64>)> {
+        let queries = flattened(&xi, self.width, "xi")?;
+        let (rows, weights) = self.with(py, queries.len() / self.width, |core, watch| {
+            each!(core, live => {
+                let found = live.corners(queries.as_chunks().0, watch)?;
+                Ok((found.rows.into_flattened(), found.weights.into_flattened()))
+            })
+        })?;
+        let corners = self.width + 1;
+        Ok((wide(py, rows, corners)?, wide(py, weights, corners)?))
     }
 
     /// The handle of the nearest point to each query, -1 if there is none.
     fn nearest(&self, py: Python<'_>, xi: Points<'_>) -> Outcome<Column<i64>> {
-        let queries = rows(&xi, "xi")?;
-        let found = self.with(py, queries.len(), |plane, watch| {
-            plane.nearest(queries, watch)
-        })?;
+        let queries = flattened(&xi, self.width, "xi")?;
+        let found = self.with(
+            py,
+            queries.len() / self.width,
+            |core, watch| each!(core, live => live.nearest(queries.as_chunks().0, watch)),
+        )?;
         Ok(column(py, found))
     }
 
-    /// The triangles that were removed and added since the last call, as handles.
+    /// The simplices that were removed and added since the last call, as handles.
     fn changes(&self, py: Python<'_>) -> Outcome<(Table<i64>, Table<i64>)> {
-        let found = self.with(py, usize::MAX, |plane, watch| plane.changes(watch))?;
-        Ok((table(py, found.gone)?, table(py, found.new)?))
+        let (gone, new) = self.with(py, usize::MAX, |core, watch| {
+            each!(core, live => {
+                let found = live.changes(watch)?;
+                Ok((found.gone.into_flattened(), found.new.into_flattened()))
+            })
+        })?;
+        let corners = self.width + 1;
+        Ok((wide(py, gone, corners)?, wide(py, new, corners)?))
     }
 
     /// The present state.
-    fn state(&self, py: Python<'_>) -> Outcome<LiveState2> {
-        self.with(py, usize::MAX, |plane, watch| plane.state(watch))
-            .map(LiveState2)
+    fn state(&self, py: Python<'_>) -> Outcome<LiveState> {
+        self.with(py, usize::MAX, |core, watch| {
+            Ok(LiveState(match core {
+                Either::Plane(live) => Either::Plane(live.state(watch)?),
+                Either::Space(live) => Either::Space(live.state(watch)?),
+            }))
+        })
     }
 
-    /// Restores a state; not if `known` is given and is not the number of edits so far. Whether it was
-    /// restored.
+    /// Restores a state of the same dimension; not if `known` is given and is not the number of edits so
+    /// far. Whether it was restored.
     #[pyo3(signature = (state, known=None))]
-    fn restore(&self, py: Python<'_>, state: &LiveState2, known: Option<i64>) -> Outcome<bool> {
-        let state = &state.0;
-        self.with(py, usize::MAX, |plane, watch| {
+    fn restore(&self, py: Python<'_>, state: &LiveState, known: Option<i64>) -> Outcome<bool> {
+        self.with(py, usize::MAX, |core, watch| {
             if known.is_some_and(|known| known != self.edits.load(Ordering::Relaxed)) {
                 return Ok(false);
             }
-            plane.restore(state, watch)?;
+            restored(core, state, watch)?;
             self.edits.fetch_add(1, Ordering::Relaxed);
             Ok(true)
         })
     }
 }
 
+/// Restores a state of the same dimension.
+fn restored(core: &mut Core, state: &LiveState, watch: &Watch) -> Result<()> {
+    match (core, &state.0) {
+        (Either::Plane(live), Either::Plane(state)) => live.restore(state, watch),
+        (Either::Space(live), Either::Space(state)) => live.restore(state, watch),
+        _ => Err(mixed()),
+    }
+}
+
 #[pymethods]
-impl LiveState2 {
-    /// A triangulation of its own in this state.
-    fn open(&self, py: Python<'_>) -> Outcome<Live2> {
-        let plane = watched(py, |watch| {
-            let mut plane = Plane::new(&[], 1, watch)?;
-            plane.restore(&self.0, watch)?;
-            Ok::<_, Error>(plane)
-        })?;
-        Ok(Live2::of(plane))
+impl LiveState {
+    /// The number of coordinates, 2 or 3.
+    #[getter]
+    fn ndim(&self) -> usize {
+        self.0.ndim()
     }
 
-    /// Bytes that are not shared with another state.
-    fn own_bytes(&self, other: &Self) -> usize {
-        self.0.own_bytes(&other.0)
+    /// A triangulation of its own in this state.
+    fn open(&self, py: Python<'_>) -> Outcome<Live> {
+        let core = watched(py, |watch| {
+            let mut core = match self.0 {
+                Either::Plane(_) => Either::Plane(Plane::new(&[], 1, watch)?),
+                Either::Space(_) => Either::Space(Space::new(&[], 1, watch)?),
+            };
+            restored(&mut core, self, watch)?;
+            Ok::<_, Error>(core)
+        })?;
+        Ok(Live::of(core))
+    }
+
+    /// Bytes that are not shared with another state of the same dimension.
+    fn own_bytes(&self, other: &Self) -> Outcome<usize> {
+        match (&self.0, &other.0) {
+            (Either::Plane(own), Either::Plane(other)) => Ok(own.own_bytes(other)),
+            (Either::Space(own), Either::Space(other)) => Ok(own.own_bytes(other)),
+            _ => Err(mixed().into()),
+        }
     }
 }

@@ -160,9 +160,9 @@ class Dynamic(Measured, Drawn, Filed):
             crossing = crossing or points._options.crossing
         own = own_copy(given, ndim=dimension)
         warn_of_degrees(given, own, planar=planar)
-        core = _live(own.shape[1])(own, None, 0, as_workers(workers))
+        core = _core.Live(own, None, 0, as_workers(workers))
         split = as_choice(crossing or "raise", ("raise", "split"), name="crossing") == "split"
-        if isinstance(core, _core.Live2):
+        if core.ndim == 2:
             core.split_crossings(split)
             given_segments(core, () if segments is None else segments, as_workers(workers))
         elif segments is not None:
@@ -171,7 +171,7 @@ class Dynamic(Measured, Drawn, Filed):
 
     def _begin(
         self,
-        core: _core.Live2 | _core.Live3,
+        core: _core.Live,
         workers: int | None,
         planar: bool = False,
         system: str | None = None,
@@ -189,7 +189,7 @@ class Dynamic(Measured, Drawn, Filed):
     @classmethod
     def _of(
         cls,
-        core: _core.Live2 | _core.Live3,
+        core: _core.Live,
         workers: int | None,
         planar: bool = False,
         system: str | None = None,
@@ -344,7 +344,7 @@ class Dynamic(Measured, Drawn, Filed):
         also = as_choice(segments, ("raise", "remove"), name="segments") == "remove"
         core, threads = self._live, self._threads(own)
         try:
-            if also and isinstance(core, _core.Live2):
+            if also and core.ndim == 2:
                 return self._edited(core.remove_with_segments, own, threads)
             self._edited(core.remove, own, threads)
         except ShapeError:
@@ -618,14 +618,14 @@ class Dynamic(Measured, Drawn, Filed):
         True
         """
         made = self._arrays()
-        if isinstance(made, _core.LiveArrays2) and made.constrained is not None:
+        if made.constrained is not None:
             return self._frozen_segments()._with_crs(self._system)
         return self._frozen(made)
 
     def _drawn(self) -> Delaunay | ConstrainedDelaunay:
         return self.freeze()
 
-    def _frozen(self, made: _core.LiveArrays2 | _core.LiveArrays3) -> Delaunay:
+    def _frozen(self, made: _core.LiveArrays) -> Delaunay:
         """Return arrays without segments as a triangulation that never changes."""
         if not len(made.simplices):
             return Delaunay(made.points, workers=self._workers, planar=True)._refer(self)
@@ -659,25 +659,14 @@ class Dynamic(Measured, Drawn, Filed):
         a canonical Delaunay triangulation
         """
         made = self._arrays()
-        if isinstance(made, _core.LiveArrays2) and made.constrained is not None:
+        if made.constrained is not None:
             return self._validated_segments()
         return self._frozen(made).validate()
 
 
-def _live(ndim: int) -> type[_core.Live2] | type[_core.Live3]:
-    """Return the class of the core for a number of coordinates."""
-    return _core.Live2 if ndim == 2 else _core.Live3
-
-
-def _restore(
-    core: _core.Live2 | _core.Live3,
-    state: _core.LiveState2 | _core.LiveState3,
-    known: int | None,
-) -> bool:
+def _restore(core: _core.Live, state: _core.LiveState, known: int | None) -> bool:
     """Restore a state of the same dimension, unless there are other edits than the known ones."""
-    if isinstance(core, _core.Live2) and isinstance(state, _core.LiveState2):
-        return core.restore(state, known)
-    if isinstance(core, _core.Live3) and isinstance(state, _core.LiveState3):
-        return core.restore(state, known)
-    own, other = (2, 3) if isinstance(core, _core.Live2) else (3, 2)
-    raise DtypeError(f"a {other}-D snapshot cannot be restored to a {own}-D triangulation")
+    own, other = core.ndim, state.ndim
+    if own != other:
+        raise DtypeError(f"a {other}-D snapshot cannot be restored to a {own}-D triangulation")
+    return core.restore(state, known)

@@ -23,7 +23,7 @@ class Measured(Present):
     __slots__ = ("_whole",)
 
     # The arrays of a state, and a mesh of them that keeps what is computed.
-    _whole: tuple[_core.LiveArrays2 | _core.LiveArrays3, Delaunay] | None
+    _whole: tuple[_core.LiveArrays, Delaunay] | None
 
     def _mesh(self) -> Delaunay:
         """Return the present arrays as a mesh, which may have no simplex."""

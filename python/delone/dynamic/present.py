@@ -41,13 +41,13 @@ class Present(Segmented):
     _system: str | None
 
     # The arrays of a state, and the object that stands for it.
-    _present: tuple[object, _core.LiveArrays2 | _core.LiveArrays3] | None
+    _present: tuple[object, _core.LiveArrays] | None
     # What finds simplices, and the arrays that it is for.
-    _index: tuple[_core.LiveArrays2 | _core.LiveArrays3, Locator] | None
+    _index: tuple[_core.LiveArrays, Locator] | None
     # The number of an edit, and the handles of all points after it.
     _known: tuple[int, Handles]
 
-    def _arrays(self) -> _core.LiveArrays2 | _core.LiveArrays3:
+    def _arrays(self) -> _core.LiveArrays:
         """Return the arrays of the present state, made once after each edit."""
         edit, present = self._edit, self._present
         if present is None or present[0] is not edit:
@@ -88,7 +88,7 @@ class Present(Segmented):
     @property
     def ndim(self) -> int:
         """The number of coordinates, 2 or 3."""
-        return 2 if isinstance(self._live, _core.Live2) else 3
+        return self._live.ndim
 
     @property
     def npoints(self) -> int:
@@ -183,7 +183,7 @@ class Present(Segmented):
             workers=self._workers,
         )
 
-    def _locator(self) -> tuple[_core.LiveArrays2 | _core.LiveArrays3, Locator]:
+    def _locator(self) -> tuple[_core.LiveArrays, Locator]:
         """Return the present arrays, and what finds simplices in them."""
         made, index = self._arrays(), self._index
         if not len(made.simplices):

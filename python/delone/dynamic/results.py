@@ -112,7 +112,7 @@ class Snapshot:
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self)._again, (tuple(State.of(self._state.open()).pickled()), self._system)
 
-    def __init__(self, state: _core.LiveState2 | _core.LiveState3, crs: str | None = None) -> None:
+    def __init__(self, state: _core.LiveState, crs: str | None = None) -> None:
         self._state = state
         self._system = crs
 
@@ -143,11 +143,9 @@ class Snapshot:
         True
         """
         own, theirs = self._state, other._state
-        if isinstance(own, _core.LiveState2) and isinstance(theirs, _core.LiveState2):
-            return own.own_bytes(theirs)
-        if isinstance(own, _core.LiveState3) and isinstance(theirs, _core.LiveState3):
-            return own.own_bytes(theirs)
-        raise DtypeError("a 2-D and a 3-D snapshot share nothing")
+        if own.ndim != theirs.ndim:
+            raise DtypeError("a 2-D and a 3-D snapshot share nothing")
+        return own.own_bytes(theirs)
 
     def __copy__(self) -> Snapshot:
         return self

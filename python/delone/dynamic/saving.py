@@ -36,12 +36,12 @@ class State(NamedTuple):
     added: Handles  # handles of the points where segments cross
 
     @classmethod
-    def of(cls, core: _core.Live2 | _core.Live3) -> State:
+    def of(cls, core: _core.Live) -> State:
         """Return the state of a core that nobody edits meanwhile."""
         handles, points = core.points()
         none = np.empty(0, dtype=np.int64)
         total = core.counts()[3]
-        if not isinstance(core, _core.Live2):
+        if core.ndim != 2:
             return cls(points, handles, total, False, none, none.reshape(0, 2), 0, none)
         own, (_, split) = core.segments(), core.constraints()
         return cls(points, handles, total, split, own.handles, own.ends, own.total, own.added)
@@ -77,14 +77,13 @@ class State(NamedTuple):
         """Return how many handles are plausible beside the points and segments."""
         return max(_ALWAYS, _PER_POINT * max(len(self.points), len(self.segments)))
 
-    def opened(self, workers: int) -> _core.Live2 | _core.Live3:
+    def opened(self, workers: int) -> _core.Live:
         """Return a core in this state."""
         # Crossings come back with the segments, at the same places and with the same handles.
         crossed = np.isin(self.handles, self.added)
         kept = ~crossed
-        live = _core.Live2 if self.points.shape[1] == 2 else _core.Live3
-        core = live(self.points[kept], self.handles[kept], self.total, workers)
-        if isinstance(core, _core.Live2):
+        core = _core.Live(self.points[kept], self.handles[kept], self.total, workers)
+        if core.ndim == 2:
             core.split_crossings(self.split)
             if len(self.segments) or self.segments_total:
                 known, places = (self.segments, self.ends), (self.added, self.points[crossed])

@@ -37,14 +37,14 @@ class Segmented:
 
     __slots__ = ("_edit", "_live", "_workers")
 
-    _live: _core.Live2 | _core.Live3
+    _live: _core.Live
     # An object of its own for each state.
     _edit: object
     _workers: int | None
 
-    def _plane(self) -> _core.Live2:
+    def _plane(self) -> _core.Live:
         """Return the core of a 2-D triangulation."""
-        if isinstance(self._live, _core.Live2):
+        if self._live.ndim == 2:
             return self._live
         raise InputError("segments are for 2-D triangulations; this one is 3-D")
 
@@ -65,12 +65,12 @@ class Segmented:
         self._edit = object()
         return made
 
-    def _arrays(self) -> _core.LiveArrays2 | _core.LiveArrays3:
+    def _arrays(self) -> _core.LiveArrays:
         raise NotImplementedError
 
     @property
     def _has_segments(self) -> bool:
-        return isinstance(self._live, _core.Live2) and self._live.constraints()[0]
+        return self._live.ndim == 2 and self._live.constraints()[0]
 
     def insert_segments(self, segments: ArrayLike) -> Handles:
         """Insert segments: edges that the triangulation must contain.
@@ -220,7 +220,7 @@ class Segmented:
             raise HandleError(message, handles=held[:, 0])
 
 
-def given_segments(live: _core.Live2, segments: ArrayLike, workers: int) -> None:
+def given_segments(live: _core.Live, segments: ArrayLike, workers: int) -> None:
     """Insert the segments of a constructor, pairs of its rows."""
     ends = _as_ends(segments)
     count = live.counts()[3]
@@ -283,13 +283,13 @@ def _as_integers(handles: ArrayLike, name: str) -> Handles:
     return np.ascontiguousarray(array, dtype=np.int64)
 
 
-def _marked(made: _core.LiveArrays2 | _core.LiveArrays3) -> NDArray[np.bool_]:
+def _marked(made: _core.LiveArrays) -> NDArray[np.bool_]:
     """Return which edges are parts of segments."""
-    marked = made.constrained if isinstance(made, _core.LiveArrays2) else None
+    marked = made.constrained
     return np.zeros(made.simplices.shape, dtype=bool) if marked is None else marked
 
 
-def _refuse_crossings(plane: _core.Live2, handles: Handles) -> None:
+def _refuse_crossings(plane: _core.Live, handles: Handles) -> None:
     """Raise an error if some of these handles are crossings."""
     held = plane.held(handles)
     crossed: Handles = held[held[:, 1] < 0, 0]
