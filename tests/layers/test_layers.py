@@ -80,8 +80,9 @@ CORE: dict[str, set[str]] = {
     "constrained": {"delaunay", "joins", "mesh", "order", "points", "delone_predicates"} | GROUND,
     "refine": {"constrained", "delaunay", "measure", "mesh", "wide", "delone_predicates"} | GROUND,
     "locate": {"order", "points", "parallel", "wide", "delone_predicates"} | GROUND,
-    "alpha": {"measure", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
-    "graphs": {"order", "points", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
+    "alpha": {"sets", "measure", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
+    "graphs": {"sets", "order", "points", "parallel", "wide", "num_bigint", "delone_predicates"}
+    | GROUND,
     "hull": {"order", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "ndim": {
         "consistency",
@@ -102,6 +103,7 @@ CORE: dict[str, set[str]] = {
     "regular": {"parallel", "delaunay", "order", "points", "proof", "wide", "delone_predicates"}
     | GROUND,
     "voronoi": {
+        "sets",
         "measure",
         "regular",
         "constrained",
@@ -112,6 +114,7 @@ CORE: dict[str, set[str]] = {
     }
     | GROUND,
     "sphere": {
+        "sets",
         "constrained",
         "mesh",
         "order",
@@ -123,6 +126,7 @@ CORE: dict[str, set[str]] = {
     }
     | GROUND,
     "solids": {
+        "sets",
         "constrained",
         "delaunay",
         "graphs",
@@ -136,6 +140,7 @@ CORE: dict[str, set[str]] = {
     }
     | GROUND,
     "terrain": {
+        "sets",
         "constrained",
         "delaunay",
         "locate",

@@ -183,6 +183,7 @@ impl<T: Copy> Chunks<T> {
         let mut pace = Pace::new(watch, LOT);
         let mut groups = with_room(self.marked.len().div_ceil(GROUP))?;
         for (g, marked) in self.marked.chunks(GROUP).enumerate() {
+            // A group without a marked chunk is shared with the last snapshot.
             let kept = self.last.groups.get(g).filter(|g| g.len() == marked.len());
             if let Some(group) = kept.filter(|_| !marked.contains(&true)) {
                 groups.push(Arc::clone(group));
@@ -190,6 +191,7 @@ impl<T: Copy> Chunks<T> {
             }
             pace.spend(marked.len())?;
             let mut group = with_room(marked.len())?;
+            // Otherwise each chunk is, unless it is marked: those are copied.
             for (k, &marked) in marked.iter().enumerate() {
                 let chunk = match self.last.chunk(GROUP * g + k).filter(|_| !marked) {
                     Some(chunk) => Arc::clone(chunk),

@@ -51,6 +51,7 @@ impl Mesh {
             if is_open && i + 1 >= n {
                 break;
             }
+            // Corner i is an ear if it turns left and the triangle does not cover the vertex that went.
             let (h, j) = ((i + n - 1) % n, (i + 1) % n);
             let [a, b, c] = [h, i, j].map(|k| self.at(ring[k].1));
             let is_ear = orient2d(a, b, c) == Sign::Positive
@@ -64,6 +65,7 @@ impl Mesh {
                 continue;
             }
             idle = 0;
+            // The ear becomes a triangle, whose third edge takes the place of the corner in the ring.
             let t = self.dead[made];
             made += 1;
             let [(ab, u), (bc, v), (_, w)] = [ring[h], ring[i], ring[j]];

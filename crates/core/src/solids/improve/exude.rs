@@ -38,6 +38,7 @@ pub fn pump(
     let mut best: Option<(Plan, f64)> = None;
     let mut value = above;
     while cavity.len() < star.len() + LONGEST {
+        // The tetrahedron that joins the cavity at the smallest weight from here on.
         let Some((power, next)) = first(store, weights, v, &cavity) else {
             break;
         };
@@ -52,6 +53,7 @@ pub fn pump(
         if !(weight > power && weight < until) {
             continue;
         }
+        // The star that the vertex has between the two weights, if it is better than all before.
         let new = cone(store, v, &cavity);
         let after = new
             .iter()

@@ -66,6 +66,7 @@ impl Store {
         let mut fixed = filled(n, false)?;
         let mut rest = sides.as_slice();
         while let Some((&(face, t, k), others)) = rest.split_first() {
+            // All sides of one face: two at most.
             let same = others.iter().take_while(|other| other.0 == face).count();
             let mut wall = true;
             match (same, others) {
@@ -82,6 +83,7 @@ impl Store {
                     )));
                 }
             }
+            // Vertices of walls do not move.
             if wall {
                 for v in face {
                     fixed[v as usize] = true;
@@ -228,6 +230,7 @@ impl Store {
         let mut rest = faces;
         while let Some((&(face, t, k), others)) = rest.split_first() {
             match others.first() {
+                // Two sides, of which one may be outside: NONE.
                 Some(&(other, u, i)) if other == face => {
                     if t != NONE {
                         self.across[t as usize][k] = u;
@@ -237,6 +240,7 @@ impl Store {
                     }
                     rest = &others[1..];
                 }
+                // A single side of a wall that was flipped is on the boundary.
                 _ if turning => {
                     if t != NONE {
                         self.across[t as usize][k] = NONE;

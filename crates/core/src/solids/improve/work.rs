@@ -87,6 +87,7 @@ impl<'a> Work<'a> {
             if self.counts.passes == self.task.passes {
                 return Ok(false);
             }
+            // One pass: flips first, which need no new places, then movements.
             let changes = self.changes();
             if self.task.flips {
                 self.remove_all(watch)?;
@@ -97,6 +98,7 @@ impl<'a> Work<'a> {
             self.counts.passes += 1;
             let now = self.standing();
             tell(self.counts.passes, now.0)?;
+            // Enough passes that gain little, or one that changes nothing, are the end.
             let gained = standing.1 - now.1 > STALLED * standing.1;
             stalled = if gained { 0 } else { stalled + 1 };
             if self.changes() == changes || stalled == PATIENCE {
@@ -151,12 +153,14 @@ impl<'a> Work<'a> {
                 continue;
             }
             self.clock += 1;
+            // Unless a corner has changed since the last try, it would fail again.
             let corners = self.store.corners[t as usize];
             let changed = corners.map(|v| self.touched[v as usize]).into_iter().max();
             let tried = std::mem::replace(&mut self.tried[t as usize], self.clock);
             if changed < Some(tried) {
                 continue;
             }
+            // What replaces it may be below the bound, too.
             if self.remove_at(t)? {
                 for &t in self.made.iter().filter(|&&t| self.is_below(t)) {
                     push(&mut waiting, t)?;

@@ -43,10 +43,11 @@ pub fn center(planes: &[Plane]) -> Option<(Point3, f64)> {
             let n = all[base[i]].normal;
             [n[0], n[1], n[2], -1.0, all[base[i]].offset]
         };
-        // n . x - r = offset for the four of the base.
+        // The ball that touches the four planes of the base: n . x - r = offset for them.
         let [x, y, z, r] = solve([row(0), row(1), row(2), row(3)])?;
         best = Some(([x, y, z], r));
         let slack = |p: &Plane| p.normal[0] * x + p.normal[1] * y + p.normal[2] * z - p.offset - r;
+        // The plane that cuts it most enters the base.
         let worst = (0..all.len()).min_by(|&i, &j| slack(&all[i]).total_cmp(&slack(&all[j])))?;
         if slack(&all[worst]) > -1e-13 || base.contains(&worst) {
             break;
@@ -65,6 +66,7 @@ pub fn center(planes: &[Plane]) -> Option<(Point3, f64)> {
         let n = all[worst].normal;
         let weights = column([0.0, 0.0, 0.0, 1.0])?;
         let change = column([n[0], n[1], n[2], 1.0])?;
+        // The one whose weight comes to zero first leaves it.
         let ratio = |i: usize| weights[i].max(0.0) / change[i];
         let out = (0..4)
             .filter(|&i| change[i] > 1e-14)

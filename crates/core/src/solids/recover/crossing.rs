@@ -132,6 +132,7 @@ impl Work<'_> {
             if !seen.insert(t) {
                 continue;
             }
+            // Through each face that the segment crosses, on to the tetrahedron behind it.
             for k in 0..4 {
                 let u = self.mesh.across[t as usize][k];
                 if u != NONE && !seen.contains(&u) && self.stabs(s, self.mesh.face(t, k)) {
@@ -139,6 +140,7 @@ impl Work<'_> {
                     cells.push(u);
                 }
             }
+            // Around each edge that it crosses, all tetrahedra: it leaves through one of them.
             let v = self.mesh.corners[t as usize];
             for [i, j, ..] in PAIRS {
                 let edge = pair(v[i], v[j]);

@@ -92,6 +92,7 @@ impl Work<'_> {
             if v[0] == NONE {
                 continue;
             }
+            // Positive with the exact points, and inside also with the doubles in their place.
             if !self.mesh.points.positive(v) {
                 return Err(internal("a tetrahedron is not positive"));
             }
@@ -102,6 +103,7 @@ impl Work<'_> {
                     return Err(internal("a tetrahedron of doubles is not positive"));
                 }
             }
+            // Faces are linked from both sides, and those that were given are there.
             for (k, &f) in walls[t as usize].iter().enumerate() {
                 if self.mesh.across[t as usize][k] == NONE {
                     push(&mut outer, ascending(self.mesh.face(t, k)))?;

@@ -46,6 +46,7 @@ impl Work<'_> {
         // The crossing sees all faces strictly, so digits enough give a point that sees them.
         for digits in 2_u64.. {
             self.pace.spend(1)?;
+            // Weights with so many binary digits: a double has enough for the first of them.
             let rounded = |k: usize| -> BigInt {
                 if digits <= u64::from(DIGITS) {
                     BigInt::from((plain[k] * 2_f64.powi(digits as i32)).round() as i64)
@@ -59,6 +60,7 @@ impl Work<'_> {
             if all.iter().any(|w| *w <= BigInt::ZERO) {
                 continue;
             }
+            // The point of these weights is exact, with one exponent for all coordinates.
             let at =
                 [0, 1, 2].map(|k| &all[0] * &p[0][k] + &all[1] * &p[1][k] + &all[2] * &p[2][k]);
             let exponent = low - digits as i64;

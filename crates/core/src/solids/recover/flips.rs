@@ -67,6 +67,7 @@ impl Work<'_> {
         let mut tries = TRIES;
         while self.mesh.with_edge(s[0], s[1]).is_none() {
             self.pace.spend(8)?;
+            // What is in the way: edges are removed, faces are split.
             let (faces, edges) = self.crossed(s)?;
             let faces: Vec<[u32; 3]> = faces.iter().map(|&(t, k)| self.mesh.face(t, k)).collect();
             let mut around: Vec<[u32; 2]> = edges.iter().map(|&(_, e)| e).collect();
@@ -74,6 +75,7 @@ impl Work<'_> {
             for &face in &faces {
                 changed |= self.split_face(face, goal)?;
             }
+            // Then the edges of these faces: a face goes with one of them.
             around.clear();
             for [u, v, w] in faces {
                 around.extend([pair(u, v), pair(v, w), pair(w, u)]);
@@ -81,6 +83,7 @@ impl Work<'_> {
             around.sort_unstable();
             around.dedup();
             changed |= self.remove_edges(&around, goal)?;
+            // Last, each of these edges at the cost of flips around it, to a limited depth.
             if !changed && depth > 0 {
                 around.extend(edges.iter().map(|&(_, e)| e));
                 for &[p, q] in &around {
@@ -295,6 +298,7 @@ impl Work<'_> {
             for i in 0..n - width {
                 let j = i + width;
                 for k in i + 1..j {
+                    // The triangle i k j, with the best triangulations on both sides of it.
                     let (left, right) = (best[i * n + k].cost, best[k * n + j].cost);
                     if left == usize::MAX || right == usize::MAX {
                         continue;
@@ -309,6 +313,7 @@ impl Work<'_> {
                         best[i * n + j] = Part { cost, apex: k };
                     }
                 }
+                // Each inner edge i j costs what it breaks, with its faces to both ends of the old edge.
                 let whole = i == 0 && j == n - 1;
                 if !whole && best[i * n + j].cost != usize::MAX {
                     best[i * n + j].cost += self.edge_cost(goal, v[i], v[j])

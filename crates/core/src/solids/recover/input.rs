@@ -94,6 +94,7 @@ fn far_vertices(points: &[Point3]) -> Result<[Point3; 4]> {
     let reach = reach.max(size * 1e-12).max(1e-300);
     for factor in [1024.0, 8.0] {
         let r = reach * factor;
+        // A tetrahedron around all points; the smaller one only where the larger is out of range.
         let corner =
             |x: f64, y: f64, z: f64| [center[0] + x * r, center[1] + y * r, center[2] + z * r];
         let far = [

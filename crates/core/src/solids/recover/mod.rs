@@ -273,11 +273,13 @@ impl Work<'_> {
             if before == 0 {
                 break;
             }
+            // First, points that flips can take away without a move.
             if flips {
                 let walls = self.walls()?;
                 let out = self.outside(&walls)?;
                 self.thin_by_flips(sweep.min(DEEPEST), &out)?;
             }
+            // Then those that are no longer needed when all stand well.
             for v in self.free_points() {
                 self.pace.spend(32)?;
                 self.center_free(v, Near::One);
@@ -295,6 +297,7 @@ impl Work<'_> {
             if self.free_points().into_iter().all(double) {
                 break;
             }
+            // Points that have no place in doubles get one with another point beside them.
             let walls = self.walls()?;
             let out = self.outside(&walls)?;
             let wide = self.wide_inside(&out);

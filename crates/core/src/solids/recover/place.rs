@@ -82,6 +82,7 @@ impl Work<'_> {
             }
             let mut tried = 0;
             let (mut length, mut lift) = (size, lift);
+            // Halve the step until a double sees all faces. Remember the first wide point that does.
             while tried < most {
                 tried += 1;
                 length /= 2.0;

@@ -125,6 +125,7 @@ impl Work<'_> {
             let Some(&[t, u]) = edges.get(&[a, b]) else {
                 continue;
             };
+            // The edge a b between c and d is flipped if it is wrong.
             let c = apex(faces[t as usize], [a, b]);
             let d = apex(faces[u as usize], [a, b]);
             if !self.is_wrong([a, b], c, d) {
@@ -134,6 +135,7 @@ impl Work<'_> {
             faces[u as usize] = ascending([b, c, d]);
             edges.remove(&[a, b]);
             edges.insert(pair(c, d), [t, u]);
+            // Two of the outer edges change their faces; all four may be wrong now.
             for (edge, from, to) in [(pair(a, d), u, t), (pair(b, c), t, u)] {
                 if let Some(two) = edges.get_mut(&edge) {
                     *two = two.map(|f| if f == from { to } else { f });

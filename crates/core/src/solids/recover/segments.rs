@@ -41,6 +41,7 @@ impl Work<'_> {
             let [a, b] = self.segments[s as usize];
             let mut now = (a, Dyadic::zero());
             let mut chain = Vec::new();
+            // From the last point on: flips if they suffice, otherwise a point within sight of it.
             while self.mesh.with_edge(now.0, b).is_none() {
                 self.pace.spend(8)?;
                 if flips && self.flip_segment([now.0, b], super::DEPTH)? {
@@ -67,6 +68,7 @@ impl Work<'_> {
                 continue;
             };
             let [u, v, w] = self.mesh.face(t, k);
+            // It leaves through the face opposite a if b is on no outer side of the others.
             let signs = [
                 self.orient(a, v, u, b),
                 self.orient(a, w, v, b),
@@ -134,6 +136,7 @@ impl Work<'_> {
         let mut low = Fraction(now.1.numerator.clone(), unit);
         let mut high = Fraction(one.clone(), one);
         for face in p[..p.len() - 2].chunks_exact(3) {
+            // Along the segment, the side of a face is linear: it bounds the interval from below or above.
             let from = |q: &[BigInt; 3]| [0, 1, 2].map(|k| &q[k] - &face[0][k]);
             let (u, v) = (from(&face[1]), from(&face[2]));
             let first = determinant([&u, &v, &from(start)]);

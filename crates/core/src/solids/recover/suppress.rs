@@ -37,6 +37,7 @@ impl Work<'_> {
         let mut new: Vec<Corners> = Vec::new();
         let mut made = Vec::new();
         for sector in &sectors {
+            // A vertex of the sector that sees all of its faces, or a new point that does.
             let (v, is_new) = match self.vertex_that_sees(&sector.faces) {
                 Some(v) => (v, false),
                 None => {
@@ -56,6 +57,7 @@ impl Work<'_> {
             } else {
                 self.counts.joined += 1;
             }
+            // The sector becomes the cone from it to the faces.
             let kept = sector.faces.iter().filter(|f| !f.contains(&v));
             new.extend(kept.map(|&[a, b, c]| [a, b, c, v]));
         }
@@ -169,6 +171,7 @@ impl Work<'_> {
             if !left.remove(&start) {
                 continue;
             }
+            // One sector: from tetrahedron to tetrahedron, but not through given faces.
             let mut cells = vec![start];
             let mut sides: BTreeMap<u32, Sign> = BTreeMap::new();
             let mut outer = Vec::new();
@@ -177,10 +180,12 @@ impl Work<'_> {
                 next += 1;
                 for k in 0..4 {
                     let face = self.mesh.face(t, k);
+                    // A face opposite the point bounds the sector.
                     if !face.contains(&s) {
                         outer.push(face);
                         continue;
                     }
+                    // A given face does, too: the sector is on one side of it.
                     if let Some(f) = self.locked_faces.get(ascending(face)) {
                         let [a, b, c] = self.faces[f as usize];
                         let apex = self.mesh.corners[t as usize][k];
@@ -223,6 +228,7 @@ impl Work<'_> {
             );
             let sign = if side == Sign::Positive { 1.0 } else { -1.0 };
             let normal = unit(normal).map(|x| x * sign);
+            // Its triangles without the point, turned toward the sector.
             for &[p, q, r] in &triangles[f] {
                 faces.push(if side == Sign::Positive {
                     [p, q, r]
@@ -230,6 +236,7 @@ impl Work<'_> {
                     [p, r, q]
                 });
             }
+            // Directions into the sector, and along its faces.
             let middle = [a, b, c].iter().fold([0.0; 3], |m, &v| {
                 let d = points.difference(s, v, lift);
                 [0, 1, 2].map(|k| m[k] + d[k] / 3.0)

@@ -147,17 +147,20 @@ impl Work<'_> {
         while !sheet.apexes.contains_key(&edge) {
             self.pace.spend(8)?;
             let crossings = self.crossings(sheet, edge)?;
+            // Flip edges that leave fewer crossings, if there are such.
             let [fewer, others] = self.flippable(sheet, edge, &crossings)?;
             let candidates = if fewer.is_empty() { &others } else { &fewer };
             let mut changed = false;
             for &e in candidates {
                 changed = changed || self.swap_edge(sheet, e, false)?;
             }
+            // Otherwise make the tetrahedra around one of them fewer, until it flips.
             for &e in candidates {
                 while !changed && self.loosen(e, &mut tries)? {
                     changed = self.swap_edge(sheet, e, false)?;
                 }
             }
+            // At last, points in the way are allowed.
             if let (false, true, Some(&e)) = (changed, points, candidates.first()) {
                 changed = self.swap_edge(sheet, e, true)?;
             }
@@ -187,6 +190,7 @@ impl Work<'_> {
         loop {
             found.push(now);
             let edge = pair(now.left, now.right);
+            // On to the triangle behind the edge, whose corner is left or right of the line to q.
             let two = sheet.both(edge);
             let two = two.ok_or_else(|| internal("an edge leaves its plane"))?;
             let next = if two[0] == behind { two[1] } else { two[0] };
@@ -420,6 +424,7 @@ impl Work<'_> {
                 if flat.contains(&sorted) {
                     continue;
                 }
+                // A side that w sees stays; behind one that it does not see, the tetrahedron joins.
                 let [x, y, z] = face;
                 if face.contains(&w) || self.mesh.points.positive([x, y, z, w]) {
                     faces.push(face);

@@ -174,6 +174,7 @@ impl Cavity {
         let mut next = 0;
         while let Some(&side) = self.open.get(next) {
             next += 1;
+            // Across the edges of the wall that are not segments, to its neighbors in the facet.
             let [a, b, c] = mesh.face(side);
             for [x, y] in [[a, b], [b, c], [c, a]] {
                 if mesh.is_segment(x, y) {
@@ -361,6 +362,7 @@ impl Cavity {
         self.made.clear();
         self.links.clear();
         for (i, &(t, k)) in (0..).zip(&self.outer) {
+            // The cone from the vertex to a face of the cavity keeps the wall there.
             let mut corners = mesh.corners[t as usize];
             corners[k] = vertex;
             let mut wall = [NONE; 4];
@@ -401,6 +403,7 @@ impl Cavity {
         let mut used = 0;
         let mut rest = self.links.as_slice();
         while let Some((&(ends, i, j), others)) = rest.split_first() {
+            // The face of the vertex and this edge is a wall if the edge is on the rim.
             let wall = match self.rim.binary_search_by(|r| r.0.cmp(&ends)) {
                 Ok(found) => {
                     used += 1;
@@ -408,6 +411,7 @@ impl Cavity {
                 }
                 Err(_) => NONE,
             };
+            // Two new tetrahedra share it, or one if nothing is behind.
             let same = others.iter().take_while(|other| other.0 == ends).count();
             self.made[i as usize].wall[j] = wall;
             match same {

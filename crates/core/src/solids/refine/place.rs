@@ -73,6 +73,7 @@ pub fn walk_on_facet(mesh: &Mesh, side: Side, p: Point3) -> OnFacet {
     for _ in 0..STEPS {
         let face = mesh.face(side);
         let [a, b, c] = mesh.places_of(face);
+        // The smallest share tells the edge that the point is beyond; without a negative one it is here.
         let shares = barycentric([a, b, c], p);
         let (least, k) = (0..3).fold((0.0, 3), |best: (f64, usize), k| {
             if shares[k] < best.0 {
@@ -88,6 +89,7 @@ pub fn walk_on_facet(mesh: &Mesh, side: Side, p: Point3) -> OnFacet {
         if !least.is_finite() {
             return OnFacet::Nothing;
         }
+        // A segment ends the walk, and so does another facet.
         let ends = [face[(k + 1) % 3], face[(k + 2) % 3]];
         if mesh.is_segment(ends[0], ends[1]) {
             return OnFacet::Segment(side, ends);

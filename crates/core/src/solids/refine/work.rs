@@ -101,6 +101,7 @@ impl Work {
             if steps % TELL_EVERY == 0 {
                 tell(self.counts.total())?;
             }
+            // A record that was replaced since asks for nothing.
             if self.mesh.corners[request.t as usize] != request.corners {
                 continue;
             }
