@@ -3,7 +3,7 @@ Means of a field over continents and islands
 ============================================
 
 The mean of a gridded field over an area needs the part of each grid cell that lies in it. Taking the cells whose centers
-are inside is a common shortcut, which is wrong for small areas and misses the smallest.
+are inside is a common shortcut, which is inaccurate for small areas and misses the smallest ones.
 
 Install: ``pip install "delone[geo,plot]"``.
 """

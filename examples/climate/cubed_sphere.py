@@ -2,8 +2,8 @@
 A cubed-sphere model on cells of 1 degree
 =========================================
 
-The fields of a model on a cubed sphere are regridded to longitudes and latitudes: by areas, of first and second order,
-which keeps the totals, and by bilinear interpolation between the centers of its cells.
+The fields of a model on a cubed sphere are regridded to longitudes and latitudes: by areas, to first and second order,
+which preserves the totals, and by bilinear interpolation between the centers of its cells.
 
 Install: ``pip install "delone[plot,xarray]"``.
 """
@@ -54,7 +54,7 @@ print(grid)
 model["tracer"] = (("nf", "y", "x"), vortex(grid.centers_lonlat).reshape(6, 24, 24))
 
 # %%
-# The three methods. Totals of the first two remain.
+# The three methods. The first two preserve totals.
 
 options = {
     "first order": {"method": "conservative"},

@@ -3,7 +3,7 @@ An unstructured ocean with land
 ===============================
 
 Ocean models on triangles, such as FESOM, have values at nodes and no nodes on land. Each node stands for the cell
-around it, so coasts are where the cells end, and target cells know how much of them is sea.
+around it, so coasts are where the cells end, and the fraction of each target cell that is sea is known.
 
 Install: ``pip install "delone[plot,xarray]"``.
 """
@@ -16,7 +16,7 @@ import delone.xarray
 from delone import datasets, sphere
 
 # %%
-# A mesh for this example: triangles between 6,000 directions, without those whose middle is on land.
+# A mesh for this example: triangles between 6,000 directions, without those whose center is on land.
 
 count = 6000
 k = np.arange(count)

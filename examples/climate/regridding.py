@@ -32,7 +32,7 @@ print(overlaps)
 print(f"largest error of a covered share: {abs(overlaps.covered_target - 1).max():.1e}")
 
 # %%
-# "conservative" keeps the total; "normalized" is the mean over the part that has values.
+# "conservative" preserves the total; "normalized" is the mean over the part that has values.
 
 conservative = overlaps.to_weights("conservative").apply(field, skipna=True)
 means = overlaps.to_weights("normalized").apply(field, skipna=True)
@@ -49,7 +49,7 @@ edges = np.arange(-180, 181, 3), np.arange(-90, 91, 3)
 for ax, values, title in zip(
     axes,
     (conservative, means, conservative / means),
-    ("conservative: totals remain", "normalized: means at sea", "their quotient"),
+    ("conservative: totals are preserved", "normalized: means at sea", "their quotient"),
     strict=True,
 ):
     colors = ax.pcolormesh(*edges, values, cmap="viridis")

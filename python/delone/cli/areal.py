@@ -56,7 +56,7 @@ def areal(
         Path, typer.Argument(metavar="SOURCE", help="File of polygons with known values.")
     ],
     target: Annotated[
-        Path, typer.Argument(metavar="TARGET", help="File of polygons that values are wanted for.")
+        Path, typer.Argument(metavar="TARGET", help="File of polygons to transfer values to.")
     ],
     *,
     output: Annotated[list[Path] | None, outputs("Layer, table or map to write", _SUFFIXES)] = None,
@@ -73,7 +73,7 @@ def areal(
         str | None, _columns("majority", "categories: what covers most of a target cell")
     ] = None,
     skipna: Annotated[
-        bool, typer.Option("--skipna", help="Missing values take no part; else they spread.")
+        bool, typer.Option("--skipna", help="Leave out missing values, which propagate otherwise.")
     ] = False,
     min_fraction: Annotated[
         float,

@@ -128,7 +128,7 @@ COMMANDS = {
     "simplify": Listed(
         "simplify",
         "simplify",
-        "Leave out points of a surface up to an error that holds at all of them.",
+        "Leave out points of a surface, with a bound on the error at each of them.",
     ),
     "hull": Listed("hull", "hull", "Compute the outline of points, and write its polygons."),
     "mesh": Listed(

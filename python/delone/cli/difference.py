@@ -67,7 +67,7 @@ def difference(
 ) -> None:
     """Subtract a raster, a surface or a height from a raster of heights, cell by cell.
 
-    Two rasters need the same cells. Lines and boundary are those of OTHER as a surface.
+    Two rasters must have the same cells. Lines and a boundary belong to OTHER, as a surface.
     """
     quiet = options.quiet
     require_known(options.crs)

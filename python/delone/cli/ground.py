@@ -70,7 +70,7 @@ def find_ground(
 
     Ground becomes class 2 and outliers below become class 7. Other points that had class 2 get
     class 1, and all else keeps its class. Points of the classes 7 and 18, which are noise, and
-    withheld points are left alone.
+    withheld points are not changed.
     """
     require_known(crs)
     for path in (source, *([] if output is None else [output])):

@@ -132,7 +132,7 @@ def regrid(
     """Regrid the fields of a NetCDF file by the areas that cells share, exactly.
 
     The grids are those of CF, UGRID, SCRIP, ESMF, MPAS, ICON, FESOM, Exodus, OASIS, GEOS-CS and
-    HEALPix. Times, levels, attributes and float32 remain; variables with only some of the
+    HEALPix. Times, levels, attributes and float32 are kept; variables with only some of the
     dimensions of cells are left out with a note. Images show the first field on both grids, and
     the difference from the nearest source cells.
     """

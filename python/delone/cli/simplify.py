@@ -36,10 +36,10 @@ def simplify(
     *,
     max_error: Annotated[
         float | None,
-        typer.Option(help="Greatest vertical distance of a point from the new surface."),
+        typer.Option(help="Largest vertical distance of a point from the new surface."),
     ] = None,
     max_triangles: Annotated[
-        int | None, typer.Option(help="Number of triangles instead, with the least error.")
+        int | None, typer.Option(help="Number of triangles instead, with the smallest error.")
     ] = None,
     keep: Annotated[
         str, typer.Option(help="Edges that stay: " + ", ".join(KEEP) + ".")
@@ -50,7 +50,7 @@ def simplify(
     output: Annotated[list[Path] | None, outputs("Mesh to write", (".ply", ".xml", "..."))] = None,
     options: SurfaceOptions,
 ) -> None:
-    """Leave out points of a surface up to an error that holds at all of them.
+    """Leave out points of a surface, with a bound on the error at each of them.
 
     Lines and the outline stay.
     """

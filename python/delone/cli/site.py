@@ -79,7 +79,7 @@ def terrain(
         ),
     ],
     contours: Annotated[
-        float | None, typer.Option(help="Contour lines at this distance of levels: contours.gpkg")
+        float | None, typer.Option(help="Contour lines at this interval: contours.gpkg")
     ] = None,
     bands: Annotated[
         float | None, typer.Option(help="Polygons between such levels: bands.gpkg")
@@ -94,7 +94,7 @@ def terrain(
         bool, typer.Option("--slope", help="Slope in degrees on the cells of --dem: slope.tif")
     ] = False,
     aspect: Annotated[
-        bool, typer.Option("--aspect", help="Direction of the slope on these: aspect.tif")
+        bool, typer.Option("--aspect", help="Aspect on the cells of --dem: aspect.tif")
     ] = False,
     profile: Annotated[
         list[Path] | None,

@@ -63,7 +63,7 @@ __all__ = ["contours", "profile", "volume", "write_lines"]
 def contours(
     source: Survey,
     *,
-    interval: Annotated[float | None, typer.Option(help="Distance of the levels.")] = None,
+    interval: Annotated[float | None, typer.Option(help="Difference between levels.")] = None,
     levels: Annotated[
         str | None, typer.Option(help="The levels instead of an interval: 10,12.5,15.")
     ] = None,
@@ -208,7 +208,7 @@ def profile(
 ) -> None:
     """Compute the heights of surfaces along a line, or in cross sections: a table or a drawing.
 
-    Lines and boundary are those of the first surface.
+    Lines and a boundary belong to the first surface.
     """
     wanted = SectionOptions.among(locals())
     require_known(options.crs)
@@ -258,7 +258,7 @@ def volume(
 ) -> None:
     """Compute the volumes to cut and to fill between a surface and a height or another surface.
 
-    Lines and boundary are those of the first surface.
+    Lines and a boundary belong to the first surface.
     """
     if region is not None and regions is not None:
         raise Failure("--region is one volume, --regions has a row for each: give one", Exit.USAGE)
