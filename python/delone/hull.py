@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -25,15 +25,16 @@ from delone._tiling.plane.topology import vertex_to_simplex
 from delone._tiling.space import geometry as space
 from delone.delaunay import Delaunay
 from delone.errors import InputError, InternalError
-from delone.validation import ValidationReport, no_pairs, no_rows
+from delone.validation import ValidationReport, fault
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
 
     from delone._base.types import Bools, Floats, Indices, Rows
     from delone.exchange.parts import Parts
+    from delone.validation import Sentences
 
 __all__ = ["ConvexHull"]
 
@@ -62,24 +63,21 @@ class HullReport(ValidationReport):
     True
     """
 
-    concave: NDArray[np.integer] = field(default_factory=no_pairs)
-    outside: NDArray[np.integer] = field(default_factory=no_rows)
-    vertices: NDArray[np.integer] = field(default_factory=no_rows)
-    facets: NDArray[np.integer] = field(default_factory=no_rows)
+    concave: NDArray[np.integer] = fault(
+        "pair of simplices is not convex", "pairs of simplices are not convex", width=2
+    )
+    outside: NDArray[np.integer] = fault("point is outside", "points are outside")
+    vertices: NDArray[np.integer] = fault(
+        "row is in one of vertices and facets only", "rows are in one of vertices and facets only"
+    )
+    facets: NDArray[np.integer] = fault(
+        "facet is not the polygon of its simplices",
+        "facets are not the polygons of their simplices",
+    )
 
     _SUBJECT: ClassVar[str] = "a convex hull"
-    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {
-        "neighbors": ("simplex has wrong neighbors", "simplices have wrong neighbors"),
-        "concave": ("pair of simplices is not convex", "pairs of simplices are not convex"),
-        "outside": ("point is outside", "points are outside"),
-        "vertices": (
-            "row is in one of vertices and facets only",
-            "rows are in one of vertices and facets only",
-        ),
-        "facets": (
-            "facet is not the polygon of its simplices",
-            "facets are not the polygons of their simplices",
-        ),
+    _SAID: ClassVar[Sentences] = {
+        "neighbors": ("simplex has wrong neighbors", "simplices have wrong neighbors")
     }
 
 

@@ -5,60 +5,52 @@ The checks run in the core, as those of `validation`. This module names the faul
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from delone import _core
 from delone._tiling.space.plane import repeated_rows
-from delone.validation import (
-    SENTENCES,
-    HigherReport,
-    SpaceReport,
-    ValidationReport,
-    no_rows,
-)
+from delone.validation import HigherReport, SpaceReport, ValidationReport, fault
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
 
     from delone._base.types import Floats, Indices
+    from delone.validation import Sentences
+
+    Rows = NDArray[np.integer]
 
 __all__ = ["PeriodicReport", "RegularHigherReport", "RegularReport", "RegularSpaceReport"]
 
-_REGULAR = {
-    "missing": (
-        "point is outside all simplices",
-        "points are outside all simplices",
-    ),
-    "repeats": (
-        "vertex is not the first of the heaviest rows with its coordinates",
-        "vertices are not the first of the heaviest rows with their coordinates",
-    ),
-    "delaunay": (
-        "pair of simplices is not locally regular",
-        "pairs of simplices are not locally regular",
-    ),
-    "ties": (
-        "pair of simplices on a tie is not canonical",
-        "pairs of simplices on ties are not canonical",
-    ),
-    "hidden": ("hidden point should be a vertex", "hidden points should be vertices"),
-    "duplicates": ("row has the wrong duplicate", "rows have the wrong duplicates"),
-}
+_HIDDEN = "hidden point should be a vertex", "hidden points should be vertices"
+_REPEATS = (
+    "vertex is not the first of the heaviest rows with its coordinates",
+    "vertices are not the first of the heaviest rows with their coordinates",
+)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Weighted:
     """What reports of regular triangulations have in every dimension."""
 
-    hidden: NDArray[np.integer] = field(default_factory=no_rows)
-    duplicates: NDArray[np.integer] = field(default_factory=no_rows)
+    hidden: Rows = fault(*_HIDDEN)
+    duplicates: Rows = fault("row has the wrong duplicate", "rows have the wrong duplicates")
 
     _SUBJECT: ClassVar[str] = "a canonical regular triangulation"
+    _SAID: ClassVar[Sentences] = {
+        "missing": ("point is outside all simplices", "points are outside all simplices"),
+        "repeats": _REPEATS,
+        "delaunay": (
+            "pair of simplices is not locally regular",
+            "pairs of simplices are not locally regular",
+        ),
+        "ties": (
+            "pair of simplices on a tie is not canonical",
+            "pairs of simplices on ties are not canonical",
+        ),
+    }
 
 
 # Fields of the last base are the first.
@@ -86,8 +78,6 @@ class RegularReport(_Weighted, ValidationReport):
     a canonical regular triangulation
     """
 
-    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = SENTENCES | _REGULAR
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RegularSpaceReport(_Weighted, SpaceReport):
@@ -109,8 +99,6 @@ class RegularSpaceReport(_Weighted, SpaceReport):
     >>> RegularTriangulation(corners, [0, 0, 0, 1]).validate().ok
     True
     """
-
-    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {**SpaceReport._SENTENCES, **_REGULAR}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -134,8 +122,6 @@ class RegularHigherReport(_Weighted, HigherReport):
     >>> RegularTriangulation(corners, [0, 0, 0, 0, 1]).validate().ok
     True
     """
-
-    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {**HigherReport._SENTENCES, **_REGULAR}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -168,13 +154,12 @@ class PeriodicReport(ValidationReport):
     a canonical periodic triangulation
     """
 
-    offsets: NDArray[np.integer] = field(default_factory=no_rows)
-    hidden: NDArray[np.integer] = field(default_factory=no_rows)
-    layers: NDArray[np.integer] = field(default_factory=no_rows)
+    offsets: Rows = fault("triangle has impossible offsets", "triangles have impossible offsets")
+    hidden: Rows = fault(*_HIDDEN)
+    layers: Rows = fault()
 
     _SUBJECT: ClassVar[str] = "a canonical periodic triangulation"
-    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = SENTENCES | {
-        "offsets": ("triangle has impossible offsets", "triangles have impossible offsets"),
+    _SAID: ClassVar[Sentences] = {
         "neighbors": (
             "triangle has wrong neighbors or partners",
             "triangles have wrong neighbors or partners",
@@ -191,8 +176,7 @@ class PeriodicReport(ValidationReport):
             "pair of triangles on a tie is not canonical",
             "pairs of triangles on ties are not canonical",
         ),
-        "repeats": _REGULAR["repeats"],
-        "hidden": _REGULAR["hidden"],
+        "repeats": _REPEATS,
     }
 
     def __str__(self) -> str:
@@ -223,7 +207,7 @@ def validate_regular(
 def _differing(found: Indices, expected: Indices) -> NDArray[np.int64]:
     """Return the rows of pairs that stand in one array only; of all where the order differs."""
     if np.array_equal(found, expected):
-        return no_rows()
+        return np.empty(0, dtype=np.int64)
     pairs, count = np.unique(np.concatenate((found, expected)), axis=0, return_counts=True)
     single = pairs[count != 2] if (count != 2).any() else pairs
     return np.unique(single[:, 0]).astype(np.int64)

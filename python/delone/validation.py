@@ -24,42 +24,25 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    Rows = NDArray[np.integer]
+    # By kind of fault: what is said about one element, and about several.
+    Sentences = Mapping[str, tuple[str, str]]
+
 __all__ = ["HigherReport", "SpaceReport", "ValidationReport", "validate"]
 
 _SHOWN = 5
 
 
-SENTENCES = {
-    "orientation": ("triangle is not counter-clockwise", "triangles are not counter-clockwise"),
-    "edges": ("directed edge is used more than once", "directed edges are used more than once"),
-    "neighbors": ("triangle has wrong neighbors", "triangles have wrong neighbors"),
-    "hull": ("boundary edge is not on the hull", "boundary edges are not on the hull"),
-    "missing": ("point is not a vertex", "points are not vertices"),
-    "repeats": (
-        "vertex repeats an earlier row of points",
-        "vertices repeat earlier rows of points",
-    ),
-    "delaunay": (
-        "pair of triangles is not locally Delaunay",
-        "pairs of triangles are not locally Delaunay",
-    ),
-    "ties": (
-        "pair of cocircular triangles is not canonical",
-        "pairs of cocircular triangles are not canonical",
-    ),
-}
+def fault(one: str = "", many: str = "", *, width: int | None = None) -> Any:
+    """Return a field of faulty elements, by default none, with the sentences about them.
 
-
-def no_rows() -> NDArray[np.int64]:
-    return np.empty(0, dtype=np.int64)
-
-
-def no_pairs() -> NDArray[np.int64]:
-    return np.empty((0, 2), dtype=np.int64)
-
-
-def no_triples() -> NDArray[np.int64]:
-    return np.empty((0, 3), dtype=np.int64)
+    `width` is the number of columns, for elements that are several rows. Without sentences, the
+    report says what is wrong in another way.
+    """
+    shape = (0,) if width is None else (0, width)
+    return field(
+        default_factory=lambda: np.empty(shape, dtype=np.int64), metadata={"said": (one, many)}
+    )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -108,18 +91,35 @@ class ValidationReport(ReadOnly):
     a canonical Delaunay triangulation
     """
 
-    orientation: NDArray[np.integer] = field(default_factory=no_rows)
-    edges: NDArray[np.integer] = field(default_factory=no_pairs)
-    neighbors: NDArray[np.integer] = field(default_factory=no_rows)
-    hull: NDArray[np.integer] = field(default_factory=no_pairs)
-    missing: NDArray[np.integer] = field(default_factory=no_rows)
-    repeats: NDArray[np.integer] = field(default_factory=no_rows)
-    delaunay: NDArray[np.integer] = field(default_factory=no_pairs)
-    ties: NDArray[np.integer] = field(default_factory=no_pairs)
-    count: NDArray[np.integer] = field(default_factory=no_rows)
+    orientation: Rows = fault(
+        "triangle is not counter-clockwise", "triangles are not counter-clockwise"
+    )
+    edges: Rows = fault(
+        "directed edge is used more than once", "directed edges are used more than once", width=2
+    )
+    neighbors: Rows = fault("triangle has wrong neighbors", "triangles have wrong neighbors")
+    hull: Rows = fault(
+        "boundary edge is not on the hull", "boundary edges are not on the hull", width=2
+    )
+    missing: Rows = fault("point is not a vertex", "points are not vertices")
+    repeats: Rows = fault(
+        "vertex repeats an earlier row of points", "vertices repeat earlier rows of points"
+    )
+    delaunay: Rows = fault(
+        "pair of triangles is not locally Delaunay",
+        "pairs of triangles are not locally Delaunay",
+        width=2,
+    )
+    ties: Rows = fault(
+        "pair of cocircular triangles is not canonical",
+        "pairs of cocircular triangles are not canonical",
+        width=2,
+    )
+    count: Rows = fault()
 
     _SUBJECT: ClassVar[str] = "a canonical Delaunay triangulation"
-    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = SENTENCES
+    # Sentences about fields of a base that mean something else in this class.
+    _SAID: ClassVar[Sentences] = {}
 
     @classmethod
     def _of(cls, faults: Any, **more: Any) -> Self:
@@ -146,9 +146,12 @@ class ValidationReport(ReadOnly):
         if self.ok:
             return self._SUBJECT
         lines = [f"not {self._SUBJECT}:"]
-        for name, (one, many) in self._SENTENCES.items():
+        said = {each.name: each.metadata["said"] for each in fields(self)}
+        for kind in reversed(type(self).__mro__):
+            said |= vars(kind).get("_SAID", {})
+        for name, (one, many) in said.items():
             culprits = getattr(self, name)
-            if len(culprits):
+            if len(culprits) and one:
                 sentence = one if len(culprits) == 1 else many
                 lines.append(f"  {name}: {len(culprits)} {sentence}: {_list(culprits)}")
         if self.count.size:
@@ -156,23 +159,21 @@ class ValidationReport(ReadOnly):
         return "\n".join(lines)
 
 
-_SPACE_SENTENCES = SENTENCES | {
-    "orientation": (
-        "tetrahedron is not positively oriented",
-        "tetrahedra are not positively oriented",
-    ),
-    "facets": ("oriented face is used more than once", "oriented faces are used more than once"),
-    "neighbors": ("tetrahedron has wrong neighbors", "tetrahedra have wrong neighbors"),
-    "hull": ("boundary face is not on the hull", "boundary faces are not on the hull"),
-    "delaunay": (
-        "pair of tetrahedra is not locally Delaunay",
-        "pairs of tetrahedra are not locally Delaunay",
-    ),
-    "ties": (
-        "pair of cospherical tetrahedra is not canonical",
-        "pairs of cospherical tetrahedra are not canonical",
-    ),
-}
+def _of_cells(one: str, many: str, facet: str) -> Sentences:
+    """Return the sentences about cells of more than two dimensions."""
+    return {
+        "orientation": (f"{one} is not positively oriented", f"{many} are not positively oriented"),
+        "neighbors": (f"{one} has wrong neighbors", f"{many} have wrong neighbors"),
+        "hull": (f"boundary {facet} is not on the hull", f"boundary {facet}s are not on the hull"),
+        "delaunay": (
+            f"pair of {many} is not locally Delaunay",
+            f"pairs of {many} are not locally Delaunay",
+        ),
+        "ties": (
+            f"pair of cospherical {many} is not canonical",
+            f"pairs of cospherical {many} are not canonical",
+        ),
+    }
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -197,26 +198,11 @@ class SpaceReport(ValidationReport):
     [0]
     """
 
-    facets: NDArray[np.integer] = field(default_factory=no_triples)
+    facets: Rows = fault(
+        "oriented face is used more than once", "oriented faces are used more than once", width=3
+    )
 
-    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = _SPACE_SENTENCES
-
-
-_HIGHER_SENTENCES = _SPACE_SENTENCES | {
-    "orientation": ("simplex is not positively oriented", "simplices are not positively oriented"),
-    "neighbors": ("simplex has wrong neighbors", "simplices have wrong neighbors"),
-    "hull": ("boundary facet is not on the hull", "boundary facets are not on the hull"),
-    "delaunay": (
-        "pair of simplices is not locally Delaunay",
-        "pairs of simplices are not locally Delaunay",
-    ),
-    "ties": (
-        "pair of cospherical simplices is not canonical",
-        "pairs of cospherical simplices are not canonical",
-    ),
-    "overlaps": ("simplex overlaps simplex 0", "simplices overlap simplex 0"),
-}
-del _HIGHER_SENTENCES["facets"]
+    _SAID: ClassVar[Sentences] = _of_cells("tetrahedron", "tetrahedra", "face")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -243,9 +229,9 @@ class HigherReport(ValidationReport):
     [0]
     """
 
-    overlaps: NDArray[np.integer] = field(default_factory=no_rows)
+    overlaps: Rows = fault("simplex overlaps simplex 0", "simplices overlap simplex 0")
 
-    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = _HIGHER_SENTENCES
+    _SAID: ClassVar[Sentences] = _of_cells("simplex", "simplices", "facet")
 
 
 def validate(

@@ -8,27 +8,40 @@ predicates.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from delone import _core
 from delone._tiling.plane.topology import among, edge_keys
-from delone.validation import SENTENCES, ValidationReport, no_pairs, no_rows, not_across
+from delone.validation import ValidationReport, fault, not_across
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
 
     from delone._base.types import Bools, Floats, Indices
 
-__all__ = ["ConstrainedReport"]
+    Rows = NDArray[np.integer]
+
+__all__ = ["ConstrainedReport", "OfSegments"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ConstrainedReport(ValidationReport):
+class OfSegments:
+    """What reports of triangulations with segments have, in the plane and on the sphere."""
+
+    flags: Rows = fault("triangle has wrong flags", "triangles have wrong flags")
+    absent: Rows = fault("subsegment is not an edge", "subsegments are not edges", width=2)
+    uncovered: Rows = fault("row of segments is not covered", "rows of segments are not covered")
+    bent: Rows = fault("vertex bends a row of segments", "vertices bend rows of segments", width=2)
+
+
+# Fields of the last base are the first.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ConstrainedReport(OfSegments, ValidationReport):
     """The result of ``ConstrainedDelaunay.validate()``: truthy if it is correct.
 
     Every field is an array of faulty elements, which is empty if there are none. Triangles are
@@ -64,19 +77,7 @@ class ConstrainedReport(ValidationReport):
     (True, 0)
     """
 
-    flags: NDArray[np.integer] = field(default_factory=no_rows)
-    absent: NDArray[np.integer] = field(default_factory=no_pairs)
-    uncovered: NDArray[np.integer] = field(default_factory=no_rows)
-    bent: NDArray[np.integer] = field(default_factory=no_pairs)
-
     _SUBJECT: ClassVar[str] = "a canonical constrained Delaunay triangulation"
-    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {
-        **SENTENCES,
-        "flags": ("triangle has wrong flags", "triangles have wrong flags"),
-        "absent": ("subsegment is not an edge", "subsegments are not edges"),
-        "uncovered": ("row of segments is not covered", "rows of segments are not covered"),
-        "bent": ("vertex bends a row of segments", "vertices bend rows of segments"),
-    }
 
 
 def validate(
@@ -102,7 +103,7 @@ def validate(
         flags=np.flatnonzero((wanted != made.constrained).any(axis=1)),
         absent=made.segments[~among(segments, edges.ravel())],
         uncovered=uncovered_rows(made, ends, len(points)),
-        bent=no_pairs() if conforming else _bent(points, made, ends),
+        **({} if conforming else {"bent": _bent(points, made, ends)}),
     )
 
 

@@ -8,7 +8,7 @@ triangles are the only ones that there are.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -18,14 +18,13 @@ from delone._base.duplicates import first_rows
 from delone._tiling.plane.topology import among, edge_keys
 from delone.constrained import ConstrainedDelaunay
 from delone.constrained.validation import ConstrainedReport
-from delone.validation import no_rows, no_triples, not_across
+from delone.validation import fault, not_across
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
 
     from delone._base.types import Bools, Floats
+    from delone.validation import Sentences
 
     Handles = NDArray[np.int64]
 
@@ -67,14 +66,13 @@ class DynamicReport(ConstrainedReport):
     (True, 0)
     """
 
-    surplus: NDArray[np.integer] = field(default_factory=no_rows)
-    crossings: NDArray[np.integer] = field(default_factory=no_triples)
+    surplus: NDArray[np.integer] = fault(
+        "point is not a crossing of segments", "points are not crossings of segments"
+    )
+    crossings: NDArray[np.integer] = fault("crossing is wrong", "crossings are wrong", width=3)
 
-    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {
-        **ConstrainedReport._SENTENCES,
-        "uncovered": ("segment is not covered", "segments are not covered"),
-        "surplus": ("point is not a crossing of segments", "points are not crossings of segments"),
-        "crossings": ("crossing is wrong", "crossings are wrong"),
+    _SAID: ClassVar[Sentences] = {
+        "uncovered": ("segment is not covered", "segments are not covered")
     }
 
 

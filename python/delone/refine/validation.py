@@ -9,12 +9,11 @@ import numpy as np
 
 from delone import _core
 from delone._tiling.plane.topology import boundary_edges, unjoined
-from delone.validation import SENTENCES, ValidationReport, not_across
+from delone.validation import ValidationReport, not_across
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from delone._base.types import Bools, Floats, Indices
+    from delone.validation import Sentences
 
 __all__ = ["MeshValidation", "validate"]
 
@@ -36,7 +35,7 @@ class MeshValidation(ValidationReport):
     """
 
     _SUBJECT: ClassVar[str] = "a constrained Delaunay mesh"
-    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = SENTENCES | {
+    _SAID: ClassVar[Sentences] = {
         "hull": ("boundary edge is not on a segment", "boundary edges are not on a segment")
     }
 

@@ -8,40 +8,26 @@ once. Edges are locally Delaunay and the boundary turns left, so the surface is 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from delone._tiling.plane import topology
-from delone.constrained.validation import bent_rows, uncovered_rows
+from delone.constrained.validation import OfSegments, bent_rows, uncovered_rows
 from delone.sphere.exact import circles, cross, dot, turns, turns_at, whole
-from delone.validation import SENTENCES, ValidationReport, no_pairs, no_rows
+from delone.validation import ValidationReport, fault
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
 
     from delone._base.types import Bools, Floats, Indices
     from delone._core import ConstrainedTriangulation
+    from delone.validation import Sentences
 
     Rows = NDArray[np.integer]
 
 __all__ = ["ConstrainedSphereReport", "SphereReport", "validate", "validate_constrained"]
-
-_SENTENCES = SENTENCES | {
-    "orientation": (
-        "triangle is not counter-clockwise seen from outside",
-        "triangles are not counter-clockwise seen from outside",
-    ),
-    "hull": ("boundary edge is not on the hull", "boundary edges are not on the hull"),
-    "repeats": (
-        "duplicate has a different direction from its vertex",
-        "duplicates have different directions from their vertices",
-    ),
-    "overlaps": ("triangle overlaps the first one", "triangles overlap the first one"),
-}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -76,14 +62,23 @@ class SphereReport(ValidationReport):
     a canonical Delaunay triangulation of directions
     """
 
-    overlaps: NDArray[np.integer] = field(default_factory=no_rows)
+    overlaps: Rows = fault("triangle overlaps the first one", "triangles overlap the first one")
 
     _SUBJECT: ClassVar[str] = "a canonical Delaunay triangulation of directions"
-    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = _SENTENCES
+    _SAID: ClassVar[Sentences] = {
+        "orientation": (
+            "triangle is not counter-clockwise seen from outside",
+            "triangles are not counter-clockwise seen from outside",
+        ),
+        "repeats": (
+            "duplicate has a different direction from its vertex",
+            "duplicates have different directions from their vertices",
+        ),
+    }
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ConstrainedSphereReport(SphereReport):
+class ConstrainedSphereReport(OfSegments, SphereReport):
     """The result of ``sphere.ConstrainedDelaunay.validate()``: truthy if it is correct.
 
     The fields of `SphereReport` mean the same as there, but `delaunay` and `ties` leave out pairs
@@ -116,18 +111,7 @@ class ConstrainedSphereReport(SphereReport):
     a canonical constrained Delaunay triangulation of directions
     """
 
-    flags: NDArray[np.integer] = field(default_factory=no_rows)
-    absent: NDArray[np.integer] = field(default_factory=no_pairs)
-    uncovered: NDArray[np.integer] = field(default_factory=no_rows)
-    bent: NDArray[np.integer] = field(default_factory=no_pairs)
-
     _SUBJECT: ClassVar[str] = "a canonical constrained Delaunay triangulation of directions"
-    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = _SENTENCES | {
-        "flags": ("triangle has wrong flags", "triangles have wrong flags"),
-        "absent": ("subsegment is not an edge", "subsegments are not edges"),
-        "uncovered": ("row of segments is not covered", "rows of segments are not covered"),
-        "bent": ("vertex bends a row of segments", "vertices bend rows of segments"),
-    }
 
 
 def validate(

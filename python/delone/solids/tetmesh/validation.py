@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -13,11 +13,9 @@ from delone._base.blocks import blocks
 from delone._tiling.plane.topology import unjoined
 from delone._tiling.space.locking import sides
 from delone._tiling.space.topology import boundary_faces
-from delone.validation import SpaceReport, no_rows
+from delone.validation import SpaceReport, fault
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
 
     from delone._base.types import Floats, Indices
@@ -55,36 +53,27 @@ class TetMeshReport(SpaceReport):
     array([], dtype=int64)
     """
 
-    lost: NDArray[np.integer] = field(default_factory=no_rows)
-    walls: NDArray[np.integer] = field(default_factory=no_rows)
-    touching: NDArray[np.integer] = field(default_factory=no_rows)
-    volume: NDArray[np.integer] = field(default_factory=no_rows)
-    uncovered: NDArray[np.integer] = field(default_factory=no_rows)
+    lost: NDArray[np.integer] = fault(
+        "input face is not a face of a tetrahedron", "input faces are not faces of tetrahedra"
+    )
+    walls: NDArray[np.integer] = fault(
+        "tetrahedron has a boundary face that is not in the input",
+        "tetrahedra have boundary faces that are not in the input",
+    )
+    touching: NDArray[np.integer] = fault(
+        "face of the boundary crosses or touches others",
+        "faces of the boundary cross or touch others",
+    )
+    volume: NDArray[np.integer] = fault(
+        "sign of the difference of volumes is not 0",
+        "signs of the differences of volumes are not 0",
+    )
+    uncovered: NDArray[np.integer] = fault(
+        "part in one plane is not covered by its faces",
+        "parts in one plane are not covered by their faces",
+    )
 
     _SUBJECT: ClassVar[str] = "a mesh of tetrahedra"
-    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {
-        **SpaceReport._SENTENCES,
-        "lost": (
-            "input face is not a face of a tetrahedron",
-            "input faces are not faces of tetrahedra",
-        ),
-        "walls": (
-            "tetrahedron has a boundary face that is not in the input",
-            "tetrahedra have boundary faces that are not in the input",
-        ),
-        "touching": (
-            "face of the boundary crosses or touches others",
-            "faces of the boundary cross or touch others",
-        ),
-        "volume": (
-            "sign of the difference of volumes is not 0",
-            "signs of the differences of volumes are not 0",
-        ),
-        "uncovered": (
-            "part in one plane is not covered by its faces",
-            "parts in one plane are not covered by their faces",
-        ),
-    }
 
 
 def faults(
