@@ -121,7 +121,7 @@ def test_edges_surfaces_and_flat_meshes(tmp_path):
     assert (opened(path)[1][0][:, 1] == 0).all()
     write_mesh(path, mesh, z=tin.z)
     assert np.ptp(opened(path)[1][0][:, 1]) == pytest.approx(np.ptp(tin.z), rel=1e-6)
-    with pytest.raises(FileFormatError, match="no place for attributes"):
+    with pytest.raises(FileFormatError, match="cannot store attributes"):
         write_mesh(path, mesh, attributes={"a": tin.z})
     solid = delone.Delaunay(np.random.default_rng(1).random((20, 3)))
     with pytest.raises(FileFormatError, match="cannot store tetrahedra"):

@@ -129,7 +129,6 @@ CORE: dict[str, set[str]] = {
         "sets",
         "constrained",
         "delaunay",
-        "graphs",
         "locate",
         "order",
         "parallel",

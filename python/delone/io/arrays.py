@@ -26,14 +26,15 @@ from delone.io.pointset import PointSet, choose_columns, find_column
 from delone.regular import RegularTriangulation
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from delone.exchange.parts import HasParts
+    from delone.io.content import Wanted
 
-__all__ = ["is_constrained", "read_mesh", "read_points", "require_libraries", "write_mesh"]
+__all__ = ["is_constrained", "read_mesh", "read_points", "write_mesh"]
 
 # Why a file of a class is not read as a mesh.
 _WITHOUT = {
@@ -128,26 +129,15 @@ def _kept(path: Path) -> MeshFile:
     )
 
 
-def require_libraries(suffix: str) -> None:
-    """Do nothing: NumPy writes these files."""
-
-
-def write_mesh(
-    path: Path,
-    triangulation: HasParts,
-    *,
-    z: ArrayLike | None = None,
-    crs: str | None = None,
-    edges: bool = False,
-    attributes: Mapping[str, ArrayLike] | None = None,
-) -> None:
+def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     """Write a triangulation, with heights, to an npz file."""
-    if edges:
+    if wanted.edges:
         raise FileFormatError(
             f"{path.suffix} files contain the whole triangulation; edges cannot be written alone"
         )
-    heights = as_values(z, triangulation.npoints)
-    further = {name: np.asarray(values) for name, values in (attributes or {}).items()}
+    crs = wanted.crs
+    heights = as_values(wanted.z, triangulation.npoints)
+    further = {name: np.asarray(values) for name, values in (wanted.attributes or {}).items()}
     split_attributes(further, triangulation.npoints, triangulation.nsimplex)
     own: set[str] = set()
     saved: Any = triangulation

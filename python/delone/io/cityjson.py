@@ -15,20 +15,21 @@ import numpy as np
 
 from delone._base.georeference import parsed
 from delone.errors import FileFormatError
-from delone.io.content import content
+from delone.io.content import content, require_finite_heights
 from delone.io.systems import check_system
 from delone.predicates import orient2d
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
     from pathlib import Path
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from delone._base.types import Floats, Indices
     from delone.exchange.parts import HasParts
+    from delone.io.content import Wanted
 
-__all__ = ["require_libraries", "write_mesh"]
+__all__ = ["write_mesh"]
 
 # The first is what surveys are accurate to; further ones are tried where points are closer.
 _DIGITS = range(3, 16)
@@ -38,39 +39,19 @@ _LARGEST = 2.0**53
 _BLOCK = 1 << 16
 
 
-def require_libraries(suffix: str) -> None:
-    """Do nothing: files are written without a library."""
-
-
-def write_mesh(
-    path: Path,
-    triangulation: HasParts,
-    *,
-    z: ArrayLike | None = None,
-    crs: str | None = None,
-    edges: bool = False,
-    attributes: Mapping[str, ArrayLike] | None = None,
-) -> None:
+def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     """Write one object of the type TINRelief."""
-    if edges or attributes:
-        what = "edges" if edges else "attributes"
-        raise FileFormatError(f"{path.suffix} files of CityJSON cannot store {what}; use .vtu")
-    if z is None:
-        raise FileFormatError(
-            f"{path.suffix} files of CityJSON need heights: give z, or write a TIN; GeoJSON is "
-            ".geojson"
-        )
+    files, crs = f"{path.suffix} files of CityJSON", wanted.crs
+    wanted.refuse(files, "edges", "attributes")
+    wanted.require_heights(files, also="; GeoJSON is .geojson")
     check_system(crs, path.suffix)
-    found = content(triangulation, z=z).bare()
+    found = content(triangulation, z=wanted.z).bare()
     used, inverse = np.unique(found.simplices, return_inverse=True)
     rows: Indices = inverse.reshape(found.simplices.shape).astype(np.int32)
     points = found.points[used]
-    if not np.isfinite(points).all():
-        raise FileFormatError(
-            f"{path.suffix} files of CityJSON need a finite height for each point"
-        )
+    require_finite_heights(points, files)
     if not len(rows):
-        raise FileFormatError(f"{path.suffix} files of CityJSON need a triangle")
+        raise FileFormatError(f"{files} need a triangle")
     digits, origin, whole = _rounded(points, rows)
     with path.open("w", encoding="utf-8", newline="\n") as file:
         file.write(_head(points, crs, digits, origin))

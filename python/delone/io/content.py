@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone._base.values import as_values
+from delone.errors import FileFormatError
 from delone.exchange.parts import Parts, parts_of, with_third
 from delone.exchange.second import middles, of_order
 from delone.io.heights import split_attributes
@@ -16,9 +17,38 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._base.types import Floats
     from delone.exchange.parts import HasParts
 
-__all__ = ["Content", "content"]
+__all__ = ["Content", "Wanted", "content", "require_finite_heights"]
+
+
+class Wanted(NamedTuple):
+    """What a file is to contain beside a mesh, as `write_mesh` is told."""
+
+    z: ArrayLike | None = None
+    crs: str | None = None
+    edges: bool = False
+    attributes: Mapping[str, ArrayLike] | None = None
+    order: int = 1
+    version: str | None = None
+
+    def refuse(self, files: str, *names: str, use: str = ".vtu") -> None:
+        """Raise an error if something is wanted that these files cannot store."""
+        for name in names:
+            if getattr(self, name):
+                raise FileFormatError(f"{files} cannot store {name}; use {use}")
+
+    def require_heights(self, files: str, also: str = "") -> None:
+        """Raise an error if there are no heights."""
+        if self.z is None:
+            raise FileFormatError(f"{files} need heights: give z, or write a TIN{also}")
+
+
+def require_finite_heights(points: Floats, files: str) -> None:
+    """Raise an error if a point has no height."""
+    if not np.isfinite(points).all():
+        raise FileFormatError(f"{files} need a finite height for each point")
 
 
 class Content(NamedTuple):

@@ -21,12 +21,13 @@ from delone.exchange.parts import boundary, boundary_segments, kind_of
 from delone.io.content import content
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
     from pathlib import Path
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from delone.exchange.parts import HasParts, Parts
+    from delone.io.content import Wanted
 
 __all__ = ["require_libraries", "write_mesh"]
 
@@ -61,23 +62,13 @@ def require_libraries(suffix: str) -> None:
         require("h5py", extra="mesh", what=f"writing {suffix[1:].upper()} files")
 
 
-def write_mesh(
-    path: Path,
-    triangulation: HasParts,
-    *,
-    z: ArrayLike | None = None,
-    crs: str | None = None,
-    edges: bool = False,
-    attributes: Mapping[str, ArrayLike] | None = None,
-    order: int = 1,
-) -> None:
+def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     """Write triangles or tetrahedra, and of a mesh its segments."""
     suffix = path.suffix.lower()
-    if edges:
-        raise FileFormatError(f"{suffix} files cannot store edges; use .vtu, .msh or .gpkg")
-    if attributes and suffix not in _VALUED:
-        raise FileFormatError(f"{suffix} files cannot store attributes; use .vtu or .xdmf")
-    found = content(triangulation, z=z, attributes=attributes, order=order)
+    wanted.refuse(f"{suffix} files", "edges", use=".vtu, .msh or .gpkg")
+    if suffix not in _VALUED:
+        wanted.refuse(f"{suffix} files", "attributes", use=".vtu or .xdmf")
+    found = content(triangulation, z=wanted.z, attributes=wanted.attributes, order=wanted.order)
     if suffix == ".su2":
         if found.heights is not None:
             raise FileFormatError(".su2 files of 2-D meshes cannot store heights; use .vtu")

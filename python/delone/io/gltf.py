@@ -22,12 +22,13 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from delone._base.types import Floats, Indices
     from delone.exchange.parts import HasParts
+    from delone.io.content import Wanted
 
-__all__ = ["require_libraries", "write_local", "write_mesh"]
+__all__ = ["write_local", "write_mesh"]
 
 # Numbers of the specification.
 _FLOAT, _UINT = 5126, 5125
@@ -38,23 +39,11 @@ _JSON, _BIN = 0x4E4F534A, 0x004E4942
 _LARGEST = (1 << 32) - 1
 
 
-def require_libraries(suffix: str) -> None:
-    """Do nothing: no library is needed."""
-
-
-def write_mesh(
-    path: Path,
-    triangulation: HasParts,
-    *,
-    z: ArrayLike | None = None,
-    crs: str | None = None,
-    edges: bool = False,
-    attributes: Mapping[str, ArrayLike] | None = None,
-) -> None:
+def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     """Write triangles with smooth normals, or edges as lines; heights are upward."""
-    if attributes:
-        raise FileFormatError(".glb files have no place for attributes; use .vtu or .ply")
-    found = content(triangulation, z=z, edges=edges).bare()
+    wanted.refuse(".glb files", "attributes", use=".vtu or .ply")
+    crs, edges = wanted.crs, wanted.edges
+    found = content(triangulation, z=wanted.z, edges=edges).bare()
     used, inverse = np.unique(found.simplices, return_inverse=True)
     rows: Indices = inverse.reshape(found.simplices.shape).astype(np.int32)
     points = np.zeros((len(used), 3))

@@ -16,7 +16,7 @@ from delone.errors import FileFormatError, InputError
 from delone.io.geometryset import GeometrySet
 from delone.io.landxml_parts import ORDERS, Draft, Head
 from delone.io.landxml_survey import Survey
-from delone.io.landxml_writing import require_libraries, write_mesh
+from delone.io.landxml_writing import write_mesh
 from delone.io.markup import decoded, refuse_document_type
 from delone.io.pointset import PointSet
 from delone.io.surfacefile import SurfaceFile
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from delone._base.types import Floats
 
-__all__ = ["read_geometries", "read_points", "read_surface", "require_libraries", "write_mesh"]
+__all__ = ["read_geometries", "read_points", "read_surface", "write_mesh"]
 
 # Elements that are done when they end: all others are small, and hold what belongs to these.
 _LEAVES = ("P", "F", "PntList2D", "PntList3D")

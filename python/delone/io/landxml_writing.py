@@ -14,19 +14,20 @@ from delone._base.georeference import caller_level, parsed
 from delone._base.units import UnitsWarning, as_units, lengths_of_crs
 from delone.errors import FileFormatError
 from delone.exchange.parts import boundary
-from delone.io.content import content
+from delone.io.content import content, require_finite_heights
 from delone.io.systems import check_system
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from delone._base.types import Floats, Indices
     from delone.exchange.parts import HasParts
+    from delone.io.content import Wanted
 
-__all__ = ["require_libraries", "write_mesh"]
+__all__ = ["write_mesh"]
 
 _SPACE = "http://www.landxml.org/schema/LandXML-1.2"
 _METRIC = {"mm": "millimeter", "cm": "centimeter", "m": "meter", "km": "kilometer"}
@@ -40,33 +41,18 @@ _REST = {
 }
 
 
-def require_libraries(suffix: str) -> None:
-    """Do nothing: files are written without a library."""
-
-
-def write_mesh(
-    path: Path,
-    triangulation: HasParts,
-    *,
-    z: ArrayLike | None = None,
-    crs: str | None = None,
-    edges: bool = False,
-    attributes: Mapping[str, ArrayLike] | None = None,
-) -> None:
+def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     """Write points with heights, triangles, breaklines and outlines; ids are rows from 1."""
-    if edges or attributes:
-        what = "edges" if edges else "attributes"
-        raise FileFormatError(f"{path.suffix} files of surfaces cannot store {what}; use .vtu")
-    if z is None:
-        raise FileFormatError(f"{path.suffix} files need heights: give z, or write a TIN")
+    files, crs = f"{path.suffix} files of surfaces", wanted.crs
+    wanted.refuse(files, "edges", "attributes")
+    wanted.require_heights(files)
     check_system(crs, path.suffix)
-    parts = content(triangulation, z=z).whole()
+    parts = content(triangulation, z=wanted.z).whole()
     own = content(triangulation).own
     segments = np.empty((0, 2), dtype=np.int32) if own.segments is None else own.segments
     soft = np.asarray(getattr(triangulation, "soft", np.zeros(len(segments), dtype=bool)))
     units = as_units(getattr(triangulation, "units", None))
-    if not np.isfinite(parts.points).all():
-        raise FileFormatError(f"{path.suffix} files need a finite height for each point")
+    require_finite_heights(parts.points, files)
     with path.open("w", encoding="utf-8", newline="\n") as file:
         file.writelines(_head(crs, units, path))
         file.write('<Surfaces><Surface name="surface">\n<SourceData>\n')

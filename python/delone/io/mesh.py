@@ -31,13 +31,13 @@ from delone.io.meshfile import MeshFile
 from delone.io.pointset import PointSet
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from delone.exchange.parts import HasParts
-    from delone.io.content import Content
+    from delone.io.content import Content, Wanted
 
 __all__ = ["read_mesh", "read_points", "require_libraries", "write_mesh"]
 
@@ -229,33 +229,29 @@ def require_libraries(suffix: str) -> None:
     require("meshio", extra="mesh", what="writing meshes")
 
 
-def write_mesh(
-    path: Path,
-    triangulation: HasParts,
-    *,
-    z: ArrayLike | None = None,
-    crs: str | None = None,
-    edges: bool = False,
-    attributes: Mapping[str, ArrayLike] | None = None,
-    order: int = 1,
-    version: str | None = None,
-) -> None:
+def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     """Write simplices and segments, or edges as lines, with heights as the third coordinate."""
     suffix = path.suffix.lower()
-    if edges and suffix in _PLAIN:
-        raise FileFormatError(f"{suffix} files cannot store edges; use .vtu, .msh or .gpkg")
-    found = content(triangulation, z=z, edges=edges, attributes=attributes, order=order)
-    if found.given and suffix in (".obj", ".stl"):
-        raise FileFormatError(f"{suffix} files cannot store attributes; use .vtu or .ply")
+    if suffix in _PLAIN:
+        wanted.refuse(f"{suffix} files", "edges", use=".vtu, .msh or .gpkg")
+    if suffix in (".obj", ".stl"):
+        wanted.refuse(f"{suffix} files", "attributes", use=".vtu or .ply")
+    found = content(
+        triangulation,
+        z=wanted.z,
+        edges=wanted.edges,
+        attributes=wanted.attributes,
+        order=wanted.order,
+    )
     made = to_meshio(found.bare() if suffix in _PLAIN else found.whole())
     if suffix == ".msh" and TAGS[0] in made.cell_data:
-        _write_tagged(path, made, found, version or "2.2")
+        _write_tagged(path, made, found, wanted.version or "2.2")
         return
     for tag in TAGS:
         made.cell_data.pop(tag, None)
     if found.heights is not None and suffix == ".vtu":
         made.point_data.setdefault("z", made.points[:, 2].copy())
-    _write(path, suffix, made, version or "4.1")
+    _write(path, suffix, made, wanted.version or "4.1")
 
 
 def _write_tagged(path: Path, mesh: Any, found: Content, version: str) -> None:

@@ -18,15 +18,14 @@ from delone.io.numbered import Lines, as_rows
 from delone.io.pointset import PointSet
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
-
-    from numpy.typing import ArrayLike
 
     from delone._base.types import Floats
     from delone.exchange.parts import HasParts
+    from delone.io.content import Wanted
 
-__all__ = ["read_mesh", "read_points", "require_libraries", "write_mesh"]
+__all__ = ["read_mesh", "read_points", "write_mesh"]
 
 _HEADS = ("OFF", "COFF", "NOFF", "CNOFF")
 
@@ -83,23 +82,10 @@ def _opened(path: Path) -> tuple[Floats, int, Lines]:
         raise FileFormatError(f"{path}: {error}") from error
 
 
-def require_libraries(suffix: str) -> None:
-    """Do nothing: no library is needed."""
-
-
-def write_mesh(
-    path: Path,
-    triangulation: HasParts,
-    *,
-    z: ArrayLike | None = None,
-    crs: str | None = None,
-    edges: bool = False,
-    attributes: Mapping[str, ArrayLike] | None = None,
-) -> None:
+def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     """Write triangles, with heights as the third coordinate."""
-    if edges or attributes:
-        raise FileFormatError(".off files can store neither edges nor attributes; use .vtu")
-    found = content(triangulation, z=z).bare()
+    wanted.refuse(".off files", "edges", "attributes")
+    found = content(triangulation, z=wanted.z).bare()
     points = np.zeros((len(found.points), 3))
     points[:, : found.points.shape[1]] = found.points
     lines = ["OFF", f"{len(points)} {len(found.simplices)} 0"]

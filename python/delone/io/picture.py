@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone.exchange.parts import HasParts
+    from delone.io.content import Wanted
 
 __all__ = ["require_libraries", "write_mesh"]
 
@@ -28,28 +29,20 @@ def require_libraries(suffix: str) -> None:
     require("matplotlib.figure", extra="plot", what="plotting")
 
 
-def write_mesh(
-    path: Path,
-    triangulation: HasParts,
-    *,
-    z: ArrayLike | None = None,
-    crs: str | None = None,
-    edges: bool = False,
-    attributes: Mapping[str, ArrayLike] | None = None,
-) -> None:
+def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     """Draw a triangulation into a file; a plot shows both edges and triangles."""
     if triangulation.points.shape[1] == 3:
-        _draw_solid(path, triangulation, attributes)
+        _draw_solid(path, triangulation, wanted.attributes)
         return
     from delone.plot.picture import draw_picture
     from delone.plot.protocols import is_quality_mesh
 
-    if attributes:
+    if wanted.attributes:
         raise FileFormatError("a plot shows one value for each point: give it as z")
     mesh: Any = triangulation
     # Heights are terrain, but on a quality mesh they are a field.
     lit = not is_quality_mesh(mesh) and len(mesh.simplices) >= _MANY
-    draw_picture(path, mesh, z=z, crs=crs, shade=lit)
+    draw_picture(path, mesh, z=wanted.z, crs=wanted.crs, shade=lit)
 
 
 def _draw_solid(

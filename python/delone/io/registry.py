@@ -19,6 +19,7 @@ from delone._base.georeference import as_crs, crs_of
 from delone.errors import DtypeError, FileFormatError, InputError
 from delone.exchange.second import as_order
 from delone.io.compressed import SUFFIXES
+from delone.io.content import Wanted
 from delone.io.referencing import warn_if_left_out
 
 if TYPE_CHECKING:
@@ -751,8 +752,12 @@ def _writer(path: str | os.PathLike[str], kind: str) -> Callable[..., None]:
         others = ", ".join(holders)
         raise FileFormatError(f"{file}: {suffix} files cannot store {what}; use {others}")
     module = _module(_WRITERS, suffix, file, "write")
-    module.require_libraries(suffix)
-    write: Callable[..., None] = module.write_mesh
+    if hasattr(module, "require_libraries"):
+        module.require_libraries(suffix)
+
+    def write(place: Path, mesh: HasParts, **given: Any) -> None:
+        module.write_mesh(place, mesh, Wanted(**given))
+
     return write
 
 

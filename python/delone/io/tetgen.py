@@ -21,15 +21,13 @@ from delone.io.meshfile import MeshFile
 from delone.io.numbered import Lines, Numbers, as_markers, as_rows, first_number, table
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
     from pathlib import Path
-
-    from numpy.typing import ArrayLike
 
     from delone._base.types import Floats, Indices
     from delone.exchange.parts import HasParts
+    from delone.io.content import Wanted
 
-__all__ = ["SECOND", "is_solid", "read_mesh", "read_nodes", "require_libraries", "write_mesh"]
+__all__ = ["SECOND", "is_solid", "read_mesh", "read_nodes", "write_mesh"]
 
 # The nodes of an element of second order, by their places in the order of VTK.
 SECOND = (0, 1, 2, 3, 9, 7, 4, 5, 8, 6)
@@ -186,25 +184,11 @@ def _seeds(lines: Lines, columns: int) -> Floats:
     return lines.rows(count, columns)
 
 
-def require_libraries(suffix: str) -> None:
-    """Do nothing: no library is needed."""
-
-
-def write_mesh(
-    path: Path,
-    triangulation: HasParts,
-    *,
-    z: ArrayLike | None = None,
-    crs: str | None = None,
-    edges: bool = False,
-    attributes: Mapping[str, ArrayLike] | None = None,
-    order: int = 1,
-) -> None:
+def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     """Write one of the files; triangles are those of the input, or of the boundary."""
     suffix = path.suffix.lower()
-    if edges or attributes:
-        raise FileFormatError(f"{suffix} files can store neither edges nor attributes; use .vtu")
-    parts = content(triangulation, z=z, order=order).whole()
+    wanted.refuse(f"{suffix} files", "edges", "attributes")
+    parts = content(triangulation, z=wanted.z, order=wanted.order).whole()
     points = np.zeros((len(parts.points), 3))
     points[:, : parts.points.shape[1]] = parts.points
     if suffix == ".ele":

@@ -26,15 +26,15 @@ from delone.io.pointset import PointSet
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from delone._base.types import Floats
     from delone.exchange.parts import HasParts, Parts
-    from delone.io.content import Content
+    from delone.io.content import Content, Wanted
 
-__all__ = ["read_mesh", "read_points", "read_triangle", "require_libraries", "write_mesh"]
+__all__ = ["read_mesh", "read_points", "read_triangle", "write_mesh"]
 
 # The nodes of a triangle of second order, by their places in the order of VTK.
 _SECOND = (0, 1, 2, 4, 5, 3)
@@ -178,30 +178,16 @@ def read_mesh(path: Path) -> MeshFile:
     )
 
 
-def require_libraries(suffix: str) -> None:
-    """Do nothing: no library is needed."""
-
-
-def write_mesh(
-    path: Path,
-    triangulation: HasParts,
-    *,
-    z: ArrayLike | None = None,
-    crs: str | None = None,
-    edges: bool = False,
-    attributes: Mapping[str, ArrayLike] | None = None,
-    order: int = 1,
-) -> None:
+def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     """Write one of the files: points with heights as an attribute, triangles, or segments."""
-    if edges or attributes:
-        raise FileFormatError(f"{path.suffix} files can store neither edges nor named attributes")
     suffix = path.suffix.lower()
+    wanted.refuse(f"{suffix} files", "edges", "attributes")
     if triangulation.points.shape[1] == 3:
-        tetgen.write_mesh(path, triangulation, order=order)
+        tetgen.write_mesh(path, triangulation, wanted)
         return
-    found = content(triangulation, z=z, order=order)
+    found = content(triangulation, z=wanted.z, order=wanted.order)
     if suffix == ".ele":
-        text = _elements(of_order(found.own, order))
+        text = _elements(of_order(found.own, wanted.order))
     else:
         text = _nodes(found)
         if suffix == ".poly":

@@ -28,11 +28,12 @@ from delone.io.rings import open_ring
 from delone.io.systems import check_system
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from delone.exchange.parts import HasParts
+    from delone.io.content import Wanted
 
 __all__ = [
     "attribute_names",
@@ -243,19 +244,12 @@ def require_libraries(suffix: str) -> None:
         require(module, extra="geo", what="writing geometries")
 
 
-def write_mesh(
-    path: Path,
-    triangulation: HasParts,
-    *,
-    z: ArrayLike | None = None,
-    crs: str | None = None,
-    edges: bool = False,
-    attributes: Mapping[str, ArrayLike] | None = None,
-) -> None:
+def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     """Write triangles as polygons, or edges as lines, with vertices as columns v0, v1 (, v2)."""
     require_libraries(path.suffix.lower())
-    parts = content(triangulation, z=z, edges=edges, attributes=attributes).whole()
-    system = _system(crs, path.suffix.lower())
+    edges = wanted.edges
+    parts = content(triangulation, z=wanted.z, edges=edges, attributes=wanted.attributes).whole()
+    system = _system(wanted.crs, path.suffix.lower())
     # Appending to GeoJSON is expensive in GDAL; it is a text format for small data.
     driver = "GeoJSON" if path.suffix.lower() == ".geojson" else "GPKG"
     count = len(parts.simplices)
