@@ -22,6 +22,7 @@ use delone_predicates::arithmetic::{Pair, decode_odd};
 use num_bigint::BigInt;
 
 use super::number::{Number, Rough, Rounded, certain};
+use crate::base::vector::dot_of;
 use crate::base::wide::{lowest, ratio, scaled, sign};
 
 /// Vectors with a largest component between these, 2^-40 and 2^40, and weights below the square,
@@ -71,12 +72,6 @@ fn minor<N: Number, const D: usize>(p: &[N; D], q: &[N; D], [i, j]: [usize; 2]) 
     p[i].clone() * q[j].clone() - p[j].clone() * q[i].clone()
 }
 
-#[inline]
-fn dot<N: Number, const D: usize>(p: &[N; D], q: &[N; D]) -> N {
-    let term = |k: usize| p[k].clone() * q[k].clone();
-    (1..D).fold(term(0), |sum, k| sum + term(k))
-}
-
 /// The sum of the squares of `count` terms.
 #[inline]
 fn squares<N: Number>(count: usize, term: impl Fn(usize) -> N) -> N {
@@ -95,7 +90,7 @@ fn area<N: Number, const D: usize>(p: &[N; D], q: &[N; D]) -> N {
 fn of_edge<N: Number, const D: usize>(kind: Kind, lifted: &Lifted<N, D, 1>) -> [N; 2] {
     let [height] = lifted.heights.clone();
     if kind.weighted {
-        [height.squared(), dot(&lifted.to[0], &lifted.to[0])]
+        [height.squared(), dot_of(&lifted.to[0], &lifted.to[0])]
     } else {
         [height, N::one()]
     }
@@ -128,17 +123,17 @@ fn of_tetrahedron<N: Number>(lifted: &Lifted<N, 3, 3>) -> [N; 2] {
 #[inline]
 fn beside_edge<N: Number, const D: usize>(lifted: &Lifted<N, D, 2>) -> N {
     let ([v, q], [h, power]) = (&lifted.to, lifted.heights.clone());
-    power * dot(v, v) - h * dot(v, q)
+    power * dot_of(v, v) - h * dot_of(v, q)
 }
 
 /// The power of the last site with respect to the ball of a triangle, times D.
 #[inline]
 fn beside_triangle<N: Number, const D: usize>(lifted: &Lifted<N, D, 3>) -> N {
     let ([a, b, q], [ha, hb, power]) = (&lifted.to, lifted.heights.clone());
-    let (aa, ab, bb) = (dot(a, a), dot(a, b), dot(b, b));
+    let (aa, ab, bb) = (dot_of(a, a), dot_of(a, b), dot_of(b, b));
     let first = ha.clone() * bb - hb.clone() * ab.clone();
     let second = hb * aa - ha * ab;
-    power * area(a, b) - (first * dot(a, q) + second * dot(b, q))
+    power * area(a, b) - (first * dot_of(a, q) + second * dot_of(b, q))
 }
 
 /// Rounded vectors, and whether they are in the range that `SMALL` and `LARGE` give.
@@ -164,7 +159,7 @@ fn rounded<T: Rounded, const D: usize, const M: usize>(
     if !(largest > SMALL && largest < LARGE) {
         return None;
     }
-    let mut heights = to.each_ref().map(|v| dot(v, v));
+    let mut heights = to.each_ref().map(|v| dot_of(v, v));
     if kind.weighted {
         for (height, site) in heights.iter_mut().zip(others) {
             *height = *height + Rough::difference(first.weight, site.weight);
@@ -198,7 +193,7 @@ fn integers<const D: usize, const M: usize>(
         .map(|site| std::array::from_fn(|k| place(site, k) - place(first, k)));
     let heights = std::array::from_fn(|i| {
         let v: &[BigInt; D] = &to[i];
-        dot(v, v) + scaled(first.weight, 2 * low) - scaled(others[i].weight, 2 * low)
+        dot_of(v, v) + scaled(first.weight, 2 * low) - scaled(others[i].weight, 2 * low)
     });
     Lifted { to, heights }
 }
@@ -241,7 +236,7 @@ fn on_grid<const D: usize, const M: usize>(
         }
         *v = x as i128;
     }
-    let heights = to.each_ref().map(|v| dot(v, v));
+    let heights = to.each_ref().map(|v| dot_of(v, v));
     Some(Lifted { to, heights })
 }
 

@@ -12,6 +12,8 @@ use delone_predicates::Sign;
 use delone_predicates::arithmetic::Pair;
 use num_bigint::BigInt;
 
+use crate::base::vector::Ring;
+
 /// Half the distance from 1.0 to the next double.
 const U: f64 = f64::EPSILON / 2.0;
 /// Operations that contribute to a monomial, with room for the rounding of bounds.
@@ -19,8 +21,8 @@ const MOST: f64 = 64.0;
 /// More than underflow can change, in the range of differences that `ball` allows: 2^-600.
 pub const FLOOR: f64 = f64::from_bits((1023 - 600) << 52);
 
-/// Numbers with the operations of a ring.
-pub trait Number: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+/// Numbers of one formula.
+pub trait Number: Ring {
     /// One.
     fn one() -> Self;
     /// The square.

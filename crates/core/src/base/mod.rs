@@ -9,5 +9,6 @@ pub(crate) mod parallel;
 pub mod points;
 pub mod proof;
 pub(crate) mod sets;
+pub(crate) mod vector;
 pub mod watch;
 pub(crate) mod wide;

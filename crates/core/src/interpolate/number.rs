@@ -7,15 +7,10 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use delone_predicates::Point2;
 
+use crate::base::vector;
+
 /// The operations that formulas need.
-pub trait Number:
-    Copy
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
-{
+pub trait Number: vector::Number + Div<Output = Self> + Neg<Output = Self> {
     /// How many doubles it has: the value, or with it the derivatives by x, y, xx, xy and yy.
     const PARTS: usize;
     /// Builds the number from these parts.

@@ -33,6 +33,7 @@ use super::exact;
 use super::kind::Kind;
 use super::number::Number;
 use crate::base::error::Result;
+use crate::base::vector::dot;
 use crate::base::watch::Pace;
 use crate::locate::{certain, in_unit, plain, seen_from};
 
@@ -343,11 +344,6 @@ impl<T: Number> Weights<T> {
 
 fn values<T: Number>(p: [T; 2]) -> Point2 {
     p.map(T::value)
-}
-
-#[inline]
-fn dot<T: Number>(a: [T; 2], b: [T; 2]) -> T {
-    a[0] * b[0] + a[1] * b[1]
 }
 
 /// One over twice the area of a fan, times that of the flat one if there is one.

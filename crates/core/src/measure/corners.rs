@@ -14,11 +14,11 @@
 //! If the share of D is large, D is not the only accurate value. So are the vectors of the faces,
 //! each at least D over the length of the edge that it omits, and the lengths of the edges.
 
-use std::ops::{Add, Mul, Sub};
-
 use delone_predicates::arithmetic::{Pair, decode_odd};
 use num_bigint::BigInt;
 
+use crate::base::vector;
+pub use crate::base::vector::{cross, dot};
 use crate::base::wide::{lowest, scaled};
 
 /// Above this share of the product of the lengths, a determinant in doubles is accurate enough.
@@ -33,7 +33,7 @@ const LARGE: f64 = f64::from_bits((1023 + 60) << 52);
 const TINY: f64 = f64::from_bits((1023 - 200) << 52);
 
 /// The kinds of numbers in which a simplex is measured.
-pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+pub trait Number: vector::Number {
     /// The number, rounded.
     fn value(self) -> f64;
     /// The negated number.
@@ -216,22 +216,6 @@ pub fn in_units(x: f64, exponent: i32) -> f64 {
     } else {
         times_power(x, exponent)
     }
-}
-
-/// The inner product.
-#[inline]
-pub fn dot<T: Number>(p: [T; 3], q: [T; 3]) -> T {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-}
-
-/// The cross product.
-#[inline]
-pub fn cross<T: Number>(p: [T; 3], q: [T; 3]) -> [T; 3] {
-    [
-        p[1] * q[2] - p[2] * q[1],
-        p[2] * q[0] - p[0] * q[2],
-        p[0] * q[1] - p[1] * q[0],
-    ]
 }
 
 /// Twice the area of a triangle, from its vectors from the last corner.

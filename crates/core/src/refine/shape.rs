@@ -5,6 +5,7 @@ use delone_predicates::Point2;
 use delone_predicates::arithmetic::Pair;
 use num_bigint::BigInt;
 
+pub use crate::base::vector::{cross2 as cross, dot, minus};
 use crate::base::wide::{lowest, scaled};
 
 /// Squared cosines with a smaller relative difference are compared exactly: four roundings each.
@@ -47,18 +48,6 @@ pub struct Seen {
     pub area2: f64,
     /// Whether its smallest angle is below the bound.
     pub skinny: bool,
-}
-
-pub fn minus(a: Point2, b: Point2) -> Point2 {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-pub fn dot(a: Point2, b: Point2) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-pub fn cross(a: Point2, b: Point2) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
 }
 
 /// The smallest angle of a triangle in degrees.

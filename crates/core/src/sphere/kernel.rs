@@ -31,6 +31,7 @@ use super::directions::Directions;
 use super::walk::walk;
 use crate::base::error::Result;
 use crate::base::memory::push;
+pub(super) use crate::base::vector::{cross, dot};
 use crate::base::watch::{Pace, Watch};
 use crate::mesh::plane::{Code, Patch, next, prev, triangle};
 
@@ -74,20 +75,6 @@ struct Seed {
     corners: [Ray; 3],
     /// Cross products of the two corners of each edge, by opposite corner.
     crosses: [Point3; 3],
-}
-
-#[inline]
-pub(super) fn cross(a: Point3, b: Point3) -> Point3 {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-#[inline]
-pub(super) fn dot(a: Point3, b: Point3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline]

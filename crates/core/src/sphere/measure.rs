@@ -9,6 +9,8 @@ use super::directions::units;
 use crate::base::error::Result;
 use crate::base::memory::filled;
 use crate::base::parallel;
+use crate::base::vector::dot;
+pub(super) use crate::base::vector::{cross, minus};
 use crate::base::watch::Watch;
 use crate::base::wide::{determinant, lowest, ratio, root, scaled};
 
@@ -73,24 +75,9 @@ pub(super) fn pairs(unit: &Unit) -> [Pair; 3] {
     })
 }
 
-/// The difference.
-pub(super) fn minus(a: [Pair; 3], b: [Pair; 3]) -> [Pair; 3] {
-    [0, 1, 2].map(|k| a[k] - b[k])
-}
-
-/// The cross product.
-pub(super) fn cross(a: [Pair; 3], b: [Pair; 3]) -> [Pair; 3] {
-    let minor = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
-    [minor(1, 2), minor(2, 0), minor(0, 1)]
-}
-
 /// The sum of the absolute coordinates.
 pub(super) fn size(p: [Pair; 3]) -> f64 {
     p.iter().map(|x| x.hi.abs()).sum()
-}
-
-fn dot(a: Point3, b: Point3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// A. Van Oosterom and J. Strackee, "The solid angle of a plane triangle" (1983): the tangent of half

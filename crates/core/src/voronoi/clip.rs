@@ -19,6 +19,7 @@ use super::axis::{crossing, foot};
 use crate::base::error::{Error, Result};
 use crate::base::memory::{push, with_room};
 use crate::base::parallel;
+use crate::base::vector::dot;
 use crate::base::watch::Watch;
 
 /// Cells per task.
@@ -372,10 +373,6 @@ impl Half {
             [-turn, 0.0]
         }
     }
-}
-
-fn dot(a: Point2, b: Point2) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
 }
 
 /// The bound on a coordinate of an edge at its end `end`.

@@ -23,6 +23,7 @@ use delone_predicates::{Point2, Sign, incircle_exact, lexicographic, orient2d, t
 use super::walk::walk;
 
 use crate::base::points::Extent;
+use crate::base::vector::cross2 as cross;
 use crate::mesh::plane::{Code, Patch, next, prev, triangle};
 
 /// Relative bound of the in-circle filter, 16 units of rounding.
@@ -70,11 +71,6 @@ struct Seed {
     corners: [Ray; 3],
     /// Cross products of the two corners of each edge, by opposite corner.
     crosses: [f64; 3],
-}
-
-#[inline]
-fn cross(a: Point2, b: Point2) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
 }
 
 /// A mesh into which points are inserted one at a time.

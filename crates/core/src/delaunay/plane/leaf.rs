@@ -6,6 +6,7 @@ use delone_predicates::{Point2, Sign, incircle_canonical};
 
 use super::merge::Bounds;
 use super::part::{Corner, Part};
+use crate::base::vector::{cross2 as cross, minus};
 use crate::mesh::plane::{OPPOSITE, Patch, RECORD};
 
 /// Half the distance from 1.0 to the next double.
@@ -20,16 +21,6 @@ const U: f64 = f64::EPSILON / 2.0;
 const TURN: f64 = 40.0 * U;
 /// Bound of the in-circle determinant for points in a box of side 1.
 const CIRCLE: f64 = 160.0 * U;
-
-#[inline]
-fn cross(a: Point2, b: Point2) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-#[inline]
-fn minus(a: Point2, b: Point2) -> Point2 {
-    [a[0] - b[0], a[1] - b[1]]
-}
 
 /// Two points as a chain, in records `t` and the next.
 #[inline]

@@ -10,6 +10,7 @@
 //! and the sum of four, like each part of it, of at most 72 M^5 < 2^52. So no operation rounds.
 //! Units between 2^-200 and 2^[`RANGE`] keep everything in the range of doubles.
 
+use crate::base::vector::minus;
 use delone_predicates::{Point3, Sign};
 
 use super::sphere::RANGE;
@@ -49,10 +50,6 @@ fn lowest_bit(x: f64) -> f64 {
         64.. => 2f64.powi(exponent - 1023 - MANTISSA as i32 + zeros),
         _ => 0.0,
     }
-}
-
-fn minus(a: Point3, b: Point3) -> Point3 {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// The determinant of three vectors.

@@ -1,5 +1,6 @@
 //! Centers of spheres through the query and three of its neighbors, with bounds of their errors.
 
+pub use crate::base::vector::{cross, dot, minus, plus};
 use delone_predicates::Point3;
 use delone_predicates::arithmetic::Pair;
 
@@ -111,34 +112,6 @@ pub fn terms(p: Point3, q: Point3) -> Point3 {
         (p[1] * q[2]).abs() + (p[2] * q[1]).abs(),
         (p[2] * q[0]).abs() + (p[0] * q[2]).abs(),
         (p[0] * q[1]).abs() + (p[1] * q[0]).abs(),
-    ]
-}
-
-/// The dot product.
-#[inline]
-pub fn dot(p: Point3, q: Point3) -> f64 {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-}
-
-/// The sum.
-#[inline]
-pub fn plus(p: Point3, q: Point3) -> Point3 {
-    [p[0] + q[0], p[1] + q[1], p[2] + q[2]]
-}
-
-/// The difference.
-#[inline]
-pub fn minus(p: Point3, q: Point3) -> Point3 {
-    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
-}
-
-/// The cross product.
-#[inline]
-pub fn cross(p: Point3, q: Point3) -> Point3 {
-    [
-        p[1] * q[2] - p[2] * q[1],
-        p[2] * q[0] - p[0] * q[2],
-        p[0] * q[1] - p[1] * q[0],
     ]
 }
 

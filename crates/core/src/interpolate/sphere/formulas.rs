@@ -20,20 +20,11 @@
 
 use super::cavity::Cavity;
 use super::frame::Seen;
+use crate::base::vector::{cross2 as cross, minus};
 use crate::interpolate::Number;
 
 /// Ratio of the size of all terms to their sum above which too many digits are lost: 1e-7 is left.
 const LOST: f64 = (1_u64 << 29) as f64;
-
-#[inline]
-fn cross<N: Number>(a: [N; 2], b: [N; 2]) -> N {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-#[inline]
-fn minus<N: Number>(a: [N; 2], b: [N; 2]) -> [N; 2] {
-    [a[0] - b[0], a[1] - b[1]]
-}
 
 /// The y with p y = m and p' y = m'.
 #[inline]

@@ -13,6 +13,7 @@
 use delone_predicates::Point3;
 use delone_predicates::sphere::Unit;
 
+use crate::base::vector::dot;
 use crate::interpolate::Number;
 
 /// The tangent plane of a query.
@@ -60,8 +61,4 @@ impl Frame {
             m: N::linear(m, [-x, -y]),
         }
     }
-}
-
-fn dot(a: Point3, b: Point3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -2,11 +2,8 @@
 
 use delone_predicates::Point3;
 
+use crate::base::vector::dot;
 use crate::locate::length;
-
-fn dot(p: Point3, q: Point3) -> f64 {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-}
 
 /// The distance of `q` from a triangle, of coordinates times `unit`, and the weights of its corners
 /// in the nearest point.

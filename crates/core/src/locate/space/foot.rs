@@ -12,6 +12,7 @@ use delone_predicates::arithmetic::{Pair, is_safe};
 use delone_predicates::{Point3, Sign};
 use num_bigint::BigInt;
 
+use crate::base::vector::{Ring, dot_of};
 use crate::base::wide::{lowest, ratio, scaled, sign};
 
 /// Error bounds of polynomials of degree 4 in differences, relative to the sum of the magnitudes of
@@ -105,23 +106,23 @@ impl Triangle {
     pub fn square(&self, foot: Foot, low: i64) -> (BigInt, BigInt) {
         let of = |roles: [usize; 3]| {
             let [e, f, q] = self.relative(roles, |a, b| scaled(a, low) - scaled(b, low));
-            (dot(&e, &e), dot(&f, &f), dot(&e, &f), e, f, q)
+            (dot_of(&e, &e), dot_of(&f, &f), dot_of(&e, &f), e, f, q)
         };
         match foot {
             Foot::Corner(k) => {
                 let (.., q) = of([k, k, k]);
-                (dot(&q, &q), BigInt::from(1))
+                (dot_of(&q, &q), BigInt::from(1))
             }
             Foot::Edge(k) => {
                 let next = (k + 1) % 3;
                 let (square, .., e, _, q) = of([k, next, next]);
-                let along = dot(&e, &q);
-                (dot(&q, &q) * &square - &along * &along, square)
+                let along = dot_of(&e, &q);
+                (dot_of(&q, &q) * &square - &along * &along, square)
             }
             Foot::Face => {
                 let (ee, ff, ef, e, f, q) = of([0, 1, 2]);
                 let minor = |i: usize, j: usize| &e[i] * &f[j] - &e[j] * &f[i];
-                let height = dot(&[minor(1, 2), minor(2, 0), minor(0, 1)], &q);
+                let height = dot_of(&[minor(1, 2), minor(2, 0), minor(0, 1)], &q);
                 (&height * &height, ee * ff - &ef * &ef)
             }
         }
@@ -189,11 +190,6 @@ impl Triangle {
     }
 }
 
-/// The arithmetic that formulas need.
-trait Number: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
-
-impl<T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T {}
-
 /// The sum of the magnitudes of all terms.
 #[derive(Debug, Clone, Copy)]
 struct Size(f64);
@@ -225,20 +221,15 @@ impl Mul for Size {
 
 /// A polynomial in two corners and the query relative to a third corner.
 trait Formula {
-    fn of<T: Number>(&self, relative: [[T; 3]; 3]) -> T;
-}
-
-fn dot<T: Number>(p: &[T; 3], q: &[T; 3]) -> T {
-    let product = |k: usize| p[k].clone() * q[k].clone();
-    product(0) + product(1) + product(2)
+    fn of<T: Ring>(&self, relative: [[T; 3]; 3]) -> T;
 }
 
 /// The vector to the query times the vector to a corner.
 struct Along;
 
 impl Formula for Along {
-    fn of<T: Number>(&self, [to, _, q]: [[T; 3]; 3]) -> T {
-        dot(&to, &q)
+    fn of<T: Ring>(&self, [to, _, q]: [[T; 3]; 3]) -> T {
+        dot_of(&to, &q)
     }
 }
 
@@ -246,8 +237,8 @@ impl Formula for Along {
 struct Side;
 
 impl Formula for Side {
-    fn of<T: Number>(&self, [e, f, q]: [[T; 3]; 3]) -> T {
-        dot(&e, &e) * dot(&q, &f) - dot(&e, &f) * dot(&q, &e)
+    fn of<T: Ring>(&self, [e, f, q]: [[T; 3]; 3]) -> T {
+        dot_of(&e, &e) * dot_of(&q, &f) - dot_of(&e, &f) * dot_of(&q, &e)
     }
 }
 

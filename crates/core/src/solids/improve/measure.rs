@@ -21,6 +21,8 @@
 use delone_predicates::arithmetic::{Pair, is_safe};
 use delone_predicates::{Point3, Sign, orient3d};
 
+pub use crate::base::vector::{cross, dot, minus};
+
 /// The factor of the sine of an obtuse angle. With 1, the largest angles are treated first, and
 /// improving them is often refused for the sake of small ones. Of 1, 1.5, 2, 2.5 and 100, on 5000
 /// uniform points, 2 and 2.5 left the fewest small angles, and a much larger factor leaves large
@@ -37,32 +39,10 @@ const PRECISE: f64 = 1.0 / ((1_u128 << 98) as f64);
 /// A vector.
 pub type Vector = [f64; 3];
 
-/// The difference of two points.
-#[inline(always)]
-pub fn minus(a: Point3, b: Point3) -> Vector {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
 /// The sum of a vector and a multiple of another.
 #[inline(always)]
 pub fn plus(a: Vector, s: f64, b: Vector) -> Vector {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
-}
-
-/// The inner product.
-#[inline(always)]
-pub fn dot(a: Vector, b: Vector) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// The cross product.
-#[inline(always)]
-pub fn cross(a: Vector, b: Vector) -> Vector {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 /// The numbers from which all measures are computed.

@@ -60,7 +60,7 @@ impl Cone {
     fn new(corners: [Point3; 3]) -> Self {
         let [p, q, r] = corners;
         let base = cross(minus(q, p), minus(r, p));
-        let length = |a, b| {
+        let length = |a: Point3, b| {
             let e = minus(a, b);
             dot(e, e).sqrt()
         };
@@ -331,7 +331,7 @@ fn foot(v: &[Vector]) -> Option<Vector> {
         }
         [a, b, c, d] => {
             // Zero is inside a tetrahedron.
-            let side = |p, q, r, s| {
+            let side = |p: Point3, q, r, s| {
                 let n = cross(minus(q, p), minus(r, p));
                 (-dot(n, p) > 0.0) == (dot(n, minus(s, p)) > 0.0)
             };

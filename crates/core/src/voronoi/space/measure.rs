@@ -8,6 +8,7 @@ use delone_predicates::Point3;
 use crate::base::error::Result;
 use crate::base::memory::{filled, with_room};
 use crate::base::parallel;
+pub(super) use crate::base::vector::dot;
 use crate::base::watch::Watch;
 use crate::voronoi::Given;
 
@@ -96,12 +97,6 @@ fn power_below(x: f64) -> f64 {
     } else {
         f64::from_bits(1 << bits.ilog2())
     }
-}
-
-/// The inner product.
-#[inline]
-pub(super) fn dot(p: Point3, q: Point3) -> f64 {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
 }
 
 /// The length of a vector with any exponents.
