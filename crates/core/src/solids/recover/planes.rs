@@ -15,6 +15,7 @@ use super::mesh::{NONE, ascending, pair};
 use super::work::Work;
 use crate::base::error::Result;
 use crate::base::memory::{filled, push};
+use crate::base::sets::Sets;
 
 /// Triangles that fill a part of a plane, twice.
 #[derive(Debug)]
@@ -37,10 +38,9 @@ impl Work<'_> {
     ) -> Result<(Vec<[u32; 3]>, Vec<Part>)> {
         let soft = self.soft()?;
         let joined = (0..).zip(&soft).filter(|(_, two)| two[0] != NONE);
-        let mut parent: Vec<u32> = (0..self.faces.len() as u32).collect();
+        let mut sets = Sets::of(self.faces.len())?;
         for (_, &[t, u]) in joined {
-            let (t, u) = (root(&mut parent, t), root(&mut parent, u));
-            parent[t.max(u) as usize] = t.min(u);
+            sets.join(t, u);
         }
         let mut lacks = filled(self.faces.len(), false)?;
         let at_segments = segments.iter().map(|&s| soft[s as usize][0]);
@@ -48,12 +48,12 @@ impl Work<'_> {
             .filter(|&f| f != NONE)
             .chain(faces.iter().copied())
         {
-            lacks[root(&mut parent, f) as usize] = true;
+            lacks[sets.root(f) as usize] = true;
         }
         let mut edges = HashMap::new();
         let mut open = Vec::new();
         for (&edge, &two) in self.segments.iter().zip(&soft) {
-            if two[0] != NONE && lacks[root(&mut parent, two[0]) as usize] {
+            if two[0] != NONE && lacks[sets.root(two[0]) as usize] {
                 edges.insert(edge, two);
                 push(&mut open, edge)?;
             }
@@ -62,7 +62,7 @@ impl Work<'_> {
         let mut parts: HashMap<u32, Part> = HashMap::new();
         let mut order = Vec::new();
         for (f, (&new, &old)) in (0..).zip(first.iter().zip(&self.faces)) {
-            let group = root(&mut parent, f);
+            let group = sets.root(f);
             if lacks[group as usize] {
                 let part = parts.entry(group).or_insert_with(|| {
                     order.push(group);
@@ -180,13 +180,4 @@ fn beside(a: Point3, b: Point3, c: Point3) -> Option<Point3> {
 fn apex(face: [u32; 3], edge: [u32; 2]) -> u32 {
     let other = face.into_iter().find(|v| !edge.contains(v));
     other.unwrap_or(NONE)
-}
-
-/// The smallest member of a set of faces.
-fn root(parent: &mut [u32], mut f: u32) -> u32 {
-    while parent[f as usize] != f {
-        parent[f as usize] = parent[parent[f as usize] as usize];
-        f = parent[f as usize];
-    }
-    f
 }
