@@ -20,7 +20,7 @@ use delone_predicates::{Point2, Sign, angle, lexicographic};
 use super::split::Splitter;
 use crate::base::error::Result;
 use crate::base::memory::with_room;
-use crate::mesh::plane::{next, prev};
+use crate::mesh::plane::{half_edges, next, prev};
 
 impl Splitter<'_> {
     /// Splits subsegments until all diametral circles are empty, except between neighboring
@@ -51,7 +51,7 @@ impl Splitter<'_> {
     /// only.
     fn encroached(&mut self) -> Result<Vec<[u32; 2]>> {
         let mut found = with_room(64)?;
-        for e in (0..self.marked.triangles()).flat_map(|t| 8 * t..8 * t + 3) {
+        for e in (0..self.marked.triangles()).flat_map(half_edges) {
             if e.is_multiple_of(8 << 14) {
                 self.pace.watch().check()?;
             }

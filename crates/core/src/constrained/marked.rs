@@ -11,7 +11,7 @@ use crate::base::error::{Error, Result};
 use crate::base::memory::{filled, make_room};
 use crate::base::watch::{IDLE, Watch};
 use crate::delaunay::plane::walk::walk_within;
-use crate::mesh::plane::{Code, Mesh2, Patch, next, prev, triangle};
+use crate::mesh::plane::{Code, Mesh2, Patch, half_edge, half_edges, next, prev, triangle};
 
 /// Triangles, or segments, between two checks for interruption.
 pub const LOT: u32 = 1 << 16;
@@ -57,7 +57,7 @@ impl<S: Sites> Marked<S> {
         let count = mesh.vertices();
         let mut near = filled(count, 0)?;
         let patch = mesh.resume(used);
-        for e in (0..used).flat_map(|t| 8 * t..8 * t + 3) {
+        for e in (0..used).flat_map(half_edges) {
             if e.is_multiple_of(8 * LOT) {
                 watch.check()?;
             }
@@ -106,7 +106,7 @@ impl<S: Sites> Marked<S> {
     #[inline]
     pub fn touch(&mut self, t: u32) {
         let corners = self.patch().corners(t);
-        for (e, v) in (8 * t..).zip(corners) {
+        for (e, v) in (half_edge(t, 0)..).zip(corners) {
             if let Some(near) = self.near.get_mut(v as usize) {
                 *near = e;
             }
@@ -180,7 +180,7 @@ impl Marked {
             self.mesh.resize(self.count, used, watch)?;
         }
         let patch = self.mesh.resume(used);
-        let mut corners = (0..used).flat_map(|t| 8 * t..8 * t + 3);
+        let mut corners = (0..used).flat_map(half_edges);
         corners
             .find(|&e| patch.vertex(e) == patch.infinite())
             .ok_or_else(|| Error::Internal("the mesh has no ghost".into()))
@@ -197,7 +197,7 @@ impl Marked {
             return Ok((v, None));
         }
         let outside = mesh.corners(home).contains(&mesh.infinite());
-        let on = (8 * home..8 * home + 3).find(|&e| {
+        let on = half_edges(home).find(|&e| {
             let [u, v] = [next(e), prev(e)].map(|c| at(mesh.vertex(c)));
             !outside && orient2d(u, v, p) == Sign::Zero
         });
@@ -272,7 +272,7 @@ impl Marked {
         }
         let at = |v: u32| self.points[v as usize];
         let holds = |t: u32| {
-            (8 * t..8 * t + 3).all(|e| {
+            half_edges(t).all(|e| {
                 let [u, v] = [next(e), prev(e)].map(|c| mesh.vertex(c));
                 match [mesh.vertex(e), u, v].contains(&mesh.infinite()) {
                     // For a ghost only the finite edge counts, and strictly.

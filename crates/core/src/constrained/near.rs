@@ -28,7 +28,7 @@ use super::pairs::overlap;
 use crate::base::error::Result;
 use crate::base::memory::{make_room, push};
 use crate::base::points::Extent;
-use crate::mesh::plane::triangle;
+use crate::mesh::plane::{half_edge, triangle};
 
 /// A segment and the size of the pixels in its box.
 pub(crate) struct Band {
@@ -211,7 +211,7 @@ impl Marked {
             for k in 0..3 {
                 let [u, v] = [sides[(k + 1) % 3], sides[(k + 2) % 3]];
                 if u == Sign::Zero || u != v {
-                    push(&mut stack, triangle(mesh.opposite(8 * t + k as u32)))?;
+                    push(&mut stack, triangle(mesh.opposite(half_edge(t, k as u32))))?;
                 }
             }
         }

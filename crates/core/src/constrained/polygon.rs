@@ -17,7 +17,7 @@ use crate::base::memory::{filled, push, with_room};
 use crate::base::points::LIMIT2;
 use crate::base::watch::Watch;
 use crate::delaunay::plane::{Clock, Method};
-use crate::mesh::plane::{next, prev, triangle};
+use crate::mesh::plane::{half_edges, next, prev, triangle};
 
 /// Which points are inside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -120,7 +120,7 @@ fn flood(marked: &mut Marked, pieces: &[([u32; 2], u32)]) -> Result<Regions> {
     }
     loop {
         while let Some(t) = stack.pop() {
-            for e in 8 * t..8 * t + 3 {
+            for e in half_edges(t) {
                 let there = triangle(mesh.opposite(e));
                 if of[there as usize] != UNKNOWN {
                     continue;

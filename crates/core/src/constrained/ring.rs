@@ -39,7 +39,7 @@ use delone_predicates::{Point2, Sign, incircle_canonical, lexicographic, orient2
 
 use crate::base::error::Result;
 use crate::base::memory::{filled, with_room};
-use crate::mesh::plane::{Code, Mesh2, Patch, next, prev};
+use crate::mesh::plane::{Code, Mesh2, Patch, half_edge, next, prev};
 
 /// The most vertices of a ring: above, the search among all corners costs more than it saves.
 const MOST: usize = 400;
@@ -353,7 +353,7 @@ struct Fill<'a> {
 
 impl<'a> Fill<'a> {
     fn new(points: &'a [Point2]) -> Result<Self> {
-        let outside = 8 * (points.len() as u32 - 2);
+        let outside = half_edge(points.len() as u32 - 2, 0);
         Ok(Self {
             points,
             mesh: Mesh2::with_vertices(points.len())?,
@@ -369,15 +369,15 @@ impl<'a> Fill<'a> {
         let t = self.count;
         self.count += 1;
         self.mesh.resume(t).set(t, [a, b, c]);
-        self.join(8 * t + 2, a);
-        self.join(8 * t, b);
-        self.across[a as usize] = 8 * t + 1;
+        self.join(half_edge(t, 2), a);
+        self.join(half_edge(t, 0), b);
+        self.across[a as usize] = half_edge(t, 1);
     }
 
     /// Adds the last triangle.
     fn close(&mut self, [a, b, c]: [u32; 3]) {
         self.add([a, b, c]);
-        self.join(8 * (self.count - 1) + 1, c);
+        self.join(half_edge(self.count - 1, 1), c);
     }
 
     /// Links the edge `e`, which starts at `v`, to the code across it.

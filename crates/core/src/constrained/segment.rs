@@ -25,7 +25,7 @@ use delone_predicates::Sign;
 use super::marked::{Marked, turn};
 use super::sites::Sites;
 use crate::base::error::{Error, Result};
-use crate::mesh::plane::{Code, Patch, next, prev, triangle};
+use crate::mesh::plane::{Code, Patch, half_edge, next, prev, triangle};
 
 /// How far the insertion of a segment came.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -388,7 +388,7 @@ impl<S: Sites> Marked<S> {
                 let mut mesh = self.mesh.resume(used);
                 mesh.set(t, [below, v, top]);
                 mesh.clear(t);
-                for (old, new) in [(side, 8 * t), (top_side, 8 * t + 1)] {
+                for (old, new) in [(side, half_edge(t, 0)), (top_side, half_edge(t, 1))] {
                     match old {
                         Side::Rim(i) => rims.get_mut(i).ok_or_else(broken)?.new = new,
                         Side::Inner(e) => {
@@ -397,7 +397,7 @@ impl<S: Sites> Marked<S> {
                         }
                     }
                 }
-                side = Side::Inner(8 * t + 2);
+                side = Side::Inner(half_edge(t, 2));
                 scan.pop();
             }
             scan.push((v, side));

@@ -6,7 +6,7 @@
 use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
 
 use crate::constrained::marked::Marked;
-use crate::mesh::plane::{Code, next, prev, triangle};
+use crate::mesh::plane::{Code, half_edge, half_edges, next, prev, triangle};
 
 /// Triangles that a walk may visit: new vertices are near.
 const WALK: usize = 4096;
@@ -50,7 +50,7 @@ pub fn walk(marked: &mut Marked, from: u32, p: Point2) -> Walk {
     let mut t = from;
     let mut came = u32::MAX;
     for _ in 0..WALK {
-        let beyond = (8 * t..8 * t + 3).filter(|&e| e != came).find(|&e| {
+        let beyond = half_edges(t).filter(|&e| e != came).find(|&e| {
             let [u, v] = [next(e), prev(e)].map(|c| points[mesh.vertex(c) as usize]);
             orient2d(u, v, p) == Sign::Negative
         });
@@ -78,7 +78,8 @@ impl Cavity {
         self.rim.clear();
         self.triangles.push(home);
         self.stack.clear();
-        self.stack.extend([8 * home + 2, 8 * home + 1, 8 * home]);
+        self.stack
+            .extend([half_edge(home, 2), half_edge(home, 1), half_edge(home, 0)]);
         // Depth-first, right child first, the edges are found counterclockwise. A triangle is
         // visited once: no vertex is inside the cavity, so its triangles form a tree.
         while let Some(e) = self.stack.pop() {
@@ -121,13 +122,13 @@ impl Cavity {
             mesh.set(t, [v, side.ends[0], side.ends[1]]);
             mesh.set_marks(t, u32::from(side.marked));
             mesh.set_label(t, label);
-            mesh.link(8 * t, side.across);
+            mesh.link(half_edge(t, 0), side.across);
             caps[t as usize] = side.cap;
         }
         let last = self.triangles[self.triangles.len() - 1];
         let before = std::iter::once(&last).chain(&self.triangles);
         for (&s, &t) in before.zip(&self.triangles) {
-            mesh.link(8 * s + 1, 8 * t + 2);
+            mesh.link(half_edge(s, 1), half_edge(t, 2));
         }
         v
     }

@@ -12,7 +12,7 @@ use super::work::Work;
 use crate::base::error::Result;
 use crate::base::memory::{filled, push};
 use crate::constrained::marked::turn;
-use crate::mesh::plane::{Code, next, prev, triangle};
+use crate::mesh::plane::{Code, half_edge, half_edges, next, prev, triangle};
 
 /// The price from which a needle is postponed: less is done quickly.
 const EXPENSIVE: f64 = 1000.0;
@@ -93,7 +93,7 @@ impl Work {
         while let Some(t) = stack.pop() {
             let mut mesh = self.marked.patch();
             mesh.set_label(t, self.needles.first + needle);
-            for e in 8 * t..8 * t + 3 {
+            for e in half_edges(t) {
                 let beyond = triangle(mesh.opposite(e));
                 if mesh.is_marked(e) || needle_of.contains_key(&beyond) {
                     continue;
@@ -156,7 +156,7 @@ impl Work {
         let mut found = Found::default();
         let mut stack = Vec::new();
         // Start from the flat triangles at the lines of the domain.
-        for e in (0..self.marked.triangles()).flat_map(|t| 8 * t..8 * t + 3) {
+        for e in (0..self.marked.triangles()).flat_map(half_edges) {
             let mesh = self.marked.patch();
             if mesh.label(triangle(e)) == 0 || !mesh.is_marked(e) {
                 continue;
@@ -170,7 +170,7 @@ impl Work {
         for t in std::mem::take(&mut self.needles.kept) {
             found.triangles.insert(t);
             let mesh = self.marked.patch();
-            for e in (8 * t..8 * t + 3).filter(|&e| !mesh.is_marked(e)) {
+            for e in half_edges(t).filter(|&e| !mesh.is_marked(e)) {
                 push(&mut stack, (mesh.opposite(e), FENCE))?;
             }
         }
@@ -196,7 +196,7 @@ impl Work {
             }
             if found.triangles.insert(t) {
                 let mesh = self.marked.patch();
-                for e in 8 * t..8 * t + 3 {
+                for e in half_edges(t) {
                     let o = mesh.opposite(e);
                     if !mesh.is_marked(e) && !found.triangles.contains(&triangle(o)) {
                         push(&mut stack, (o, FENCE))?;
@@ -241,7 +241,7 @@ impl Work {
             self.shape.is_flat(u, v, points[k])
         };
         let mesh = self.marked.patch();
-        if (0..3).any(|k| mesh.is_marked(8 * t + k as u32) && flat(k)) {
+        if (0..3).any(|k| mesh.is_marked(half_edge(t, k as u32)) && flat(k)) {
             return true;
         }
         !self.is_forced(t, &seen)
@@ -369,7 +369,7 @@ impl Work {
                     self.needles.labels[(label - self.needles.first) as usize],
                 );
             }
-            for e in 8 * t..8 * t + 3 {
+            for e in half_edges(t) {
                 let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
                 let fence = self.needles.fences.get(&key(ends));
                 if mesh.is_marked(e) && fence.is_some_and(|fence| which(fence.needle)) {

@@ -37,7 +37,7 @@ use crate::base::memory::{copied, filled, with_room};
 use crate::base::watch::{Pace, Watch};
 use crate::constrained::marked::Marked;
 use crate::delaunay::plane::lawson::compact;
-use crate::mesh::plane::{import, next, prev, triangle};
+use crate::mesh::plane::{half_edge, import, next, prev, triangle};
 
 /// Triangles, or segments, between two checks for interruption.
 const LOT: usize = 1 << 16;
@@ -199,7 +199,7 @@ fn export(
     };
     for &t in &all {
         pace.spend(1)?;
-        let codes = [8 * t, 8 * t + 1, 8 * t + 2];
+        let codes = [half_edge(t, 0), half_edge(t, 1), half_edge(t, 2)];
         let corners = mesh.corners(t).map(|v| row_of[v as usize] as i32);
         out.simplices.push(corners);
         let across = codes.map(|e| number[triangle(mesh.opposite(e)) as usize]);
@@ -210,7 +210,7 @@ fn export(
     // The line of each side; this needs `work` mutably, hence the second loop.
     for &t in &all {
         pace.spend(1)?;
-        let codes = [8 * t, 8 * t + 1, 8 * t + 2];
+        let codes = [half_edge(t, 0), half_edge(t, 1), half_edge(t, 2)];
         let mut sides = [-1; 3];
         for (side, e) in sides.iter_mut().zip(codes) {
             let mesh = work.marked.patch();

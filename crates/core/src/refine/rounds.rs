@@ -30,7 +30,7 @@ use crate::base::memory::{copied, make_room, push, with_room};
 use crate::base::watch::{Pace, Watch};
 use crate::constrained::marked::turn;
 use crate::measure;
-use crate::mesh::plane::triangle;
+use crate::mesh::plane::{half_edge, triangle};
 
 /// Samples, whose location may be a long walk, between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 10;
@@ -220,7 +220,7 @@ impl Rounds {
         let at = corners.map(|v| points[v as usize]);
         let finite = |t: &u32| !mesh.corners(*t).contains(&mesh.infinite());
         if let Some(k) = at.iter().position(|a| *a == p) {
-            let start = 8 * home + k as u32;
+            let start = half_edge(home, k as u32);
             let (mut first, mut corner) = (home, turn(&mesh, start));
             while corner != start {
                 first = Some(triangle(corner))
@@ -231,7 +231,7 @@ impl Rounds {
             return Ok(first);
         }
         let on = (0..3).find(|k| orient2d(at[(k + 1) % 3], at[(k + 2) % 3], p) == Sign::Zero);
-        let beyond = on.map(|k| triangle(mesh.opposite(8 * home + k as u32)));
+        let beyond = on.map(|k| triangle(mesh.opposite(half_edge(home, k as u32))));
         Ok(beyond.filter(finite).map_or(home, |t| home.min(t)))
     }
 }

@@ -34,7 +34,7 @@ use crate::base::memory::{copied, make_room, push, with_room};
 use crate::base::watch::Watch;
 use crate::constrained::conforming::cut;
 use crate::constrained::marked::{Marked, turn};
-use crate::mesh::plane::{Code, next, prev, triangle};
+use crate::mesh::plane::{Code, half_edge, half_edges, next, prev, triangle};
 
 /// Vertices between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 12;
@@ -162,7 +162,7 @@ impl Work {
         let mut pieces = Vec::new();
         let triangles = self.marked.triangles();
         let mesh = self.marked.mesh.resume(triangles);
-        for e in (0..triangles).flat_map(|t| 8 * t..8 * t + 3) {
+        for e in (0..triangles).flat_map(half_edges) {
             let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
             if ends[0] < ends[1] && mesh.is_marked(e) {
                 push(&mut pieces, ends)?;
@@ -188,7 +188,7 @@ impl Work {
         // Everything is looked at once; afterward only what a new vertex has changed.
         for t in 0..self.marked.triangles() {
             self.enqueue_if_bad(t)?;
-            for e in 8 * t..8 * t + 3 {
+            for e in half_edges(t) {
                 self.enqueue_if_encroached(e)?;
             }
         }
@@ -532,7 +532,7 @@ impl Work {
             // The neighbor across one of the two long edges, unless that is a subsegment or the hull.
             let (end, middle) = (points[e], points[3 - apex - e]);
             let mesh = self.marked.patch();
-            let e = 8 * t + e as u32;
+            let e = half_edge(t, e as u32);
             let (common, o) = (mesh.corners(t)[apex], mesh.opposite(e));
             if mesh.is_marked(e) || mesh.corners(triangle(o)).contains(&mesh.infinite()) {
                 continue;
@@ -609,7 +609,9 @@ impl Work {
     fn insert(&mut self, p: Point2, reason: Reason) -> Result<()> {
         self.grow()?;
         self.cavity.fill(&mut self.marked, p, &mut self.caps);
-        self.marked.near.push(8 * self.cavity.triangles[0]);
+        self.marked
+            .near
+            .push(half_edge(self.cavity.triangles[0], 0));
         self.on.push(-1);
         match reason {
             Reason::Angle => self.counts.angle += 1,
@@ -658,7 +660,7 @@ impl Work {
     /// at points on one circle around it.
     pub(super) fn is_forced(&mut self, t: u32, seen: &Seen) -> bool {
         let mesh = self.marked.patch();
-        let apex = 8 * t + seen.apex as u32;
+        let apex = half_edge(t, seen.apex as u32);
         if mesh.is_marked(next(apex)) && mesh.is_marked(prev(apex)) {
             return true;
         }

@@ -6,7 +6,7 @@
 use super::kernel::Kernel;
 use crate::base::error::{Error, Result};
 use crate::base::memory::{filled, push};
-use crate::mesh::plane::{Code, next, prev, triangle};
+use crate::mesh::plane::{Code, half_edge, next, prev, triangle};
 
 impl Kernel<'_> {
     /// Whether `p`, in conflict with the ghost `seed`, is in conflict with all of them. The ghosts
@@ -39,16 +39,16 @@ impl Kernel<'_> {
                 self.mesh.vertex(next(across)),
             );
             self.mesh.set(t, [p, from, to]);
-            self.mesh.link(across, 8 * t);
+            self.mesh.link(across, half_edge(t, 0));
             push(&mut ends, (from, t))?;
         }
         ends.sort_unstable();
         for &t in &cavity {
-            let to = self.mesh.vertex(8 * t + 2);
+            let to = self.mesh.vertex(half_edge(t, 2));
             let at = ends
                 .binary_search_by_key(&to, |end| end.0)
                 .map_err(|_| broken())?;
-            self.mesh.link(8 * t + 1, 8 * ends[at].1 + 2);
+            self.mesh.link(half_edge(t, 1), half_edge(ends[at].1, 2));
         }
         self.is_closed = true;
         Ok(cavity[0])

@@ -25,7 +25,7 @@ use crate::base::error::{Error, Result};
 use crate::base::memory::{push, with_room};
 use crate::base::parallel;
 use crate::base::watch::{Pace, Watch};
-use crate::mesh::plane::{Code, Mesh2, Patch, next, prev, triangle};
+use crate::mesh::plane::{Code, Mesh2, Patch, half_edge, next, prev, triangle};
 
 /// Flips between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 12;
@@ -239,14 +239,14 @@ fn zip(
         // The edge to the ring is opposite the corner on the other one, the bridge opposite the apex.
         let (on_ring, leaving) = if above_next { (1, 0) } else { (0, 1) };
         patch.set(t, [a, b, apex]);
-        patch.link(8 * t + on_ring, side.inner);
+        patch.link(half_edge(t, on_ring), side.inner);
         // The triangle takes the record of the ghost, and joins the one before it across the bridge.
         match last {
-            Some(code) => patch.link(code, 8 * t + 2),
-            None => first = 8 * t + 2,
+            Some(code) => patch.link(code, half_edge(t, 2)),
+            None => first = half_edge(t, 2),
         }
-        stack.extend([8 * t + on_ring, 8 * t + 2]);
-        last = Some(8 * t + leaving);
+        stack.extend([half_edge(t, on_ring), half_edge(t, 2)]);
+        last = Some(half_edge(t, leaving));
         if above_next {
             i += 1;
         } else {

@@ -33,7 +33,7 @@ use crate::base::error::Result;
 use crate::base::memory::push;
 pub(super) use crate::base::vector::{cross, dot};
 use crate::base::watch::{Pace, Watch};
-use crate::mesh::plane::{Code, Patch, next, prev, triangle};
+use crate::mesh::plane::{Code, Patch, half_edge, next, prev, triangle};
 
 /// Half the distance from 1.0 to the next double.
 const U: f64 = f64::EPSILON / 2.0;
@@ -137,7 +137,7 @@ impl<'a> Kernel<'a> {
     pub(super) fn infinite_corner(&self, t: u32) -> Code {
         let inf = self.mesh.infinite();
         let k = self.mesh.corners(t).iter().position(|&v| v == inf);
-        8 * t + k.unwrap_or(0) as u32
+        half_edge(t, k.unwrap_or(0) as u32)
     }
 
     #[inline]
@@ -218,7 +218,7 @@ impl<'a> Kernel<'a> {
             if last == u32::MAX {
                 first = t;
             } else {
-                self.mesh.link(8 * last + 1, 8 * t + 2);
+                self.mesh.link(half_edge(last, 1), half_edge(t, 2));
             }
             last = t;
             if edge.end.vertex == self.mesh.infinite() {
@@ -238,7 +238,7 @@ impl<'a> Kernel<'a> {
                 None => break,
             }
         }
-        self.mesh.link(8 * last + 1, 8 * first + 2);
+        self.mesh.link(half_edge(last, 1), half_edge(first, 2));
         Ok(if hint == u32::MAX { last } else { hint })
     }
 
@@ -247,7 +247,7 @@ impl<'a> Kernel<'a> {
     #[inline]
     fn seed(&mut self, p: u32, near: u32) -> Result<Found> {
         let origin = self.directions.heads[p as usize];
-        let mut e = 8 * near;
+        let mut e = half_edge(near, 0);
         let [mut a, mut b, mut c] = self.mesh.corners(near).map(|v| self.ray(v, origin));
         loop {
             //        c               The cross products tell on which side of its edges p
@@ -306,7 +306,7 @@ impl<'a> Kernel<'a> {
         }
         let [a, b, c] = corners.map(|v| self.ray(v, origin));
         Ok(Found::Conflict(Seed {
-            e: 8 * seed,
+            e: half_edge(seed, 0),
             corners: [a, b, c],
             crosses: [cross(b.d, c.d), cross(c.d, a.d), cross(a.d, b.d)],
         }))
@@ -318,7 +318,7 @@ impl<'a> Kernel<'a> {
         // The two new records are at the bottom of the stack, so it never runs empty.
         let t = self.free.pop().unwrap_or_default();
         self.mesh.set(t, corners);
-        self.mesh.link(across, 8 * t);
+        self.mesh.link(across, half_edge(t, 0));
         t
     }
 

@@ -9,7 +9,7 @@
 use delone_predicates::Sign;
 
 use super::directions::Directions;
-use crate::mesh::plane::{Patch, next, prev, triangle};
+use crate::mesh::plane::{Patch, half_edge, half_edges, next, prev, triangle};
 
 /// The triangle whose closed area contains `p`, or a ghost with `p` strictly outside its edge, by a walk
 /// from triangle `from`; and the number of triangles visited on the way.
@@ -18,7 +18,7 @@ pub fn walk(mesh: &Patch, directions: &Directions, from: u32, p: u32) -> (u32, u
     let side = |e| directions.orient([mesh.vertex(next(e)), mesh.vertex(prev(e)), p]);
     let mut t = from;
     if let Some(k) = mesh.corners(from).iter().position(|&v| v == inf) {
-        let outer = 8 * from + k as u32;
+        let outer = half_edge(from, k as u32);
         // The finite half-edge of a ghost has the outside on its left.
         if side(outer) == Sign::Positive {
             return (from, 1);
@@ -27,7 +27,7 @@ pub fn walk(mesh: &Patch, directions: &Directions, from: u32, p: u32) -> (u32, u
     }
     let mut steps = 1;
     loop {
-        let Some(e) = (8 * t..8 * t + 3).find(|&e| side(e) == Sign::Negative) else {
+        let Some(e) = half_edges(t).find(|&e| side(e) == Sign::Negative) else {
             return (t, steps);
         };
         let across = mesh.opposite(e);

@@ -24,7 +24,7 @@ use super::walk::walk;
 
 use crate::base::points::Extent;
 use crate::base::vector::cross2 as cross;
-use crate::mesh::plane::{Code, Patch, next, prev, triangle};
+use crate::mesh::plane::{Code, Patch, half_edge, next, prev, triangle};
 
 /// Relative bound of the in-circle filter, 16 units of rounding.
 ///
@@ -120,7 +120,7 @@ impl<'a> Kernel<'a> {
             .corners(self.ghost)
             .iter()
             .position(|&v| v == self.mesh.infinite());
-        8 * self.ghost + k.unwrap_or(0) as u32
+        half_edge(self.ghost, k.unwrap_or(0) as u32)
     }
 
     #[inline]
@@ -199,7 +199,7 @@ impl<'a> Kernel<'a> {
             if last == u32::MAX {
                 first = t;
             } else {
-                self.mesh.link(8 * last + 1, 8 * t + 2);
+                self.mesh.link(half_edge(last, 1), half_edge(t, 2));
             }
             last = t;
             if edge.end.vertex == self.mesh.infinite() {
@@ -219,7 +219,7 @@ impl<'a> Kernel<'a> {
                 None => break,
             }
         }
-        self.mesh.link(8 * last + 1, 8 * first + 2);
+        self.mesh.link(half_edge(last, 1), half_edge(first, 2));
         if hint == u32::MAX { last } else { hint }
     }
 
@@ -229,7 +229,7 @@ impl<'a> Kernel<'a> {
     #[inline]
     fn seed(&mut self, p: u32, near: u32) -> Seed {
         let origin = self.points[p as usize];
-        let mut e = 8 * near;
+        let mut e = half_edge(near, 0);
         let [mut a, mut b, mut c] = self.mesh.corners(near).map(|v| self.ray(v, origin));
         loop {
             //        c               The cross products tell on which side of its edges p
@@ -275,7 +275,7 @@ impl<'a> Kernel<'a> {
         let [a, b, c] = self.mesh.corners(seed).map(|v| self.ray(v, origin));
         let crosses = [cross(b.d, c.d), cross(c.d, a.d), cross(a.d, b.d)];
         Seed {
-            e: 8 * seed,
+            e: half_edge(seed, 0),
             corners: [a, b, c],
             crosses,
         }
@@ -287,7 +287,7 @@ impl<'a> Kernel<'a> {
         // The two new records are at the bottom of the stack, so it never runs empty.
         let t = self.free.pop().unwrap_or_default();
         self.mesh.set(t, corners);
-        self.mesh.link(across, 8 * t);
+        self.mesh.link(across, half_edge(t, 0));
         t
     }
 

@@ -20,7 +20,7 @@ use super::walk::walk;
 use crate::base::error::{Error, Result};
 use crate::base::memory::filled;
 use crate::base::watch::Watch;
-use crate::mesh::plane::{Code, Patch, next, prev, triangle};
+use crate::mesh::plane::{Code, Patch, half_edge, half_edges, next, prev, triangle};
 use crate::order::random;
 
 /// Insertions between two checks for interruption.
@@ -81,7 +81,7 @@ fn ghost_of(mesh: &Patch) -> Result<Code> {
     let inf = mesh.infinite();
     let infinite_corner = |t| {
         let k = mesh.corners(t).iter().position(|&v| v == inf)?;
-        Some(8 * t + k as u32)
+        Some(half_edge(t, k as u32))
     };
     let ghost = mesh.taken().find_map(infinite_corner);
     ghost.ok_or_else(|| Error::Internal("the mesh has no ghost".into()))
@@ -127,7 +127,7 @@ impl Flipper<'_> {
             return Ok(None);
         }
         let mut on = None;
-        for e in 8 * home..8 * home + 3 {
+        for e in half_edges(home) {
             let ends = [next(e), prev(e)].map(|c| self.at(self.mesh.vertex(c)));
             let side = orient2d(ends[0], ends[1], self.at(p));
             if side == Sign::Negative || side == Sign::Zero && on.is_some() {

@@ -26,7 +26,7 @@ use crate::base::error::{Error, Result};
 use crate::base::memory::{filled, with_room};
 use crate::base::points;
 use crate::base::watch::Watch;
-use crate::mesh::plane::{Code, Patch, export, import, next, prev, triangle};
+use crate::mesh::plane::{Code, Patch, export, half_edges, import, next, prev, triangle};
 use crate::order::arrange;
 
 /// Triangles between two checks for interruption in cheap loops.
@@ -191,7 +191,7 @@ impl<'a> Flips<'a> {
             if t.is_multiple_of(LOT as u32) {
                 watch.check()?;
             }
-            for e in 8 * t..8 * t + 3 {
+            for e in half_edges(t) {
                 if triangle(flips.mesh.opposite(e)) > t {
                     flips.push(e);
                 }

@@ -7,7 +7,7 @@ use delone_predicates::{Point2, Sign, incircle_canonical};
 use super::merge::Bounds;
 use super::part::{Corner, Part};
 use crate::base::vector::{cross2 as cross, minus};
-use crate::mesh::plane::{OPPOSITE, Patch, RECORD};
+use crate::mesh::plane::{OPPOSITE, Patch, RECORD, half_edge};
 
 /// Half the distance from 1.0 to the next double.
 const U: f64 = f64::EPSILON / 2.0;
@@ -28,7 +28,7 @@ pub fn pair(mesh: &mut Patch, points: &[Point2], [a, b]: [u32; 2], t: u32) -> Pa
     let inf = mesh.infinite();
     mesh.set(t, [inf, b, a]);
     mesh.set(t + 1, [inf, a, b]);
-    let [lower, upper] = [8 * t, 8 * t + 8];
+    let [lower, upper] = [half_edge(t, 0), half_edge(t + 1, 0)];
     mesh.link(lower, upper);
     mesh.link(lower + 1, upper + 2);
     mesh.link(lower + 2, upper + 1);

@@ -54,7 +54,7 @@ use super::first::first_triangle;
 use crate::base::error::{Error, Result};
 use crate::base::memory::{filled, with_room, zeroed};
 use crate::base::watch::Watch;
-use crate::mesh::plane::{Code, Patch, next, prev, triangle};
+use crate::mesh::plane::{Code, Patch, half_edge, half_edges, next, prev, triangle};
 use crate::order::random;
 
 /// Insertions between two checks for interruption.
@@ -249,13 +249,13 @@ impl<'a> Hull<'a> {
                 None => self.mesh.fresh(),
             };
             self.mesh.set(facet, [p, u, v]);
-            self.mesh.link(across, 8 * facet);
+            self.mesh.link(across, half_edge(facet, 0));
             self.cone.push(Spoke { vertex: u, facet });
         }
         for i in 0..self.cone.len() {
             let after = self.cone[(i + 1) % self.cone.len()];
             self.mesh
-                .link(8 * self.cone[i].facet + 1, 8 * after.facet + 2);
+                .link(half_edge(self.cone[i].facet, 1), half_edge(after.facet, 2));
         }
     }
 
@@ -279,7 +279,7 @@ impl<'a> Hull<'a> {
     /// The infinite corner of some ghost.
     fn ghost(&self) -> Result<Code> {
         let inf = self.mesh.infinite();
-        let corners = |t: u32| (8 * t..8 * t + 3).find(|&e| self.mesh.vertex(e) == inf);
+        let corners = |t: u32| half_edges(t).find(|&e| self.mesh.vertex(e) == inf);
         (self.base[1]..self.base[1] + self.facets as u32)
             .find_map(corners)
             .ok_or_else(|| Error::Internal("the lifted hull is not closed".into()))

@@ -29,7 +29,7 @@
 use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
 
 use super::part::{Corner, Part};
-use crate::mesh::plane::{Code, OPPOSITE, Patch, triangle};
+use crate::mesh::plane::{Code, OPPOSITE, Patch, half_edge, triangle};
 use crate::order::blocks::Axis;
 
 /// Half the distance from 1.0 to the next double.
@@ -108,8 +108,8 @@ pub fn join(
     if left.single || right.single {
         // Instead of ghosts, use one record with infinite corners that is its own neighbor.
         mesh.set(idle, [inf; 3]);
-        mesh.link(8 * idle, 8 * idle);
-        mesh.link(8 * idle + 1, 8 * idle + 2);
+        mesh.link(half_edge(idle, 0), half_edge(idle, 0));
+        mesh.link(half_edge(idle, 1), half_edge(idle, 2));
         l_in = if left.single { idle } else { l_in };
         r_in = if right.single { idle } else { r_in };
     }
@@ -121,28 +121,28 @@ pub fn join(
     //          l---r            by the ghosts l_out, which begins at l, and r_in, which ends at r.
     //    l_in /     \ r_out
     mesh.set(bottom, [inf, r, l]);
-    mesh.link(8 * bottom + 1, 8 * l_in + 2);
-    mesh.link(8 * bottom + 2, 8 * r_out + 1);
+    mesh.link(half_edge(bottom, 1), half_edge(l_in, 2));
+    mesh.link(half_edge(bottom, 2), half_edge(r_out, 1));
     let lower = Corner::new(r, bottom);
     let mut bridge = Bridge {
         l,
         r,
-        below: 8 * bottom,
+        below: half_edge(bottom, 0),
         l_out,
         r_in,
     };
     bridge.rise(mesh, points, bounds);
     // The bridge is the upper tangent now: a ghost above it closes the hull.
     mesh.set(top, [inf, bridge.l, bridge.r]);
-    mesh.link(8 * top, bridge.below);
-    mesh.link(8 * top + 2, 8 * bridge.l_out + 1);
-    mesh.link(8 * top + 1, 8 * bridge.r_in + 2);
+    mesh.link(half_edge(top, 0), bridge.below);
+    mesh.link(half_edge(top, 2), half_edge(bridge.l_out, 1));
+    mesh.link(half_edge(top, 1), half_edge(bridge.r_in, 2));
     // A single vertex has no hull edge between the ghosts above and below it.
     if left.single {
-        mesh.link(8 * bottom + 1, 8 * top + 2);
+        mesh.link(half_edge(bottom, 1), half_edge(top, 2));
     }
     if right.single {
-        mesh.link(8 * bottom + 2, 8 * top + 1);
+        mesh.link(half_edge(bottom, 2), half_edge(top, 1));
     }
     let upper = Corner::new(bridge.l, top);
     Part::merged(points, left, right, upper, lower)
@@ -396,7 +396,7 @@ impl Bridge {
     fn peel_right(&mut self, mesh: &mut Patch) {
         let before = mesh.record(self.r_in)[OPPOSITE + 1];
         let other = mesh.peel(self.r_in);
-        mesh.link(8 * other + 1, before);
+        mesh.link(half_edge(other, 1), before);
     }
 
     /// Turns the ghost on the left into a triangle: its infinite corner becomes r.
@@ -406,8 +406,8 @@ impl Bridge {
         self.l_out = after(mesh, g);
         let record = mesh.record_mut(g);
         [record[0], record[OPPOSITE + 1]] = [self.r, self.below];
-        mesh.set_opposite(self.below, 8 * g + 1);
-        (self.l, self.below) = (head, 8 * g + 2);
+        mesh.set_opposite(self.below, half_edge(g, 1));
+        (self.l, self.below) = (head, half_edge(g, 2));
     }
 
     /// Turns the ghost on the right into a triangle: its infinite corner becomes l.
@@ -417,7 +417,7 @@ impl Bridge {
         self.r_in = before(mesh, g);
         let record = mesh.record_mut(g);
         [record[0], record[OPPOSITE + 2]] = [self.l, self.below];
-        mesh.set_opposite(self.below, 8 * g + 2);
-        (self.r, self.below) = (tail, 8 * g + 1);
+        mesh.set_opposite(self.below, half_edge(g, 2));
+        (self.r, self.below) = (tail, half_edge(g, 1));
     }
 }

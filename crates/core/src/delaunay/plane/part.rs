@@ -9,7 +9,7 @@ use std::hint::select_unpredictable;
 
 use delone_predicates::Point2;
 
-use crate::mesh::plane::{Code, Patch, triangle};
+use crate::mesh::plane::{Code, Patch, half_edge, triangle};
 use crate::order::blocks::Axis;
 
 /// A vertex and the record of the ghost that ends there, in one word: choosing between two takes
@@ -93,7 +93,7 @@ impl Part {
         };
         let start = corner(mesh, ghost);
         let mut part = Self::with_corners(points, [start]);
-        let mut g = mesh.after(8 * start.ghost());
+        let mut g = mesh.after(half_edge(start.ghost(), 0));
         while triangle(g) != start.ghost() {
             let other = Self::with_corners(points, [corner(mesh, g)]);
             part = Self::joined(points, [&part, &other]);
@@ -116,7 +116,7 @@ impl Part {
 
     /// Some ghost.
     pub fn ghost(&self) -> Code {
-        8 * self.ends[0].ghost()
+        half_edge(self.ends[0].ghost(), 0)
     }
 
     /// The extremes of two parts together.

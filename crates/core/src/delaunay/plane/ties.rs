@@ -12,7 +12,7 @@ use delone_predicates::{Point2, incircle, lexicographic, tie_flips};
 
 use crate::base::error::Result;
 use crate::base::watch::Watch;
-use crate::mesh::plane::{Code, Patch, next, prev, triangle};
+use crate::mesh::plane::{Code, Patch, half_edges, next, prev, triangle};
 
 /// Triangles between two checks for interruption.
 const WATCH_EVERY: u32 = 1 << 14;
@@ -26,7 +26,7 @@ pub fn fan(mesh: &mut Patch, points: &[Point2], triangles: usize, watch: &Watch)
         if (t - start).is_multiple_of(WATCH_EVERY) {
             watch.check()?;
         }
-        for e in 8 * t..8 * t + 3 {
+        for e in half_edges(t) {
             if e < mesh.opposite(e) && tied(mesh, points, e) && wrong(mesh, points, e) {
                 gather(mesh, points, e, &mut polygon);
                 fan_one(mesh, points, &polygon);

@@ -8,7 +8,7 @@
 
 use delone_predicates::{Point2, Sign, orient2d};
 
-use crate::mesh::plane::{Patch, next, prev, triangle};
+use crate::mesh::plane::{Patch, half_edge, next, prev, triangle};
 
 /// The triangle whose closed area contains `q`, or a ghost with `q` strictly outside its hull edge,
 /// by a walk from triangle `from`; and the number of triangles visited on the way.
@@ -31,9 +31,9 @@ pub fn walk_within(
     // Whether q lies strictly on the outer side of half-edge e.
     let beyond =
         |e| orient2d(at(mesh.vertex(next(e))), at(mesh.vertex(prev(e))), q) == Sign::Negative;
-    let mut start = 8 * from;
+    let mut start = half_edge(from, 0);
     if let Some(k) = mesh.corners(from).iter().position(|&v| v == inf) {
-        let outer = 8 * from + k as u32;
+        let outer = half_edge(from, k as u32);
         // The finite half-edge of a ghost has the outside on its left.
         if orient2d(
             at(mesh.vertex(next(outer))),

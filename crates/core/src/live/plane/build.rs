@@ -11,7 +11,7 @@ use crate::live::build::flat;
 use crate::live::kernel::Built;
 use crate::live::rows::{NONE, Rows};
 use crate::live::store::{Counts, Record, Site, Store};
-use crate::mesh::plane::{Code, triangle};
+use crate::mesh::plane::{Code, half_edge, triangle};
 
 /// Triangles, or rows, between two checks for interruption.
 const LOT: usize = 1 << 16;
@@ -107,9 +107,9 @@ fn imported(
         let [a, b, c] = [corner(u), corner(v), corner(w)];
         ghosts += usize::from([a, b, c].contains(&INFINITE));
         let [e, f, g] = patch.opposites(t);
-        let moved = |e: Code| 8 * place[triangle(e) as usize] + (e & 3);
+        let moved = |e: Code| half_edge(place[triangle(e) as usize], e & 3);
         records[at as usize] = [a, b, c, 0, moved(e), moved(f), moved(g), 0];
-        for (e, v) in (8 * at..).zip([a, b, c]) {
+        for (e, v) in (half_edge(at, 0)..).zip([a, b, c]) {
             sites[v as usize].near = e;
         }
     }

@@ -44,6 +44,7 @@ use crate::constrained::passes;
 use crate::live::kernel::Constraints;
 use crate::live::store::Place;
 use crate::live::store::Removed;
+use crate::mesh::plane::half_edges;
 use crate::order::{order_of, sort};
 
 /// Edits between two checks for interruption.
@@ -436,7 +437,7 @@ impl Plane {
             Place::At(v) => return Ok(Some(v)),
             Place::In(t) => t,
         };
-        let on = (8 * t..8 * t + 3).find(|&e| {
+        let on = half_edges(t).find(|&e| {
             let [u, v] = self.mesh.ends(e);
             self.mesh.mark(e) != 0 && orient2d(self.mesh.at(u), self.mesh.at(v), p).is_zero()
         });

@@ -15,7 +15,7 @@ use delone_predicates::{Point2, Sign, orient2d};
 use super::mesh::{INFINITE, Mesh};
 use crate::base::error::{Error, Result};
 use crate::base::memory::push;
-use crate::mesh::plane::{Code, next, prev};
+use crate::mesh::plane::{Code, half_edge, half_edges, next, prev};
 
 impl Mesh {
     /// Fills the hole in `rim`, which a vertex at `p` has left, with records in `dead`, two of which
@@ -29,7 +29,7 @@ impl Mesh {
         self.stack.clear();
         for i in 0..made {
             let t = self.dead[i];
-            for e in 8 * t..8 * t + 3 {
+            for e in half_edges(t) {
                 push(&mut self.stack, (e, 0))?;
             }
         }
@@ -69,8 +69,8 @@ impl Mesh {
             let t = self.dead[made];
             made += 1;
             let [(ab, u), (bc, v), (_, w)] = [ring[h], ring[i], ring[j]];
-            self.put(t, [u, v, w], [(8 * t + 2, ab), (8 * t, bc)]);
-            ring[h].0 = 8 * t + 1;
+            self.put(t, [u, v, w], [(half_edge(t, 2), ab), (half_edge(t, 0), bc)]);
+            ring[h].0 = half_edge(t, 1);
             ring.remove(i);
             // The corner before may be one now.
             i = match (is_open, i) {
@@ -82,8 +82,8 @@ impl Mesh {
         let Some((last, _)) = outer else {
             let t = self.dead[made];
             let [(ab, u), (bc, v), (ca, w)] = [ring[0], ring[1], ring[2]];
-            self.put(t, [u, v, w], [(8 * t + 2, ab), (8 * t, bc)]);
-            self.join_edge(8 * t + 1, ca);
+            self.put(t, [u, v, w], [(half_edge(t, 2), ab), (half_edge(t, 0), bc)]);
+            self.join_edge(half_edge(t, 1), ca);
             return Ok((made + 1, 0));
         };
         // Each edge of the chain gets a ghost u v infinite; they are joined in a row.
@@ -93,8 +93,12 @@ impl Mesh {
             let t = self.dead[made];
             made += 1;
             let [(uv, u), (_, v)] = [ring[k], ring[k + 1]];
-            self.put(t, [u, v, INFINITE], [(8 * t + 2, uv), (8 * t + 1, before)]);
-            before = 8 * t;
+            self.put(
+                t,
+                [u, v, INFINITE],
+                [(half_edge(t, 2), uv), (half_edge(t, 1), before)],
+            );
+            before = half_edge(t, 0);
         }
         self.join_edge(before, ring[edges].0);
         Ok((made, edges as u32))
@@ -107,7 +111,7 @@ impl Mesh {
         for (e, beyond) in edges {
             self.join_edge(e, beyond);
         }
-        for (e, v) in (8 * t..).zip(corners) {
+        for (e, v) in (half_edge(t, 0)..).zip(corners) {
             self.touch(v, e);
         }
     }

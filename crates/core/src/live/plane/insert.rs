@@ -5,7 +5,7 @@ use delone_predicates::Point2;
 use super::mesh::{INFINITE, Mesh};
 use crate::base::error::Result;
 use crate::base::memory::push;
-use crate::mesh::plane::{next, prev, triangle};
+use crate::mesh::plane::{half_edge, next, prev, triangle};
 
 impl Mesh {
     /// Inserts vertex `v`, whose place is in triangle or ghost `seed`. If memory is refused, nothing
@@ -38,7 +38,7 @@ impl Mesh {
         };
         add(self, seed)?;
         let [a, b, c] = self.corners(seed);
-        let e = 8 * seed;
+        let e = half_edge(seed, 0);
         for (edge, start) in [(e + 1, c), (e, b), (e + 2, a)] {
             let beyond = self.opposite(edge);
             push(&mut self.stack, (beyond, start))?;
@@ -73,16 +73,19 @@ impl Mesh {
             let (after, before) = ((i + 1) % count, (i + count - 1) % count);
             let t = self.dead[i];
             let ((across, from), to) = (self.rim[i], self.rim[after].1);
-            let [left, right] = [8 * self.dead[after] + 2, 8 * self.dead[before] + 1];
+            let [left, right] = [
+                half_edge(self.dead[after], 2),
+                half_edge(self.dead[before], 1),
+            ];
             *self.records.get_mut(t as usize) = [v, from, to, 0, across, left, right, 0];
             if self.has_segments {
                 let mark = self.mark(across);
-                self.set_side(8 * t, mark);
+                self.set_side(half_edge(t, 0), mark);
             }
-            self.set_opposite(across, 8 * t);
-            self.touch(from, 8 * t + 1);
+            self.set_opposite(across, half_edge(t, 0));
+            self.touch(from, half_edge(t, 1));
         }
         self.last = self.dead[0];
-        self.touch(v, 8 * self.last);
+        self.touch(v, half_edge(self.last, 0));
     }
 }

@@ -14,7 +14,7 @@ use crate::base::watch::{Pace, Watch};
 use crate::live::kernel::{Built, Kernel, Move};
 use crate::live::store::{Place, Removed};
 use crate::locate::barycentric_weights;
-use crate::mesh::plane::{Code, next, triangle};
+use crate::mesh::plane::{Code, half_edge, next, triangle};
 
 /// Shares of the vertices among segments, whose rebuild costs more, while an insertion or a removal costs as
 /// much. A point that moves far is removed and inserted.
@@ -145,7 +145,7 @@ impl Kernel<2, 3> for Mesh {
         for t in 0..self.records.len() as u32 {
             pace.spend(1)?;
             if self.is_live(t) && !self.corners(t).contains(&INFINITE) {
-                marked.push([0, 1, 2].map(|k| self.mark(8 * t + k) != 0));
+                marked.push([0, 1, 2].map(|k| self.mark(half_edge(t, k)) != 0));
             }
         }
         Ok(marked)

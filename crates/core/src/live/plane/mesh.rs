@@ -8,7 +8,7 @@ use crate::base::error::Result;
 use crate::live::rows::NONE;
 pub use crate::live::store::INFINITE;
 use crate::live::store::{Counts, Store};
-use crate::mesh::plane::{Code, next, prev, triangle};
+use crate::mesh::plane::{Code, half_edges, next, prev, triangle};
 
 /// The mesh. The first three words of a record are the vertices counter-clockwise, the last one has the
 /// marks of the edges. The place of a vertex is one of its corners.
@@ -195,7 +195,7 @@ impl Mesh {
         for t in (0..self.records.len() as u32).filter(|&t| self.is_live(t)) {
             used += 1;
             ghosts += u32::from(self.corners(t).contains(&INFINITE));
-            for e in 8 * t..8 * t + 3 {
+            for e in half_edges(t) {
                 let o = self.opposite(e);
                 let ends = [self.vertex(next(e)), self.vertex(prev(e))];
                 let other = [self.vertex(prev(o)), self.vertex(next(o))];

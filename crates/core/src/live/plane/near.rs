@@ -10,7 +10,7 @@ use crate::base::memory::push;
 use crate::base::points::Extent;
 use crate::constrained::pairs::overlap;
 use crate::constrained::{Band, in_direction, is_near, passes};
-use crate::mesh::plane::{next, prev, triangle};
+use crate::mesh::plane::{half_edge, next, prev, triangle};
 
 impl Mesh {
     /// Whether a marked edge passes through the pixel of vertex `w`, at which none ends. It suffices to
@@ -76,7 +76,7 @@ impl Mesh {
             for k in 0..3 {
                 let [u, v] = [sides[(k + 1) % 3], sides[(k + 2) % 3]];
                 if u == Sign::Zero || u != v {
-                    push(&mut stack, triangle(self.opposite(8 * t + k as u32)))?;
+                    push(&mut stack, triangle(self.opposite(half_edge(t, k as u32))))?;
                 }
             }
         }

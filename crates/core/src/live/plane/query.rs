@@ -10,7 +10,7 @@ use crate::base::memory::push;
 use crate::base::watch::Pace;
 use crate::live::kernel::Kernel;
 use crate::locate::squared;
-use crate::mesh::plane::triangle;
+use crate::mesh::plane::{half_edges, triangle};
 
 /// More than the error of squared distances to edges.
 const SLACK: f64 = 1.0 + 1e-6;
@@ -50,7 +50,7 @@ impl Mesh {
                 }
             }
             let reach = squared(q, self.at(best)) * SLACK;
-            for e in 8 * t..8 * t + 3 {
+            for e in half_edges(t) {
                 let [u, v] = self.ends(e);
                 if u == INFINITE || v == INFINITE {
                     continue;

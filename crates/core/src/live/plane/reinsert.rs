@@ -21,6 +21,7 @@ use crate::constrained::intersection::intersection;
 use crate::constrained::pairs::crossing_pairs_above;
 use crate::constrained::passes;
 use crate::live::store::Place;
+use crate::mesh::plane::half_edges;
 
 /// With more segments than this, and one in so many, all are triangulated again; and so with more
 /// pairs that cross than this for each of them.
@@ -218,7 +219,7 @@ impl Plane {
                 Place::At(_) => return Ok(None),
                 // A new vertex must be in the open triangle, away from every segment.
                 Place::In(t) => {
-                    let is_on = (8 * t..8 * t + 3).any(|e| {
+                    let is_on = half_edges(t).any(|e| {
                         let [u, v] = self.mesh.ends(e);
                         self.mesh.mark(e) != 0
                             && orient2d(self.mesh.at(u), self.mesh.at(v), x).is_zero()

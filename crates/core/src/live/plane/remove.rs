@@ -12,7 +12,7 @@ use crate::base::error::{Error, Result};
 use crate::base::memory::{make_room, push};
 use crate::live::rows::NONE;
 use crate::live::store::Removed;
-use crate::mesh::plane::{Code, next, triangle};
+use crate::mesh::plane::{Code, half_edge, next, triangle};
 
 /// Tests for each vertex of the mesh that cost as much as a rebuild, and how many are always right.
 const HUB: usize = 16;
@@ -118,27 +118,27 @@ impl Mesh {
             let [(ab, a), (bc, b), (_, c)] = [self.rim[start], self.rim[start + 1], self.rim[i]];
             ghosts += u32::from(c == INFINITE);
             *self.records.get_mut(t as usize) = [a, b, c, 0, 0, 0, 0, 0];
-            self.link(8 * t + 2, ab);
-            for (e, v) in (8 * t..).zip([a, b, c]) {
+            self.link(half_edge(t, 2), ab);
+            for (e, v) in (half_edge(t, 0)..).zip([a, b, c]) {
                 self.touch(v, e);
             }
             if i + 1 == end {
                 let ca = self.rim[i].0;
-                self.link(8 * t + 1, ca);
+                self.link(half_edge(t, 1), ca);
             } else {
                 parts.push(Part {
                     start: i - 1,
                     end,
-                    head: (8 * t + 1, a),
+                    head: (half_edge(t, 1), a),
                     second: self.rim[i].0,
                 });
             }
             if i > start + 2 {
-                self.rim[i].0 = 8 * t;
+                self.rim[i].0 = half_edge(t, 0);
                 (start, end) = (start + 1, i + 1);
                 continue;
             }
-            self.link(8 * t, bc);
+            self.link(half_edge(t, 0), bc);
             let Some(part) = parts.pop() else {
                 break;
             };

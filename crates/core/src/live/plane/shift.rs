@@ -5,7 +5,7 @@ use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
 use super::mesh::{INFINITE, Mesh};
 use crate::base::error::Result;
 use crate::base::memory::{clear_with_room, push};
-use crate::mesh::plane::{Code, next, prev, triangle};
+use crate::mesh::plane::{Code, half_edges, next, prev, triangle};
 
 /// Records and vertices that a flip changes, with some to spare.
 pub const FLIP: usize = 16;
@@ -53,7 +53,7 @@ impl Mesh {
         while is_missing {
             is_missing = false;
             for t in 0..self.records.len() as u32 {
-                for e in 8 * t..8 * t + 3 {
+                for e in half_edges(t) {
                     if self.is_live(t) && self.must_flip(e) {
                         self.room(FLIP)?;
                         self.flip(e);

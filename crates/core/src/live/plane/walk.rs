@@ -8,7 +8,7 @@ use crate::base::watch::Watch;
 use crate::live::rows::NONE;
 use crate::live::store::Place;
 use crate::locate::squared;
-use crate::mesh::plane::{next, prev, triangle};
+use crate::mesh::plane::{half_edge, next, prev, triangle};
 
 /// How far a walk goes from the last triangle, in lengths of its edge, squared, before a start is
 /// looked up.
@@ -84,9 +84,9 @@ impl Mesh {
             let [a, b] = [mesh.at(mesh.vertex(next(e))), mesh.at(mesh.vertex(prev(e)))];
             orient2d(a, b, q) == Sign::Negative
         };
-        let mut e = 8 * from;
+        let mut e = half_edge(from, 0);
         if let Some(k) = self.corners(from).iter().position(|&v| v == INFINITE) {
-            let outer = 8 * from + k as u32;
+            let outer = half_edge(from, k as u32);
             let [a, b] = [next(outer), prev(outer)].map(|c| self.at(self.vertex(c)));
             if orient2d(a, b, q) == Sign::Positive {
                 return from;

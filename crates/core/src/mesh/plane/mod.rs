@@ -17,4 +17,6 @@ pub mod import;
 mod marks;
 mod storage;
 
-pub use storage::{Code, Mesh2, OPPOSITE, Patch, RECORD, next, prev, triangle};
+pub use storage::{
+    Code, Mesh2, OPPOSITE, Patch, RECORD, half_edge, half_edges, next, prev, triangle,
+};

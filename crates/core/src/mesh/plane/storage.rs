@@ -1,5 +1,7 @@
 //! The records of the mesh and the arithmetic of half-edge codes.
 
+use std::ops::Range;
+
 use crate::base::error::Result;
 use crate::base::memory::zeroed;
 use crate::base::watch::Watch;
@@ -16,6 +18,18 @@ pub const OPPOSITE: usize = 4;
 
 /// Records per vertex: a mesh of n vertices has 2 n - 2.
 const PER_VERTEX: usize = 2;
+
+/// The half-edge of triangle `t` opposite its corner `k`, which is also the code of that corner.
+#[inline]
+pub fn half_edge(t: u32, k: u32) -> Code {
+    8 * t + k
+}
+
+/// The three half-edges of a triangle.
+#[inline]
+pub fn half_edges(t: u32) -> Range<Code> {
+    8 * t..8 * t + 3
+}
 
 /// The half-edge that follows in its triangle, counterclockwise.
 #[inline]
@@ -223,7 +237,7 @@ impl<'a> Patch<'a> {
     }
 
     /// The records taken so far.
-    pub fn taken(&self) -> std::ops::Range<u32> {
+    pub fn taken(&self) -> Range<u32> {
         let start = triangle(self.base);
         start..start + self.used
     }

@@ -10,7 +10,7 @@ use crate::base::error::{Error, Result};
 use crate::base::memory::{filled, make_room, push, with_room};
 use crate::base::watch::{Pace, Watch};
 use crate::constrained::marked::{Marked, turn};
-use crate::mesh::plane::{Code, Patch, import, next, prev, triangle};
+use crate::mesh::plane::{Code, Patch, half_edge, half_edges, import, next, prev, triangle};
 use crate::order;
 
 /// Points between two checks for interruption.
@@ -128,7 +128,7 @@ impl<'a> Work<'a> {
         }
         for t in 0..self.cells.len() as u32 {
             pace.spend(1)?;
-            let mut wedge = self.wedge(8 * t);
+            let mut wedge = self.wedge(half_edge(t, 0));
             let mut i = self.cells[t as usize].first;
             while i != NONE {
                 pace.spend(1)?;
@@ -146,7 +146,7 @@ impl<'a> Work<'a> {
     fn side_of_edge(&mut self, t: u32, p: Point2) -> u32 {
         let triangles = self.marked.triangles();
         let mesh = self.marked.mesh.resume(triangles);
-        for e in 8 * t..8 * t + 3 {
+        for e in half_edges(t) {
             let [u, v] = [next(e), prev(e)].map(|c| self.marked.points[mesh.vertex(c) as usize]);
             let o = mesh.opposite(e);
             let open = mesh.vertex(o) != mesh.infinite() && !mesh.is_marked(e);
@@ -214,7 +214,7 @@ impl<'a> Work<'a> {
     fn edge_at(&mut self, t: u32, p: Point2) -> Option<Code> {
         let triangles = self.marked.triangles();
         let mesh = self.marked.mesh.resume(triangles);
-        (8 * t..8 * t + 3).find(|&e| {
+        half_edges(t).find(|&e| {
             let [u, v] = [next(e), prev(e)].map(|c| self.marked.points[mesh.vertex(c) as usize]);
             orient2d(u, v, p).is_zero()
         })

@@ -59,7 +59,7 @@ use super::ties;
 use crate::base::error::{Error, Result};
 use crate::base::memory::with_room;
 use crate::base::watch::Watch;
-use crate::mesh::plane::{Code, Patch};
+use crate::mesh::plane::{Code, Patch, half_edge};
 
 /// Events between two checks for interruption.
 const WATCH_EVERY: usize = 4096;
@@ -151,7 +151,7 @@ impl<'a> Sweep<'a> {
         self.room = self.room.checked_sub(1).ok_or_else(broken)?;
         let t = self.mesh.fresh();
         self.mesh.set(t, corners);
-        Ok(8 * t)
+        Ok(half_edge(t, 0))
     }
 
     /// Counts an event.
