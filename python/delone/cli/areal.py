@@ -18,8 +18,8 @@ from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import note
 from delone.cli.options import Json, Quiet, Workers, outputs, split
 from delone.cli.referenced import Crs, Planar, referenced, require_known
-from delone.cli.report import Stopwatch, finite_or_none, peak_memory
-from delone.cli.show import print_json, print_report, spinner
+from delone.cli.report import Stopwatch, finite_or_none
+from delone.cli.show import show_figures, spinner
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
 from delone.io import read_geometries
 
@@ -134,14 +134,9 @@ def areal(
         result = _Result(one, two, overlaps, methods, found)
         _write(output or [], result, watch, quiet=quiet)
     figures = _figures(result) | {
-        "stages": watch.rows(len(two)),
-        "outputs": [str(path) for path in output or ()],
-        "peak_memory_bytes": peak_memory(),
+        **watch.ending(output, len(two)),
     }
-    if as_json:
-        print_json(figures)
-    elif not quiet:
-        print_report(f"{source} on {target}", _rows(figures), figures)
+    show_figures(f"{source} on {target}", figures, _rows, as_json=as_json, quiet=quiet)
 
 
 def _methods(given: dict[str, str | None]) -> dict[str, str]:

@@ -25,16 +25,19 @@ from delone.cli.options import (
     SolidColumns,
     Workers,
     outputs,
+    require_own,
     space_or_plane,
 )
 from delone.cli.referenced import Crs, Planar, require_known
-from delone.cli.report import Stopwatch, peak_memory
+from delone.cli.report import Stopwatch
 from delone.cli.rows import ROW_SUFFIXES, carried, read_rows, ready_rows, renaming, write_rows
-from delone.cli.show import print_json, print_report, spinner
+from delone.cli.show import show_figures, spinner
 from delone.cli.solid import is_space
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from delone.cli.show import Row
 
 __all__ = ["cluster_points"]
 
@@ -182,22 +185,14 @@ def cluster_points(
         "smallest": int(sizes.min()) if len(sizes) else 0,
         "columns": list(others),
         "renamed": renamed,
-        "stages": watch.rows(len(points)),
-        "outputs": [str(path) for path in output or ()],
-        "peak_memory_bytes": peak_memory(),
+        **watch.ending(output, len(points)),
     }
-    if as_json:
-        print_json(figures)
-    elif not quiet:
-        _print(figures, str(source))
+    show_figures(str(source), figures, _rows, as_json=as_json, quiet=quiet)
 
 
 def _require_own(method: Method, given: dict[str, Any]) -> None:
     """Refuse options of other methods, and require those without a default."""
-    for name, value in given.items():
-        if value is not None and method not in _OWN[name]:
-            methods = ", ".join(_OWN[name])
-            raise Failure(f"{name} is for --method {methods}, not {method}", Exit.USAGE)
+    require_own("--method", method, given, _OWN)
     if method is Method.DBSCAN and given["--eps"] is None:
         raise Failure("--method dbscan needs --eps, the distance of neighbors", Exit.USAGE)
     if method is Method.SINGLE and (given["--height"] is None) == (given["--n-clusters"] is None):
@@ -230,7 +225,7 @@ def _found(method: Method, points: NDArray[np.float64], options: dict[str, Any])
     return Labels(merges.labels(**own), {})
 
 
-def _print(figures: dict[str, Any], source: str) -> None:
+def _rows(figures: dict[str, Any]) -> list[Row]:
     names = {
         "points": "points",
         "clusters": "clusters",
@@ -240,4 +235,4 @@ def _print(figures: dict[str, Any], source: str) -> None:
     }
     rows = [("method", figures["method"])]
     rows += [(title, f"{figures[name]:,}") for name, title in names.items()]
-    print_report(source, rows, figures)
+    return rows

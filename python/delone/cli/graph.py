@@ -27,12 +27,13 @@ from delone.cli.options import (
     SolidColumns,
     Workers,
     outputs,
+    require_own,
     space_or_plane,
 )
 from delone.cli.referenced import Crs, Planar, require_known
-from delone.cli.report import Stopwatch, finite_or_none, peak_memory
+from delone.cli.report import Stopwatch, finite_or_none
 from delone.cli.rows import ROW_SUFFIXES, carried, read_rows, ready_rows, renaming, write_rows
-from delone.cli.show import print_json, print_report, spinner
+from delone.cli.show import show_figures, spinner
 from delone.cli.solid import is_space
 from delone.cli.tables import TABLE_SUFFIXES, write_table
 
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from delone.cli.show import Row
     from delone.graphs import Graph
     from delone.io import PointSet
 
@@ -197,14 +199,9 @@ def graph(
         "longest": finite_or_none(float(found.lengths.max(initial=0.0))),
         "columns": list(table.columns),
         "renamed": table.renamed,
-        "stages": watch.rows(found.npoints),
-        "outputs": [str(path) for path in (*(output or ()), *(nodes or ()))],
-        "peak_memory_bytes": peak_memory(),
+        **watch.ending((*(output or ()), *(nodes or ())), found.npoints),
     }
-    if as_json:
-        print_json(figures)
-    elif not quiet:
-        _print(figures, str(source))
+    show_figures(str(source), figures, _rows, as_json=as_json, quiet=quiet)
 
 
 # By kind: the function, with the options that it takes.
@@ -222,10 +219,7 @@ _MAKE: dict[Kind, Callable[[Any, dict[str, Any]], Graph]] = {
 
 def _require_own(kind: Kind, given: dict[str, Any]) -> None:
     """Refuse options of other kinds, and require those without a default."""
-    for name, value in given.items():
-        if value is not None and kind not in _OWN[name]:
-            kinds = ", ".join(_OWN[name])
-            raise Failure(f"{name} is for --kind {kinds}, not {kind}", Exit.USAGE)
+    require_own("--kind", kind, given, _OWN)
     if kind is Kind.BETA and given["--beta"] is None:
         raise Failure("--kind beta needs --beta, a number from 1 to 2", Exit.USAGE)
     if kind is Kind.NEAREST and given["-k"] is None:
@@ -283,11 +277,11 @@ def _write_one(found: Graph, table: Rows, path: Path) -> None:
             table.write(path)
 
 
-def _print(figures: dict[str, Any], source: str) -> None:
+def _rows(figures: dict[str, Any]) -> list[Row]:
     names = ("points", "duplicates", "edges", "components", "isolated")
     rows = [("graph", figures["kind"])]
     rows += [(name, f"{figures[name]:,}") for name in names]
     for name, title in (("length", "total length"), ("longest", "longest edge")):
         value = figures[name]
         rows.append((title, "beyond range" if value is None else f"{value:.10g}"))
-    print_report(source, rows, figures)
+    return rows

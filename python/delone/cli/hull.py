@@ -26,13 +26,14 @@ from delone.cli.options import (
     split,
 )
 from delone.cli.referenced import Crs, Planar, referenced, require_known
-from delone.cli.report import Stopwatch, finite_or_none, peak_memory
-from delone.cli.show import print_json, print_report, spinner
+from delone.cli.report import Stopwatch, finite_or_none
+from delone.cli.show import show_figures, spinner
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
 from delone.io import read_points
 
 if TYPE_CHECKING:
     from delone.alpha.shape import Kept
+    from delone.cli.show import Row
 
 __all__ = ["hull"]
 
@@ -108,14 +109,9 @@ def hull(
         "area": finite_or_none(found.area),
         "length": finite_or_none(found.perimeter),
         "alpha": getattr(found, "alpha", None),
-        "stages": watch.rows(mesh.npoints),
-        "outputs": [str(path) for path in output or ()],
-        "peak_memory_bytes": peak_memory(),
+        **watch.ending(output, mesh.npoints),
     }
-    if as_json:
-        print_json(figures)
-    elif not quiet:
-        _print(figures, str(source))
+    show_figures(str(source), figures, _rows, as_json=as_json, quiet=quiet)
 
 
 def _alpha(text: str | None) -> float | str | None:
@@ -172,10 +168,10 @@ def _write(found: Kept, crs: str | None, output: list[Path], watch: Stopwatch) -
                 write_table(table, stack.enter_context(replacing(path)), layer="outline")
 
 
-def _print(figures: dict[str, Any], source: str) -> None:
+def _rows(figures: dict[str, Any]) -> list[Row]:
     rows = [(name, f"{figures[name]:,}") for name in ("points", "outside", "polygons", "edges")]
     for name in ("area", "length", "alpha"):
         value = figures[name]
         if value is not None:
             rows.append((name, f"{value:.10g}"))
-    print_report(source, rows, figures)
+    return rows

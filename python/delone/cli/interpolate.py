@@ -14,8 +14,8 @@ from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.options import Classes, Json, Layer, Quiet, Workers, outputs, split
 from delone.cli.outputs import write_all
 from delone.cli.referenced import Crs, Planar, referenced, require_known
-from delone.cli.report import Stopwatch, finite_or_none, peak_memory
-from delone.cli.show import print_json, print_report, print_rows, spinner
+from delone.cli.report import Stopwatch, finite_or_none
+from delone.cli.show import print_json, print_rows, show_figures, spinner
 from delone.interpolate import Grid, Interpolator, cross_validate, grid, interpolator
 from delone.interpolate.methods import METHODS
 from delone.interpolate.values import chosen
@@ -122,16 +122,13 @@ def interpolate(
         write_all(writers, found, watch, say, name=name, crs=survey.crs, units=units)
         figures = _figures(source, survey, made, method, found) | {
             "max_distance": max_distance,
-            "stages": watch.rows(
-                found.values.size, others=dict.fromkeys(("read", "triangulate"), len(survey))
+            **watch.ending(
+                writers,
+                found.values.size,
+                others=dict.fromkeys(("read", "triangulate"), len(survey)),
             ),
-            "outputs": [str(path) for path in writers],
-            "peak_memory_bytes": peak_memory(),
         }
-    if as_json:
-        print_json(figures)
-    elif not quiet:
-        print_report(str(source), _rows(figures), figures)
+    show_figures(str(source), figures, _rows, as_json=as_json, quiet=quiet)
 
 
 def crossval(

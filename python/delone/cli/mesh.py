@@ -16,7 +16,7 @@ from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.options import Chord, Json, Layer, MeshOutput, Order, Quiet
 from delone.cli.outputs import ready, write_all
 from delone.cli.referenced import Crs, Planar, referenced, require_known
-from delone.cli.report import Stopwatch, peak_memory, summary
+from delone.cli.report import Stopwatch, summary
 from delone.cli.show import print_json, print_report
 from delone.errors import CrossingSegmentsError, NonFiniteError
 from delone.io import read_geometries
@@ -96,12 +96,11 @@ def make_mesh(
         "crs": survey.crs,
         **summary(found),
         "mesh": _figures(found),
-        "stages": watch.rows(
+        **watch.ending(
+            writers,
             found.npoints,
             others=dict.fromkeys(("read", "triangulate"), found.npoints - found.nadded),
         ),
-        "outputs": [str(path) for path in writers],
-        "peak_memory_bytes": peak_memory(),
     }
     if as_json:
         print_json(figures)

@@ -11,7 +11,7 @@ from delone.cli.exits import Exit, Failure
 from delone.io import input_suffixes, output_suffixes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping, Sequence
 
 __all__ = [
     "Chord",
@@ -31,6 +31,7 @@ __all__ = [
     "Workers",
     "class_numbers",
     "outputs",
+    "require_own",
     "space_or_plane",
     "split",
 ]
@@ -101,6 +102,17 @@ def space_or_plane(solid: bool, flat: bool) -> bool | None:
     if solid and flat:
         raise Failure("--3d and --2d contradict each other: give one of them", Exit.USAGE)
     return solid or (False if flat else None)
+
+
+def require_own(
+    option: str, chosen: str, given: Mapping[str, Any], own: Mapping[str, Sequence[str]]
+) -> None:
+    """Refuse options that are given though they belong to other choices of an option."""
+    for name, value in given.items():
+        if value is not None and chosen not in own[name]:
+            raise Failure(
+                f"{name} is for {option} {', '.join(own[name])}, not {chosen}", Exit.USAGE
+            )
 
 
 def class_numbers(text: str | None) -> list[int] | None:

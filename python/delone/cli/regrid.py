@@ -17,8 +17,8 @@ from delone._base.extras import require
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import note
 from delone.cli.options import Json, Quiet, Workers, outputs, split
-from delone.cli.report import Stopwatch, peak_memory
-from delone.cli.show import print_json, print_report, spinner
+from delone.cli.report import Stopwatch
+from delone.cli.show import show_figures, spinner
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -190,14 +190,9 @@ def regrid(
                     save_weights, source=regridder.source, target=regridder.target
                 )
         figures = _figures(source, regridder, fields, found) | {
-            "stages": watch.rows(regridder.target.ncells),
-            "outputs": [str(path) for path in written],
-            "peak_memory_bytes": peak_memory(),
+            **watch.ending(written, regridder.target.ncells),
         }
-    if as_json:
-        print_json(figures)
-    elif not quiet:
-        print_report(str(source), _rows(figures), figures)
+    show_figures(str(source), figures, _rows, as_json=as_json, quiet=quiet)
 
 
 @contextmanager

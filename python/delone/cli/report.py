@@ -20,7 +20,8 @@ from delone import Mesh as QualityMesh
 from delone.predicates import orient2d
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -58,6 +59,20 @@ class Stopwatch:
             }
             for name, seconds in self.seconds.items()
         ]
+
+    def ending(
+        self,
+        outputs: Iterable[Path] | None,
+        points: int,
+        *,
+        others: Mapping[str, int] | None = None,
+    ) -> dict[str, Any]:
+        """Return what the figures of a command end with: stages, outputs and memory."""
+        return {
+            "stages": self.rows(points, others=others),
+            "outputs": [str(path) for path in outputs or ()],
+            "peak_memory_bytes": peak_memory(),
+        }
 
 
 def summary(triangulation: Mesh) -> dict[str, Any]:

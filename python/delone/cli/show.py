@@ -23,6 +23,7 @@ __all__ = [
     "print_report",
     "print_rows",
     "print_text",
+    "show_figures",
     "space_rows",
     "spinner",
     "triangulation_rows",
@@ -54,6 +55,21 @@ def print_report(title: str, rows: list[Row], figures: dict[str, Any]) -> None:
     peak = ("peak memory", memory_text(figures["peak_memory_bytes"]))
     print_rows(title, [*rows, peak, *(("written", path) for path in figures["outputs"])])
     _print_stages(figures["stages"])
+
+
+def show_figures(
+    title: str,
+    figures: dict[str, Any],
+    rows: Callable[[dict[str, Any]], list[Row]],
+    *,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Print the figures of a command as JSON, or as rows with a title, unless it is quiet."""
+    if as_json:
+        print_json(figures)
+    elif not quiet:
+        print_report(title, rows(figures), figures)
 
 
 def _print_stages(stages: list[dict[str, Any]]) -> None:

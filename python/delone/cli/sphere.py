@@ -29,8 +29,8 @@ from delone.cli.options import (
 )
 from delone.cli.outputs import write_all
 from delone.cli.referenced import Crs, require_known
-from delone.cli.report import Stopwatch, peak_memory
-from delone.cli.show import print_json, print_report, spinner
+from delone.cli.report import Stopwatch
+from delone.cli.show import show_figures, spinner
 from delone.io import input_suffixes, read_points
 from delone.io.registry import writer
 
@@ -116,14 +116,9 @@ def globe(
             "input": str(source),
             "crs": crs or survey.crs,
             **measures,
-            "stages": watch.rows(mesh.npoints),
-            "outputs": [str(path) for path in writers],
-            "peak_memory_bytes": peak_memory(),
+            **watch.ending(writers, mesh.npoints),
         }
-    if as_json:
-        print_json(figures)
-    elif not quiet:
-        print_report(str(source), _rows(figures), figures)
+    show_figures(str(source), figures, _rows, as_json=as_json, quiet=quiet)
 
 
 def _view(text: str | None) -> tuple[float, float] | None:

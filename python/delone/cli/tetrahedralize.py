@@ -14,8 +14,8 @@ from delone.cli.exits import Exit, Failure, as_options, protect_inputs, writing
 from delone.cli.faces import read_parts
 from delone.cli.options import Json, MeshOutput, Order, Quiet, Workers
 from delone.cli.outputs import ready, write_all
-from delone.cli.report import Stopwatch, finite_or_none, peak_memory
-from delone.cli.show import print_json, print_report, spinner
+from delone.cli.report import Stopwatch, finite_or_none
+from delone.cli.show import show_figures, spinner
 from delone.cli.solid import improvement_figures, improvement_rows
 from delone.errors import (
     BudgetExceededError,
@@ -183,14 +183,9 @@ def fill(
         "face_markers": [] if given.markers is None else np.unique(given.markers).tolist(),
         **figures,
         **gained,
-        "stages": watch.rows(mesh.npoints),
-        "outputs": [str(path) for path in writers],
-        "peak_memory_bytes": peak_memory(),
+        **watch.ending(writers, mesh.npoints),
     }
-    if as_json:
-        print_json(figures)
-    elif not quiet:
-        print_report(str(source), _rows(figures), figures)
+    show_figures(str(source), figures, _rows, as_json=as_json, quiet=quiet)
 
 
 def _numbers(given: Sequence[str] | None, option: str, columns: int) -> list[list[float]] | None:

@@ -28,7 +28,7 @@ from delone.cli.options import (
 )
 from delone.cli.outputs import ready, write_all
 from delone.cli.referenced import Crs, Planar, referenced, require_known
-from delone.cli.report import Stopwatch, peak_memory, summary
+from delone.cli.report import Stopwatch, summary
 from delone.cli.show import print_json, print_report, space_rows, spinner, triangulation_rows
 from delone.cli.solid import (
     improved,
@@ -174,9 +174,7 @@ def triangulate(
             **measures,
             **_of_constraints(mesh, survey),
             **gained,
-            "stages": watch.rows(mesh.npoints),
-            "outputs": [str(path) for path in writers],
-            "peak_memory_bytes": peak_memory(),
+            **watch.ending(writers, mesh.npoints),
         }
     if as_json:
         print_json(figures)

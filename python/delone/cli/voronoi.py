@@ -15,8 +15,8 @@ from delone._base.extras import require
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.options import Json, Layer, PlaneColumns, Quiet, Workers, outputs, split
 from delone.cli.referenced import Crs, Planar, referenced, require_known
-from delone.cli.report import Stopwatch, finite_or_none, peak_memory
-from delone.cli.show import print_json, print_report, spinner
+from delone.cli.report import Stopwatch, finite_or_none
+from delone.cli.show import show_figures, spinner
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
 from delone.errors import DegenerateInputError, FileFormatError, InputError, NonFiniteError
 from delone.io import input_suffixes, read_geometries, read_points
@@ -24,6 +24,7 @@ from delone.io.gdal import DRIVERS
 from delone.io.vector import attribute_names
 
 if TYPE_CHECKING:
+    from delone.cli.show import Row
     from delone.io import PointSet
 
 __all__ = ["voronoi"]
@@ -88,22 +89,17 @@ def voronoi(
         "vertices": len(diagram.vertices),
         "ridges": len(diagram.ridge_points),
         "area": finite_or_none(float(areas[distinct].sum())),
-        "stages": watch.rows(diagram.npoints),
-        "outputs": [str(path) for path in output or ()],
-        "peak_memory_bytes": peak_memory(),
+        **watch.ending(output, diagram.npoints),
     }
-    if as_json:
-        print_json(figures)
-    elif not quiet:
-        _print(figures, str(source))
+    show_figures(str(source), figures, _rows, as_json=as_json, quiet=quiet)
 
 
-def _print(figures: dict[str, Any], source: str) -> None:
+def _rows(figures: dict[str, Any]) -> list[Row]:
     names = ("sites", "distinct", "hidden", "empty", "vertices", "ridges")
     rows = [(name, f"{figures[name]:,}") for name in names if figures[name] or name != "hidden"]
     if figures["area"] is not None:
         rows.append(("area", f"{figures['area']:.10g}"))
-    print_report(source, rows, figures)
+    return rows
 
 
 def _sites(
