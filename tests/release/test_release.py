@@ -288,12 +288,33 @@ def test_zig_is_found_beside_the_interpreter(
     """Also where its environment is not activated, as in `make release-check`."""
     rehearse = script("rehearse")
     ran = []
+    monkeypatch.setenv("PATH", "/nowhere")
     monkeypatch.setattr(rehearse, "has", lambda _: True)
     monkeypatch.setattr(rehearse, "run", lambda *command, **rest: ran.append((command, rest)))
     assert rehearse.build(tmp_path, tmp_path, "aarch64", "3.14t") == []
     [(command, rest)] = ran
     assert "--zig" in command and "aarch64-unknown-linux-gnu" in command
-    assert rest["PATH"].split(os.pathsep)[0] == str(Path(sys.executable).parent)
+    assert rest["PATH"].split(os.pathsep) == [str(Path(sys.executable).parent), "/nowhere"]
+
+
+def test_a_wheel_without_its_interpreter_is_built_and_not_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rehearse = script("rehearse")
+
+    def build(source: Path, to: Path, machine: str, python: str) -> list[str]:
+        to.mkdir()
+        (to / f"delone-{machine}.whl").touch()
+        return []
+
+    here = [("x86_64", sys.executable), ("x86_64", "3.14t"), ("aarch64", sys.executable)]
+    monkeypatch.setattr(rehearse, "plans", lambda _: here)
+    monkeypatch.setattr(rehearse, "build", build)
+    monkeypatch.setattr(rehearse, "wheel_faults", lambda _: [])
+    monkeypatch.setattr(rehearse.platform, "machine", lambda: "x86_64")
+    made = rehearse.Rehearsal(tmp_path, tmp_path)
+    assert [python for _, python in rehearse.wheels(made, tmp_path)] == [sys.executable]
+    assert made.left_out == ["tests of delone-aarch64.whl: this machine is x86_64"]
 
 
 def test_a_rehearsal_builds_all_wheels_for_linux_that_it_can(
