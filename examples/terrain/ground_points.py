@@ -22,7 +22,7 @@ print("points of each pass:", found.added)
 
 # %%
 # The sample has classes. Type I errors are ground that is missed, those of type II are other
-# points that are taken for ground. A common mistake is a cell that is narrower than a roof.
+# points that are mistaken for ground. A common mistake is a cell that is narrower than a roof.
 
 reference = survey.attributes["classification"] == 2
 print(found.compare(reference))
