@@ -206,10 +206,46 @@ def test_dem_of_tiles_in_a_folder_with_spaces(folder, figures, command):
     y = transform.f + transform.e * (np.arange(values.shape[0]) + 0.5)
     expected = grid(points[:, :2], points[:, 2], x=x, y=y[::-1])
     assert np.allclose(values, expected.values[::-1], equal_nan=True)
-    code, _, err = command("dem", tiles, "-r", 5, "-o", out, "--hillshade")
-    assert code == 2 and "gdaldem hillshade" in err
+    figures("dem", tiles, "-r", 5, "-o", out, "--hillshade", "--altitude", 30)
+    shades = read(out)[0]
+    figures("dem", folder / "many.csv", "-r", 5, "-o", out, "--hillshade", "--altitude", 30)
+    assert (np.isclose(shades, read(out)[0], rtol=1e-5, equal_nan=True)).mean() > 0.99
     code, _, err = command("dem", tiles, "-r", 5, "-o", out, "--max-edge", 3, "--crossing", "min")
     assert code == 2 and "--max-edge, --crossing: for files of points" in err
+
+
+def test_tiles_in_place_of_a_file(folder, figures, command):
+    points = np.random.default_rng(5).random((2000, 3)) * [100, 100, 9]
+    np.savetxt(folder / "many.csv", points, delimiter=",", header="x,y,z", comments="")
+    line = folder / "the line.gpkg"
+    file, tiles = folder / "many.csv", folder / "tiles"
+    command("tile", file, "-o", tiles, "--tile-points", 300)
+    for what, name, number in (
+        (["contours", "--interval", 0.5], "lines.gpkg", "coordinates"),
+        (["contours", "--interval", 1, "--smooth", 1, "--min-length", 2], "few.gpkg", "lines"),
+        (["profile", line], "heights.csv", "profile_points"),
+        (["volume", 4], None, "area"),
+    ):
+        output = [] if name is None else ["-o", folder / name]
+        command_, *more = what
+        where = [more.pop(0)] if command_ in ("profile", "volume") else []
+        found = figures(command_, tiles, *where, *more, *output)
+        ours = None if name is None else (folder / name).read_bytes()
+        right = figures(command_, file, *where, *more, *output)
+        assert found[number] == pytest.approx(right[number]) and found["tiles"] > 4
+        if name == "heights.csv":
+            assert ours == (folder / name).read_bytes()
+    figures("volume", tiles, tiles)
+    for wrong, message in (
+        (["contours", tiles, "--interval", 1, "--snap", 1, "--max-edge", 2], "--max-edge, --snap"),
+        (["contours", tiles, "--interval", 1, "--bands"], "--bands is for files"),
+        (["contours", tiles, "--interval", 1, "--crs", "EPSG:28992"], "--crs: the tiles have"),
+        (["profile", tiles, line, "--other", file], "--other and --interval"),
+        (["volume", file, tiles], "swap both"),
+    ):
+        code, _, err = command(*wrong)
+        assert code == 2
+        assert message in err
 
 
 @pytest.mark.parametrize(

@@ -140,8 +140,8 @@ ALLOWED: dict[str, dict[str, str]] = {
         "np.abs(length - limit) <= limit * 2.0 ** (-48) + 2.0 ** (-1070)": FILTER,
     },
     "terrain/contouring.py": {
-        "_lengths(points, starts) >= least": WANTED,
-        "np.abs(ring_areas(points, starts)) >= smallest": WANTED,
+        "_lengths(points, starts) >= finish.min_length": WANTED,
+        "np.abs(ring_areas(points, starts)) >= finish.min_area": WANTED,
     },
     "terrain/deviations.py": {
         "_distance(part.points[k], part.corners[k]) > Fraction(limit)": EXACT,

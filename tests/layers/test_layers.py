@@ -39,8 +39,9 @@ PYTHON: tuple[set[str], ...] = (
     {"delaunay", "constrained", "regular"},
     {"dynamic", "estimation", "hull", "periodic", "refine"},
     {"alpha", "graphs", "io"},
-    {"voronoi", "interpolate", "cluster", "solids", "areal"},
-    {"compat", "distributed", "explorer", "sphere", "terrain"},
+    {"voronoi", "interpolate", "cluster", "tetrahedra", "areal"},
+    {"compat", "explorer", "sphere", "terrain"},
+    {"distributed"},
     {"xarray"},
     # Data and oracles: nothing that they test may use them, and they use the ground alone.
     {"datasets", "reference", "testing"},

@@ -145,7 +145,7 @@ def test_each_part_has_a_room(check: ModuleType) -> None:
 
 def test_a_change_touches_its_room_and_those_that_import_it(check: ModuleType) -> None:
     change = check.touched(["python/delone/terrain/heights.py"])
-    assert change.rooms == ["tests/terrain", "tests/cli"]
+    assert change.rooms == ["tests/terrain", "tests/cli", "tests/distributed"]
     change = check.touched(["crates/core/src/locate/mod.rs", "tests/hull/test_hull.py"])
     assert change.rooms[:2] == ["tests/locate", "tests/hull"]
     assert "tests/interpolate" in change.rooms

@@ -22,6 +22,7 @@ from delone.cli.surfaces import (
     surface,
     with_surface,
 )
+from delone.cli.tiled import refuse_for_tiles
 from delone.io import input_suffixes, raster_suffixes
 from delone.io.raster import raster_writer
 
@@ -86,9 +87,8 @@ def dem(
 ) -> None:
     """Make a raster of the surface of points: its heights, slope, aspect or hillshade.
 
-    The surface is linear between the points. Of a folder of tiles, which has no breaklines, heights
-    or another column are written; of a file of points also what is computed from the slopes of the
-    triangles.
+    The surface is linear between the points. A folder of tiles has no breaklines, and its raster
+    may be of another column than the heights.
     """
     given = locals() | vars(options)
     cells = _numbers(resolution, "--resolution", (1, 2))
@@ -98,8 +98,9 @@ def dem(
     require_known(options.crs)
     size = (cells[0], cells[-1])
     if source.is_dir():
-        _refuse_for_tiles(given, what)
-        _of_tiles(source, size, output, value, options)
+        refuse_for_tiles(given)
+        shown = {"what": "value" if what == "height" else what, **light}
+        _of_tiles(source, size, output, (value, shown), options)
         return
     if value != "z":
         raise Failure("--value is for tiles; name the heights with --columns x,y,z", Exit.USAGE)
@@ -130,41 +131,21 @@ def _measure(given: dict[str, Any], light: dict[str, Any]) -> str:
     return chosen[0] if chosen else "height"
 
 
-def _refuse_for_tiles(given: dict[str, Any], what: str) -> None:
-    if what != "height":
-        raise Failure(
-            f"--{what} is for files of points; of a folder of tiles write the heights, and apply "
-            f"'gdaldem {what}' to them",
-            Exit.USAGE,
-        )
-    lines = ("bounds", "breaklines", "soft_breaklines", "boundary", "max_edge", "columns")
-    names = (*lines, "classes", "layer", "units", "workers", "nodata", "window", "level")
-    set_ = [name for name in names if given[name] is not None]
-    set_ += [name for name in ("duplicates", "crossing") if given[name] != "raise"]
-    set_ += [
-        name
-        for name in ("tolerance", "snap", "retriangulate", "easting_first", "voids")
-        if given[name]
-    ]
-    if set_:
-        options = ", ".join(f"--{name.replace('_', '-')}" for name in set_)
-        raise Failure(f"{options}: for files of points, not for folders of tiles", Exit.USAGE)
-
-
 def _of_tiles(
     folder: Path,
     cells: tuple[float, float],
     output: Path,
-    value: str,
+    of: tuple[str, dict[str, Any]],
     options: SurfaceOptions,
 ) -> None:
+    value, shown = of
     with writing():
         check_target(output)
     with reading(quiet=options.quiet):
         found = distributed.open(folder)
     with spinner(options.silent) as say, writing():
         say(f"interpolating {found.ntiles:,} tiles")
-        found.to_raster(cells, output, values=value, crs=options.crs)
+        found.to_raster(cells, output, values=value, crs=options.crs, **shown)
     if options.as_json:
         print_json({"delone": __version__, "input": str(folder), "outputs": [str(output)]})
     elif not options.quiet:

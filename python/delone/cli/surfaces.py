@@ -35,6 +35,8 @@ from delone.terrain import TIN
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from delone.distributed import TiledDelaunay
+
 __all__ = [
     "SurfaceOptions",
     "Survey",
@@ -311,16 +313,16 @@ def _lines(path: Path, options: SurfaceOptions) -> GeometrySet:
     return read_geometries(path, **curves_of(path, options.chord))
 
 
-def figures_of(source: Path, tin: TIN, output: list[Path] | None) -> dict[str, Any]:
+def figures_of(source: Path, tin: TIN | TiledDelaunay, output: list[Path] | None) -> dict[str, Any]:
     """Return what commands report of a surface and of the files written."""
     return {
         "delone": __version__,
         "input": str(source),
         "crs": tin.crs,
-        "units": tin.units,
+        "units": tin.units if isinstance(tin, TIN) else None,
         "points": tin.npoints,
         "triangles": tin.nsimplex,
-        **_adjustments_of(tin),
+        **(_adjustments_of(tin) if isinstance(tin, TIN) else {"tiles": tin.ntiles}),
         "outputs": [str(path) for path in output or ()],
         "output_bytes": sum(path.stat().st_size for path in output or ()),
         "peak_memory_bytes": peak_memory(),

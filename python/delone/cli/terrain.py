@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 import typer
 
+from delone import distributed
 from delone._base.atomic import check_target, replacing
 from delone._base.extras import require
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
@@ -43,18 +44,19 @@ from delone.cli.surfaces import (
     is_landxml,
     other_surface,
     print_figures,
-    surface,
     with_surface,
 )
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
+from delone.cli.tiled import surface_or_tiles
 from delone.io import read_geometries, write_drawing
-from delone.terrain import Volumes
+from delone.terrain import TIN, Volumes
 from delone.terrain.contouring import MOST
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from delone.terrain import TIN, Volume
+    from delone.distributed import TiledDelaunay
+    from delone.terrain import Volume
 
 __all__ = ["contours", "profile", "volume", "write_lines"]
 
@@ -127,11 +129,15 @@ def contours(
             ready_table(labels, "labels")
     watch = Stopwatch()
     with spinner(options.silent) as say:
-        tin = surface(source, options, watch, say)
+        tin = surface_or_tiles(source, options, watch, say)
         say("computing contours")
         with watch.stage("contours"):
             found: Any
-            if bands:
+            if bands and not isinstance(tin, TIN):
+                raise Failure(
+                    "--bands is for files of points, not for folders of tiles", Exit.USAGE
+                )
+            if isinstance(tin, TIN) and bands:
                 found = tin.bands(
                     wanted,
                     interval=interval,
@@ -218,14 +224,22 @@ def profile(
         with reading(quiet=options.quiet):
             along = read_geometries(line, **curves_of(line, options.chord, aligned=True))
         files, aligned = [line, *(other or [])], is_landxml(line)
-        tin = surface(source, options, watch, say, others=files, aligned=aligned)
+        tin = surface_or_tiles(source, options, watch, say, others=files, aligned=aligned)
         others = {
             name: other_surface(path, replace(options, layer=own or options.layer), watch, say)
             for name, path, own in named_files(source, other or [], other_layer or [])
         }
         say("computing the profile")
         with watch.stage("profile"), noting(quiet=options.quiet):
-            found = wanted.of(tin, along, others, name_of(source))
+            if isinstance(tin, TIN):
+                found = wanted.of(tin, along, others, name_of(source))
+            elif others or wanted.interval is not None:
+                raise Failure(
+                    "--other and --interval are for files of points, not for folders of tiles",
+                    Exit.USAGE,
+                )
+            else:
+                found = tin.profile(along)
         write_profile(found, output or [], watch, wanted)
     figures = figures_of(source, tin, output) | profile_figures(found)
     figures["stages"] = watch.rows(tin.npoints)
@@ -276,16 +290,22 @@ def volume(
                 else read_geometries(region, **curves_of(region, options.chord))
             )
             lots = None if regions is None else read_regions(regions, regions_layer, options)
-        tin = surface(source, options, watch, say, others=[Path(other), *polygons])
+        tin = surface_or_tiles(source, options, watch, say, others=[Path(other), *polygons])
         within_other = replace(options, layer=other_layer or options.layer)
         goal = _goal(other, within_other, watch, say)
+        if isinstance(tin, TIN) and isinstance(goal, distributed.TiledDelaunay):
+            raise Failure(
+                "a folder of tiles is compared as the first surface: swap both", Exit.USAGE
+            )
         say("computing volumes")
         with watch.stage("volume"), noting(quiet=options.quiet):
             found: Volume | Volumes
             if lots is None:
                 found = tin.volume_to(goal, region=within)
-            else:
+            elif isinstance(tin, TIN) and not isinstance(goal, distributed.TiledDelaunay):
                 found = tin.volumes_to(goal, lots)
+            else:
+                raise Failure("--regions is for files, not for folders of tiles", Exit.USAGE)
         if isinstance(found, Volumes) and lots is not None:
             write_rows(found, lots, output or [], watch, quiet=options.quiet)
     figures = figures_of(source, tin, output) | volume_figures(found)
@@ -321,13 +341,16 @@ def _check(output: list[Path], source: Path, options: SurfaceOptions, *, bands: 
 
 def _goal(
     other: str, options: SurfaceOptions, watch: Stopwatch, say: Callable[[str], None]
-) -> float | TIN:
+) -> float | TIN | TiledDelaunay:
     """Return the height or surface that is to be reached."""
     if not Path(other).exists():
         try:
             return float(other)
         except ValueError:
             raise Failure(f"{other}: neither a file nor a height", Exit.INPUT) from None
+    if Path(other).is_dir():
+        with reading(quiet=options.quiet):
+            return distributed.open(Path(other))
     return other_surface(Path(other), options, watch, say)
 
 

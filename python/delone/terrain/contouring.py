@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -26,13 +26,25 @@ from delone.terrain.small import Rings, ring_areas, without_small
 from delone.terrain.surface import on_surface
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
     from delone._base.types import Bools, Floats, Rows
     from delone.exchange.parts import Parts
     from delone.terrain.surface import Surface
 
-__all__ = ["MOST", "Bands", "Contours", "bands", "levels_of", "lines"]
+__all__ = [
+    "MOST",
+    "Bands",
+    "Contours",
+    "Drawn",
+    "Finish",
+    "bands",
+    "finished",
+    "levels_of",
+    "lines",
+]
 
 # Points of contours that a call may compute by default: about 3 GB with what is needed beside.
 MOST = 50_000_000
@@ -474,9 +486,16 @@ def _arguments_of(
 
 
 def levels_of(
-    tin: Surface, levels: ArrayLike | None, interval: float | None, base: float, index: int
+    extremes: Callable[[], tuple[float, float]],
+    levels: ArrayLike | None,
+    interval: float | None,
+    base: float,
+    index: int,
 ) -> tuple[Floats, Bools]:
-    """Return ascending levels, each once, and which are index contours."""
+    """Return ascending levels, each once, and which are index contours.
+
+    An interval gives those between the least and the greatest height, which `extremes` returns.
+    """
     if (levels is None) == (interval is None):
         raise InputError("give either levels or an interval")
     if interval is None:
@@ -490,16 +509,16 @@ def levels_of(
     step, start = as_number(interval, name="interval"), as_number(base, name="base")
     if not (0 < step < math.inf and math.isfinite(start)):
         raise InputError(f"interval must be above 0 and base finite, got {interval} and {base}")
-    every, z = as_count(index, name="index"), tin.z[on_surface(tin)]
-    first, last = (float(each - start) / step for each in (z.min(), z.max()))
+    every, (low, high) = as_count(index, name="index"), extremes()
+    first, last = ((each - start) / step for each in (low, high))
     if not last - first < _LEVELS:
         raise BudgetExceededError(
             f"an interval of {step:g} gives {last - first:.3g} levels between the heights "
-            f"{z.min():g} and {z.max():g}; at most {_LEVELS} are possible",
+            f"{low:g} and {high:g}; at most {_LEVELS} are possible",
             limit=_LEVELS,
             found=LARGEST_LIMIT if not last - first < LARGEST_LIMIT else int(last - first),
         )
-    return _multiples(float(z.min()), float(z.max()), exact(start), exact(step), every)
+    return _multiples(low, high, exact(start), exact(step), every)
 
 
 def _multiples(
@@ -519,43 +538,78 @@ def _multiples(
     return found[within], np.asarray(marked)[within]
 
 
-def lines(
-    tin: Surface,
-    levels: Floats,
-    marked: Bools,
-    smooth: int,
-    max_points: int,
-    *,
-    min_length: float,
-    min_area: float,
-    simplify: float,
-) -> Contours:
+class Drawn(NamedTuple):
+    """Lines as the core draws them: the number of the level of each, and triangles left out."""
+
+    points: Floats
+    starts: Rows
+    level: NDArray[np.int32]
+    left_out: int
+
+
+class Finish(NamedTuple):
+    """What is done with lines after they are drawn."""
+
+    smooth: int
+    min_length: float
+    min_area: float
+    simplify: float
+
+    @classmethod
+    def of(cls, smooth: Any, min_length: Any, min_area: Any, simplify: Any) -> Finish:
+        """Check the options."""
+        return cls(
+            as_count(smooth, name="smooth"),
+            _least(min_length, "min_length"),
+            _least(min_area, "min_area"),
+            _least(simplify, "simplify"),
+        )
+
+    @property
+    def factor(self) -> int:
+        """By how much smoothing multiplies points at most: each round doubles them."""
+        return 1 << min(self.smooth, _MOST_ROUNDS)
+
+
+def lines(tin: Surface, levels: Floats, marked: Bools, max_points: int, finish: Finish) -> Contours:
     """Return the contours of a surface."""
+    made, left_out = _within(_core.contour_lines2, tin, levels, max_points, finish.factor)
+    drawing = Drawn(made.points, made.starts, made.levels, left_out)
+    return finished(drawing, (levels, marked), finish, tin, tin.crs, tin.units)
+
+
+def finished(  # noqa: PLR0917
+    drawing: Drawn,
+    of: tuple[Floats, Bools],
+    finish: Finish,
+    tin: Surface | None,
+    crs: str | None,
+    units: str | None,
+) -> Contours:
+    """Smooth lines, leave out small ones, and simplify the rest.
+
+    Smoothing keeps corners on hard breaklines of `tin`, if there is one.
+    """
     from delone.terrain.generalizing import simplified
     from delone.terrain.smoothing import smoothed
 
-    rounds = as_count(smooth, name="smooth")
-    least, smallest = _least(min_length, "min_length"), _least(min_area, "min_area")
-    near = _least(simplify, "simplify")
-    # Each round doubles the points at most.
-    factor = 1 << min(rounds, _MOST_ROUNDS)
-    made, left_out = _within(_core.contour_lines2, tin, levels, max_points, factor)
-    points, starts = made.points, made.starts
-    if rounds:
-        points, starts = smoothed(points, starts, tin, rounds)
-    level = made.levels
+    points, starts, level, left_out = drawing
+    levels, marked = of
+    every = len(level)
+    if finish.smooth:
+        points, starts = smoothed(points, starts, tin, finish.smooth)
     small = 0
-    if smallest:
+    if finish.min_area:
         closed = (points[starts[:-1]] == points[starts[1:] - 1]).all(axis=1)
-        kept = ~closed | (np.abs(ring_areas(points, starts)) >= smallest)
+        kept = ~closed | (np.abs(ring_areas(points, starts)) >= finish.min_area)
         small = int((~kept).sum())
         points, starts, level = *_only(points, starts, kept), level[kept]
-    if least:
-        kept = _lengths(points, starts) >= least
+    if finish.min_length:
+        kept = _lengths(points, starts) >= finish.min_length
         points, starts, level = *_only(points, starts, kept), level[kept]
     before = len(points)
-    if near:
-        points, starts = simplified(points, starts, near)
+    if finish.simplify:
+        points, starts = simplified(points, starts, finish.simplify)
     return Contours(
         points=points,
         starts=starts,
@@ -563,11 +617,11 @@ def lines(
         index=marked[level],
         levels=levels,
         left_out=left_out,
-        short=len(made.levels) - len(level) - small,
+        short=every - len(level) - small,
         small=small,
         straightened=before - len(points),
-        crs=tin.crs,
-        units=tin.units,
+        crs=crs,
+        units=units,
     )
 
 

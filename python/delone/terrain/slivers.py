@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from delone._base.types import Bools, Floats, Indices
     from delone.terrain.surface import Sheet
 
-__all__ = ["drawn"]
+__all__ = ["at_the_outline", "drawn"]
 
 
 class _Part(NamedTuple):
@@ -43,7 +43,7 @@ def drawn(compute: Callable[[Sheet, Bools, bool], Any], sheet: Sheet) -> tuple[A
         made = compute(sheet, collapsed, far)
         if not len(made.tangled):
             return made, left_out
-        outer = _at_the_outline(sheet, made.tangled)
+        outer = at_the_outline(sheet, made.tangled)
         if outer.any():
             left_out += int(outer.sum())
             sheet, collapsed = _without(sheet, outer), collapsed[~outer]
@@ -53,7 +53,7 @@ def drawn(compute: Callable[[Sheet, Bools, bool], Any], sheet: Sheet) -> tuple[A
             collapsed[made.tangled] = True
 
 
-def _at_the_outline(sheet: Sheet, tangled: Indices) -> Bools:
+def at_the_outline(sheet: Sheet, tangled: Indices) -> Bools:
     """Return thin triangles that can be left out one by one at the outline, near given ones."""
     simplices, neighbors = sheet.simplices, sheet.neighbors
     thin, _, longest = slivers.shapes(sheet.points, simplices)

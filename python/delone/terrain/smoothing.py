@@ -26,13 +26,18 @@ _MOST_ROUNDS = 5
 _SHARE = 0.25
 
 
-def smoothed(points: Floats, starts: Rows, tin: Surface, rounds: int) -> tuple[Floats, Rows]:
-    """Return lines with corners cut `rounds` times, and their starts."""
+def smoothed(points: Floats, starts: Rows, tin: Surface | None, rounds: int) -> tuple[Floats, Rows]:
+    """Return lines with corners cut `rounds` times, and their starts.
+
+    Corners on hard breaklines of the surface, if there is one, are kept.
+    """
     if rounds > _MOST_ROUNDS:
         raise InputError(f"smooth must be at most {_MOST_ROUNDS}, got {rounds}")
     if not len(points):
         return points, starts
-    sharp = np.array(_on_hard_lines(points, tin) | _repeated(points, starts))
+    sharp = np.array(_repeated(points, starts))
+    if tin is not None:
+        sharp |= _on_hard_lines(points, tin)
     while True:  # each pass restores a corner
         cut, begin, corner = _cut(points, starts, sharp, rounds)
         crossing = _crossing(cut, begin)

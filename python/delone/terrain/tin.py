@@ -64,7 +64,8 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
     Notes
     -----
     The triangles are those of a `ConstrainedDelaunay` of points and lines: exact and canonical.
-    A TIN is one surface in memory; the tiles of ``delone tile`` are for point sets that exceed it.
+    A TIN is one surface in memory. For point sets that exceed it, the tiles of ``delone tile`` have
+    contours, profiles and volumes, too: see `delone.distributed.TiledDelaunay`.
 
     Examples
     --------
@@ -461,9 +462,11 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         >>> found.level.tolist(), found.coordinates(1).tolist()
         ([3.0, 6.0], [[0.0, 3.0], [3.0, 3.0], [4.0, 3.0]])
         """
-        wanted, marked = contouring.levels_of(self, levels, interval, base, index)
-        least = {"min_length": min_length, "min_area": min_area, "simplify": simplify}
-        return contouring.lines(self, wanted, marked, smooth, max_points, **least)
+        wanted, marked = contouring.levels_of(
+            partial(slopes.extremes, self), levels, interval, base, index
+        )
+        finish = contouring.Finish.of(smooth, min_length, min_area, simplify)
+        return contouring.lines(self, wanted, marked, max_points, finish)
 
     def bands(
         self,
@@ -502,7 +505,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         >>> tin.bands([4.0])
         <Bands of 2 ranges: 2 polygons>
         """
-        wanted, _ = contouring.levels_of(self, levels, interval, base, 1)
+        wanted, _ = contouring.levels_of(partial(slopes.extremes, self), levels, interval, base, 1)
         return contouring.bands(self, wanted, min_area, max_points)
 
     def profile(self, line: Any) -> profiles.Profile:

@@ -23,7 +23,16 @@ if TYPE_CHECKING:
     from delone.terrain.lines import Ring
     from delone.terrain.surface import Sheet, Surface
 
-__all__ = ["Region", "Volume", "goal_of", "plane_of", "region_of", "volume"]
+__all__ = [
+    "Region",
+    "Volume",
+    "goal_of",
+    "plane_of",
+    "region_of",
+    "volume",
+    "wanted_region",
+    "warn_of_nothing",
+]
 
 
 class Region(NamedTuple):
@@ -48,7 +57,8 @@ class Volume(ReadOnly):
     area : float
         The area where both are defined, including where they are equal.
     of_triangles : ndarray of float64, shape (m, 5)
-        The same five numbers for each triangle of the surface, for maps.
+        The same five numbers for each triangle of the surface, for maps; for a surface in tiles,
+        (k, 5), for each tile.
     units : str, optional
         The unit of heights. Volumes are in this unit times the unit of x and y squared.
     crs : str, optional
@@ -105,16 +115,11 @@ def volume(tin: Surface, other: Any, region: Any) -> Volume:
     """Return the volume between a surface and `other`."""
     surface, plane = goal_of(tin, other)
     found = _core.volumes2(
-        tin._sheet(), surface, plane, _region(region, tin.crs), as_workers(tin.workers)
+        tin._sheet(), surface, plane, wanted_region(region, tin.crs), as_workers(tin.workers)
     )
     of_triangles = np.column_stack(found)
     if not of_triangles[:, 4].any():
-        what = "region" if region is not None else "surface to be reached"
-        warnings.warn(
-            f"the surface and the {what} have no area in common: the volume is 0",
-            UserWarning,
-            stacklevel=caller_level(),
-        )
+        warn_of_nothing(region)
     # Correctly rounded sums: independent of the order of the triangles.
     cut, fill, cut_area, fill_area, area = map(total, found)
     return Volume(
@@ -126,6 +131,16 @@ def volume(tin: Surface, other: Any, region: Any) -> Volume:
         of_triangles=of_triangles,
         units=tin.units,
         crs=tin.crs,
+    )
+
+
+def warn_of_nothing(region: Any) -> None:
+    """Warn that a volume is that of nothing."""
+    what = "region" if region is not None else "surface to be reached"
+    warnings.warn(
+        f"the surface and the {what} have no area in common: the volume is 0",
+        UserWarning,
+        stacklevel=caller_level(),
     )
 
 
@@ -154,7 +169,8 @@ def plane_of(other: Any) -> list[float]:
     return numbers
 
 
-def _region(region: Any, crs: str | None) -> Region | None:
+def wanted_region(region: Any, crs: str | None) -> Region | None:
+    """Return the triangles of a region, None for everything."""
     if region is None:
         return None
     require_areas(region, "region")

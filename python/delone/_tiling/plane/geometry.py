@@ -18,7 +18,7 @@ _FEW = 1000
 # The exponent of the largest power of two that is a double.
 _LARGEST = 1023
 
-__all__ = ["edge_normals", "total"]
+__all__ = ["edge_normals", "shares", "summed", "total"]
 
 
 def edge_normals(points: Floats, edges: Indices) -> Floats:
@@ -40,16 +40,18 @@ def edge_normals(points: Floats, edges: Indices) -> Floats:
 
 def total(sizes: Floats) -> float:
     """Return the sum of sizes that are not negative, rounded once; inf beyond doubles."""
-    shares: list[float] = []
-    for block in blocks(len(sizes)):
-        shares += _shares(sizes[block])
+    return summed([part for block in blocks(len(sizes)) for part in shares(sizes[block])])
+
+
+def summed(parts: list[float]) -> float:
+    """Return the sum of numbers, rounded once; inf beyond doubles."""
     try:
-        return fsum(shares)
+        return fsum(parts)
     except OverflowError:
         return inf
 
 
-def _shares(sizes: Floats) -> list[float]:
+def shares(sizes: Floats) -> list[float]:
     """Return numbers with exactly the same sum, few of them where sizes are alike.
 
     S. M. Rump, T. Ogita, S. Oishi, "Accurate floating-point summation part I", SIAM Journal on

@@ -10,10 +10,11 @@ from __future__ import annotations
 import errno
 import shutil
 from tempfile import TemporaryFile
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from delone._base.arrays import as_choice
 from delone._base.atomic import replacing
 from delone._base.counting import gigabytes, grouped
 from delone._base.extras import require
@@ -21,6 +22,7 @@ from delone.distributed.arguments import as_path
 from delone.errors import FileFormatError
 from delone.interpolate.raster import raster_nodes
 from delone.io.geotiff import write_geotiff
+from delone.terrain import slopes
 
 if TYPE_CHECKING:
     import os
@@ -33,20 +35,33 @@ if TYPE_CHECKING:
     from delone.distributed.read.folder import TileFolder
     from delone.distributed.read.tile import Tile
 
-__all__ = ["write_dem"]
+__all__ = ["Shown", "write_dem"]
 
+# What a raster may have.
+WHAT = ("value", "slope", "aspect", "hillshade")
 # Nodes per block.
 _BLOCK = 1 << 18
 
 
-def write_dem(
+class Shown(NamedTuple):
+    """What a raster has: values, or a measure of triangles and the light for it."""
+
+    what: str
+    azimuth: float
+    altitude: float
+    z_factor: float
+
+
+def write_dem(  # noqa: PLR0917
     tin: TileFolder,
     resolution: float | tuple[float, float],
     out: str | os.PathLike[str],
     value: str,
     crs: str | None,
+    shown: Shown,
 ) -> Path:
     """Write a GeoTIFF; see `TiledDelaunay.to_raster`."""
+    as_choice(shown.what, WHAT, name="what")
     require("rasterio", extra="raster", what="writing GeoTIFF files")
     tin._require(value)
     target = as_path(out, name="out")
@@ -65,10 +80,11 @@ def write_dem(
         for number, known in enumerate(tin.manifest["tiles"]):
             if known["extent"] is not None:
                 tile = tin.tile(number)
-                _fill(tin._locator(tile), tile, known["extent"], x, y, values, value)
+                _fill(tin._locator(tile), tile, known["extent"], x, y, values, (value, shown))
+        name = value if shown.what == "value" else shown.what
         corner = (float(x[0]) - sides[0] / 2, float(y[-1]) + sides[1] / 2)
         cell = sides[0], sides[1]
-        write_geotiff(beside, values, corner=corner, cell=cell, name=value, crs=crs)
+        write_geotiff(beside, values, corner=corner, cell=cell, name=name, crs=crs)
         del values
     return target
 
@@ -104,7 +120,7 @@ def _fill(  # noqa: PLR0917
     x: Floats,
     y: Floats,
     values: Any,
-    value: str,
+    of: tuple[str, Shown],
 ) -> None:
     """Set the values of nodes that lie in triangles of the tile and have no value yet."""
     columns = slice(*np.searchsorted(x, [extent[0], np.nextafter(extent[2], np.inf)]).tolist())
@@ -112,7 +128,9 @@ def _fill(  # noqa: PLR0917
     width = columns.stop - columns.start
     if width <= 0:
         return
+    value, shown = of
     field = np.ascontiguousarray(tile.attributes[value], dtype=np.float64)[:, None].copy()
+    of_triangles = None if shown.what == "value" else _measure(tile, field[:, 0], shown)
     step = max(1, _BLOCK // width)
     for start in range(first, last, step):
         rows = slice(start, min(start + step, last))
@@ -120,5 +138,17 @@ def _fill(  # noqa: PLR0917
         r, c = np.nonzero(np.isnan(block))
         if len(r):
             queries = np.stack([x[columns][c], y[rows][r]], axis=1)
-            block[r, c] = locator.linear(field, queries, 0, 1).reshape(-1)
+            if of_triangles is None:
+                block[r, c] = locator.linear(field, queries, 0, 1).reshape(-1)
+            else:
+                home = locator.find(queries, 1)
+                block[r, c] = np.where(home < 0, np.nan, of_triangles[home])
             values[rows, columns] = block
+
+
+def _measure(tile: Tile, z: Floats, shown: Shown) -> Floats:
+    """Return a measure of the triangles of a tile."""
+    gradients = slopes.gradient(tile.points, np.ascontiguousarray(z), tile.simplices)
+    if shown.what == "hillshade":
+        return slopes.hillshade(gradients, *shown[1:])
+    return slopes.slope(gradients) if shown.what == "slope" else slopes.aspect(gradients)

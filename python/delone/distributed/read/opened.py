@@ -9,9 +9,9 @@ import numpy as np
 from delone._base.arrays import as_queries
 from delone._base.georeference import as_crs
 from delone._base.renames import renamed
-from delone.distributed.read.dem import write_dem
-from delone.distributed.read.folder import TileFolder
+from delone.distributed.read.dem import Shown, write_dem
 from delone.distributed.read.proof import prove
+from delone.distributed.read.surface import TiledSurface
 from delone.distributed.read.tables import dask_frame, write_geoparquet
 from delone.distributed.read.tile import Tile
 
@@ -62,7 +62,7 @@ def open(output: str | os.PathLike[str]) -> TiledDelaunay:
 
 
 @renamed(simplices="read_simplices")
-class TiledDelaunay(TileFolder):
+class TiledDelaunay(TiledSurface):
     """A tiled triangulation on disk, returned by `open`.
 
     Attributes
@@ -316,6 +316,10 @@ class TiledDelaunay(TileFolder):
         out: str | os.PathLike[str] = "dem.tif",
         values: str = "z",
         *,
+        what: str = "value",
+        azimuth: float = 315.0,
+        altitude: float = 45.0,
+        z_factor: float = 1.0,
         crs: Any = None,
     ) -> Path:
         """Interpolate linearly to a GeoTIFF, tile by tile, without seams.
@@ -328,6 +332,11 @@ class TiledDelaunay(TileFolder):
             The file; it is created atomically.
         values : str, optional
             The name of the attribute; by default heights.
+        what : {"value", "slope", "aspect", "hillshade"}, optional
+            What a cell has: the interpolated value at its center, or a measure of the triangle
+            there, as in `delone.terrain.TIN`.
+        azimuth, altitude, z_factor : float, optional
+            The light of ``"hillshade"``, as for `delone.terrain.TIN.hillshade`.
         crs : str, int or pyproj.CRS, optional
             The reference system of the coordinates, by default that of the source. Nothing is
             transformed.
@@ -340,7 +349,8 @@ class TiledDelaunay(TileFolder):
         Raises
         ------
         InputError
-            There is no such attribute, or `resolution` is not above 0.
+            There is no such attribute, `resolution` is not above 0, `what` is not one of its
+            choices, or the light is not possible.
         MissingExtraError
             rasterio is not installed.
 
@@ -356,7 +366,8 @@ class TiledDelaunay(TileFolder):
         ...     tin.to_raster(0.5, folder + "/dem.tif").name
         'dem.tif'
         """
-        return write_dem(self, resolution, out, values, as_crs(crs) or self.crs)
+        shown = Shown(what, azimuth, altitude, z_factor)
+        return write_dem(self, resolution, out, values, as_crs(crs) or self.crs, shown)
 
 
 def _queries(xi: ArrayLike, crs: str | None) -> tuple[Floats, tuple[int, ...]]:

@@ -1,0 +1,174 @@
+"""A tiled triangulation as a surface: contours, volumes and profiles beyond memory."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from delone.distributed.read import contours, volumes
+from delone.distributed.read.folder import TileFolder
+from delone.terrain.contouring import MOST, Finish
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from delone.terrain import Contours, Profile, Volume
+
+__all__ = ["TiledSurface"]
+
+
+class TiledSurface(TileFolder):
+    """What a `TiledDelaunay` with heights has in common with a `delone.terrain.TIN`.
+
+    Where points coincide, the height is that of the first one.
+    """
+
+    def contours(
+        self,
+        levels: ArrayLike | None = None,
+        *,
+        interval: float | None = None,
+        base: float = 0.0,
+        index: int = 5,
+        smooth: int = 0,
+        min_length: float = 0.0,
+        min_area: float = 0.0,
+        simplify: float = 0.0,
+        max_points: int = MOST,
+        values: str = "z",
+        executor: Any = "serial",
+    ) -> Contours:
+        """Compute contour lines: the same as of a `delone.terrain.TIN` of all points.
+
+        Parameters
+        ----------
+        levels, interval, base, index, smooth, min_length, min_area, simplify, max_points
+            As for `delone.terrain.TIN.contours`.
+        values : str, optional
+            The name of the attribute; by default heights.
+        executor : {"serial"} or dask.distributed.Client, optional
+            Where lines are drawn: in this process, or on a Dask cluster whose machines can access
+            the folder.
+
+        Returns
+        -------
+        Contours
+            Lines that are closed or end at the hull, with higher ground to their left.
+
+        Raises
+        ------
+        InputError
+            There is no such attribute; `executor` is neither; otherwise as for
+            `delone.terrain.TIN.contours`.
+        BudgetExceededError
+            There would be more than `max_points` points; raised before they are computed.
+
+        Notes
+        -----
+        The lines must fit into memory. Beyond that, memory is that of one tile and of the triangles
+        that some levels cross, about half a gigabyte, or more if one level crosses more than four
+        million triangles. The triangles of each group of levels wait in temporary files.
+
+        Where rounded lines would cross, points of them are united, and which one of several points
+        stays depends on the order of the triangles. There, coordinates may differ from those of a
+        TIN by a few units in the last place.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> from delone import datasets, distributed
+        >>> points = datasets.grid(400)
+        >>> slope = np.column_stack((points, points.sum(axis=1)))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     tin = distributed.triangulate(slope, folder + "/tin", tile_points=100)
+        ...     tin.contours(interval=10)
+        <Contours of 4 levels: 3 lines>
+        """
+        finish = Finish.of(smooth, min_length, min_area, simplify)
+        given = levels, interval, base, index
+        return contours.contours(self, given, finish, max_points, values, executor)
+
+    def profile(self, line: Any, *, values: str = "z") -> Profile:
+        """Compute the heights along a line, reading only the tiles along it.
+
+        Parameters
+        ----------
+        line : array_like, shape (k, 2), or geometry
+            As for `delone.terrain.TIN.profile`.
+        values : str, optional
+            The name of the attribute; by default heights.
+
+        Returns
+        -------
+        Profile
+            Heights at the ends of the line and wherever it crosses an edge.
+
+        Raises
+        ------
+        InputError
+            There is no such attribute, or `line` is not one line.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> from delone import datasets, distributed
+        >>> points = datasets.grid(400)
+        >>> slope = np.column_stack((points, points.sum(axis=1)))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     tin = distributed.triangulate(slope, folder + "/tin", tile_points=100)
+        ...     tin.profile([(0, 0.5), (19, 0.5)]).z[[0, -1]].tolist()
+        [0.5, 19.5]
+        """
+        return volumes.profile(self, line, values)
+
+    def volume_to(
+        self,
+        other: Any,
+        *,
+        region: Any = None,
+        values: str = "z",
+        executor: Any = "serial",
+    ) -> Volume:
+        """Compute the volumes to cut and to fill, tile by tile.
+
+        Parameters
+        ----------
+        other : TiledDelaunay, TIN, float, or (a, b, c)
+            The surface to reach: other tiles, a surface in memory, a height, or the plane
+            z = a x + b y + c.
+        region : optional
+            Polygons or rings to which the volume is limited, as for `delone.terrain.TIN.volume_to`.
+        values : str, optional
+            The name of the attribute; by default heights. Of other tiles, it is always heights.
+        executor : {"serial"} or dask.distributed.Client, optional
+            As for `contours`.
+
+        Returns
+        -------
+        Volume
+            Volumes and areas, whose sums are rounded once. `of_triangles` has a row for each tile.
+
+        Raises
+        ------
+        InputError
+            There is no such attribute, the reference systems differ, or `executor` is neither.
+
+        Warns
+        -----
+        UserWarning
+            The surfaces, or surface and region, have no area in common.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> from delone import datasets, distributed
+        >>> points = datasets.grid(400)
+        >>> slope = np.column_stack((points, points[:, 0]))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     tin = distributed.triangulate(slope, folder + "/tin", tile_points=100)
+        ...     tin.volume_to(0)
+        <Volume: cut 3429.5, fill 0, net -3429.5, area 361>
+        """
+        return volumes.volume(self, other, region, values, executor)
