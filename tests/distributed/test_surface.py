@@ -110,6 +110,21 @@ def test_thin_triangles_are_left_out_in_all_levels(
     same(found, right)
 
 
+def test_levels_beside_each_other_see_each_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Points of two levels are united where rounding puts them on the wrong sides, in both.
+
+    Lines are some twenty units in the last place apart here, and each level is drawn alone.
+    """
+    dice = np.random.default_rng(8)
+    points = np.column_stack([2.0**20 + dice.random((600, 2)), dice.random(600)])
+    monkeypatch.setattr(drawing, "CROSSINGS", 1)
+    tiles = distributed.triangulate(points, tmp_path / "tin", tile_points=100)
+    levels = 0.5 + 1e-7 * np.arange(6)
+    same(tiles.contours(levels), TIN.from_points(points).contours(levels))
+
+
 def test_a_limit_and_wrong_arguments(both: Any) -> None:
     tiles, _, interval = both
     with pytest.raises(BudgetExceededError, match="at least"):

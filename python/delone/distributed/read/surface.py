@@ -69,8 +69,9 @@ class TiledSurface(TileFolder):
         million triangles. The triangles of each group of levels wait in temporary files.
 
         Where rounded lines would cross, points of them are united, and which one of several points
-        stays depends on the order of the triangles. There, coordinates may differ from those of a
-        TIN by a few units in the last place.
+        stays depends on the order of the triangles. So if levels are so near each other that lines
+        are only a few units in the last place apart, coordinates may differ from those of a TIN by
+        as much as points are moved there, up to about a thousand such units.
 
         Examples
         --------
