@@ -2,9 +2,9 @@
 A lidar survey in tiles
 =======================
 
-A lidar tile is split into smaller tiles, triangulated into a folder, validated, and rasterized. The same code works
-for a thousand files, and with a Dask client as ``executor``. The union of the tiles is exactly the triangulation of
-all points.
+A lidar tile is split into smaller tiles, triangulated into a folder, validated, rasterized, and contoured. The same
+code works for a thousand files, and with a Dask client as ``executor``. The union of the tiles is exactly the
+triangulation of all points.
 
 Install: ``pip install "delone[dask,raster,plot]"``.
 """
@@ -39,10 +39,21 @@ assert tin.validate()
 
 with rasterio.open(tin.to_raster(0.5, Path(folder.name, "dem.tif"))) as dem:
     heights = dem.read(1, masked=True)
+
+# %%
+# Contours are the same lines as those of one surface in memory: none of them ends at the side of a
+# tile.
+
+contours = tin.contours(interval=1, min_length=15, simplify=0.2)
+print(contours)
+print(tin.volume_to(float(np.median(survey.z))))
 folder.cleanup()
 
 figure, ax = plt.subplots(figsize=(6.4, 5.4), layout="constrained")
-image = ax.imshow(heights, extent=(0, 100, 0, 100))
+left, bottom, right, top = tin.bounds
+image = ax.imshow(heights, extent=(left, right, bottom, top))
+contours.plot(ax, color="white", labels=contours.labels(index=True))
 figure.colorbar(image, label="height in m")
-ax.set(title="Elevation model from tiles", xlabel="east in m", ylabel="north in m")
+ax.ticklabel_format(useOffset=False)
+ax.set(title="Elevation model and contours from tiles", xlabel="east in m", ylabel="north in m")
 plt.show()

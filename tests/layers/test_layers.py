@@ -39,7 +39,7 @@ PYTHON: tuple[set[str], ...] = (
     {"delaunay", "constrained", "regular"},
     {"dynamic", "estimation", "hull", "periodic", "refine"},
     {"alpha", "graphs", "io"},
-    {"voronoi", "interpolate", "cluster", "tetrahedra", "areal"},
+    {"voronoi", "interpolate", "cluster", "solids", "areal"},
     {"compat", "explorer", "sphere", "terrain"},
     {"distributed"},
     {"xarray"},
@@ -57,13 +57,14 @@ ALONE = {"datasets", "reference", "testing"}
 GROUND_FLOOR = set[str]().union(*PYTHON[:3])
 
 # What each room of the core, and each file of its `base`, may use, of the core and of other crates.
-GROUND = {"arrays", "error", "memory", "watch"}
+GROUND = {"arrays", "error", "memory", "sets", "vector", "watch"}
 BASE: dict[str, set[str]] = {
     "arrays": set(),
     "error": {"delone_predicates"},
     "memory": {"error", "libc"},
     "watch": {"error"},
     "sets": {"error", "memory"},
+    "vector": set(),
     "parallel": GROUND,
     "points": {"error", "memory", "delone_predicates"},
     "proof": GROUND,
@@ -81,9 +82,8 @@ CORE: dict[str, set[str]] = {
     "constrained": {"delaunay", "joins", "mesh", "order", "points", "delone_predicates"} | GROUND,
     "refine": {"constrained", "delaunay", "measure", "mesh", "wide", "delone_predicates"} | GROUND,
     "locate": {"order", "points", "parallel", "wide", "delone_predicates"} | GROUND,
-    "alpha": {"sets", "measure", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
-    "graphs": {"sets", "order", "points", "parallel", "wide", "num_bigint", "delone_predicates"}
-    | GROUND,
+    "alpha": {"measure", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
+    "graphs": {"order", "points", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "hull": {"order", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "ndim": {
         "consistency",
@@ -104,7 +104,6 @@ CORE: dict[str, set[str]] = {
     "regular": {"parallel", "delaunay", "order", "points", "proof", "wide", "delone_predicates"}
     | GROUND,
     "voronoi": {
-        "sets",
         "measure",
         "regular",
         "constrained",
@@ -115,7 +114,6 @@ CORE: dict[str, set[str]] = {
     }
     | GROUND,
     "sphere": {
-        "sets",
         "constrained",
         "mesh",
         "order",
@@ -127,7 +125,6 @@ CORE: dict[str, set[str]] = {
     }
     | GROUND,
     "solids": {
-        "sets",
         "constrained",
         "delaunay",
         "locate",
@@ -140,7 +137,6 @@ CORE: dict[str, set[str]] = {
     }
     | GROUND,
     "terrain": {
-        "sets",
         "constrained",
         "delaunay",
         "locate",

@@ -71,7 +71,7 @@ class TiledSurface(TileFolder):
         Where rounded lines would cross, points of them are united, and which one of several points
         stays depends on the order of the triangles. So if levels are so near each other that lines
         are only a few units in the last place apart, coordinates may differ from those of a TIN by
-        as much as points are moved there, up to about a thousand such units.
+        as much as points are moved there: up to 2,250 such units in tests.
 
         Examples
         --------
