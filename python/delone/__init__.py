@@ -75,6 +75,7 @@ if TYPE_CHECKING:
     )
     from delone import io as io
     from delone._tiling.location import Location
+    from delone._tiling.space import PlaneTriangulation
     from delone.alpha.concave import concave_hull
     from delone.alpha.filtration import AlphaComplex
     from delone.alpha.shape import AlphaShape, ConcaveHull
@@ -153,6 +154,7 @@ __all__ = [
     "OverlapReport",
     "Overlaps",
     "PeriodicDelaunay",
+    "PlaneTriangulation",
     "PolygonTriangles",
     "Quality",
     "RecoveryReport",
@@ -236,6 +238,7 @@ _HOMES = {
     "Estimate": "estimation",
     "ImproveReport": "solids.tetmesh.report",
     "Location": "_tiling.location",
+    "PlaneTriangulation": "_tiling.space",
     "LawsonResult": "flips",
     "LloydResult": "voronoi.centroidal",
     "Mesh": "refine.meshed",
