@@ -21,7 +21,7 @@ __all__ = ["Adjustments", "adjustments_of"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Adjustments(ReadOnly):
-    """What `TIN.from_points` has changed because of `snap` and `level`.
+    """What `TIN.from_points` changed because of `snap` and `level`.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ class Adjustments(ReadOnly):
     line_points_moved : int
         The number of points of lines that were merged with others.
     largest_move : float
-        The largest distance between a point and the place to which it moved; 0 if none did.
+        The largest distance that a point moved; 0 if none moved.
     points_leveled : int
         The number of points that were left out inside level polygons or on their shores.
     levels : ndarray of float64, shape (k,)
@@ -69,14 +69,14 @@ class Adjustments(ReadOnly):
 
     @classmethod
     def _of_text(cls, text: str) -> Adjustments:
-        """Return what `_text` has written."""
+        """Parse what `_text` wrote."""
         numbers = json.loads(text)
         levels = np.array(numbers.pop("levels"), dtype=np.float64)
         return cls(levels=levels, **numbers)
 
 
 def adjustments_of(merged: Joined | None, level: Level | None) -> Adjustments | None:
-    """Return what has changed; None if nothing was asked for."""
+    """Return what was changed; None if no change was requested."""
     if merged is None and level is None:
         return None
     return Adjustments(

@@ -20,7 +20,7 @@ __all__ = ["Agreement", "agreement"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Agreement(ReadOnly):
-    """How far a classification agrees with a reference.
+    """How well a classification agrees with a reference.
 
     Parameters
     ----------
@@ -34,8 +34,8 @@ class Agreement(ReadOnly):
 
     Notes
     -----
-    These are the numbers of the comparison of filters by G. Sithole and G. Vosselman (ISPRS Journal
-    of Photogrammetry and Remote Sensing 59, 2004).
+    G. Sithole and G. Vosselman use these measures in their comparison of filters (ISPRS Journal of
+    Photogrammetry and Remote Sensing 59, 2004).
 
     Examples
     --------
@@ -54,7 +54,7 @@ class Agreement(ReadOnly):
 
 
 def agreement(found: Bools, reference: ArrayLike) -> Agreement:
-    """Return how far the ground that was found agrees with that of a reference."""
+    """Return how well the ground that was found agrees with a reference."""
     truth = np.asarray(reference)
     if truth.dtype != bool or truth.shape != found.shape:
         raise InputError(
@@ -65,7 +65,7 @@ def agreement(found: Bools, reference: ArrayLike) -> Agreement:
     table = np.bincount(2 * truth + found, minlength=4).astype(np.int64)
     other_kept, taken, missed, right = table.tolist()
     ground, rest = missed + right, other_kept + taken
-    # In integers, so that what is the same is exactly 1.
+    # In integers, so that kappa of equal classifications is exactly 1.
     observed = (other_kept + right) * total
     chance = ground * (taken + right) + rest * (other_kept + missed)
     whole = total * total - chance

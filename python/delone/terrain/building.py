@@ -140,7 +140,7 @@ def build(
     kept = np.ones(len(every), dtype=bool)
     lakes: Level | None = None
     if level is not None:
-        # Triangles beside a shore have no long edges because of it.
+        # Sides are divided, so that a shore causes no long edges beside it.
         longest = np.inf if limit is None else limit / 2
         lakes = leveled(level, points, system, longest, surface_of)
         kept, points = lakes.outside, points[lakes.outside]
@@ -183,7 +183,7 @@ def build(
 
 @contextmanager
 def _rows_of(kept: Bools) -> Iterator[None]:
-    """Let errors name the rows of all points, of which some are left out."""
+    """Let errors give rows of all points, including those that are left out."""
     try:
         yield
     except ConflictingValuesError as error:
@@ -283,7 +283,7 @@ def stated_units(given: Any, stated: str | None, by: str) -> str | None:
 def settled_units(given: Any, system: str | None, lengths: str | None, by: str) -> str | None:
     """Return the unit of heights, given or that of the system; warn if x and y have another one.
 
-    `lengths` is the unit of x and y that data declare, `by` their file.
+    `lengths` is the unit of x and y that the data declare, and `by` is their file.
     """
     vertical, horizontal = heights_of_crs(system), lengths_of_crs(system)
     units = as_units(given) or vertical
@@ -309,7 +309,7 @@ def is_soft(mesh: ConstrainedDelaunay, lines: Lines) -> Bools:
 def peeled(mesh: ConstrainedDelaunay, kept: Bools, limit: float, *, voids: bool) -> Bools:
     """Remove triangles from outside as long as their outer edge is longer than `limit`.
 
-    With `voids`, all that have such an edge are removed. Segments count as short.
+    With `voids`, all triangles with such an edge are removed. Segments count as short.
     """
     kept, neighbors = kept.copy(), mesh.neighbors
     long = _longer(mesh, limit) & ~mesh.constrained
@@ -334,7 +334,7 @@ def _longer(mesh: ConstrainedDelaunay, limit: float) -> Bools:
     along = mesh.points[ends[..., 1]] - mesh.points[ends[..., 0]]
     length = np.hypot(along[..., 0], along[..., 1])
     found: Bools = length > limit
-    # Rounded a few times each, among the smallest doubles by a unit; the core compares near ones.
+    # Lengths have a few rounding errors, tiny ones a whole unit; the core decides close cases.
     near = np.abs(length - limit) <= limit * 2.0**-48 + 2.0**-1070
     if near.any():
         unit = np.array([(0.0, 0.0), (limit, 0.0)])

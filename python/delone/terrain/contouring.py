@@ -46,14 +46,14 @@ __all__ = [
     "lines",
 ]
 
-# Points of contours that a call may compute by default: about 3 GB with what is needed beside.
+# Points of contours that a call may compute by default: about 3 GB, working memory included.
 MOST = 50_000_000
-# Rounds of smoothing that are possible; `smoothing` refuses more.
+# The maximum number of smoothing rounds; `smoothing` refuses more.
 _MOST_ROUNDS = 5
 # The arrays of lines and of areas in files.
 _LINES = ("points", "starts", "level", "index", "levels")
 _AREAS = ("points", "ring_starts", "polygon_starts", "low", "high")
-# Levels that an interval may give.
+# The maximum number of levels that an interval may give.
 _LEVELS = 1_000_000
 
 
@@ -72,7 +72,7 @@ class Contours(ReadOnly, Filed, Layer):
     index : ndarray of bool, shape (k,)
         Whether the line is an index contour.
     levels : ndarray of float64
-        All levels, also those without lines.
+        All levels, including those without lines.
     left_out : int, optional
         The number of triangles at the outline that are left out because they are thinner than the
         resolution of the coordinates, so that lines in them would cross. Usually 0.
@@ -164,7 +164,7 @@ class Contours(ReadOnly, Filed, Layer):
         length : float, optional
             The length of a label in the unit of the points; by default a fortieth of the extent.
         spacing : float, optional
-            The distance of labels along a line; by default each line has one.
+            The distance between labels along a line; by default each line has one label.
         index : bool, optional
             Whether only index contours are labeled.
 
@@ -300,8 +300,9 @@ class Contours(ReadOnly, Filed, Layer):
         ax : matplotlib Axes, optional
             Axes to draw on; by default new ones.
         **options
-            Properties of matplotlib's lines, such as ``color`` and ``linestyle``; ``labels``, which
-            is what `labels` returns, or True for those of index contours or, without any, of all.
+            Properties of matplotlib's lines, such as ``color`` and ``linestyle``; and ``labels``,
+            the result of `labels`, or True for labels on index contours (on all contours if there
+            are no index contours).
 
         Returns
         -------
@@ -345,14 +346,14 @@ class Bands(ReadOnly, Filed, Layer):
     polygon_starts : ndarray of int64, shape (k + 1,)
         The start of each polygon in the rings: its outer ring, counter-clockwise, then its holes.
     low, high : ndarray of float64, shape (k,)
-        The heights between which the surface is there; those of the whole surface below the first
-        level and above the last.
+        The lowest and highest possible height in each polygon: levels, or the lowest height of the
+        surface below the first level and the highest above the last.
     left_out : int, optional
         The number of triangles at the outline that are left out because they are thinner than the
         resolution of the coordinates, so that lines in them would cross. Usually 0.
     small : int, optional
-        The number of polygons that are part of the one around them because of `min_area`. They are
-        higher than `high` there, or lower than `low`.
+        The number of polygons that were merged into the one around them because of `min_area`.
+        There, the surface is above `high` or below `low`.
     crs : str, optional
         Coordinate reference system.
     units : str, optional
@@ -525,7 +526,7 @@ def _multiples(
     low: float, high: float, start: Fraction, step: Fraction, every: int
 ) -> tuple[Floats, Bools]:
     """Return the doubles nearest to multiples from a height to another one; each `every`-th."""
-    # One more on both sides: a height may be the double that is nearest to a multiple.
+    # One more on each side: a height may be the double that is nearest to a multiple.
     first, last = (Fraction(each) - start for each in (low, high))
     numbers = np.arange(math.ceil(first / step) - 1, math.floor(last / step) + 2)
     try:
@@ -567,7 +568,7 @@ class Finish(NamedTuple):
 
     @property
     def factor(self) -> int:
-        """By how much smoothing multiplies points at most: each round doubles them."""
+        """The largest factor by which smoothing multiplies points: each round doubles them."""
         return 1 << min(self.smooth, _MOST_ROUNDS)
 
 
@@ -652,7 +653,7 @@ def _only(points: Floats, starts: Rows, kept: Bools) -> tuple[Floats, Rows]:
 def _within(
     compute: Any, tin: Surface, levels: Floats, max_points: int, factor: int
 ) -> tuple[Any, int]:
-    """Compute contours that have at most so many points once each is replaced by `factor`.
+    """Compute contours of at most `max_points` points once each is replaced by `factor`.
 
     The core counts them before it computes them. The second result is the number of triangles that
     were left out.

@@ -31,17 +31,17 @@ class Detailed(HullTiling):
         max_triangles: int | None = None,
         keep: str = "breaklines",
     ) -> Self:
-        """Return a surface of fewer points that is within an error of all of them.
+        """Return a surface with fewer points, within an error bound at all points of this one.
 
         Parameters
         ----------
         max_error : float, optional
             The greatest vertical distance of a point of this surface from the new one.
         max_triangles : int, optional
-            Instead: the number of triangles, of which the least error is made.
+            Instead, the maximum number of triangles: the level with the smallest error is returned.
         keep : {"breaklines", "hard", "boundary"}, optional
             The edges that stay: those on all lines, on hard breaklines and the outline, or on the
-            outline alone. Of an outline that is the convex hull, corners stay.
+            outline alone. Where the outline is the convex hull, only its corners stay.
 
         Returns
         -------
@@ -54,7 +54,7 @@ class Detailed(HullTiling):
             Not one of `max_error` and `max_triangles` is given, one is out of range, or the edges
             that stay have more than `max_triangles`.
         MemoryError
-            Memory does not suffice.
+            There is not enough memory.
 
         See Also
         --------
@@ -62,10 +62,11 @@ class Detailed(HullTiling):
 
         Notes
         -----
-        Greedy insertion [1]_: from the edges that stay on, the point that is farthest from the
-        surface is inserted until none is too far. The bound holds for the given numbers exactly, at
-        all points, also those on edges that went; it is proven as points are inserted, and again by
-        `Simplification.validate`. Between points, the distance from this surface may be larger.
+        Greedy insertion [1]_: starting with the edges that stay, the point farthest from the
+        surface is inserted until none is too far from it. The bound holds exactly for the given
+        numbers, at all points, including those on removed edges; it is proven as points are
+        inserted, and again by `Simplification.validate`. Between points, the distance from this
+        surface may be larger.
 
         Triangles are constrained Delaunay. The result does not depend on the order of points. About
         O(n log n) for n points of terrain.

@@ -1,7 +1,7 @@
 """Differences of rasters of heights, cell by cell: from another raster, a surface, or a plane.
 
-Cells are compared where they are: two rasters have to have the same cells, and nothing is resampled
-or reprojected. A surface or plane has a height at the center of each cell.
+Cells are compared in place: two rasters must have the same cells, and nothing is resampled or
+reprojected. A surface or plane is evaluated at the center of each cell.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ __all__ = ["Difference", "difference"]
 
 # Centers that differ by less than this share of a cell are the same: files store them rounded.
 _SAME = 1e-6
-# Nodes whose heights are asked of a surface at once.
+# Nodes at which a surface is evaluated at once.
 _BLOCK = 1 << 18
 
 
@@ -152,7 +152,7 @@ class Difference(ReadOnly):
 
     @property
     def _areas(self) -> Floats:
-        """The area of each cell, half of the way to each neighbor."""
+        """The area of each cell, which extends halfway to each neighbor."""
         if self.crs is not None and is_geographic(self.crs):
             raise InputError(
                 f"cells are in degrees ({self.crs:.60}), so they have no area on a plane: project "
@@ -169,7 +169,7 @@ class Difference(ReadOnly):
             Axes to draw on; by default new ones.
         **options
             ``cmap``, ``colorbar``, ``title``, and ``limit``, the difference at the ends of the
-            colors; by default a hundredth of the differences is beyond it. White is always 0.
+            colors; by default, one hundredth of the differences exceeds it. White is always 0.
 
         Returns
         -------
@@ -199,7 +199,7 @@ class Difference(ReadOnly):
 
 
 def _widths(nodes: Floats) -> Floats:
-    """Return the sizes of cells along an axis; a single one has the size 1."""
+    """Return the sizes of cells along an axis; a single cell has size 1."""
     if len(nodes) < 2:
         return np.ones(len(nodes))
     middle = (nodes[1:] + nodes[:-1]) / 2
@@ -236,19 +236,19 @@ def difference(
         Heights at the centers of cells, or a file of them: GeoTIFF, ESRI ASCII grid or NetCDF.
     other : raster as `dem`, TIN, float, or triple of float
         What is subtracted: a raster with the same cells, the heights of a surface at the centers of
-        the cells, a height, or a plane (a, b, c) of the heights c + a x + b y.
+        the cells, a height, or a plane (a, b, c) with the heights c + a x + b y.
     band, other_band : int or str, optional
-        Of files: the band, from 1, or the variable of NetCDF, as for `delone.io.read_raster`.
+        For files: the band, counted from 1, or the NetCDF variable, as for `delone.io.read_raster`.
     bounds : sequence of four float, optional
-        Left, bottom, right and top. Of both, only cells whose centers are inside or on the border
-        are used.
+        Left, bottom, right and top. In both rasters, only cells whose centers are inside or on the
+        border are used.
     nodata : float, optional
         The value of cells without a height, besides NaN and the one that a file declares; NaN if
         all values are heights.
     crs : optional
         The reference system of rasters that declare none.
     units : str, optional
-        The unit of heights, as ``"m"``, ``"ft"`` or ``"us-ft"``; by default that of a TIN.
+        The unit of heights, such as ``"m"``, ``"ft"`` or ``"us-ft"``; by default that of a TIN.
 
     Returns
     -------
@@ -260,8 +260,7 @@ def difference(
     ------
     InputError
         The rasters have different cells, or are in different reference systems; the message says
-        how to bring one onto the other. Or heights are in different units, or an argument is none
-        of these.
+        how to match them. Or heights are in different units, or an argument is not one of these.
     FileFormatError, MissingExtraError, OSError
         As for `delone.io.read_raster`; or a raster of a file is rotated.
 
@@ -278,7 +277,7 @@ def difference(
     -----
     Centers are the same if they differ by at most a millionth of a cell. Nothing is resampled: to
     compare rasters with different cells, make a TIN of one of them, which is linear between its
-    nodes. Linear in the number of cells; with a TIN, times locating them.
+    nodes. The time is linear in the number of cells; with a TIN, it includes locating each cell.
 
     Examples
     --------
@@ -377,7 +376,7 @@ def _common_system(a: str | None, b: str | None, first: str, second: str) -> str
 
 
 def _require_same_cells(a: _Raster, b: _Raster) -> None:
-    """Refuse rasters with different cells, and say how to bring one onto the other."""
+    """Refuse rasters with different cells, and say how to match them."""
     sizes = [abs(float(spacing(nodes))) for nodes in (a.x, a.y)]
     limits = [_SAME * (size or 1.0) for size in sizes]
     pairs = list(zip((a.x, a.y), (b.x, b.y), limits, strict=True))

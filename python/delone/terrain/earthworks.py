@@ -120,7 +120,7 @@ class Earthworks(HullTiling):
             Rings of one polygon cross.
         NonFiniteError, InputError, DegenerateInputError
             A coordinate or height is NaN, infinite or beyond 1e100, the polygon has no area, a
-            slope is missing or not from 1e-6 to 1e6, or the pad itself is as steep.
+            slope is missing or not from 1e-6 to 1e6, or the pad itself is at least that steep.
         BudgetExceededError, MemoryError
             Edges cross at more than 4,000,000 places, or memory does not suffice.
 
@@ -133,10 +133,10 @@ class Earthworks(HullTiling):
         Where the ground at the edge of the pad is lower, a slope runs down until it meets the
         ground (fill); where it is higher, a slope runs up (cut). Where slopes of several edges
         overlap, the highest one counts in fill and the lowest one in cut. Ground that the slopes do
-        not reach stays as it is, even where a slope, if extended, would pass above it. A hill in
-        the way of a slope stays, and the slope continues behind it if it is connected around the
-        hill. Where an edge of the pad is on the outline of the surface, there is no slope; a slope
-        may run along the outline, but not across it.
+        not reach is unchanged, even where a slope, if extended, would pass above it. A hill in the
+        way of a slope stays, and the slope continues behind it if it is connected around the hill.
+        Where an edge of the pad is on the outline of the surface, there is no slope; a slope may
+        run along the outline, but not across it.
 
         Up to rounding, the surface consists of the planes and the old triangles, and all triangles
         of the ground that the design does not touch remain. Differences in height that rounding can

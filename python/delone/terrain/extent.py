@@ -89,7 +89,7 @@ def within(mesh: ConstrainedDelaunay, lines: Lines) -> Bools:
 def without_outer(part: Part, lines: Lines) -> Part:
     """Leave out the rows that have no heights: points of rings outside of the hull of all heights.
 
-    The triangles of the surface remain what they are.
+    The triangles of the surface stay the same.
     """
     mesh, z, kept, soft = part
     used = mesh.duplicate_of == np.arange(mesh.npoints)

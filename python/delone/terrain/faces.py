@@ -1,7 +1,7 @@
 """The construction of a TIN from the surface of a file, with the triangles of the file.
 
-The faces are reproduced by a constrained Delaunay triangulation: of all their edges, those that it
-would not have by itself are constraints. So a surface from a file is an object like any other.
+The faces are reproduced by a constrained Delaunay triangulation: their edges that it would not
+otherwise contain are constraints. So a surface from a file is an ordinary TIN.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _AFRESH = "faces=False (--retriangulate) triangulates its points and lines afres
 
 
 def with_lines(surface: SurfaceFile, options: dict[str, Any]) -> dict[str, Any]:
-    """Return options of `TIN.from_points` with the lines of a file beside those given."""
+    """Return options of `TIN.from_points` with the lines of a file added to those given."""
     merged = dict(options)
     for name in (*_LINES, *_RINGS):
         # Each ring of a file is a polygon: several are a union.

@@ -3,8 +3,8 @@
 A coarse triangulation of the lowest points of cells is below buildings and trees. Each pass inserts
 points that are close to their triangle and form a small angle with it at its corners: of those that
 are nearest to the same corner, the one with the smallest angle. So the triangulation climbs gradual
-slopes and stays below whatever rises steeply. The mesh is live: a pass only inserts points, and
-does not triangulate again.
+slopes and stays below whatever rises steeply. The mesh is dynamic: a pass only inserts points and
+never retriangulates.
 
 P. Axelsson, "DEM generation from laser scanner data using adaptive TIN models", International
 Archives of Photogrammetry and Remote Sensing 33, B4, 2000.
@@ -33,13 +33,13 @@ if TYPE_CHECKING:
 
 __all__ = ["Ground", "ground"]
 
-# Defaults in meters. Axelsson's angle and distance are medians of the data; those of ground in
-# towns are near to these. A cell is wider than most buildings.
+# Defaults in meters. Axelsson's angle and distance are medians of the data; these are close to
+# those of urban ground. A cell is wider than most buildings.
 _METERS = {"cell": 20.0, "distance": 1.4, "edge": 1.0, "thickness": 0.1, "low": 1.0}
-# So many points below a gap are an error of measurement, more are a pit; where there are not many
-# points around them, nothing is known.
+# At most this many points below a gap are measurement errors, more are a pit; with fewer than the
+# second number of points around, no point is rejected.
 _FEW, _MANY = 5, 20
-# Cells along an axis.
+# The maximum number of cells along an axis.
 _MOST_CELLS = 1 << 30
 # Points that are measured at once.
 _BLOCK = 1 << 19
@@ -73,7 +73,7 @@ class Ground(ReadOnly):
     added : tuple of int
         The number of points that each pass added to the triangulation.
     converged : bool
-        Whether the last pass added none, so that further passes change nothing.
+        Whether the last pass added none, so that further passes would change nothing.
 
     Examples
     --------
@@ -158,8 +158,8 @@ def ground(
     distance : float, optional
         Largest distance of such a point from the plane of the triangle. By default 1.4 m.
     mirror : bool, optional
-        In triangles steeper than `angle`, test a point that fails a second time at its mirror image
-        in the highest corner, with its own height: this finds edges of embankments.
+        In triangles steeper than `angle`, test a point that fails again, at its mirror image about
+        the highest corner, with its own height: this finds edges of embankments.
     edge : float, optional
         Triangles whose edges are all shorter than this get no more points. By default 1 m.
     thickness : float, optional
@@ -202,8 +202,8 @@ def ground(
     and angles that are exactly at a limit. What is ground is an estimate, but the triangulation
     itself is exact: each pass inserts points into a `Dynamic`.
 
-    Outside the lowest points, the surface continues at the same height to four points beyond the
-    corners of the survey.
+    Beyond the lowest points, the surface extends to four points beyond the corners of the survey,
+    each with the height of the nearest lowest point.
 
     Each pass tests all remaining points, in time roughly proportional to their number.
 
@@ -285,7 +285,7 @@ class _Cells(NamedTuple):
     """The cells of points: those with points, in order, and the cell of each point."""
 
     keys: Rows  # of the cells, ascending
-    stride: int  # of the keys of cells beside
+    stride: int  # of the keys of adjacent cells
     cell: Rows  # of each point, a row of `keys`
 
 
@@ -351,7 +351,7 @@ class _Seen(NamedTuple):
 
 
 class _Surface:
-    """A live triangulation of those points that joined it, between four corners."""
+    """A dynamic triangulation of four corners and the points inserted so far."""
 
     def __init__(
         self, flat: Floats, z: Floats, rows: Rows, width: float, workers: int | None
@@ -367,7 +367,7 @@ class _Surface:
         self._look()
 
     def _look(self) -> None:
-        """Take the arrays of the present triangles."""
+        """Take the arrays of the current triangles."""
         self.points, self.simplices = self._mesh.points, self._mesh.simplices
         self.gradients = slopes.gradient(self.points, self._heights, self.simplices)
 

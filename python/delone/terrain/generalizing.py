@@ -2,12 +2,12 @@
 
 A point between two others is left out if no other point of any line is inside of or on the triangle
 of the three, which is decided exactly. Moving the line across an empty triangle is an isotopy: no
-line crosses another one or itself, closed lines stay around what they are around, and lines that
+line crosses another one or itself, closed lines still enclose what they enclosed, and lines that
 touch do so at the same points. This is the condition of A. Saalfeld, "Topologically consistent line
 simplification with the Douglas-Peucker algorithm", CaGIS 26 (1999), for one point at a time, as M.
 Visvalingam and J. Whyatt leave points out (The Cartographic Journal 30, 1993).
 
-Every point that is left out is within the tolerance of the piece in its place. In each round,
+Every point that is left out is within the tolerance of the segment that replaces it. In each round,
 points are left out that deviate less than both of their neighbors; ties are broken by coordinates.
 The triangles of such points remain empty when others are left out, so that one round equals leaving
 them out one by one.
@@ -31,11 +31,11 @@ __all__ = ["simplified"]
 
 # Points in boxes of triangles that are compared at once.
 _PAIRS = 1 << 22
-# Cells are made again when fewer than this share of their points are left.
+# Cells are rebuilt when fewer than this share of their points are left.
 _WORTH = 0.6
-# The fewest different points of a closed line.
+# The minimum number of distinct points of a closed line.
 _LEAST = 3
-# Closed lines with at most so many different points lose one point in a round.
+# Closed lines with at most this many distinct points lose one point per round.
 _FEW = 2 * _LEAST
 
 
@@ -50,7 +50,7 @@ class _State:
     alive: Bools
     blocker: Rows  # a point in the triangle of each point, -1 if none is known
     deviation: Floats  # what leaving out each point would cost, NaN if that has to be computed
-    cells: _Cells | None = None  # of what was alive when they were made
+    cells: _Cells | None = None  # of the points left when they were built
 
 
 def simplified(points: Floats, starts: Rows, tolerance: float) -> tuple[Floats, Rows]:
@@ -109,7 +109,7 @@ def _round(state: _State, tolerance: float) -> bool:
     state.blocker[v] = found
     gone = v[found < 0]
     state.alive[gone] = False
-    # Triangles with a corner that is gone are new ones, and what was in others may be gone.
+    # Triangles with a removed corner have changed, and points in others may have been removed.
     beside = np.concatenate((u[found < 0], w[found < 0]))
     state.blocker[beside] = -1
     state.deviation[beside] = np.nan
@@ -145,7 +145,7 @@ def _independent(points: Floats, rows: Rows, place: Rows, deviation: Floats) -> 
 
 
 def _one_of_few(state: _State, v: Rows, deviation: Floats, chosen: Bools, few: Bools) -> Bools:
-    """Of closed lines with few points, keep but the first of the chosen."""
+    """Of closed lines with few points, keep only the first of the chosen points."""
     rows = np.flatnonzero(chosen & few[state.line[v]])
     x, y = state.points[v[rows]].T
     order = rows[np.lexsort((y, x, deviation[rows], state.line[v[rows]]))]
@@ -161,7 +161,7 @@ def _inside(state: _State, rows: Rows, u: Rows, v: Rows, w: Rows) -> NDArray[np.
     corners = points[np.stack((u, v, w))]
     low, high = corners.min(axis=0), corners.max(axis=0)
     cells = state.cells
-    # Those that are gone are skipped, until they are many.
+    # Removed points are skipped until there are many of them.
     if cells is None or len(rows) < _WORTH * len(cells.order):
         cells = state.cells = _Cells.of(points, rows, low, high)
     found = np.full(len(u), -1, dtype=np.int64)

@@ -1,12 +1,12 @@
 """The heights of vertices: of points, of lines, and where lines meet.
 
 Each vertex has *claims*: the heights of the points there, and those of the lines that pass through
-it. Claims that differ are resolved by the policies of the caller, or raise an error that has their
-coordinates.
+it. Claims that differ are resolved by the policies of the caller, or raise an error that contains
+their coordinates.
 
 A claim of a line between its own points is known up to a bound: the slope of the line times the
 rounding of the coordinates. Claims differ if the intervals that these bounds give have no height in
-common. Lines without heights claim none: they take what else is there, or the ground.
+common. Lines without heights claim none: they take the other heights there, or that of the ground.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def claims_of_points(vertex: NDArray[np.int32], z: Floats) -> Claims:
 def claims_of_lines(mesh: ConstrainedDelaunay, z: Floats) -> tuple[Claims, Rows]:
     """Return the claims of lines where they cross or pass through vertices, and their segments.
 
-    `z` has the height of each row of points.
+    `z` contains the height of each row of points.
     """
     crossings, through = mesh.report.crossings, mesh.report.through
     row = np.concatenate((crossings[:, 0], crossings[:, 1], through[:, 0]))
@@ -81,7 +81,7 @@ def _along(
 ) -> Claims:
     """The claims of segments at vertices on them."""
     a, b = mesh.input_segments[row].T
-    # From the smaller end on: the direction of a segment changes nothing.
+    # Start at the smaller end, so that the direction of a segment does not matter.
     (ax, ay), (bx, by) = mesh.points[a].T, mesh.points[b].T
     turned = (ax > bx) | ((ax == bx) & (ay > by))
     a, b = np.where(turned, b, a), np.where(turned, a, b)
@@ -118,7 +118,7 @@ def resolved(
 
 
 def on_ground(z: Floats, claims: Claims) -> Floats:
-    """Return heights with those of the ground where there are none: of several the lowest.
+    """Return heights with those of the ground where there are none: the lowest of several.
 
     They are heights of one surface and differ by rounding only.
     """

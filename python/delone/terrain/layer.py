@@ -48,7 +48,8 @@ class Layer:
         MissingExtraError
             geopandas or shapely is not installed.
         InputError
-            `data` does not have one row for each element, or a column of the table.
+            `data` does not have one row for each element, or has a column with a name of the
+            table's own.
 
         Examples
         --------

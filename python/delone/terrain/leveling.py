@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["Level", "leveled", "require_level"]
 
 
-# Sides of a shore after they are divided.
+# The maximum number of sides of a shore after division.
 _MOST = 10_000_000
 
 
@@ -166,7 +166,7 @@ def require_level(
     if not len(bad):
         return
     rows = np.unique(corners[bad])
-    # What is at the height of no level polygon, if there is something, is the culprit.
+    # A point at the height of no level polygon, if there is one, is the culprit.
     other = rows[~np.isin(z[rows], heights)]
     row = int(other[0] if len(other) else rows[0])
     x, y = mesh.points[row].tolist()

@@ -1,7 +1,7 @@
 """Lines and rings with heights, as arrays: breaklines, boundaries, profiles.
 
 Rings have one meaning everywhere: each polygon has its own holes, and several polygons are a union.
-Rings that belong to no polygon (arrays and closed lines) are together one polygon, whose inside is
+Rings that belong to no polygon (arrays and closed lines) together form one polygon, whose inside is
 what an odd number of them contain.
 """
 
@@ -86,7 +86,7 @@ def rings_by_feature(given: Any, *, name: str, crs: str | None) -> list[list[Rin
     """Return the closed rings of each feature of a layer, none where it has no geometry.
 
     A feature is a row of a table, a geometry of a sequence or collection of features, or one of
-    several rings given as arrays, which are polygons of their own here.
+    several rings given as arrays, which are separate polygons here.
     """
     found: list[list[Ring]] = []
     for row, feature in enumerate(_features(given)):
@@ -230,7 +230,7 @@ def _of_array(array: NDArray[Any], name: str) -> Floats:
 
 
 def _checked(points: Floats, name: str) -> Floats:
-    """Refuse points that are not finite; a height that is NaN is none."""
+    """Refuse points that are not finite; a height of NaN means none."""
     require_finite(np.where(np.isnan(points) & (np.arange(3) == 2), 0.0, points), name=name)
     return points
 

@@ -30,8 +30,8 @@ class Measured(HullTiling):
             As for `volume_to`.
         regions : GeoDataFrame, GeometrySet, or sequence of polygons or rings
             A region for each row, feature or item: polygons and multipolygons of shapely, closed
-            lines, GeoJSON, or arrays of shape (k, 2), each of which is a region of its own. A
-            missing geometry is a row without an area. Regions may overlap.
+            lines, GeoJSON, or arrays of shape (k, 2), each of which is a separate region. A missing
+            geometry gives a row without an area. Regions may overlap.
 
         Returns
         -------
@@ -139,7 +139,7 @@ class Measured(HullTiling):
             The distance between stations, from the start of the alignment; there is always one at
             its end.
         stations : array_like, shape (k,), optional
-            The stations instead of an interval.
+            The stations, instead of an interval.
         start : float, optional
             The station of the start of the alignment.
         left, right : float

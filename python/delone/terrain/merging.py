@@ -3,8 +3,8 @@
 What is kept is chosen by coordinates, not by rows. Of points that are nearer to each other, the
 first in the order of x, y and height is kept, unless it is near one that is kept already; all
 others move to the nearest that is kept. So no point moves farther than the distance, and no two
-that are kept are nearer. Places move, heights do not: those that meet at a place are compared as
-heights of duplicates are.
+points that are kept are nearer to each other. Places move, heights do not: those that meet at a
+place are compared as heights of duplicates are.
 
 Lines come before points: their points are merged first, then points move to those of lines, and
 points that are near a line but not near a point of it become part of it. Points of rings stay.
@@ -188,8 +188,8 @@ def _sorted(cell: NDArray[np.int64]) -> tuple[NDArray[np.int64], Rows, Rows, Row
 def near_segments(places: Floats, ends: Floats, limit: float) -> tuple[Rows, Rows, Floats, Floats]:
     """Return places that are nearer than `limit` to the inside of a segment.
 
-    `ends` has the ends of the segments, (s, 2, 2). The result are rows of places and, of each, the
-    nearest segment, the share of it, and the distance.
+    `ends` has the ends of the segments, (s, 2, 2). The result is rows of places and, for each, the
+    nearest segment, the fraction along it, and the distance.
     """
     nothing = np.empty(0, dtype=np.int64)
     if not len(places) or not len(ends):

@@ -31,9 +31,10 @@ __all__ = ["GROUND", "PAD", "Overlay", "overlaid"]
 
 # Labels of triangles; those of facets are their numbers.
 PAD, GROUND = -1, -2
-# Differences of heights of so many roundings are none, on surfaces that are not steeper than this.
+# Height differences of at most this many rounding errors count as zero, on surfaces no steeper than
+# this.
 _ROUNDINGS, _STEEPEST = 64, 16.0
-# A slope whose direction differs from the outline by less runs along it.
+# A slope whose direction differs from that of the outline by less than this runs along it.
 _ALONG = 1e-6
 # Points on the edges of a pad, for each edge, to which distances are measured.
 _SPREAD = 4
@@ -262,7 +263,7 @@ def _ground(tin: Surface, mesh: ConstrainedDelaunay, cells: _Cells, used: Rows) 
     with np.errstate(divide="ignore", invalid="ignore"):
         v, w = _cross(p, c - a) / twice, _cross(b - a, p) / twice
         height = low + v * (mid - low) + w * (high - low)
-    # Where triangles of the surface meet, the largest has the fewest roundings.
+    # Where triangles of the surface meet, the largest has the smallest rounding errors.
     order = np.argsort(twice, kind="stable")
     found[rows[order]] = height[order]
     found[: len(used)] = tin.z[used]
@@ -411,7 +412,7 @@ def _labels(mesh: ConstrainedDelaunay, cells: _Cells, pairs: _Pairs, facets: Fac
 
 
 def _connected(mesh: ConstrainedDelaunay, label: Rows) -> Rows:
-    """Turn facets that are not connected to the pad back to ground."""
+    """Change facets that are not connected to the pad back to ground."""
     around = np.where(mesh.neighbors < 0, GROUND, label[mesh.neighbors])
     slope = label >= 0
     reached = slope & (around == PAD).any(axis=1)

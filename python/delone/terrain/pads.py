@@ -1,9 +1,9 @@
 """Pads: polygons with a plane, and the side slopes that run down or up from their edges.
 
-Each edge has a facet: the plane through it that falls (or rises) outward by the slope wanted.
-Around a convex corner, facets of the same slope touch the cone of that slope: so many that the
-directions of neighbors differ by no more than `CORNERS` says. Neighbors meet halfway between
-their directions, so a facet covers what lies between two rays. Where facets overlap, beside reflex
+Each edge has a facet: the plane through it that falls (or rises) outward at the given slope. Around
+a convex corner, facets of the same slope touch the cone of that slope: enough of them that the
+directions of neighbors differ by no more than `CORNERS`. Neighbors meet halfway between their
+directions, so a facet covers what lies between two rays. Where facets overlap, beside reflex
 corners, the highest one counts in fill, and the lowest one in cut.
 """
 
@@ -27,7 +27,7 @@ __all__ = ["CORNERS", "Facets", "Pad", "facets_of", "inside", "pad_of", "plane_a
 
 # The largest angle between neighboring facets at a corner.
 CORNERS = {"round": math.radians(15), "miter": math.radians(120)}
-# Angles below this share of a turn are none.
+# Angles up to this many radians count as zero.
 _STRAIGHT = 1e-9
 
 
@@ -50,7 +50,7 @@ class Facets(NamedTuple):
     last: Floats  # (k, 2)
     height: Floats  # (k,), at `start`
     gradient: Floats  # (k, 2)
-    outward: Floats  # (k, 2), the direction from the pad on, of length 1
+    outward: Floats  # (k, 2), the direction away from the pad, of length 1
     rise: Floats  # (k,), 1 if it rises outward (cut), -1 if it falls (fill)
     mildest: Floats  # (k,), no facet of its kind is milder at any distance from the pad
 

@@ -37,7 +37,7 @@ class Profile(ReadOnly):
     Parameters
     ----------
     distances : ndarray of float64, shape (k,)
-        Distances from the start of the line, horizontally.
+        Horizontal distances from the start of the line.
     z : ndarray of float64, shape (k,)
         Heights there. Parts of the line that are on the surface are separated by NaN, as plots
         expect. A part may be a single point, where the line touches a corner of the surface.
@@ -106,7 +106,7 @@ class Sight(ReadOnly):
     visible : bool
         Whether the surface is nowhere above the line of sight.
     obstruction : ndarray of float64, shape (3,), or None
-        The first corner of the profile that is above it.
+        The first point of the profile that is above that line; None if the target is visible.
 
     Examples
     --------
@@ -161,7 +161,7 @@ def parts_of(tin: Surface, a: Floats, b: Floats) -> list[_Part]:
         return _end(tin, a, 0.0)
     found: list[_Part] = []
     runs = tin._stretches(a, b)
-    # Corners that are on a part are not a part of their own.
+    # Corners that are on a part are not separate parts.
     kept = [tin.simplices[run.kept] for run in runs if run.is_kept and len(runs) > 1]
     inside = np.concatenate([np.empty((0, 3), dtype=np.int32), *kept])
     for run in runs:

@@ -38,7 +38,7 @@ __all__ = ["Volumes", "volumes"]
 
 # Rows that a warning names.
 _NAMED = 10
-# Shares beyond this are whole: areas are rounded.
+# Shares this close to 1 count as whole: areas are rounded.
 _WHOLE = 1e-9
 _COLUMNS = ("cut", "fill", "net", "area", "coverage", "cut_area", "fill_area", "region_area")
 
@@ -151,7 +151,7 @@ class Volumes(ReadOnly, Layer):
         MissingExtraError
             geopandas or shapely is not installed.
         InputError
-            `data` does not have one row for each polygon, or a column with one of these names.
+            `data` does not have one row for each polygon, or has a column with one of these names.
 
         Examples
         --------

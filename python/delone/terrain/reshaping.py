@@ -1,9 +1,9 @@
 """A new surface from an old one, with a pad and its side slopes instead of the ground there.
 
 Between pieces of the overlay that differ, edges become segments of one triangulation; vertices of
-the ground remain where there is ground. Triangles that the design cuts keep their rest of ground:
-their edges are soft breaklines. All others stay the same, since Delaunay triangles do not depend on
-what is behind segments.
+the ground remain where there is ground. Triangles that the design cuts keep the rest of their
+ground: their edges are soft breaklines. All others stay the same, since Delaunay triangles do not
+depend on what is behind segments.
 """
 
 from __future__ import annotations
@@ -119,7 +119,7 @@ def _change(tin: Surface, overlay: Overlay) -> _Change:
     mesh, design = overlay.mesh, overlay.label != GROUND
     ends = mesh.points[mesh.simplices]
     longest = np.hypot(*np.moveaxis(ends - ends[:, [1, 2, 0]], -1, 0)).max(axis=1)
-    # Ground as narrow as a rounding, at an outline that is not exactly straight, is none.
+    # Ground as narrow as a rounding, at an outline that is not exactly straight, does not count.
     narrow = mesh.areas <= closeness(mesh.points) * longest
     ground = _incident(overlay, ~(design | overlay.outside | narrow))
     ground |= ~_incident(overlay, design)
@@ -284,7 +284,7 @@ def _heights(overlay: Overlay, change: _Change, pad: Pad, facets: Facets) -> Flo
     slope = np.flatnonzero(overlay.label >= 0)
     for corner in mesh.simplices[slope].T:
         height = facets.at(overlay.label[slope], mesh.points[corner])
-        # On the daylight line heights are those of the ground, which so remains what it is.
+        # On the daylight line heights are those of the ground, which therefore stays the same.
         z[corner] = np.where(at_ground[corner], z[corner], height)
     of_pad = np.unique(mesh.simplices[overlay.label == PAD])
     z[of_pad] = plane_at(pad.plane, mesh.points[of_pad])
@@ -306,7 +306,7 @@ def _complete(mesh: ConstrainedDelaunay, z: Floats) -> Floats:
 
 
 def _kept(tin: Surface, mesh: ConstrainedDelaunay, row: Rows, ends: Bools) -> Bools:
-    """Which triangles are part of the surface: those that were left out are so again.
+    """Which triangles are part of the surface: those that were left out still are.
 
     `ends` says which segments are where the surface ends. Between these and the old outline
     triangles are all inside or all outside, and some of them are old.

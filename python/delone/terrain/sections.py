@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 
 __all__ = ["CrossSections", "Profiles", "cross_sections", "profiles"]
 
-# Stations that a call may have.
+# The maximum number of stations.
 _STATIONS = 100_000
-# Distances that differ by this share of the length of the line are one row, and a station as close
-# to a corner of the alignment is at it: both differ by roundings only.
+# Distances that differ by this share of the length of the line are one row, and a station this
+# close to a corner of the alignment is at it: both differ only by rounding errors.
 _ROUNDING = 1e-12
 _END, _GAP, _PLAIN = range(3)  # kinds of rows, in the order in which they follow each other
 # Names of surfaces must not be those of other columns.
@@ -45,8 +45,8 @@ class Profiles(ReadOnly):
     Parameters
     ----------
     distances : ndarray of float64, shape (k,)
-        Distances from the start of the line, horizontally: wherever one of the surfaces has an edge
-        or ends, and at the points of the line.
+        Horizontal distances from the start of the line: wherever one of the surfaces has an edge or
+        ends, and at the points of the line.
     z : ndarray of float64, shape (k, s)
         The height of each surface there; NaN outside it.
     points : ndarray of float64, shape (k, 2)
@@ -104,7 +104,7 @@ class Profiles(ReadOnly):
         MissingExtraError
             pandas is not installed.
         InputError
-            `data` does not have one row for each, or a column of the table.
+            `data` does not have one row for each, or has a column with a name of the table's own.
 
         Examples
         --------
@@ -244,7 +244,8 @@ class CrossSections(ReadOnly, Layer):
         MissingExtraError
             pandas is not installed.
         InputError
-            `data` does not have one row for each section, or a column of the table.
+            `data` does not have one row for each section, or has a column with a name of the
+            table's own.
 
         Examples
         --------

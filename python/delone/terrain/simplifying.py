@@ -37,12 +37,12 @@ __all__ = ["KEEP", "Ground", "Simplification", "ground_of", "ground_of_points", 
 KEEP = ("breaklines", "hard", "boundary")
 # Extents within this factor of 1, as powers of two, are used as they are.
 _USUAL = 200
-# No more triangles than their numbers in the core.
+# The core cannot number more triangles.
 _MOST = 2**31 - 1
 
 
 class Ground(NamedTuple):
-    """Points of a surface, and what of it stays."""
+    """Points of a surface, and which parts of it stay."""
 
     points: Floats
     z: Floats
@@ -223,7 +223,7 @@ def as_goal(max_error: Any, max_triangles: Any) -> tuple[float, int]:
 
 
 def ground_of(tin: Surface, keep: str) -> Ground:
-    """Return what of a surface stays, and what may go."""
+    """Return which parts of a surface stay, and which may be removed."""
     as_choice(keep, KEEP, name="keep")
     count = tin.npoints
     ends = tin.simplices[:, [[1, 2], [2, 0], [0, 1]]][tin.neighbors < 0]

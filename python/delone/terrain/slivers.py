@@ -2,8 +2,8 @@
 
 Contours in them run along the outline, and rounded, they may cross. If that happens, such triangles
 at the outline are left out, the outermost first, and counted: the outline then passes through their
-inner corners. In others, points of contours are united, or contours pass at corners. How thin a
-triangle is decides how contours are drawn, not whether.
+inner corners. In others, points of contours are united, or contours pass through corners. How thin
+a triangle is decides how contours are drawn, not whether.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ def ring_areas(points: Floats, starts: Rows) -> Floats:
 def without_small(given: Rings, least: float) -> tuple[Rings, Rows]:
     """Leave out polygons in holes with an area below `least`; holes of the surface stay.
 
-    The second result are the rows of the polygons that remain.
+    The second result is the rows of the polygons that remain.
     """
     owner = np.repeat(np.arange(len(given.polygons) - 1), np.diff(given.polygons))
     inner = np.ones(len(owner), dtype=bool)

@@ -1,8 +1,8 @@
 """Points and segments that differ by roundings only are made to coincide.
 
 Without that, a polygon whose edge is meant to be on edges of a surface would leave triangles of the
-ground beside it that are as narrow as a rounding, with heights of the ground next to those of the
-polygon.
+ground beside it that are as narrow as a rounding error, with heights of the ground next to those of
+the polygon.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["closeness", "settled", "threaded"]
 
-# Distances of so many roundings are none.
+# Distances of at most this many rounding errors count as zero.
 _ROUNDINGS = 64
 # Pairs that are compared at once.
 _PAIRS = 1 << 20
@@ -59,7 +59,7 @@ def threaded(points: Floats, segments: Rows, vertices: Rows) -> tuple[Rows, Rows
 def _beside(points: Floats, segments: Rows, vertices: Rows) -> tuple[Rows, Floats, Rows]:
     """Return segments, shares of them and vertices that are close to them there.
 
-    Vertices are compared with those segments only that have their x.
+    Vertices are compared only with segments whose x range contains theirs.
     """
     limit = closeness(points)
     order = vertices[np.argsort(points[vertices, 0], kind="stable")]

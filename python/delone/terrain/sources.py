@@ -22,7 +22,7 @@ __all__ = ["Sources"]
 
 
 class Sources(HullTiling):
-    """The ways to make a surface of rasters and files."""
+    """The ways to make a surface from rasters and files."""
 
     __slots__ = ()
 
@@ -140,11 +140,12 @@ class Sources(HullTiling):
         Parameters
         ----------
         path : str or path-like
-            The file, of any format of `delone.io.read_surface` or `delone.io.read_points`.
+            The file, in any format that `delone.io.read_surface` or `delone.io.read_points` reads.
         columns : sequence of str or int, optional
             The columns of x, y and z; by default they are recognized by their names.
         layer, order : str, optional
-            As for these functions: the name of a surface or layer, ``"enz"`` for eastings first.
+            As for these functions: the name of a surface or layer, and ``"enz"`` for eastings
+            first.
         chord : float, optional
             For curves in DXF, as for `delone.io.read_surface`.
         **options
@@ -215,8 +216,8 @@ class Sources(HullTiling):
         Notes
         -----
         Vertices are the points of visible faces. Edges on breaklines become breaklines, and edges
-        that a Delaunay triangulation would not have become soft ones. Faces that have no area as
-        seen from above are left out.
+        that a Delaunay triangulation would not contain become soft breaklines. Faces that have no
+        area as seen from above are left out.
 
         Examples
         --------

@@ -149,7 +149,7 @@ class Surface(Protocol):
 def on_surface(tin: Surface) -> Bools:
     """Return which points are corners of triangles; all points if there are no triangles.
 
-    A boundary leaves others outside of the surface.
+    With a boundary, other points may be outside the surface.
     """
     used = np.zeros(tin.npoints, dtype=bool)
     used[tin.simplices] = True

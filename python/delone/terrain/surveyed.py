@@ -67,7 +67,7 @@ class Surveyed(HullTiling):
 
     @property
     def adjustments(self) -> Adjustments | None:
-        """What `snap` and `level` have changed of the input; None if neither was given."""
+        """What `snap` and `level` changed in the input; None if neither was given."""
         return Adjustments._of_text(str(self._adjustments)) if str(self._adjustments) else None
 
     def _stretches(self, a: Floats, b: Floats) -> list[Stretch]:

@@ -57,15 +57,15 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
     neighbors : ndarray of int32, shape (m, 3)
         The triangle across the edge opposite each vertex; -1 outside.
     breaklines : ndarray of int32, shape (q, 2)
-        The edges on lines: breaklines, boundary and holes.
+        The edges on lines: breaklines, boundary, holes, islands and shores of level polygons.
     soft : ndarray of bool, shape (q,)
         Which of these edges are on soft breaklines only.
 
     Notes
     -----
-    The triangles are those of a `ConstrainedDelaunay` of points and lines: exact and canonical.
-    A TIN is one surface in memory. For point sets that exceed it, the tiles of ``delone tile`` have
-    contours, profiles and volumes, too: see `delone.distributed.TiledDelaunay`.
+    The triangles are those of a `ConstrainedDelaunay` of points and lines: exact and canonical. A
+    TIN is one surface in memory. For larger point sets, the tiles of ``delone tile`` also provide
+    contours, profiles and volumes: see `delone.distributed.TiledDelaunay`.
 
     Examples
     --------
@@ -122,8 +122,8 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         Parameters
         ----------
         xyz : array_like, shape (n, 3), or PointSet with heights
-            The points. x and y must have the same unit of length; heights may have another one, but
-            preferably have the same.
+            The points. x and y must have the same unit of length; heights may have a different one,
+            but preferably have the same.
         breaklines, soft_breaklines : optional
             Lines that edges follow, such as those of roads, dikes and water: shapely geometries,
             GeoDataFrames, a `delone.io.GeometrySet`, or arrays of shape (k, 2) or (k, 3).
@@ -152,15 +152,16 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
             the most accurate is used, and of several such heights, the lowest.
         snap : float, optional
             Points that are nearer than this to each other or to a line are merged. Points of lines
-            are merged first, then points move to those of lines, or become part of a line; of other
-            points the first in the order of x and y stays. Heights that meet at a place are those
-            of duplicates: see `duplicates`, `crossing` and `tolerance`. Boundary, holes and islands
-            do not move. `adjustments` has the number of points and the largest move.
+            are merged first, then other points move to points of lines, or become part of a line;
+            of the remaining points, the first in the order of x and y stays. Heights that meet at a
+            place are treated as duplicates: see `duplicates`, `crossing` and `tolerance`. Boundary,
+            holes and islands do not move. `adjustments` contains the number of moved points and the
+            largest move.
         level : optional
             Polygons or rings, such as lakes, in which the surface is level. Each feature, or each
-            ring given as an array, has the one height of its points, or, without heights, the
-            lowest of the surface along its shore. Points inside or on the shore are left out, and
-            counted in `adjustments`; `max_edge` removes nothing there.
+            ring given as an array, gets the common height of its points or, without heights, the
+            lowest height of the surface along its shore. Points inside or on the shore are left out
+            and counted in `adjustments`; `max_edge` removes nothing there.
         crs : optional
             Coordinate reference system, such as ``"EPSG:28992"``, an EPSG code or a pyproj.CRS; by
             default that of the data. Lines that declare another one are transformed (with pyproj).
@@ -187,7 +188,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         InputError
             A line without heights extends beyond the points, `crs` is not the reference system of
             the points, no triangle is left, a level polygon has several heights, no height, or a
-            line with another height inside, or an option is not one of its choices.
+            line with a different height inside, or an option is not one of its choices.
         BudgetExceededError
             `snap` is so large that millions of pairs of points are near each other.
         DegenerateInputError, NonFiniteError, ShapeError, DtypeError, MemoryError
@@ -412,11 +413,11 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         levels : array_like, shape (k,), optional
             Heights of the contours.
         interval : float, optional
-            Distance between levels, instead of `levels`: `base` plus all multiples of it within the
-            heights of the surface, as the doubles nearest to the decimal numbers, so three times
-            0.1 is 0.3.
+            Distance between levels, instead of `levels`: the levels are `base` plus all multiples
+            of it within the heights of the surface, each the double nearest to the decimal number,
+            so that three times 0.1 is 0.3.
         base : float, optional
-            The level at which `interval` starts to count.
+            The level from which multiples of `interval` are counted.
         index : int, optional
             With an interval, every `index`-th multiple is marked as an index contour.
         smooth : int, optional
@@ -428,7 +429,8 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
             Closed lines that enclose less than this are left out and counted.
         simplify : float, optional
             Points of lines are left out and counted as long as each is within this distance of the
-            line that remains, and no line crosses another one or itself, or changes its side of it.
+            line that remains, no line crosses another one or itself, and lines stay on the same
+            side of each other.
         max_points : int, optional
             Maximum number of points of all contours; smoothing may double them in each round.
 
@@ -440,7 +442,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         Raises
         ------
         InputError
-            Levels, `min_length` or `min_area` are out of range, or not exactly one of `levels` and
+            Levels or another argument are out of range, or not exactly one of `levels` and
             `interval` is given.
         BudgetExceededError
             There would be more than `max_points` points; raised before they are computed.
@@ -448,7 +450,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         Notes
         -----
         A vertex is above a level if its height is at least the level, exactly. So lines are
-        continuous, end only at the outline, and enclose those of the next level, also on plateaus
+        continuous, end only at the outline, and enclose those of the next level, even on plateaus
         and saddles. Loops without an area, around a vertex or ridge exactly at a level, are left
         out. Coordinates are rounded once; where lines would then cross, points are merged.
 
@@ -484,8 +486,8 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         levels, interval, base, max_points
             As for `contours`.
         min_area : float, optional
-            A part with a smaller area than this that fills a hole of a polygon becomes part of that
-            polygon, with everything inside; holes of the surface stay. The polygons are counted.
+            A polygon with a smaller area than this that fills a hole of another one is merged into
+            it, with everything inside; holes of the surface stay. Merged polygons are counted.
 
         Returns
         -------
@@ -607,8 +609,8 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         Parameters
         ----------
         other : float, triple of float, or TIN
-            A height; a plane (a, b, c) with the heights c + a x + b y; or another surface: what is
-            to be reached.
+            The surface to reach: a height, a plane (a, b, c) with the heights c + a x + b y, or
+            another surface.
         region : optional
             Polygons or rings, as for `boundary` of `from_points`, to which the volume is limited.
             Arrays are closed automatically; other lines must be closed.
@@ -635,8 +637,9 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
 
         Notes
         -----
-        The sum of prisms over the intersections of the triangles of both surfaces, split where the
-        surfaces cross: correct up to rounding. About linear in the number of intersections.
+        The volume is the sum of prisms over the intersections of the triangles of both surfaces,
+        split where the surfaces cross: correct up to rounding. The time is about linear in the
+        number of intersections.
 
         Examples
         --------

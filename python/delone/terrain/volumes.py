@@ -46,7 +46,7 @@ class Region(NamedTuple):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Volume(ReadOnly):
-    """The volume between a surface and what is to be reached.
+    """The volume between a surface and the one to be reached.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def volume(tin: Surface, other: Any, region: Any) -> Volume:
 
 
 def warn_of_nothing(region: Any) -> None:
-    """Warn that a volume is that of nothing."""
+    """Warn that a volume is 0 because nothing overlaps."""
     what = "region" if region is not None else "surface to be reached"
     warnings.warn(
         f"the surface and the {what} have no area in common: the volume is 0",
@@ -145,7 +145,7 @@ def warn_of_nothing(region: Any) -> None:
 
 
 def goal_of(tin: Surface, other: Any) -> tuple[Sheet | None, list[float]]:
-    """Return what is to be reached: a surface, or None and a plane."""
+    """Return the surface to be reached, or None and a plane."""
     if not hasattr(other, "_sheet"):
         return None, plane_of(other)
     if tin.crs and other.crs and not same_crs(tin.crs, other.crs):
