@@ -73,7 +73,7 @@ def areal(
         str | None, _columns("majority", "categories: what covers most of a target cell")
     ] = None,
     skipna: Annotated[
-        bool, typer.Option("--skipna", help="Leave out missing values, which propagate otherwise.")
+        bool, typer.Option("--skipna", help="Ignore missing values, which otherwise propagate.")
     ] = False,
     min_fraction: Annotated[
         float,
@@ -85,7 +85,7 @@ def areal(
     ] = None,
     crs: Crs = None,
     target_crs: Annotated[
-        str | None, typer.Option(help="As --crs, of TARGET; by default that of SOURCE.")
+        str | None, typer.Option(help="As --crs, for TARGET; by default that of SOURCE.")
     ] = None,
     project: Annotated[
         str | None,

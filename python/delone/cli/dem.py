@@ -68,13 +68,13 @@ def dem(
     ] = False,
     aspect: Annotated[
         bool,
-        typer.Option("--aspect", help="Direction of the slope, degrees from north clockwise."),
+        typer.Option("--aspect", help="Downhill direction, degrees clockwise from north."),
     ] = False,
     azimuth: Annotated[
         float | None, typer.Option(help="Direction of the light of --hillshade; by default 315.")
     ] = None,
     altitude: Annotated[
-        float | None, typer.Option(help="Its angle above the horizon; by default 45.")
+        float | None, typer.Option(help="Angle of the light above the horizon; by default 45.")
     ] = None,
     z_factor: Annotated[
         float | None, typer.Option(help="Factor of heights for --hillshade; by default 1.")

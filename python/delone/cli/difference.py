@@ -57,7 +57,7 @@ def difference(
     as_surface: Annotated[
         bool,
         typer.Option(
-            "--surface", help="Take OTHER, a raster with other cells, as linear between these."
+            "--surface", help="Interpolate OTHER, a raster with different cells, linearly."
         ),
     ] = False,
     other_layer: Annotated[

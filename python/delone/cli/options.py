@@ -79,7 +79,7 @@ Order = Annotated[
 ]
 Workers = Annotated[int | None, typer.Option(help="Threads; by default one per core.")]
 # Two options, since of a pair of switches the last one counts without a word.
-Solid = Annotated[bool, typer.Option("--3d", help="Take points as 3-D, z as a coordinate.")]
+Solid = Annotated[bool, typer.Option("--3d", help="Treat points as 3-D, with z as a coordinate.")]
 Flat = Annotated[
     bool,
     typer.Option(

@@ -75,14 +75,14 @@ def terrain(
     folder: Annotated[
         Path,
         typer.Option(
-            "--output", "-o", metavar="FOLDER", help="Folder of the files and of index.html."
+            "--output", "-o", metavar="FOLDER", help="Folder for the files and index.html."
         ),
     ],
     contours: Annotated[
         float | None, typer.Option(help="Contour lines at this interval: contours.gpkg")
     ] = None,
     bands: Annotated[
-        float | None, typer.Option(help="Polygons between such levels: bands.gpkg")
+        float | None, typer.Option(help="Polygons between levels at this interval: bands.gpkg")
     ] = None,
     dem: Annotated[
         float | None, typer.Option(help="A raster of heights with cells of this size: dem.tif")

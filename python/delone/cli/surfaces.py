@@ -72,7 +72,7 @@ MaxEdge = Annotated[
 ]
 Voids = Annotated[
     bool,
-    typer.Option("--voids", help="Remove inner triangles with an edge above --max-edge, too."),
+    typer.Option("--voids", help="Also remove inner triangles with an edge above --max-edge."),
 ]
 Duplicates = Annotated[
     str,
@@ -112,7 +112,7 @@ Nodata = Annotated[
 ]
 Window = Annotated[
     str | None,
-    typer.Option(help="Rasters: read only cells inside of left,bottom,right,top."),
+    typer.Option(help="Rasters: read only cells inside left,bottom,right,top."),
 ]
 EastingFirst = Annotated[
     bool, typer.Option("--easting-first", help="Take the first number of LandXML as the easting.")

@@ -67,9 +67,9 @@ def contours(
     *,
     interval: Annotated[float | None, typer.Option(help="Difference between levels.")] = None,
     levels: Annotated[
-        str | None, typer.Option(help="The levels instead of an interval: 10,12.5,15.")
+        str | None, typer.Option(help="Levels, instead of an interval: 10,12.5,15.")
     ] = None,
-    base: Annotated[float, typer.Option(help="A level from which the interval counts.")] = 0.0,
+    base: Annotated[float, typer.Option(help="Level from which intervals are counted.")] = 0.0,
     index: Annotated[int, typer.Option(help="Mark every n-th level as an index contour.")] = 5,
     smooth: Annotated[int, typer.Option(help="Rounds of corner cutting, 0 to 5.")] = 0,
     min_length: Annotated[
@@ -78,7 +78,7 @@ def contours(
     min_area: Annotated[
         float,
         typer.Option(
-            help="Leave out closed lines around less than this area; polygons become part of the "
+            help="Leave out closed lines that enclose less than this; polygons become part of the "
             "one around them."
         ),
     ] = 0.0,
@@ -202,7 +202,7 @@ def profile(
     right: Annotated[
         float | None, typer.Option(help="How far to the right; by default as to the left.")
     ] = None,
-    start: Annotated[float, typer.Option(help="The station of the start of the line.")] = 0.0,
+    start: Annotated[float, typer.Option(help="Station at the start of the line.")] = 0.0,
     exaggeration: Annotated[
         float | None, typer.Option(help="Factor of heights in DXF drawings; by default 1.")
     ] = None,
