@@ -66,7 +66,7 @@ class Overlaps(SharedAreas[AreaWeights], Stored):
     MissingExtraError
         The extra for geometries is not installed.
     MemoryError
-        The system refuses the memory of the result.
+        There is not enough memory for the result.
 
     Warns
     -----

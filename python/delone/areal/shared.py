@@ -195,7 +195,7 @@ class SharedAreas(Paired, Generic[W]):
         InputError
             `method` is unknown.
         ShapeError, DtypeError
-            A mask has another shape, or is not boolean.
+            A mask has a different shape, or is not boolean.
 
         Notes
         -----

@@ -56,7 +56,7 @@ class AreaWeights(Paired):
 
     Notes
     -----
-    Weights hold arrays and no cells, so that their pickles are small.
+    Weights contain arrays but no cells, so their pickles are small.
 
     See Also
     --------
@@ -146,11 +146,11 @@ class AreaWeights(Paired):
             Real numbers, in the shape of the grid or as rows; leading axes, such as times and
             levels, remain.
         skipna : bool, optional
-            Whether NaN means a missing value, whose cell takes no part. By default NaN propagates
-            to all target cells that share area with it; for "majority" it is a category.
+            Whether NaN means a missing value, whose cell is ignored. By default NaN propagates to
+            all target cells that share area with it; for "majority" it is a category.
         min_fraction : float, optional
             Target cells of which a smaller fraction has values, by more than a rounding of 1e-12,
-            are missing. By default any fraction will do.
+            are missing. By default, any fraction suffices.
         fill : number, optional
             The value of missing target cells, by default NaN. Needed for integers of "majority"
             where target cells are missing.
@@ -172,9 +172,9 @@ class AreaWeights(Paired):
 
         Notes
         -----
-        With missing values, "conservative" and "sum" take them as masked cells: what is there is
-        conserved. "normalized" is the mean over what is there, so that a constant remains one,
-        exactly. A changing mask, as of sea ice, needs no new weights.
+        "conservative" and "sum" treat missing values as masked cells: what is known is conserved.
+        "normalized" is the mean over the known values, so that a constant remains exactly constant.
+        A changing mask, such as that of sea ice, needs no new weights.
 
         Examples
         --------

@@ -1,8 +1,8 @@
 """Contours of a tiled triangulation: the same lines as in one piece.
 
-What is dealt is the levels, not the plane: a line of a level depends on the triangles that this
-level crosses, wherever they are. So the triangles of a few levels are gathered from all tiles and
-drawn at once, and no line has to be joined. A line has about one point for each triangle, so these
+Work is divided by level, not by area: a line of a level depends on the triangles that this level
+crosses, wherever they are. So the triangles of a few levels are gathered from all tiles and drawn
+at once, and no line has to be joined. A line has about one point for each triangle, so these
 triangles need little more memory than the line itself.
 
 Two things depend on more than one level. Where rounded lines would cross, points are united in the
@@ -98,7 +98,7 @@ def contours(  # noqa: PLR0917
 
 
 def _together(parts: list[_Part], left_out: int) -> Drawn:
-    """Put the lines of all levels together, and empty `parts`, so that they are there once."""
+    """Put the lines of all levels together, and empty `parts`, so that memory holds one copy."""
     none = np.empty(0, dtype=np.int64)
     counts = np.concatenate([none, *(np.diff(part.starts) for part in parts)])
     level = np.concatenate([none, *(part.level for part in parts)]).astype(np.int32)

@@ -236,7 +236,8 @@ class TiledDelaunay(TiledSurface):
 
         Notes
         -----
-        The check is exact and reads only the files, one tile at a time; the manifest is compared.
+        The check is exact and reads only the files, one tile at a time; it also compares the
+        manifest with them.
 
         Examples
         --------
@@ -333,7 +334,7 @@ class TiledDelaunay(TiledSurface):
         values : str, optional
             The name of the attribute; by default heights.
         what : {"value", "slope", "aspect", "hillshade"}, optional
-            What a cell has: the interpolated value at its center, or a measure of the triangle
+            What a cell contains: the interpolated value at its center, or a measure of the triangle
             there, as in `delone.terrain.TIN`.
         azimuth, altitude, z_factor : float, optional
             The light of ``"hillshade"``, as for `delone.terrain.TIN.hillshade`.
@@ -350,7 +351,7 @@ class TiledDelaunay(TiledSurface):
         ------
         InputError
             There is no such attribute, `resolution` is not above 0, `what` is not one of its
-            choices, or the light is not possible.
+            choices, or the light is invalid.
         MissingExtraError
             rasterio is not installed.
 

@@ -37,7 +37,7 @@ class TiledSurface(TileFolder):
         values: str = "z",
         executor: Any = "serial",
     ) -> Contours:
-        """Compute contour lines: the same as of a `delone.terrain.TIN` of all points.
+        """Compute the same contour lines as a `delone.terrain.TIN` of all points.
 
         Parameters
         ----------
@@ -64,9 +64,10 @@ class TiledSurface(TileFolder):
 
         Notes
         -----
-        The lines must fit into memory. Beyond that, memory is that of one tile and of the triangles
-        that some levels cross, about half a gigabyte, or more if one level crosses more than four
-        million triangles. The triangles of each group of levels wait in temporary files.
+        The lines must fit into memory. In addition, memory is needed for one tile and for the
+        triangles that a group of levels crosses, about half a gigabyte, or more if one level
+        crosses more than four million triangles. The triangles of each group are kept in temporary
+        files.
 
         Where rounded lines would cross, points of them are united, and which one of several points
         stays depends on the order of the triangles. So if levels are so near each other that lines
@@ -141,7 +142,7 @@ class TiledSurface(TileFolder):
         region : optional
             Polygons or rings to which the volume is limited, as for `delone.terrain.TIN.volume_to`.
         values : str, optional
-            The name of the attribute; by default heights. Of other tiles, it is always heights.
+            The name of the attribute; by default heights. For `other`, heights are always used.
         executor : {"serial"} or dask.distributed.Client, optional
             As for `contours`.
 

@@ -50,7 +50,7 @@ class SurfaceCheck(ReadOnly):
     duplicate_faces : ndarray of int64, shape (k, 2)
         Rows of faces, each with the first row of the same vertices, in any order.
     pairs : ndarray of int64, shape (p, 2)
-        Rows of faces that cross or touch otherwise than at common vertices and edges, ascending.
+        Rows of faces that cross or touch other than at common vertices and edges, ascending.
     kinds : ndarray of str, shape (p,)
         The kind of each pair, see `check_surface`.
     crossing : ndarray of bool, shape (p,)
@@ -64,8 +64,8 @@ class SurfaceCheck(ReadOnly):
     nonmanifold_edges : ndarray of int64, shape (k, 2)
         The ends of edges of three faces or more.
     misoriented_edges : ndarray of int64, shape (k, 2)
-        The ends of edges of two faces or more that these do not pass equally often in both
-        directions.
+        The ends of edges of two faces or more that their faces do not traverse equally often in
+        both directions.
     nonmanifold_vertices : ndarray of int64, shape (k,)
         Vertices whose faces do not form one fan, closed or open.
     component : ndarray of int64, shape (m,)

@@ -22,8 +22,8 @@ __all__ = ["CAUSES", "COUNTS", "ImproveReport", "report"]
 
 CAUSES = ("angle", "boundary", "budget", "other", "rounding")
 _ANGLE, _BOUNDARY, _BUDGET, _OTHER, _ROUNDING = range(5)
-# Coordinates of points that were turned have some roundings each: a product for every axis, their
-# sum, and a shift. Of thin tetrahedra, four points are off their plane.
+# Coordinates of rotated points have several rounding errors each: a product for every axis, their
+# sum, and a shift. In thin tetrahedra, all four points are off their plane.
 _ROUNDINGS = 16
 # The fields of a report that are counts.
 COUNTS = (

@@ -261,8 +261,8 @@ class TetMesh(Triangulation):
         -------
         TetMesh
             The finer mesh. Its first points are those of this mesh; the removal of slivers may have
-            moved some that are not on faces. Its `report` says what was added, and what misses the
-            bounds.
+            moved some that are not on faces. Its `report` says what was added, and what violates
+            the bounds.
 
         Raises
         ------
@@ -270,7 +270,7 @@ class TetMesh(Triangulation):
             `marked` is not a mask or array of tetrahedra of the mesh; a size is NaN, zero or
             negative (the message gives the position); an argument is invalid.
         BudgetExceededError
-            The sizes require more points than `max_points`; with the estimate.
+            The sizes require more points than `max_points`; the error contains the estimate.
         LimitError
             Between the points there is no double of full accuracy: they are below 1e-307.
         KeyboardInterrupt

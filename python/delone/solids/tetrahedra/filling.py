@@ -146,7 +146,7 @@ def tetrahedralize(
         Faces with an edge that belongs to no other face cannot be in the mesh without points on
         them; the error contains these faces.
     BudgetExceededError
-        More than `max_points` are needed for the faces, or by an estimate for the sizes.
+        More than `max_points` points are needed for the faces or, by an estimate, for the sizes.
     InputError
         Nothing is inside by the rule `inside`, or the rule contradicts itself; seeds or extra
         points are outside or on a face; or an argument is invalid.

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 __all__ = ["Cells", "Tiling", "as_hole_seeds", "as_region_seeds", "located", "of_voids"]
 
 _SHOWN = 10
-# So many of the largest tetrahedra of a void are tried: rounding may move the center of a thin one.
+# This many of the largest tetrahedra of a void are tried: rounding may move the center of a thin
+# one.
 _TRIED = 20
 
 

@@ -21,7 +21,7 @@ _ACCEPTED = (
     "delone"
 )
 
-# Files of TetGen, which asks for no orientation of faces.
+# Files of TetGen, which does not require oriented faces.
 _UNORIENTED = (".smesh", ".poly", ".face")
 # What values of cells are called that are markers of faces.
 _MARKERS = ("marker", "gmsh:physical")
