@@ -57,7 +57,7 @@ def dem(
             "--output",
             "-o",
             metavar="OUTPUT",
-            help="GeoTIFF, or of a file of points: " + " ".join(raster_suffixes()),
+            help="GeoTIFF, or for a file of points: " + " ".join(raster_suffixes()),
         ),
     ],
     hillshade: Annotated[

@@ -86,7 +86,7 @@ def contours(
         float,
         typer.Option(
             help="Leave out points of lines that are within this distance of the rest; lines stay "
-            "on their sides of each other."
+            "on the same side of each other."
         ),
     ] = 0.0,
     bands: Annotated[

@@ -110,8 +110,8 @@ def fill(
     max_points: Annotated[
         int | None,
         typer.Option(
-            help="Maximum number of added points; by default a million, and two million for sizes "
-            "and angles."
+            help="Maximum number of added points; by default a million, or ten per face if that is "
+            "more, and two million for sizes and angles."
         ),
     ] = None,
     better: Annotated[
