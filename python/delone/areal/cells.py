@@ -98,7 +98,7 @@ def _of_polygons(given: Any, name: str) -> tuple[Floats, Rows, Rows, Bools]:
             f"{name} must be polygons, a triangulation or a Voronoi diagram, got "
             f"{type(given).__name__}"
         )
-    # A list of rings is a list of polygons, one for each; elsewhere it is one polygon.
+    # Each ring of a list is a polygon here; elsewhere, the list is one polygon.
     if isinstance(given, np.ndarray) and given.ndim == 3:
         given = list(given)
     if isinstance(given, list | tuple) and all(

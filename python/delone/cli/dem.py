@@ -88,7 +88,7 @@ def dem(
     """Make a raster of the surface of points: its heights, slope, aspect or hillshade.
 
     The surface is linear between the points. A folder of tiles has no breaklines, and its raster
-    may be of a column other than that of the heights.
+    may show a column other than the heights.
     """
     given = locals() | vars(options)
     cells = _numbers(resolution, "--resolution", (1, 2))

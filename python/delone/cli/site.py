@@ -111,8 +111,8 @@ def terrain(
 ) -> None:
     """Make several products of one surface, and a page of pictures and numbers about them.
 
-    The input is read and triangulated once. Files are those of the commands contours, dem and
-    profile with the same options.
+    The input is read and triangulated once. The files are the same as those of the commands
+    contours, dem and profile with the same options.
     """
     given = locals()
     require_known(options.crs)

@@ -150,7 +150,7 @@ class _Sums:
 
 
 def _hashes(tin: TileFolder, number: int) -> list[str]:
-    """Find the files of a tile that are not those that were written."""
+    """Find the files of a tile that differ from those written."""
     faults = []
     for name, key in zip(tile_names(number), ("vertices", "triangles"), strict=True):
         try:

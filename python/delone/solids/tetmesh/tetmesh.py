@@ -272,7 +272,7 @@ class TetMesh(Triangulation):
         BudgetExceededError
             The sizes require more points than `max_points`; the error contains the estimate.
         LimitError
-            Between the points there is no double of full accuracy: they are below 1e-307.
+            Coordinates are below 1e-307, where doubles do not have full accuracy.
         KeyboardInterrupt
             Ctrl-C was pressed.
 

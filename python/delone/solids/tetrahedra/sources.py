@@ -23,7 +23,7 @@ _ACCEPTED = (
 
 # Files of TetGen, which does not require oriented faces.
 _UNORIENTED = (".smesh", ".poly", ".face")
-# What values of cells are called that are markers of faces.
+# Names of cell data that are markers of faces.
 _MARKERS = ("marker", "gmsh:physical")
 # VTK's number of the type of a triangle.
 _VTK_TRIANGLE = 5
