@@ -2,8 +2,8 @@
 Means of a field over continents and islands
 ============================================
 
-The mean of a gridded field over an area needs the part of each grid cell that lies in it. Taking the cells whose centers
-are inside is a common shortcut, which is inaccurate for small areas and misses the smallest ones.
+The mean of a gridded field over an area depends on the part of each grid cell that lies in the area. A common
+shortcut is to use the cells whose centers are inside. It is inaccurate for small areas and misses the smallest ones.
 
 Install: ``pip install "delone[geo,plot]"``.
 """
@@ -15,7 +15,7 @@ import shapely
 from delone import datasets, sphere
 
 # %%
-# The land of the Earth: 127 polygons, the largest first. Countries and catchments work in the same way, as a GeoDataFrame.
+# The land of the Earth: 127 polygons, the largest first. Countries and catchments work the same way, as a GeoDataFrame.
 
 polygons = [shapely.Polygon(rings[0], rings[1:]) for rings in datasets.land()["coordinates"]]
 land = sphere.Grid.from_polygons(polygons)
@@ -29,7 +29,7 @@ lon, lat = np.radians(field_grid.centers_lonlat.T)
 celsius = -25 + 55 * np.cos(lat) ** 2 + 5 * np.sin(lat) + 3 * np.sin(3 * lon) * np.cos(lat)
 
 # %%
-# "normalized" is the mean over what is covered. The same weights serve all times and levels.
+# "normalized" is the mean over the covered part. The same weights work for all times and levels.
 
 overlaps = sphere.Overlaps(field_grid, land)
 means = overlaps.to_weights("normalized").apply(celsius)
@@ -54,7 +54,7 @@ for k, name in enumerate(("Eurasia and Africa", "Antarctica", "the Americas")):
 assert missed > 0
 
 # %%
-# Means on the map, and the error of the shortcut by size.
+# The means on a map, and the error of the shortcut against the size of the area.
 
 figure, axes = plt.subplots(2, 1, figsize=(8, 8.2), layout="constrained", height_ratios=(3, 2))
 land.to_geopandas({"mean": means}).plot("mean", ax=axes[0], legend=True, edgecolor="0.3", lw=0.4)

@@ -2,8 +2,8 @@
 A cubed-sphere model on cells of 1 degree
 =========================================
 
-The fields of a model on a cubed sphere are regridded to longitudes and latitudes: by areas, to first and second order,
-which preserves the totals, and by bilinear interpolation between the centers of its cells.
+The fields of a model on a cubed sphere are regridded to longitudes and latitudes in three ways: by areas, to first and
+second order, which preserves totals, and by bilinear interpolation between the centers of the cells.
 
 Install: ``pip install "delone[plot,xarray]"``.
 """
@@ -30,7 +30,7 @@ model = xarray.Dataset(
 
 
 # %%
-# A vortex has steep gradients, so that the methods differ. Values are those at the centers.
+# A vortex has steep gradients, so the methods differ. Values are those at the centers.
 
 
 def vortex(centers: np.ndarray) -> np.ndarray:

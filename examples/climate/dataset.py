@@ -2,8 +2,8 @@
 Regrid station data with xarray, with missing values
 ====================================================
 
-A Dataset of stations becomes a Dataset on a grid, with all variables, days and attributes. On days on which a station
-is missing, there is a hole around it, unless a triangulation of the other stations fills the gap.
+A Dataset of stations becomes a Dataset on a grid, with all variables, days and attributes. On days when a station is
+missing, there is a hole around it, unless a triangulation of the other stations fills the gap.
 
 Install: ``pip install "delone[plot,xarray]"``.
 """
@@ -34,8 +34,8 @@ stations["temperature"] = stations.temperature.where(~gone)
 print(f"{int(gone.sum())} of {gone.size} temperatures are missing")
 
 # %%
-# One call. The triangulation and the weights are computed once for all days and variables; NaN propagates to the grid
-# nodes that the station contributes to.
+# One call is enough. The triangulation and the weights are computed once for all days and variables. NaN propagates to
+# the grid nodes that the station contributes to.
 
 field = stations.delone.grid(resolution=5.0, method="sibson")
 print(field.temperature.dims, field.temperature.attrs, list(field.data_vars))
@@ -43,8 +43,8 @@ holes = field.temperature.isnull().mean(("y", "x")) - field.wind.isnull().mean((
 print(f"on the worst day the gaps cover {float(holes.max()):.0%} of the map")
 
 # %%
-# To fill the gaps, triangulate the stations of that day: ``nan="drop"``. Because the triangles then differ from day to
-# day, the accessor does not do this. A common mistake is to ask it to:
+# To fill the gaps, triangulate the stations of that day: ``nan="drop"``. The accessor does not do this,
+# because the triangles then differ from day to day. A common mistake is to ask it to:
 
 day = int(holes.values.argmax())
 try:

@@ -30,8 +30,8 @@ def temperature(longitude, latitude):
 values = temperature(*stations.T)
 
 # %%
-# Both interpolants get the same values. ``periods=(360, None)`` means: repeat in x, not in y. Queries may have any
-# longitude, and those of the map run from 20 to 380.
+# Both interpolants get the same values. ``periods=(360, None)`` repeats the points in x but not in y. Queries may
+# have any longitude, and those of the map run from 20 to 380.
 
 longitude, latitude = np.meshgrid(np.arange(20, 380.5, 1.0), np.arange(-55, 55.5, 1.0))
 east = np.where(longitude > 180, longitude - 360, longitude)
@@ -48,8 +48,8 @@ print(
 assert np.isnan(planar).sum() > np.isnan(joined).sum()
 
 # %%
-# A common mistake is to mix longitudes from -180 to 180 with longitudes from 0 to 360: the same stations are then in
-# the plane twice, or queries are outside. With a period, both are the same location.
+# A common mistake is to mix longitudes from -180 to 180 with longitudes from 0 to 360: then the same stations are
+# in the plane twice, or queries are outside. With a period, both are the same location.
 
 assert np.allclose(around([(190.0, 5.0)]), around([(-170.0, 5.0)]), rtol=0, atol=1e-9)
 print(
@@ -60,9 +60,9 @@ print(
 )
 
 # %%
-# Distances are still planar: a degree of longitude counts as much at 55 degrees north as at the equator, and there is
-# no pole. For high latitudes, project the points, or interpolate on the
-# sphere, as in the example "Stations to a global grid".
+# Distances are still planar: a degree of longitude counts as much at 55 degrees north as at the equator, and there
+# are no poles. For high latitudes, project the points, or interpolate on the sphere, as in the example "Stations to a
+# global grid".
 
 
 def data_folder():

@@ -2,8 +2,9 @@
 Stations to a global grid
 =========================
 
-Values of stations all over the Earth are interpolated to a grid of one degree, on the sphere: there is no seam at the
-date line, and no gap at the poles. In the plane of longitudes and latitudes, both are at the edges of the map.
+Values at stations all over the Earth are interpolated to a grid of one degree, on the sphere: there is no seam at the
+date line, and no gap at the poles. In the plane of longitudes and latitudes, the date line and the poles are edges of
+the map.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -45,7 +46,8 @@ assert np.ptp(found[0]) == 0 and np.ptp(found[-1]) == 0
 assert (found[:, 0] == found[:, -1]).all()
 
 # %%
-# The plane of longitudes and latitudes, for comparison. ``degrees`` are moved to the convention of the stations first.
+# For comparison, the plane of longitudes and latitudes. ``degrees`` are first converted to the convention of the
+# stations.
 
 degrees = np.where(nodes[..., :1] > 180, nodes - (360, 0), nodes)
 plane = NaturalNeighbor(stations, values)(degrees)
@@ -60,8 +62,8 @@ for name, field in (("plane", plane), ("sphere", found)):
     )
 
 # %%
-# Weights work for any number of fields: here for one per month, with one product. The gradient has components to the
-# east and north, and is per meter if you pass the radius of the Earth.
+# Weights work for any number of fields: here for one per month, with a single product. The gradient has components to
+# the east and north, and is per meter if you pass the radius of the Earth.
 
 table = globe.weights_at(nodes)
 months = values[:, None] + 5 * np.sin(np.radians(latitude))[:, None] * np.cos(

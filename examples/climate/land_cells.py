@@ -2,9 +2,9 @@
 Mean over land from stations: Voronoi cells clipped to the coast
 ================================================================
 
-Each station represents the land that is nearest to it. The Voronoi cells of stations on the globe are clipped to the
-coast, and their areas are the weights of a mean over land. No projection is needed, and nothing is cut at the date
-line.
+Each station represents the land that is closer to it than to any other station. The Voronoi cells of stations on the
+globe are clipped to the coast, and their areas are the weights of a mean over land. No projection is needed, and
+nothing is cut at the date line.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -28,7 +28,8 @@ crowded = (north > 30) & (north < 62) & ((np.abs(east + 95) < 35) | (np.abs(east
 stations = places[on_land & (crowded | (random.uniform(size=12000) < 0.05))]
 
 # %%
-# The cells end at the coast. Their areas sum to that of the land; where there are islands, a cell has several parts.
+# The cells end at the coast. Their areas add up to the area of the land. Where there are islands, a cell can have
+# several parts.
 
 cells = sphere.Voronoi(lonlat=stations, clip=land, radius=6371)
 total = cells.cell_areas.sum()
@@ -57,7 +58,7 @@ print(f"true mean {truth:.1f} C, weighted {weighted:.1f} C, plain {values.mean()
 assert abs(weighted - truth) < 0.2 * abs(values.mean() - truth)
 
 # %%
-# On a sphere, a ring has a finite area on both sides. By default, a polygon is the smaller one, whatever the
+# On a sphere, a ring has a finite area on both sides. By default, a polygon is the smaller of the two, whatever the
 # direction of its ring, which is clockwise in shapefiles. ``winding="ccw"`` selects the left side, here all of the
 # Earth except the island, with a warning.
 

@@ -2,8 +2,8 @@
 Regrid a model on an unstructured mesh with xarray
 ==================================================
 
-One call regrids a dataset on a UGRID mesh to cells of 3 degrees. It contains sea ice, so missing values change from
-month to month, but the weights stay the same.
+One call regrids a dataset on a UGRID mesh to cells of 3 degrees. It contains sea ice, so the missing values change
+from month to month, but the weights stay the same.
 
 Install: ``pip install "delone[plot,xarray]"``.
 """
@@ -56,7 +56,7 @@ ocean["ice"] = (
 )
 
 # %%
-# "normalized" is the mean over the part of a cell that has ice; cells with ice on less than half of their area are
+# "normalized" is the mean over the part of a cell that has ice. Cells with ice on less than half of their area are
 # missing.
 
 found = ocean.delone.regrid("3x3", method="normalized", skipna=True, min_fraction=0.5)
@@ -74,7 +74,7 @@ print("largest change of a volume:", f"{abs(after / before - 1).max():.0e}")
 assert np.allclose(before, after, rtol=1e-6)
 
 # %%
-# The map of the mesh and that of the result, in March.
+# Maps of the mesh and of the result in March.
 
 figure, axes = plt.subplots(2, 1, figsize=(7.5, 8), layout="constrained")
 land = datasets.land()

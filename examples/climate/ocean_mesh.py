@@ -2,8 +2,8 @@
 An unstructured ocean with land
 ===============================
 
-Ocean models on triangles, such as FESOM, have values at nodes and no nodes on land. Each node stands for the cell
-around it, so coasts are where the cells end, and the fraction of each target cell that is sea is known.
+Ocean models on triangles, such as FESOM, have values at nodes and no nodes on land. Each node represents the
+cell around it, so the cells end at the coasts, and the fraction of each target cell that is sea is known.
 
 Install: ``pip install "delone[plot,xarray]"``.
 """
@@ -33,7 +33,7 @@ lon, lat = everywhere.lonlat[nodes].T
 print(f"{len(nodes):,} nodes, {len(triangles):,} triangles")
 
 # %%
-# The file of the model, in the conventions of UGRID: temperatures are at nodes.
+# The file of the model follows the UGRID conventions; its temperatures are at nodes.
 
 ocean = xarray.Dataset(
     {
@@ -51,7 +51,7 @@ ocean = xarray.Dataset(
 )  # fmt: skip
 
 # %%
-# ``cells="nodes"`` takes the cells around nodes. Cells of 2 degrees that are less than half at sea are missing.
+# ``cells="nodes"`` uses the cells around nodes. Target cells of 2 degrees of which less than half is sea are missing.
 
 regridder = delone.xarray.Regridder(ocean, "2x2", method="normalized", cells="nodes")
 print(regridder)
@@ -60,7 +60,7 @@ print(found.sst.dims, found.sst.dtype)
 assert found.sst.shape == (2, 90, 180)
 
 # %%
-# What "conservative" yields has the same total as the model's cells.
+# The result of "conservative" has the same total as the model's cells.
 
 flux = delone.xarray.Regridder(ocean, "2x2", method="conservative", cells="nodes")
 before = (ocean.sst.values[0].astype(float) * flux.source.areas).sum()
@@ -69,7 +69,7 @@ print(f"totals: {before:.6f}, {after:.6f}")
 assert np.isclose(before, after, rtol=1e-6)
 
 # %%
-# The model's cells, the sea surface on 2 degrees, and the fraction of each cell that is sea.
+# The model's cells, the sea surface temperature on cells of 2 degrees, and the fraction of each cell that is sea.
 
 land = datasets.land()
 figure, axes = plt.subplots(3, 1, figsize=(7.5, 11), layout="constrained")

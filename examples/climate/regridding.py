@@ -2,8 +2,8 @@
 Conservative regridding of HEALPix to longitudes and latitudes
 ==============================================================
 
-A field on HEALPix pixels is regridded to cells of 3 degrees. At coasts, where cells are partly covered, totals and
-means differ.
+A field on HEALPix pixels is regridded to cells of 3 degrees. At coasts, cells are partly covered, so preserving totals
+and preserving means give different results.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -24,7 +24,7 @@ lon, lat = np.radians(places.T)
 field = np.where(at_sea, 15 + 12 * np.cos(2 * lat) + 3 * np.sin(4 * lon) * np.cos(lat), np.nan)
 
 # %%
-# The areas that cells share are computed once. Their sums are the areas of the cells.
+# The areas that cells share are computed once. They add up to the areas of the cells.
 
 target = sphere.Grid.from_lonlat(np.arange(-180, 181, 3), np.arange(-90, 91, 3))
 overlaps = sphere.Overlaps(source, target)
@@ -42,7 +42,7 @@ print(f"totals: {total:.12f}, {kept:.12f}")
 assert np.isclose(total, kept, rtol=1e-13)
 
 # %%
-# Their quotient is the fraction of a cell that is sea.
+# The ratio of the two results is the fraction of a cell that is sea.
 
 figure, axes = plt.subplots(3, 1, figsize=(7, 10), layout="constrained", sharex=True)
 edges = np.arange(-180, 181, 3), np.arange(-90, 91, 3)

@@ -2,7 +2,7 @@
 Voronoi cells of stations on the globe
 ======================================
 
-The part of the Earth that is nearest to each station, and its area: exact across the date line and at the poles.
+The part of the Earth that is nearest to each station, and its area. There are no gaps at the date line or the poles.
 
 Install: ``pip install "delone[plot]"``.
 """

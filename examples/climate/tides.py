@@ -2,7 +2,7 @@
 A thousand time steps between stations
 ======================================
 
-Water levels at scattered gauges are interpolated to a raster for every hour of six weeks, by natural neighbors. The
+Water levels at scattered gauges are interpolated to a raster by natural neighbors, for every hour of six weeks. The
 weights depend only on the positions, so they are computed once; each hour is then a product with a sparse matrix.
 
 Install: ``pip install "delone[plot]"``.

@@ -20,7 +20,7 @@ stations = delone.sphere.Delaunay(xyz=random.normal(size=(2500, 3))).lonlat
 
 
 def wind(lonlat):
-    """Return a wind, (..., 2), that turns around a place in Alaska, in m/s."""
+    """Return a wind, (..., 2), that circles around a place in Alaska, in m/s."""
     lon, lat = np.radians(lonlat[..., 0]), np.radians(lonlat[..., 1])
     axis = 20 * np.array((-0.35, -0.2, 0.9))
     up = axis[0] * np.cos(lon) + axis[1] * np.sin(lon)
@@ -45,8 +45,8 @@ for latitude in (0, 60, 80, 88, 89.5):
     assert vectors < 0.1
 
 # %%
-# In a Dataset, the standard names of the CF conventions identify the components. The grid nodes at the pole are all
-# the same vector, expressed in the directions of each meridian.
+# In a Dataset, the standard names of the CF conventions identify the components. The grid nodes at the pole all
+# have the same vector, expressed in the directions of each meridian.
 
 dataset = xarray.Dataset(
     {
@@ -63,7 +63,7 @@ plain = dataset.delone.interp(lon, lat, vectors=[])
 assert np.ptp(np.hypot(pole.u, pole.v).values) < 1e-9
 
 # %%
-# The view from above the pole. The longitude determines how arrows to the east and north are rotated into the map.
+# The view from above the pole. The longitude determines how the arrows to the east and north are rotated on the map.
 
 figure, axes = plt.subplots(1, 2, figsize=(8.4, 4.3), layout="constrained")
 turn = np.radians(lon)

@@ -2,8 +2,8 @@
 Breaklines: keep the crest of a dike sharp
 ==========================================
 
-Scattered heights do not show where a slope breaks. The triangles between them cut corners: the crest of a dike
-becomes jagged. Surveyed lines along the breaks, kept as edges, solve this.
+Scattered heights do not show where a slope breaks. The triangles between them cut corners, so the crest of a
+dike becomes jagged. Surveyed lines along the breaks, kept as edges, solve this.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -15,12 +15,12 @@ from matplotlib.colors import LightSource
 import delone
 
 # %%
-# A dike that bends through 300 m by 150 m of flat land: 5 m high, its crest 4 m wide, its slopes 1 to 3. A survey has
-# 1,500 heights.
+# A dike bends through 300 m by 150 m of flat land. It is 5 m high, its crest is 4 m wide, and its slopes are 1 to 3. A
+# survey has 1,500 heights.
 
 
 def axis(x):
-    """Return the y of the middle of the dike."""
+    """Return the y-coordinate of the centerline of the dike."""
     return 75 + 30 * np.sin(x / 60)
 
 

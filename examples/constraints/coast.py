@@ -2,7 +2,7 @@
 An island with a lake and a road
 ================================
 
-The coast is a fractal ring of some thousand segments, rough enough to cross itself. A lake is a hole, a road
+The coast is a fractal ring of more than a thousand segments, rough enough to cross itself. A lake is a hole, a road
 crosses the island, and the land north and south of it are two regions. In a *conforming* triangulation, vertices
 are added until every segment is a Delaunay edge.
 
@@ -17,7 +17,7 @@ from delone.testing import same_triangles
 
 
 def fractal(corners, levels, seed):
-    """Break each side of a ring in its middle, sideways, again and again."""
+    """Repeatedly split each side of a ring in the middle, and move the new corner sideways."""
     random = np.random.default_rng(seed)
     ring = np.array(corners, dtype=float)
     for _ in range(levels):

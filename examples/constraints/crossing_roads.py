@@ -27,7 +27,7 @@ points = np.vstack((start, end))
 roads = np.column_stack((np.arange(40), np.arange(40, 80)))
 
 # %%
-# By default, segments that cross raise an error, which lists all crossings, not only the first.
+# By default, segments that cross raise an error that lists all crossings, not only the first.
 
 try:
     delone.ConstrainedDelaunay(points, roads)
@@ -64,9 +64,9 @@ while path[-1] != inside[row]:
 print(f"{distance[row, goal]:,.0f} m by road over {len(path) - 2} crossings and ends")
 
 # %%
-# A common mistake is a road that ends a little before the one that it should join. A millimeter is enough: there is
-# no crossing, and no path. To find such places, compute the distances from the ends of roads to the other roads.
-# Bridges are the opposite case: their lines cross, but there is no junction; triangulate them separately.
+# A common mistake is a road that ends just short of the road that it should join. A gap of one millimeter is enough:
+# there is no crossing, and no path. To find such places, compute the distances from the ends of roads to the other
+# roads. Bridges are the opposite case: their lines cross, but there is no junction; triangulate them separately.
 
 short = [(0, 0), (10, 0), (5, 3), (5, 0.001)], [(0, 1), (2, 3)]
 assert len(delone.ConstrainedDelaunay(*short, crossing="split").segments) == 2

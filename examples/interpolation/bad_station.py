@@ -3,7 +3,7 @@ Leave-one-out cross-validation: find a bad station
 ==================================================
 
 Each station is predicted from the others. A station whose value contradicts all of its neighbors has a large
-residual: here one thermometer reads Fahrenheit, and two stations have swapped their columns.
+residual. Here one thermometer reads in Fahrenheit, and the columns of two stations are swapped.
 
 Install: ``pip install "delone[plot]"``.
 """

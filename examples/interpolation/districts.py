@@ -3,7 +3,7 @@ Transfer inhabitants from districts to hexagons
 ===============================================
 
 Populations are known for districts but needed on a regular grid. The inhabitants of each district are divided among
-the hexagons in proportion to the shared areas, and none are lost.
+the hexagons in proportion to the shared areas, and nobody is lost.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -15,7 +15,8 @@ from matplotlib.collections import PolyCollection
 from delone import Overlaps, Voronoi
 
 # %%
-# Districts are the cells of a Voronoi diagram, smaller toward the center of a town 10 km across, with some 2,000 inhabitants each.
+# Districts are the cells of a Voronoi diagram, smaller toward the center of a town 10 km across, with about 2,000
+# inhabitants each.
 
 rng = np.random.default_rng(4)
 sites = 5 + rng.normal(size=(400, 2)) * 1.8

@@ -31,7 +31,7 @@ nodes = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 4)
 values = torque(*nodes.T)
 
 # %%
-# All nodes are there, in whatever order, so no simplex is needed. Each query sorts its four fractions within a cell.
+# All nodes are present, in any order, so no triangulation is needed. Each query sorts its four fractions within a cell.
 
 table = Linear(nodes, values)
 print(table)
@@ -40,9 +40,9 @@ error = table(queries) - torque(*queries.T)
 print(f"error: {np.sqrt((error**2).mean()):.2f} Nm rms of {values.max():.0f} Nm")
 
 # %%
-# On a test bed, some points cannot be run, such as full load with late spark. What is left is not a grid; it is
-# triangulated. Columns with different units must be scaled first, here to steps of the table, since distances decide
-# which points are joined. Every entry that was measured is still reproduced.
+# On a test bed, some points cannot be run, such as full load with late spark. The remaining points are not a grid, so
+# they are triangulated. Columns with different units must be scaled first, here to steps of the table, since
+# distances decide which points are joined. Every entry that was measured is still reproduced.
 
 missing = np.random.default_rng(1).random(len(nodes)) < 0.2
 missing |= (nodes[:, 1] > 0.7) & (nodes[:, 3] < 5)
@@ -59,13 +59,14 @@ print(f"{known.sum()} of them are inside the hull of the others")
 print(f"largest error there: {np.abs(filled - values[missing])[known].max():.1f} Nm")
 
 # %%
-# A common mistake is to expect values outside of the table: they are NaN. ``extrapolate="raise"`` makes them an error.
+# A common mistake is to expect values outside the table: they are NaN. With ``extrapolate="raise"``, such queries
+# raise an error.
 
 assert np.isnan(table([7000, 0.5, 1.0, 20]))
 
 # %%
-# Sections at a mixture of 1 and a spark advance of 25 degrees, and the gradient by the spark advance: where it is zero,
-# the spark is best.
+# Sections at a mixture of 1 and a spark advance of 25 degrees, and the derivative with respect to the spark advance:
+# where it is zero, the spark advance is optimal.
 
 speed, load = np.meshgrid(np.linspace(800, 6000, 160), np.linspace(0.1, 1, 120))
 section = np.stack((speed, load, np.ones_like(speed), np.full_like(speed, 25)), axis=-1)

@@ -29,8 +29,8 @@ x, y = np.meshgrid(np.linspace(0, 1, 201), np.linspace(0, 1, 201))
 nodes = np.stack((x, y), axis=-1)
 
 # %%
-# :func:`delone.interpolate.interpolator` makes each of them from its name. Outside the convex hull of the sites there
-# is no value, except for the nearest one, so only nodes inside are compared.
+# :func:`delone.interpolate.interpolator` makes each of them from its name. Outside the convex hull of the sites, only
+# "nearest" has a value, so only nodes inside are compared.
 
 names = ("nearest", "linear", "sibson", "farin", "clough-tocher")
 fields = {name: interpolator(sites, values, name)(nodes) for name in names}
@@ -47,8 +47,8 @@ for name in names:
     assert np.array_equal(interpolator(sites, values, name)(sites), values)
 
 # %%
-# Fields on top, errors below. "sibson" and "farin" are two kinds of natural neighbor interpolation; the second one
-# also uses gradients, which are estimated from the values.
+# The fields are on top, the errors below. "sibson" and "farin" are two kinds of natural neighbor interpolation; the
+# second one also uses gradients, which are estimated from the values.
 
 shown = ("nearest", "linear", "sibson", "clough-tocher")
 titles = ("Nearest", "Linear", "Natural neighbor", "Clough-Tocher")

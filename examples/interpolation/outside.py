@@ -3,7 +3,8 @@ Extrapolation, and masks far from the data
 ==========================================
 
 Interpolation ends at the convex hull of the sites, which says little about where the data are dense. This example
-masks a raster farther than 25 km from the nearest site, and shows the choices for points outside the hull.
+masks the parts of a raster that are farther than 25 km from the nearest site, and shows the choices for points outside
+the hull.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -25,7 +26,7 @@ nodes = np.stack((x, y), axis=-1)
 print(f"{len(sites)} sites")
 
 # %%
-# ``max_distance=`` masks in the units of the coordinates, also inside the hull: here in the middle of a ring of
+# ``max_distance=`` is in the units of the coordinates. It also masks inside the hull: here in the middle of a ring of
 # sites, which long triangles span. ``distance()`` returns the distances, for your own masks or for shading.
 
 inside = Linear(sites, salinity)

@@ -2,9 +2,9 @@
 Interpolate scattered data with ten columns, without a triangulation
 ====================================================================
 
-Three thousand simulations of a wing have ten parameters each. Their triangulation would have billions of simplices, but a
-query needs only the simplex that contains it. ``Linear`` finds this simplex by linear programming and proves that it is
-correct.
+Three thousand simulations of a wing have ten parameters each. Their triangulation would have billions of simplices,
+but a query needs only the simplex that contains it. ``Linear`` finds this simplex by linear programming and proves
+that it is correct.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -44,8 +44,8 @@ error = np.sqrt(((linear - truth) ** 2).mean())
 print(f"error: {error:.1f} lb rms of a standard deviation of {truth.std():.1f} lb")
 
 # %%
-# Each query depends on eleven runs. ``weights_at`` returns these runs and their weights. Use it to see which simulations a
-# prediction is based on, and how near they are.
+# Each query depends on eleven runs. ``weights_at`` returns these runs and their weights. Use it to see which
+# simulations a prediction is based on, and how close they are.
 
 table = wing.weights_at(inside)
 assert np.allclose(table @ values, linear)
@@ -54,15 +54,15 @@ reach = np.linalg.norm(runs[table.indices] - inside[of_query], axis=1)
 print(f"{np.diff(table.indptr).max()} runs a query, {reach.mean():.2f} away on average")
 
 # %%
-# A common mistake is to expect values in the corners of the cube. In 10-D, the hull of 3,000 points fills only a small part
-# of the cube. Outside the hull, values are NaN, and ``Linear`` proves that these queries are outside.
+# A common mistake is to expect values in the corners of the cube. In 10-D, the hull of 3,000 points fills only a
+# small part of the cube. Outside the hull, values are NaN, and ``Linear`` proves that these queries are outside.
 
 corners = random.random((500, 10))
 print(f"{np.isnan(wing(corners)).mean():.0%} of uniform queries are outside the hull")
 
 # %%
-# Plot sections through the middle of the cube. The gradient of the interpolant is constant in each simplex, so each curve
-# is piecewise linear.
+# Plot sections through the middle of the cube. The gradient of the interpolant is constant in each simplex, so each
+# curve is piecewise linear.
 
 along = np.linspace(0.2, 0.8, 400)
 figure, (left, right) = plt.subplots(1, 2, figsize=(9.4, 3.8), layout="constrained")

@@ -41,8 +41,7 @@ with rasterio.open(tin.to_raster(0.5, Path(folder.name, "dem.tif"))) as dem:
     heights = dem.read(1, masked=True)
 
 # %%
-# Contours are the same lines as those of one surface in memory: none of them ends at the side of a
-# tile.
+# The contours are the same lines as those of one surface in memory: no line ends at the border of a tile.
 
 contours = tin.contours(interval=1, min_length=15, simplify=0.2)
 print(contours)

@@ -29,7 +29,7 @@ def exact(x):
 
 
 def solve(mesh):
-    """Return the values of linear elements at the points, and their error in the mean square."""
+    """Return the values of linear elements at the points, and their error in the L2 norm."""
     basis = skfem.Basis(mesh.to_skfem(), skfem.ElementTriP1(), intorder=6)
     given = basis.get_dofs().flatten()
     values = basis.zeros()
@@ -86,7 +86,7 @@ for name, rounds in (("adaptive", adaptive), ("even", even)):
     )
 
 # %%
-# A common mistake is to pass the triangles that were marked on another mesh. Triangle numbers change with each
+# A common mistake is to pass triangles that were marked on a different mesh. Triangle numbers change with each
 # refinement, and the number of values no longer matches; compute the indicators again.
 
 try:

@@ -3,8 +3,8 @@ Poisson's equation on an island
 ===============================
 
 The outline of Gotland is meshed at four sizes. On each mesh, linear elements of scikit-fem solve
-:math:`-\\Delta u = f` with *u* given on the coast, for a known solution. The root mean square error must
-decrease with the square of the size.
+:math:`-\\Delta u = f` with *u* given on the coast, for a known solution. The error in the L2 norm
+must decrease with the square of the size.
 
 Install: ``pip install "delone[fem,plot]"``.
 """
@@ -56,7 +56,7 @@ def load(x):
 
 
 def solve(mesh):
-    """Solve on one mesh; return the values at the vertices and the error in the mean square."""
+    """Solve on one mesh; return the values at the vertices and the error in the L2 norm."""
     basis = skfem.Basis(mesh.to_skfem(), skfem.ElementTriP1())
     stiffness = laplace.assemble(basis)
     right = skfem.LinearForm(lambda v, w: load(w.x) * v).assemble(basis)
@@ -84,7 +84,7 @@ print(f"order of convergence {order:.2f}")
 assert 1.8 < order < 2.3
 
 # %%
-# The coarsest mesh, the solution on the finest, and the errors.
+# The coarsest mesh, the solution on the finest one, and the errors.
 
 figure, (left, middle, right) = plt.subplots(1, 3, figsize=(10, 4.4), layout="constrained")
 left.triplot(mesh.to_matplotlib(), color="0.3", linewidth=0.5)

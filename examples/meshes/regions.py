@@ -17,7 +17,7 @@ import delone
 
 # %%
 # Points and segments, with a marker for each segment: 1 insulated, 2 cold, 3 the pipe. The interface between the
-# materials has the marker 9; it divides the plate into two regions, each labeled by a seed inside.
+# materials has the marker 9. It divides the plate into two regions, each labeled by a seed inside it.
 
 INSULATED, COLD, PIPE, INTERFACE = 1, 2, 3, 9
 corners = [(0, 0), (4, 0), (4, 2), (0, 2), (2.2, 0), (1.6, 2)]
@@ -56,7 +56,7 @@ conductivity[fem.subdomains[f"region {STEEL}"]] = 50
 
 @skfem.BilinearForm
 def conduction(u, v, w):
-    """Return the heat flow between two functions."""
+    """Return the bilinear form of heat conduction."""
     return w["conductivity"] * dot(grad(u), grad(v))
 
 

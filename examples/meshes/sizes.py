@@ -37,7 +37,7 @@ print(f"{uniform.nsimplex:,} triangles of one size, {graded.nsimplex:,} of growi
 print(graded.report)
 
 # %%
-# Points can still move to better positions: smoothing increases typical angles, and the bound of 30 degrees still
+# Points can be moved to better positions: smoothing increases typical angles, and the bound of 30 degrees still
 # holds.
 
 smooth = graded.smooth(10, "odt")
@@ -49,7 +49,7 @@ for name, mesh in (("refined", graded), ("smoothed", smooth)):
     )
 
 # %%
-# Coarsening removes points again where the bound on angles allows it, here in the right half. One call removes no two
+# Coarsening removes points where the bound on angles allows it, here in the right half. A single call never removes two
 # neighbors; repeat it to remove more.
 
 coarse = uniform

@@ -16,7 +16,7 @@ from delone.graphs import gabriel, nearest_neighbors
 
 # %%
 # Soundings off Baja California, in kilometers around the middle of the survey. Almost 2,000 rows repeat the position
-# of another one; they are reported, and the graph joins the others.
+# of another row. They are reported, and the graph connects the other rows.
 
 survey = baja()
 middle = survey.points.mean(axis=0)
@@ -33,7 +33,7 @@ distinct = np.setdiff1d(np.arange(len(points)), graphs["Gabriel"].duplicates[:, 
 
 
 def moran(graph, z):
-    """Return Moran's I with weights of one."""
+    """Return Moran's I with all weights equal to one."""
     w = graph.subgraph(distinct).to_csr(weights="binary")
     deviation = z[distinct] - z[distinct].mean()
     return len(distinct) / w.sum() * (deviation @ (w @ deviation)) / (deviation @ deviation)

@@ -3,7 +3,7 @@ Separate buildings in a lidar cloud
 ===================================
 
 Points that can be reached from each other in small steps belong together. The minimum spanning tree contains all
-these steps: after its long edges are removed, each part is a building.
+necessary steps: after its long edges are removed, each part is a building.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -15,7 +15,7 @@ from delone.datasets import ahn3
 from delone.graphs import minimum_spanning_tree
 
 # %%
-# The points of roofs and walls in 3-D, as classified by the survey (class 6).
+# The points on roofs and walls in 3-D, as classified in the survey (class 6).
 
 survey = ahn3()
 roof = survey.attributes["classification"] == 6
@@ -25,8 +25,8 @@ print(tree)
 print(f"99 % of the steps are below {np.percentile(tree.lengths, 99):.2f} m")
 
 # %%
-# Two buildings are more than 2 m apart, and no step within one is longer. Smaller parts are antennas, birds and points
-# of the wrong class.
+# Buildings are more than 2 m apart, and no step within a building is longer. Smaller parts are antennas, birds and
+# points of the wrong class.
 
 parts = tree.prune(max_length=2.0)
 label = parts.components()

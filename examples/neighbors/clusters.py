@@ -15,7 +15,7 @@ from delone.cluster import DBSCAN, HDBSCAN
 from delone.datasets import ahn3
 
 # %%
-# The points that the survey classified as buildings (class 6), in 3-D. A building has at least 300 points.
+# The points classified as buildings in the survey (class 6), in 3-D. A building has at least 300 points.
 
 survey = ahn3()
 roof = survey.attributes["classification"] == 6

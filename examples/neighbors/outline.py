@@ -15,7 +15,7 @@ from delone import AlphaComplex, concave_hull
 from delone.datasets import ahn3
 
 # %%
-# The points of roofs and walls, as classified by the survey (class 6), seen from above. Alpha is a squared radius:
+# The points on roofs and walls, as classified in the survey (class 6), seen from above. Alpha is a squared radius:
 # here the radius is 1 m.
 
 survey = ahn3()

@@ -26,7 +26,7 @@ print(f"length / sqrt(n) = {constant:.3f}")
 assert 0.62 < constant < 0.66
 
 # %%
-# The tree of fewer points, on their triangulation.
+# The tree of fewer points, drawn over their triangulation.
 
 few = uniform(400, seed=3)
 figure, ax = plt.subplots(figsize=(6, 6), layout="constrained")

@@ -39,7 +39,7 @@ plt.show()
 
 # %%
 # A common mistake is to pass all triangles to ``triplot``: it draws 600,000 edges, takes seconds, and shows a black
-# square. Another one is ``z`` of the wrong length; the error says how many values are needed:
+# square. Another is to pass ``z`` with the wrong length; the error says how many values are needed:
 
 try:
     mesh.plot(z=survey.z[:1000])

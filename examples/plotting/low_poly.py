@@ -2,8 +2,8 @@
 Low-poly picture of an image
 ============================
 
-Points where an image has detail, triangulated, each triangle filled with its mean color: the low-poly style of posters
-and icons.
+Points are placed where an image has detail and triangulated, and each triangle is filled with its mean color: the
+low-poly style of posters and icons.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -14,7 +14,7 @@ import numpy as np
 from delone import Delaunay
 
 # %%
-# The image: a landscape made of formulas, so that the example needs no file. To use your own image, read it with
+# The image is a landscape computed from formulas, so the example needs no file. To use your own image, read it with
 # ``plt.imread(path)[..., :3]``.
 
 height, width = 240, 360
@@ -28,8 +28,8 @@ for base, swing, waves, color in [*ridges, (215, 8, 0.110, (0.13, 0.15, 0.25))]:
     picture = np.where((y > ridge)[..., None], color, picture)
 
 # %%
-# Detail is where colors change. Points are drawn with a probability that increases with the detail. A few are drawn
-# anywhere, so that plain areas also have triangles. The corners of the image complete the hull.
+# Detail is where colors change. Points are drawn at random, with a probability that increases with the detail. A few
+# are drawn anywhere, so that plain areas also have triangles. The corners of the image complete the hull.
 
 change = np.hypot(*np.gradient(picture.mean(axis=2)))
 share = (change / change.sum() + 0.25 / change.size).ravel()
@@ -66,5 +66,5 @@ plt.show()
 
 # %%
 # A common mistake is to draw faces without edges: white lines remain between them, because the renderer smooths each
-# border separately. Edges in the color of the face, 0.4 wide, close the gaps. Another one is the direction of y: rows
-# of an image count from the top, hence the reversed limits.
+# border separately. Edges in the color of the face, 0.4 wide, close the gaps. Another mistake is the direction of y:
+# rows of an image are counted from the top, so the limits are reversed.

@@ -2,8 +2,9 @@
 Compute the gamut of a printer: inks within limits, and the colors that they print
 ==================================================================================
 
-A printer mixes four inks, each from 0 to 1. Paper absorbs only a limited total amount of ink, so the printable recipes are
-part of a cube in 4-D: an intersection of half-spaces. The colors of these recipes fill a solid in 3-D, the gamut.
+A printer mixes four inks, each from 0 to 1. Paper absorbs only a limited total amount of ink, so the printable
+recipes are a part of the cube in 4-D: an intersection of half-spaces. The colors of these recipes fill a solid in
+3-D, the gamut.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -31,9 +32,9 @@ print(f"{len(allowed.intersections)} corners")
 print("redundant limits:", np.setdiff1d(np.arange(len(limits)), allowed.dual_vertices).tolist())
 
 # %%
-# ``dual_facets`` lists the limits that meet at each corner: four at most corners. This is decided exactly for the given
-# doubles 2.4 and 1.8. The volume of the hull of the corners is the share of all recipes that are printable, and
-# ``contains`` tests whether a recipe is one of them.
+# ``dual_facets`` lists the limits that meet at each corner: at most corners, four. This is decided exactly for the
+# given doubles 2.4 and 1.8. The volume of the hull of the corners is the fraction of all recipes that are printable,
+# and ``contains`` tests whether a recipe is one of them.
 
 print("limits at each corner:", np.unique([len(facet) for facet in allowed.dual_facets]).tolist())
 recipes = ConvexHull(allowed.intersections)
@@ -64,8 +65,8 @@ with_limits, without = ConvexHull(lab(printable)), ConvexHull(lab(steps))
 print(f"the limits cost {100 * (1 - with_limits.volume / without.volume):.0f} % of the gamut")
 
 # %%
-# Which colors of an image can be printed? A common mistake is to test each of the three coordinates against its range. This
-# accepts many colors that cannot be printed, because the gamut is far from a box.
+# Which colors of an image can be printed? A common mistake is to test each of the three coordinates against its
+# range. This accepts many colors that cannot be printed, because the gamut is far from a box.
 
 low, high = with_limits.min_bound, with_limits.max_bound
 colors = rng.uniform(low, high, (20_000, 3))

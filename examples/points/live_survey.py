@@ -2,9 +2,9 @@
 A survey in progress: edit points and breaklines, and undo
 ==========================================================
 
-A survey is triangulated while it is measured: shots come in batches, a curb is drawn as a breakline, and a wrong shot
-is removed with the line that ends there. Each group of changes is one edit, which other readers see all at once
-(:class:`~delone.Dynamic`). Heights are stored by handle, so they stay correct whatever is inserted and removed.
+A survey is triangulated while it is measured: points arrive in batches, a curb is drawn as a breakline, and a wrong
+point is removed with the line that ends there. Each group of changes is one edit, which other readers see all at once
+(:class:`~delone.Dynamic`). Heights are stored by handle, so they stay correct whatever is inserted or removed.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -47,7 +47,7 @@ with live.edits() as draft:
 print(f"{len(live)} points, {len(live.segment_handles)} lines, {live.nsimplex} triangles")
 
 # %%
-# One shot was wrong: the lines that end there are removed with it. A snapshot is taken first, so that the removal can
+# One point was wrong. It is removed with the lines that end there. A snapshot is taken first, so that the removal can
 # be undone. A common mistake is to index heights with rows of ``points``, which change when points are removed;
 # handles do not change.
 
@@ -61,7 +61,7 @@ live.restore(before)
 assert wrong in live
 
 # %%
-# With the curbs as breaklines, the road has its edges.
+# With the curbs as breaklines, the edges of the road are sharp.
 
 last = live.arrays(heights)
 figure, axes = plt.subplots(ncols=2, figsize=(9, 4.4), layout="constrained", sharey=True)

@@ -2,9 +2,9 @@
 Map coordinates: points that SciPy loses
 ========================================
 
-A square kilometer in UTM coordinates, rounded to millimeters, triangulated by SciPy and by delone. The coordinates
-are large compared with the distances between the points. SciPy silently drops some points; in the result of delone,
-every distinct point is a vertex. Both results are checked with exact predicates.
+Points in a square kilometer, in UTM coordinates rounded to millimeters, are triangulated by SciPy and by delone. The
+coordinates are large compared with the distances between the points. SciPy silently drops some points; in the result
+of delone, every distinct point is a vertex. Both results are checked with exact predicates.
 
 Install: ``pip install "delone[plot]" scipy``.
 """

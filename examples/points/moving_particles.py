@@ -2,7 +2,7 @@
 Moving particles: update fields from what changes
 =================================================
 
-Nine hundred particles relax under their neighbors' repulsion while a flow stirs them, for a thousand steps. Their
+Nine hundred particles repel their neighbors while a flow stirs them, for a thousand steps. Their
 triangulation is updated in place (:class:`~delone.Dynamic`), and the number of neighbors of each particle is updated
 from the triangles that were removed and added, without processing the others.
 
@@ -23,14 +23,14 @@ np.add.at(around, live.simplices, 1)  # no handle is ever removed, so handles ar
 
 
 # %%
-# Two vortices rotate in opposite directions, and particles that are closer than their share of the square repel each
-# other. The neighbors are those in the current triangles.
+# Two vortices rotate in opposite directions, and particles that are too close for their density repel each other.
+# Neighbors are particles that share an edge of the current triangulation.
 
 REACH = 1.1 / np.sqrt(len(particles))
 
 
 def stirred(p: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Return where particles are after one step."""
+    """Return the positions of the particles after one step."""
     x, y = p.T
     flow = np.column_stack(
         (-np.sin(2 * np.pi * x) * np.cos(np.pi * y), 2 * np.cos(2 * np.pi * x) * np.sin(np.pi * y))
@@ -58,7 +58,7 @@ print(f"{np.mean(replaced):.0f} of {live.nsimplex} triangles change in a step")
 
 # %%
 # The field that was updated from the changes equals a new count. A common mistake is to expect that ``changes`` lists
-# *all* triangles whose corners moved: it lists those that join different particles. Values that depend on
+# *all* triangles whose corners moved: it lists only those that connect different particles. Values that depend on
 # coordinates, such as areas, change wherever particles move.
 
 fresh = np.zeros(len(particles), dtype=int)

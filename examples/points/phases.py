@@ -2,9 +2,9 @@
 Find stable compounds: the phase diagram of four elements from a convex hull
 ============================================================================
 
-A compound is stable if no mixture of other compounds with the same composition has a lower energy. If energy is plotted
-over composition, the stable compounds are the vertices of the lower convex hull. With four elements, this is a hull in 4-D:
-three atomic fractions and an energy.
+A compound is stable if no mixture of other compounds with the same composition has a lower energy. If energy is
+plotted against composition, the stable compounds are the vertices of the lower convex hull. With four elements, this
+is a hull in 4-D: three atomic fractions and an energy.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -33,17 +33,18 @@ def formula(row):
 
 
 # %%
-# The four fractions add up to one, so one column is redundant: leave it out. A common mistake is to keep all four. Up to
-# the rounding of thirds and sevenths, the points then lie in a flat, and the shape of the hull is rounding error.
+# The four fractions add up to one, so one column is redundant: leave it out. A common mistake is to keep all four.
+# Except for the rounding of thirds and sevenths, the points then lie in a flat, and the hull consists of rounding
+# errors.
 
 print(f"sums other than 1: {(shares.sum(axis=1) != 1).sum()} of {len(shares)}")
 hull = ConvexHull(np.column_stack((shares[:, :3], energy)))
 print(hull)
 
 # %%
-# The lower facets are those whose outer normal points toward lower energies. The vertices of a lower facet are phases in
-# equilibrium, and all of them are stable. (The facets over the faces of the composition tetrahedron are vertical up to
-# rounding, and are left out.)
+# The lower facets are those whose outer normal points toward lower energies. The vertices of a lower facet are phases
+# in equilibrium, and all of them are stable. (The facets over the faces of the composition tetrahedron are vertical
+# up to rounding, and are left out.)
 
 lower = hull.equations[:, 3] < -1e-9
 phases = hull.simplices[lower]
@@ -52,8 +53,8 @@ print(f"{len(stable)} stable phases, {len(phases)} mixtures of four phases")
 print(", ".join(formula(atoms[k]) for k in stable))
 
 # %%
-# The height of a candidate above the hull is the energy that is released when it decomposes. The lower hull is the maximum
-# of the planes of its facets. Candidates within about 0.05 eV of it are worth a second look.
+# The height of a candidate above the hull is the energy that is released when it decomposes. The lower hull is the
+# maximum of the planes of its facets. Candidates within about 0.05 eV of it are worth a second look.
 
 normal, offset = hull.equations[lower, :4], hull.equations[lower, 4]
 planes = -(shares[:, :3] @ normal[:, :3].T + offset) / normal[:, 3]
@@ -63,8 +64,8 @@ near = np.setdiff1d(np.flatnonzero(above < 0.05), stable)
 print("nearly stable:", ", ".join(f"{formula(atoms[k])} ({1000 * above[k]:.0f} meV)" for k in near))
 
 # %%
-# What does a given composition decompose into? The phases are the vertices of the facet whose plane is highest there, and
-# their fractions are the solution of a linear system.
+# What does a given composition decompose into? The phases are the vertices of the facet whose plane is highest there,
+# and their fractions are the solution of a linear system.
 
 sought = np.array([0.3, 0.15, 0.12, 0.43])
 heights = -(normal[:, :3] @ sought[:3] + offset) / normal[:, 3]
@@ -74,8 +75,8 @@ assert (parts > -1e-12).all()
 print(" + ".join(f"{p:.2f} {formula(atoms[k])}" for p, k in zip(parts, corners, strict=True)))
 
 # %%
-# Compositions are points in a tetrahedron with an element at each corner. Lines connect phases that coexist in equilibrium.
-# Gray points are candidates that are not stable.
+# Compositions are points in a tetrahedron with an element at each corner. Lines connect phases that coexist in
+# equilibrium. Gray points are candidates that are not stable.
 
 place = np.array([[0, 0, 0], [1, 0, 0], [0.5, 0.75**0.5, 0], [0.5, 0.75**0.5 / 3, (2 / 3) ** 0.5]])
 at = shares @ place

@@ -2,8 +2,9 @@
 A strip of two metals that bends
 ================================
 
-Steel and aluminum, joined and heated, bend, because aluminum expands more. Both are one surface with a wall between
-them, two seeds label the materials, and elements of second order give the curvature of Timoshenko's formula.
+A strip of steel and aluminum bends when it is heated, because aluminum expands more. One surface with a wall inside
+encloses both metals, two seeds label the materials, and second-order elements give the curvature of Timoshenko's
+formula.
 
 Install: ``pip install "delone[fem,pyvista]" scipy``.
 """
@@ -17,8 +18,8 @@ from skfem.helpers import ddot, div, eye, sym_grad, trace
 import delone
 
 # %%
-# A rectangle is meshed and extruded twice, so both bodies have the same triangles in their common wall. There each gives
-# its own: the mesh has them once.
+# A rectangle is meshed and extruded twice, so both bodies have the same triangles in their common wall. Both pass
+# these triangles, and the mesh contains them once.
 
 LENGTH, WIDTH, LAYER = 10.0, 1.0, 0.25
 STEEL, ALUMINUM = 0, 1
@@ -43,8 +44,8 @@ volumes = [mesh.volumes[mesh.region == label].sum() for label in (STEEL, ALUMINU
 assert np.allclose(volumes, LENGTH * WIDTH * LAYER)
 
 # %%
-# Values by ``mesh.region`` are values of elements in scikit-fem: Young's modulus in GPa and expansion in 1/K. One end is
-# held, and the strip is heated by 100 K.
+# Values indexed by ``mesh.region`` are element values in scikit-fem: Young's modulus in GPa and expansion in 1/K. One
+# end is clamped, and the strip is heated by 100 K.
 
 YOUNG, EXPANSION = np.array([200.0, 70.0]), np.array([12e-6, 23e-6])
 POISSON, HEATED = 0.3, 100.0
@@ -60,14 +61,14 @@ strain = EXPANSION[mesh.region][:, None] * ones * HEATED
 
 @skfem.BilinearForm
 def stiffness(u, v, w):
-    """Return the work of stresses."""
+    """Return the work of the elastic stresses."""
     strains = sym_grad(u)
     return ddot(w.lam * eye(trace(strains), 3) + 2 * w.mu * strains, sym_grad(v))
 
 
 @skfem.LinearForm
 def heat(v, w):
-    """Return the work of what expansion would need."""
+    """Return the work of the stresses that would prevent the expansion."""
     return (3 * w.lam + 2 * w.mu) * w.strain * div(v)
 
 
@@ -83,9 +84,10 @@ u[inner] = splu(
 ).solve(right)
 
 # %%
-# Degrees of freedom are three for each point and then for each edge. Away from the ends, the deflection is a parabola,
-# and its curvature is that of :math:`6 \\Delta\\alpha\\, \\Delta T (1 + m)^2 / (h (3 (1 + m)^2 + (1 + mn)(m^2 + 1/mn)))` with
-# thicknesses in the ratio :math:`m = 1` and moduli in the ratio :math:`n`.
+# There are three degrees of freedom for each point, then three for each edge. Away from the ends, the deflection is a
+# parabola, and its curvature is
+# :math:`6 \\Delta\\alpha\\, \\Delta T (1 + m)^2 / (h (3 (1 + m)^2 + (1 + mn)(m^2 + 1/mn)))` with thicknesses in the
+# ratio :math:`m = 1` and moduli in the ratio :math:`n`.
 
 moved = u.reshape(-1, 3)
 nodes = mesh.to_pyvista(order=2).points
@@ -98,7 +100,7 @@ print(f"{len(u):,} unknowns; curvature {curvature:.6f}, by the formula {expected
 assert abs(curvature / expected - 1) < 0.02
 
 # %%
-# The strip, bent ten times as far, with its materials.
+# The strip and its materials, with the displacement enlarged ten times.
 
 grid = mesh.to_pyvista(order=2)
 grid.points = nodes + 10 * moved

@@ -3,7 +3,7 @@ Elasticity of a bracket, and the error
 ======================================
 
 A bracket is held at one hole and pulled down at the other. Its surface is filled with tetrahedra, scikit-fem computes
-how far it bends, with elements of first and second order, and a finer mesh shows the error of both.
+how far it bends with first- and second-order elements, and a finer mesh shows the error of both.
 
 Install: ``pip install "delone[fem,pyvista]" scipy``.
 """
@@ -17,7 +17,7 @@ from skfem.models.elasticity import lame_parameters, linear_elasticity
 import delone
 
 # %%
-# The surface: an L with two holes is meshed in 2-D and extruded. :doc:`/tutorials/part` begins with an STL file.
+# For the surface, an L with two holes is meshed in 2-D and extruded. :doc:`/tutorials/part` begins with an STL file.
 
 THICKNESS, RADIUS, SIZE = 0.6, 0.5, 0.5
 HELD, PULLED = 1, 2
@@ -40,7 +40,7 @@ for marker, center in CENTERS.items():
     markers[(np.abs(distance - RADIUS) < 1e-6).all(axis=0)] = marker
 
 # %%
-# Tetrahedra of a given size. Extruded faces have no common orientation, so everything that they enclose is filled.
+# Tetrahedra of a given size. Extruded faces are not consistently oriented, so everything that they enclose is filled.
 
 mesh = delone.tetrahedralize(
     points, faces, inside="enclosed", face_markers=markers, boundary="surface", size=SIZE
@@ -54,7 +54,7 @@ assert mesh.validate()
 
 
 def rim(solid, marker):
-    """Return the facets of a hole; refined meshes have no boundaries of their own."""
+    """Return the facets of a hole; refined meshes have no named boundaries."""
     x, y = CENTERS[marker]
     return solid.facets_satisfying(
         lambda at: np.hypot(at[0] - x, at[1] - y) < RADIUS, boundaries_only=True
@@ -96,14 +96,14 @@ for name, solid, element in (
     print(f"{name}: {len(u):,} unknowns, {errors[name]:.1%} too stiff")
 
 # %%
-# Second order is far better than first order with as many unknowns. A common mistake is to trust first order in bending:
-# such elements are too stiff, and nothing warns of it.
+# Second order is far better than first order with the same number of unknowns. A common mistake is to trust first-order
+# elements in bending: they are too stiff, and there is no warning.
 
 assert 4 * errors["second order"] < errors["first order, refined"] < errors["first order"]
 
 # %%
-# The deformed bracket, including the nodes in the middle of edges. scikit-fem has three degrees of freedom for each point,
-# then three for each edge, in the order of the nodes of :meth:`delone.TetMesh.to_pyvista`.
+# The deformed bracket, including the nodes in the middle of edges. scikit-fem has three degrees of freedom for each
+# point, then three for each edge, in the order of the nodes of :meth:`delone.TetMesh.to_pyvista`.
 
 grid = mesh.to_pyvista(order=2)
 moved = u.reshape(-1, 3)

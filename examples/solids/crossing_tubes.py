@@ -16,7 +16,7 @@ import delone
 
 
 def tube(radius, length, sides=36, rings=24):
-    """Return a closed tube along the x-axis, its normals outward."""
+    """Return a closed tube along the x-axis, with outward normals."""
     turn = 2 * np.pi * np.arange(sides) / sides
     circle = radius * np.column_stack((np.cos(turn), np.sin(turn)))
     along = np.linspace(-length / 2, length / 2, rings)
@@ -51,7 +51,7 @@ assert check.ncrossing == len(check.pairs)
 assert check.ncomponents == 2
 
 # %%
-# The faces that cross, in red. They show where a repair must cut.
+# The faces that cross, in red. They show where the surface must be cut to repair it.
 
 crossing = np.zeros(len(rows), dtype=bool)
 crossing[check.pairs.ravel()] = True

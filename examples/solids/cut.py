@@ -2,7 +2,7 @@
 A cut through tetrahedra
 ========================
 
-The tetrahedra of points in a box, colored by volume. Half of them are omitted, so that the inside is visible.
+The tetrahedra of points in a box, colored by volume. Half of them are omitted to show the inside.
 
 Install: ``pip install "delone[pyvista]"``.
 """

@@ -16,7 +16,7 @@ import delone
 
 # %%
 # The mesh fills the convex hull of the points, and no points are added. So the points on the sphere are as dense as
-# those inside: a spiral on the sphere, and a slightly jittered lattice within. Lattice points next to the sphere are
+# those inside: a spiral on the sphere, and a slightly jittered lattice inside. Lattice points next to the sphere are
 # left out, because they would make flat tetrahedra that cannot be improved.
 
 SIZE = 0.12

@@ -41,7 +41,7 @@ def prism(triangles):
     points = np.concatenate([np.column_stack((flat.points, np.full(n, z))) for z in levels])
     edges = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     a, b = edges[~np.isin(edges @ (n, 1), edges @ (1, n))].T
-    # Both prisms must have the same diagonals in their common wall; otherwise, faces cross.
+    # Both prisms must have the same diagonals in their common wall; otherwise, their faces cross.
     up = a < b
     wall = np.concatenate(
         (
@@ -59,9 +59,9 @@ for name, label in {"block": BLOCK, "plug": PLUG}.items():
     meshio.Mesh(points, [("triangle", faces)]).write(folder / f"{name}.stl", binary=False)
 
 # %%
-# Both surfaces are combined: equal points are one vertex, and the common wall separates two regions, which seeds label. A
-# common mistake is to give no size: then nearly all vertices are on the surface, and the solution has no values
-# inside. With a size, points are added between the faces, and slivers are removed.
+# Both surfaces are combined: equal points are one vertex, and the common wall separates two regions, which are
+# labeled by seeds. A common mistake is to give no size: then nearly all vertices are on the surface, and the solution
+# has no values inside. With a size, points are added between the faces, and slivers are removed.
 
 files = [delone.io.read_mesh(folder / f"{name}.stl") for name in ("block", "plug")]
 first, second = (np.column_stack((file.points, file.z)) for file in files)
@@ -76,8 +76,8 @@ assert bare.nadded < 20
 assert mesh.validate()
 
 # %%
-# Heat is produced in the plug, and the sides of the block are kept at zero. Rows of points that are not vertices, such as
-# the duplicates, are left out of the system.
+# Heat is produced in the plug, and the sides of the block are kept at zero. Rows of points that are not vertices,
+# such as the duplicates, are left out of the system.
 
 basis = skfem.Basis(mesh.to_skfem(), skfem.ElementTetP1())
 ones = np.ones_like(basis.dx)

@@ -26,8 +26,8 @@ print(measured)
 
 # %%
 # Heights of lidar points scatter by a few centimeters. On flat ground, contour lines follow this scatter; plotting
-# them without smoothing is a common mistake. So each height is replaced, a few times, by the mean of the point and
-# its neighbors in the triangulation.
+# them without smoothing is a common mistake. So each height is replaced by the mean of the point and its neighbors in
+# the triangulation, a few times.
 
 indptr, indices = measured.vertex_neighbor_vertices
 count = np.diff(indptr)
@@ -55,7 +55,7 @@ for ax, tin, title in zip(
     ax.set(title=title, xlabel="m", aspect="equal", xlim=(0, 100), ylim=(0, 100))
 
 # %%
-# Index contours are labeled where they are straightest, if they are long enough. For a map in a GIS,
+# Index contours that are long enough are labeled where they are straightest. For a map in a GIS, use
 # ``contours.to_geopandas().to_file(...)``, and ``labels.to_geopandas()`` for the labels with their angles.
 
 print(labels)

@@ -2,7 +2,7 @@
 Cross sections of a design
 ==========================
 
-Sections across an axis every few meters, of the ground and of a design in one drawing: what a contractor stakes out.
+Sections across an axis every few meters, with the ground and a design in one drawing, as a contractor stakes them out.
 
 Install: ``pip install "delone[plot,geo,dxf]"``.
 """
@@ -25,8 +25,9 @@ pad = [(64.0, 32), (79, 28), (84, 46), (69, 50)]
 after = before.embank(pad, 1.6, cut=1 / 2, fill=1 / 3)
 
 # %%
-# Stations every 4 m, 14 m to both sides. The last one is the end of the axis, whatever its distance. Each section has a
-# point wherever it crosses an edge of one of the surfaces, so differences between both are exact in between.
+# Stations every 4 m, 14 m to both sides. The last station is the end of the axis, whatever its distance. Each
+# section has a point wherever it crosses an edge of either surface, so differences between the surfaces are also exact
+# between the points.
 
 axis = [(60.0, 43), (75, 39), (88, 35)]
 sections = before.cross_sections(
@@ -38,7 +39,7 @@ table["depth"] = table["design"] - table["ground"]
 print(table.groupby("station")["depth"].agg(["min", "max"]).round(2))
 
 # %%
-# A common mistake is to measure offsets along a bend of the axis: at a corner, the section halves the angle.
+# A common mistake is to measure offsets along a bend of the axis: at a corner, the section bisects the angle.
 
 sections.figure(columns=3)
 
@@ -50,7 +51,7 @@ sections.plot(ax, colors="firebrick")
 ax.set(title="Sections in plan", xlabel="m", ylabel="m", xlim=(48, 100), ylim=(15, 65))
 
 # %%
-# The same as a drawing for CAD, with frames, labels and a layer for each surface.
+# The same sections as a drawing for CAD, with frames, labels and a layer for each surface.
 
 with tempfile.TemporaryDirectory() as folder:
     drawing = Path(folder) / "sections.dxf"

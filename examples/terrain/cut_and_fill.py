@@ -21,8 +21,8 @@ points = np.column_stack((survey.points - survey.points.min(axis=0), survey.z))[
 before = TIN.from_points(points, max_edge=6)
 
 # %%
-# The pad is 1.6 m high. Slopes rise to the ground by 1 : 2 in cut and fall to it by 1 : 3 in fill; where they meet
-# the ground is the daylight line. Corners are rounded.
+# The pad is 1.6 m high. Slopes rise to the ground at 1 : 2 in cut and fall to it at 1 : 3 in fill. They meet the
+# ground at the daylight line. Corners are rounded.
 
 pad = np.array([(64.0, 32), (79, 28), (84, 46), (69, 50)])
 after = before.embank(pad, 1.6, cut=1 / 2, fill=1 / 3)
@@ -31,7 +31,8 @@ print(after)
 print(volume)
 
 # %%
-# Bisection finds the height of the pad at which cut and fill are equal: then earth is moved only on the site.
+# Bisection finds the height of the pad at which cut and fill are equal: then no earth is brought in or taken
+# away.
 
 low, high = 1.0, 2.5
 for _ in range(8):
@@ -52,8 +53,8 @@ table = before.volumes_to(after, halves).to_pandas({"half": ["west", "east"]})
 print(table[["half", "cut", "fill", "area", "coverage"]].round(2).to_string(index=False))
 
 # %%
-# A pad too close to the edge of the survey cannot be built: the error says where. A common mistake is to build a
-# design on a clip that is as large as the pad.
+# A pad too close to the edge of the survey cannot be built: the error says where. A common mistake is to
+# clip the survey to the pad, which leaves no room for the slopes.
 
 try:
     before.embank(pad + np.array([12, 0]), 8.0, slope=1 / 3)

@@ -2,8 +2,8 @@
 Ground points of lidar
 ======================
 
-Roofs and trees are removed from a lidar survey, by positions and heights alone. The picture shows what is ground, and
-the surface of it below the houses.
+Roofs and trees are removed from a lidar survey, using only positions and heights. The picture shows the ground points,
+and the ground surface below the houses.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -21,7 +21,7 @@ print(found)
 print("points of each pass:", found.added)
 
 # %%
-# The sample has classes. Type I errors are ground that is missed, those of type II are other
+# The points of the sample are classified. Type I errors are ground points that are missed; type II errors are other
 # points that are mistaken for ground. A common mistake is a cell that is narrower than a roof.
 
 reference = survey.attributes["classification"] == 2
@@ -29,7 +29,7 @@ print(found.compare(reference))
 print("cells of 5 m:", ground(points, cell=5).compare(reference))
 
 # %%
-# Left, the points by their height; middle, those that are ground; right, the hillshade of their triangulation.
+# Left: all points, by height. Middle: the ground points. Right: the hillshade of their triangulation.
 
 figure, axes = plt.subplots(1, 3, figsize=(11, 4), layout="constrained", sharex=True, sharey=True)
 low, high = np.percentile(points[:, 2], (1, 99))

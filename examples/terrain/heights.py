@@ -2,7 +2,7 @@
 Heights between lidar points
 ============================
 
-A raster with a resolution of half a meter over a lidar tile: each node gets the height of the triangle at its
+A raster with a resolution of half a meter covers a lidar tile. Each node gets the height of the triangle at its
 position.
 
 Install: ``pip install "delone[plot]"``.

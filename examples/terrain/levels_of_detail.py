@@ -20,7 +20,7 @@ points = np.column_stack((survey.points - survey.points.min(axis=0), survey.z))[
 tin = TIN.from_points(points, max_edge=6, duplicates="min")
 
 # %%
-# One run inserts points into a coarse surface, always the point that is farthest from it. Each prefix of that order
+# One run inserts points into a coarse surface, always the point that is farthest from it. Each prefix of the sequence
 # is a level of detail; its error is rounded upward, so that it holds for all points.
 
 levels = tin.simplification(max_error=0.05)

@@ -23,9 +23,9 @@ print(tin)
 print(profile)
 
 # %%
-# The profile has a point at each edge that the line crosses: it is the surface itself, not a sample of it. Where the
-# line leaves the surface, over the canal, there is a gap. A common mistake is to triangulate without ``max_edge`` or a
-# boundary: then the surface spans the canal, and the profile has a bridge that does not exist.
+# The profile has a point at each edge that the line crosses: it follows the surface exactly and is not sampled. Where
+# the line leaves the surface, over the canal, there is a gap. A common mistake is to triangulate without ``max_edge``
+# or a boundary: then the surface spans the canal, and the profile has a bridge that does not exist.
 
 spanned = TIN.from_points(points).profile(line)
 print(f"{np.isnan(profile.z).sum()} gaps, {np.isnan(spanned.z).sum()} without max_edge")
@@ -45,7 +45,7 @@ ax.set_aspect(10)
 ax.legend(loc="upper left")
 
 # %%
-# The line of sight tests whether one point is visible from another, here from an eye height of 1.7 m. The obstruction
+# ``line_of_sight`` tests whether one point is visible from another, here from an eye height of 1.7 m. The obstruction
 # is the first vertex of the profile above the line.
 
 sight = tin.line_of_sight(line[0], line[2], height=1.7)

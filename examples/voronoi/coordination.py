@@ -2,7 +2,7 @@
 Coordination numbers in a simulation box
 ========================================
 
-Particles of a simulation have periodic boundaries: a particle that leaves on the right enters on the left. The
+The particles of a simulation have periodic boundaries: a particle that leaves on the right enters on the left. The
 neighbors of a particle are those in the periodic Delaunay triangulation. In a flat crystal each particle has six;
 others are defects.
 
@@ -15,7 +15,7 @@ import numpy as np
 from delone import Delaunay, PeriodicDelaunay, Voronoi
 
 # %%
-# A hexagonal crystal that fits into its box, with thermal noise, and with one in fifty particles missing.
+# A hexagonal crystal that fits into its box, with thermal noise, and with one particle in fifty missing.
 
 columns, rows = 32, 36
 box = np.array((columns, rows * np.sqrt(3) / 2))
@@ -26,7 +26,7 @@ kept = random.random(len(lattice)) > 0.02
 particles = (lattice[kept] + random.normal(0, 0.09, (kept.sum(), 2))) % box
 
 # %%
-# Each edge counts for both of its ends. With two periods, there are exactly three edges per particle, so the mean is
+# Each edge is counted at both of its ends. With two periods, there are exactly three edges per particle, so the mean is
 # six.
 
 mesh = PeriodicDelaunay(particles, periods=box)
@@ -49,8 +49,8 @@ order = np.abs(total) / coordination
 print(f"mean |ψ6| = {order.mean():.3f}, longest bond {np.linalg.norm(bond, axis=1).max():.2f}")
 
 # %%
-# Periodic cells in the color of the number of their neighbors. Those that cross the border are drawn in full, on one
-# of its sides.
+# Periodic cells, colored by the number of neighbors. Cells that cross the border are drawn in full, on one of its
+# sides.
 
 figure, ax = plt.subplots(figsize=(6.6, 5.6), layout="constrained")
 colors = plt.get_cmap("coolwarm", 5)

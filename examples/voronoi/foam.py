@@ -38,7 +38,7 @@ fill = np.pi * radii**2
 
 
 def cut(diagram):
-    """Return which disks a border between two cells cuts: those nearer to it than their radius."""
+    """Return which disks are cut by a border between cells: those closer to it than their radius."""
     first, second = diagram.ridge_points.T
     apart = centers[second] - centers[first]
     distance = np.linalg.norm(apart, axis=1)
@@ -56,7 +56,7 @@ for name, diagram in (("Voronoi", plain), ("power", power)):
 assert not cut(power).any()
 
 # %%
-# Disks that a border cuts are red.
+# Disks that are cut by a border are red.
 
 figure, axes = plt.subplots(1, 2, figsize=(9, 4.8), layout="constrained")
 for ax, diagram, title in zip(axes, (plain, power), ("Voronoi", "Power diagram"), strict=True):

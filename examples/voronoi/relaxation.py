@@ -40,8 +40,8 @@ for ax, diagram, title in zip(axes, (before, after), ("Random", "30 steps"), str
 plt.show()
 
 # %%
-# Stippling: with a density, sites concentrate where it is high. Here it is the darkness of a shaded ball. ``density``
-# takes an array of positions of shape (n, 2) and returns a number for each.
+# Stippling: with a density, sites concentrate where it is high. Here the density is the darkness of a shaded ball.
+# ``density`` takes an array of positions of shape (n, 2) and returns a number for each.
 
 
 def darkness(positions):

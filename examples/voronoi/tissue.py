@@ -15,7 +15,7 @@ import shapely
 from delone import Voronoi, lloyd
 
 # %%
-# Nuclei are not too close to each other: slightly relaxed random points, in an outline in micrometers.
+# Nuclei are not too close to each other, so they are slightly relaxed random points, in an outline in micrometers.
 
 angle = np.linspace(0, 2 * np.pi, 200, endpoint=False)
 radius = 100 * (1 + 0.12 * np.cos(3 * angle) + 0.05 * np.sin(5 * angle))
@@ -27,8 +27,8 @@ cells = Voronoi(nuclei, clip=outline)
 assert np.isclose(cells.cell_areas.sum(), outline.area)
 
 # %%
-# Neighbors are cells that share an edge within the outline, stored in compressed rows. Cells at the outline have lost
-# neighbors by clipping, so the statistics omit them.
+# Neighbors are cells that share an edge within the outline, stored in compressed rows. Clipping removes neighbors
+# of cells at the outline, so the statistics omit these cells.
 
 indptr, indices, lengths = cells.neighbors
 count = np.diff(indptr)

@@ -22,7 +22,7 @@ print(f"{np.count_nonzero(areas)} of {len(wells)} cells reach the region")
 print(f"areas from {areas[areas > 0].min():.2f} to {areas.max():.2f}, in all {areas.sum():.2f}")
 
 # %%
-# Each cell in the color of its area.
+# The cells, colored by area.
 
 figure, ax = plt.subplots(figsize=(7, 5), layout="constrained")
 cells.plot(ax, values=areas)
