@@ -12,7 +12,7 @@ The import registers ``.delone`` on DataArray and Dataset.
 >>> stations.delone.interp([180.0], [0.0]).item()
 2.0
 
-``ds.delone.regrid(target)`` and `Regridder` replace the cells of one grid on the sphere by those of
+``ds.delone.regrid(target)`` and `Regridder` regrid fields from one grid of cells on the sphere to
 another.
 """
 

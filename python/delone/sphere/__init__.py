@@ -4,8 +4,8 @@
 >>> sphere.Delaunay(lonlat=[(0, 90), (0, 0), (90, 0), (180, 0), (270, 0), (0, -90)])
 <Delaunay of 6 directions: 8 triangles, the whole sphere>
 
-A vector means its direction, exactly, whatever its length. In the plane, longitudes and latitudes
-are wrong at the date line and near the poles; here these are places like any other.
+A vector of any length represents exactly its direction. Planar methods for longitudes and latitudes
+give wrong results at the date line and near the poles; here, these need no special treatment.
 """
 
 from __future__ import annotations

@@ -344,7 +344,7 @@ class ConstrainedDelaunay(segments.SegmentArrays, Delaunay):
         Raises
         ------
         DirectionError
-            A latitude is beyond a pole, or a longitude has more than three turns.
+            A latitude is beyond a pole, or a longitude exceeds three turns.
         ShapeError, DtypeError
             `xi` is not a real array of shape (..., 2) or (..., 3).
 

@@ -77,7 +77,7 @@ class Delaunay(OnGlobe):
         Fewer than three directions are distinct, or all are on one great circle; ``error.chain``
         has them in order around it.
     DirectionError
-        A vector is zero, a latitude is beyond a pole, or a longitude has more than three turns;
+        A vector is zero, a latitude is beyond a pole, or a longitude exceeds three turns;
         ``error.rows`` has the first such rows.
     NonFiniteError
         A coordinate is NaN or infinite; ``error.rows`` has the first such rows.
@@ -99,7 +99,7 @@ class Delaunay(OnGlobe):
     Notes
     -----
     The triangles are those whose circle on the sphere contains no other direction: the facets of
-    the convex hull of the directions that the center sees from inside. If all points are in one
+    the convex hull of the directions whose inner side faces the center. If all points are in one
     hemisphere, facets of the hull that face the other way would span the empty part of the sphere;
     they are not triangles. Each distinct direction is a vertex, at any spacing.
 
@@ -109,7 +109,7 @@ class Delaunay(OnGlobe):
     triangulation, independent of the order and the lengths of its rows. Longitudes and latitudes
     become vectors by sines and cosines that are the same on all platforms: degrees are reduced
     exactly, points of one meridian are exactly on one great circle, and poles and the date line are
-    exact. Other grid points of one parallel tie only if they are mirror images of each other.
+    exact. Other grid points on a parallel tie only if they are mirror images of each other.
 
     Insertion along a space-filling curve (Bowyer; Watson, both 1981): O(n log n) on scattered
     points, O(n²) at worst. All arrays are read-only; areas, circumcenters and edges are computed on
@@ -318,7 +318,7 @@ class Delaunay(OnGlobe):
         InputError
             `tolerance` is negative or NaN.
         DirectionError
-            A latitude is beyond a pole, or a longitude has more than three turns.
+            A latitude is beyond a pole, or a longitude exceeds three turns.
         ShapeError, DtypeError
             `xi` is not a real array of shape (..., 2) or (..., 3).
 
@@ -373,7 +373,7 @@ class Delaunay(OnGlobe):
         Raises
         ------
         DirectionError
-            A latitude is beyond a pole, or a longitude has more than three turns.
+            A latitude is beyond a pole, or a longitude exceeds three turns.
         ShapeError, DtypeError
             `xi` is not a real array of shape (..., 2) or (..., 3).
 

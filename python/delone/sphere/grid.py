@@ -247,7 +247,7 @@ class Grid(GridCells):
         InputError
             Bounds are not monotonic, leave gaps, or span more than 360 degrees.
         ShapeError, DtypeError, NonFiniteError
-            A bound is not a number, or an array has another shape.
+            A bound is not a number, or an array has the wrong shape.
 
         Examples
         --------
@@ -562,7 +562,7 @@ class Grid(GridCells):
         Parameters
         ----------
         folder : str or path-like
-            Has ``nod2d.out`` and ``elem2d.out``, with longitudes and latitudes in degrees.
+            Contains ``nod2d.out`` and ``elem2d.out``, with longitudes and latitudes in degrees.
         cells : {"nodes", "faces"}, optional
             What fields belong to: nodes or triangles. Around nodes, a cell has its corners in the
             middle of triangles and edges: the median dual.
@@ -577,7 +577,7 @@ class Grid(GridCells):
         Raises
         ------
         FileFormatError
-            A file is not a table with as many rows as it says.
+            A file is not a table with the declared number of rows.
         InputError
             `cells` is unknown, or triangles overlap.
         DirectionError
@@ -586,7 +586,7 @@ class Grid(GridCells):
         Notes
         -----
         FESOM computes with angles in a plane around each triangle, so its own areas differ by the
-        square of the size of triangles. Coordinates of a rotated mesh are taken as they are.
+        square of the size of triangles. Coordinates of a rotated mesh are used as they are.
 
         Examples
         --------

@@ -175,29 +175,29 @@ class GridCells(Stored):
 
     @property
     def edges(self) -> str:
-        """What sides are: "parallel" for meridians and parallels, "arc" for great circles."""
+        """The kind of sides: "parallel" for meridians and parallels, "arc" for great circles."""
         return self._edges
 
     @property
     def mask(self) -> Bools | None:
-        """Which cells take part, (ncells,), as a dataset says; None if it does not."""
+        """The cells to use, (ncells,), if a dataset specifies them; otherwise None."""
         return self._mask
 
     @property
     def bounds(self) -> tuple[Floats, Floats] | None:
-        """Edges between columns and between rows, in degrees; None of other cells."""
+        """Edges between columns and between rows, in degrees; None for other cells."""
         return self._bounds
 
     @property
     @kept
     def areas(self) -> Floats:
-        """Areas in steradians, (ncells,); 0 of empty cells."""
+        """Areas in steradians, (ncells,); 0 for empty cells."""
         return sealed(self._checked.areas)
 
     @property
     @kept
     def report(self) -> GridReport:
-        """What was done to corners, and which cells are special."""
+        """The changes to corners, and which cells are special."""
         known = self._checked
         return GridReport(
             merged=self._merged,

@@ -139,7 +139,7 @@ class _Interpolator(VectorInterpolation):
         Raises
         ------
         DirectionError
-            A latitude is beyond a pole, or a longitude has more than three turns.
+            A latitude is beyond a pole, or a longitude exceeds three turns.
         ShapeError, DtypeError
             `xi` or `values` have the wrong shape, or are not numeric.
         NonFiniteError
@@ -511,14 +511,14 @@ class Linear(_Continuous):
     Raises
     ------
     InputError
-        An argument is not one of its choices; values differ at a direction with
+        An argument is not one of the allowed choices; values differ at a direction with
         ``duplicates="raise"`` (`ConflictingValuesError`).
     NonFiniteError
         A coordinate, or with ``nan="raise"`` a value, is NaN or infinite.
     DegenerateInputError
-        Fewer than three directions are distinct, or all are on one great circle.
+        There are fewer than three distinct directions, or all are on one great circle.
     DirectionError
-        A vector is zero, a latitude is beyond a pole, or a longitude has more than three turns.
+        A vector is zero, a latitude is beyond a pole, or a longitude exceeds three turns.
     ShapeError, DtypeError
         Arrays have the wrong shape, or are not numeric.
 
@@ -578,9 +578,10 @@ class NaturalNeighbor(_Continuous):
     weights are those of the plane after projection from the center to the tangent plane at the
     query, where great circles are lines. They depend on the area or the wall that the Voronoi cell
     of the query takes from that of the neighbor. They are nonnegative and sum to 1, and the
-    weighted mean of the sites has the direction of the query, as with `Linear`; the boundary of a
-    hull is linear. So the date line and the poles are not special, and you need not choose a
-    projection. Values at sites are reproduced exactly. Where rounding loses more than nine digits,
+    weighted mean of the sites has the direction of the query, as with `Linear`; on the
+    boundary of a hull, the interpolant is linear. So the date line and the poles are not special,
+    and you need not choose a projection. Values at sites are reproduced exactly. Where rounding
+    loses more than nine digits,
     as between sites that almost coincide, the weights are those of `Linear`.
 
     Each query takes time linear in the number of its neighbors, about six.

@@ -1,8 +1,8 @@
 """Which polygon contains each region of the sphere.
 
 Crossing an odd number of a polygon's rings switches between its inside and its outside, as in the
-plane. But no region of a sphere is outside of all: which of the two sides is the inside, the
-direction of the outer rings tells, or the smaller area.
+plane. But a sphere has no region that is outside of everything: the direction of the outer rings,
+or the smaller area, determines which of the two sides is inside.
 """
 
 from __future__ import annotations

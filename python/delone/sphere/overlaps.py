@@ -25,7 +25,7 @@ class Overlaps(SharedAreas[Weights], Stored):
     Parameters
     ----------
     source, target : Grid
-        The grids of the given and of the wanted fields.
+        The grids of the given fields and of the results.
     workers : int, optional
         Maximum number of threads; by default one per core. The result does not depend on it.
 
@@ -161,8 +161,8 @@ class Overlaps(SharedAreas[Weights], Stored):
         Raises
         ------
         InputError
-            `method` or `order` is unknown; ``order=2`` has another method, areas loaded from a
-            file, or a single source cell; or `limiter` has ``order=1``.
+            `method` or `order` is unknown; ``order=2`` is used with a different method, with areas
+            loaded from a file, or with a single source cell; or `limiter` with ``order=1``.
         ShapeError, DtypeError
             A mask has another shape, or is not boolean.
 

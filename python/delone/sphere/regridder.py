@@ -52,14 +52,14 @@ class Regridder(Immutable):
     order, limiter : optional
         As for `Overlaps.to_weights`: ``order=2`` gives source cells slopes.
     source_mask, target_mask : array_like of bool, optional
-        True for cells that take part. By default the masks of the datasets, if they have some.
+        True for the cells to use. By default the masks of the datasets, if they have any.
     dims : sequence of str, optional
         Dimensions of fields on the source, in the order of its shape. By default those of the
         dataset; of a `Grid`, the last dimensions of each field that have its shape.
     extrapolate, power, neighbors : optional
         As for `Weights.between`, for its methods.
     weights : Weights, str or path-like, optional
-        Use these, or those of a map file, instead of computing some. `method` and masks are theirs.
+        Use these, or those of a map file, instead of computing them. `method` and masks are theirs.
     coords, degrees, infer_bounds, cells, merge, workers
         As for `Grid.from_dataset`; `coords` and `cells` are those of the source.
 
@@ -84,7 +84,7 @@ class Regridder(Immutable):
     Notes
     -----
     Fields may be Dask arrays: other dimensions remain chunked, and are computed lazily. The weights
-    are one object of the graph.
+    are a single object in the task graph.
 
     See Also
     --------

@@ -1,7 +1,7 @@
 """Vectors on the sphere by their components to the east and to the north.
 
-East at a site is not east at a query: near a pole, directions turn with the longitude. A vector is
-moved to the query along the great circle between them, by parallel transport. This turns its
+East at a site is not east at a query: near a pole, directions rotate with the longitude. A vector
+is moved to the query along the great circle between them, by parallel transport. This rotates its
 components by an angle that depends on the two places alone, so a table of weights becomes two: the
 weights times the cosines, and times the sines. Every interpolant with such a table moves vectors.
 """
@@ -273,12 +273,12 @@ class VectorInterpolation:
         -----
         Each vector is moved from its site p to the query q by parallel transport along the great
         circle between them, v - (q·v) / (1 + p·q) (p + q), and the moved vectors are combined with
-        the weights. Components as two fields are wrong near the poles, where east turns with the
+        the weights. Components as two fields are wrong near the poles, where east rotates with the
         longitude; here errors are the same everywhere. Sites opposite a query have no weight.
 
         At a pole, east and north are those of the meridian of the row's longitude, of sites and of
         queries given as longitudes and latitudes. Of a pole given as a vector, and of one in a
-        `sphere.Delaunay`, the longitude is 0. So all rows of a grid at a pole may stand for one
+        `sphere.Delaunay`, the longitude is 0. So all rows of a grid at a pole may represent one
         vector; they are duplicates, and ``duplicates="mean"`` is their mean as vectors.
 
         A vector is missing, for the policy of ``nan``, if one of its components is.

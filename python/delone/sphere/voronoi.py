@@ -99,7 +99,7 @@ class Voronoi(OnGlobe):
         `radius` is not positive and finite, or `clip` is not made of polygons, has no area, or has
         outer rings that run in both directions.
     DirectionError
-        A vector is zero, a latitude is beyond a pole, or a longitude has more than three turns;
+        A vector is zero, a latitude is beyond a pole, or a longitude exceeds three turns;
         ``error.rows`` has the first such rows. Or a side of `clip` has opposite ends.
     NonFiniteError, ShapeError, DtypeError, LimitError, MemoryError
         As for `delone.sphere.Delaunay`.
@@ -338,7 +338,7 @@ class Voronoi(OnGlobe):
     def triangulation(self) -> Delaunay | None:
         """The triangulation whose dual this is; None if all sites are on one great circle.
 
-        One or two sites are.
+        One or two sites always are.
         """
         return self._mesh
 
@@ -591,7 +591,7 @@ class Voronoi(OnGlobe):
         Raises
         ------
         DirectionError
-            A latitude is beyond a pole, or a longitude has more than three turns.
+            A latitude is beyond a pole, or a longitude exceeds three turns.
         ShapeError, DtypeError
             `xi` is not a real array of shape (..., 2) or (..., 3).
 
