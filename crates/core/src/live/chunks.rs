@@ -1,6 +1,6 @@
 //! Arrays that are edited in place, with snapshots that share what has not changed.
 //!
-//! The items lie in one flat vector, so that reading costs what it costs in a mesh that is built once.
+//! The items lie in one flat vector, so that reading is as fast as in a mesh that is built once.
 //! They are divided into chunks of about 1 KiB, and each write marks its chunk. A snapshot copies the
 //! marked chunks and shares all others with the snapshot before it, by reference counts (J. R. Driscoll,
 //! N. Sarnak, D. D. Sleator and R. E. Tarjan, "Making data structures persistent", 1989). Chunks are
@@ -124,7 +124,8 @@ impl<T: Copy> Chunks<T> {
         self.marked[i / Self::SIZE] = true;
     }
 
-    /// Starts an edit that [`Self::take_back`] may end. Before each step of it, callers make room for
+    /// Starts an edit that [`Self::take_back`] may undo. Before each step of it, callers make room
+    /// for
     /// what it changes.
     pub fn begin(&mut self) -> Result<()> {
         self.journal.begin(self.items.len())
@@ -141,7 +142,7 @@ impl<T: Copy> Chunks<T> {
         self.journal.end();
     }
 
-    /// Ends an edit, all changes of which are taken back. Returns whether none was missed.
+    /// Ends an edit and undoes all of its changes. Returns whether none was missed.
     pub fn take_back(&mut self) -> bool {
         let is_whole = self.journal.put_back(&mut self.items);
         self.marked.truncate(self.items.len().div_ceil(Self::SIZE));
@@ -178,7 +179,8 @@ impl<T: Copy> Chunks<T> {
         Ok(())
     }
 
-    /// The present items as a snapshot. Refused memory and interruption change nothing.
+    /// The current items as a snapshot. If memory is refused or the call is interrupted, nothing
+    /// changes.
     pub fn image(&mut self, watch: &Watch) -> Result<Image<T>> {
         let mut pace = Pace::new(watch, LOT);
         let mut groups = with_room(self.marked.len().div_ceil(GROUP))?;

@@ -27,7 +27,7 @@ const LOT: usize = 1 << 10;
 /// that needs more, such as one on lines that nearly coincide, is a rebuild.
 const BUDGET: usize = 16;
 
-/// How a batch ends that has not failed.
+/// How a batch that has not failed ends.
 enum Outcome {
     /// It is done.
     Done,
@@ -241,9 +241,9 @@ impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
         Ok(())
     }
 
-    /// The vertices of `rows` that are there, each with its row, in the order of the vertices, which is
-    /// that of the curve if most of them were built at once. A row that is gone, or named twice, is an
-    /// error.
+    /// The vertices of `rows`, each with its row, in the order of the vertices, which is that of
+    /// the curve if most of them were built at once. A row that is not present, or is named twice,
+    /// is an error.
     pub(super) fn by_vertex(&self, rows: &[i64], watch: &Watch) -> Result<Vec<(u32, u32)>> {
         let mut pairs = with_room(rows.len())?;
         for &row in rows {
@@ -312,7 +312,7 @@ impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
         self.rebuild_without(pairs, workers, watch)
     }
 
-    /// Removes vertices from the mesh, and counts those that are done.
+    /// Removes vertices from the mesh, and counts those that have been removed.
     fn unlink_all(&mut self, lost: &[u32], done: &mut usize, watch: &Watch) -> Result<Outcome> {
         let mut pace = Pace::new(watch, LOT);
         for &v in lost {
@@ -416,7 +416,8 @@ impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
             Err(error) => Err(error),
         };
         if done.is_err() {
-            // Each state on the way back has been there: none is flat, and hubs must not stop it.
+            // Each state on the way back has existed before: none is flat, and hubs must not stop
+            // it.
             for &(row, p) in old.iter().rev() {
                 self.relocate_one(row, p, true, &IDLE)?;
             }
@@ -424,7 +425,7 @@ impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
         done
     }
 
-    /// The point of a row that is there.
+    /// The point of a present row.
     fn point(&self, row: u32) -> [f64; D] {
         let v = self.rows.vertex(i64::from(row)).unwrap_or_default();
         self.mesh.at(v)

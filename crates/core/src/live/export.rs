@@ -14,21 +14,21 @@ const LOT: usize = 1 << 16;
 /// A triangulation as arrays.
 #[derive(Debug, Default)]
 pub struct Exported<const D: usize, const N: usize> {
-    /// The coordinates of each row that is there.
+    /// The coordinates of each present row.
     pub points: Vec<[f64; D]>,
     /// Their numbers, ascending.
     pub rows: Vec<i64>,
     /// Simplices, as positions in `rows`, and their neighbors.
     pub arrays: Arrays<N>,
-    /// For each simplex and corner, whether the facet opposite is part of a segment; nothing if there
-    /// are not segments.
+    /// For each simplex and corner, whether the facet opposite is part of a segment; empty if there
+    /// are no segments.
     pub constrained: Vec<[bool; N]>,
     /// `[position, first position of the same point]`, ascending.
     pub duplicates: Vec<[u32; 2]>,
 }
 
 impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
-    /// The rows that are there, ascending, and their coordinates.
+    /// The present rows, ascending, and their coordinates.
     pub fn points(&self, watch: &Watch) -> Result<(Vec<i64>, Vec<[f64; D]>)> {
         let mut rows = with_room(self.len())?;
         let mut points = with_room(self.len())?;

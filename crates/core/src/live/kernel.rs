@@ -108,7 +108,7 @@ pub trait Kernel<const D: usize, const N: usize>:
         Ok(None)
     }
 
-    /// For each simplex and corner, whether the facet opposite is constrained; nothing if none is.
+    /// For each simplex and corner, whether the facet opposite is constrained; empty if none is.
     fn constrained(&self, _watch: &Watch) -> Result<Vec<[bool; N]>> {
         Ok(Vec::new())
     }

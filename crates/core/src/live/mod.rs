@@ -27,8 +27,9 @@
 //!
 //! # All or nothing
 //!
-//! Edits reserve memory before they change anything. A batch that fails in the middle, because memory
-//! is refused or the caller wants to stop, is taken back by the inverse edits in reverse order; as each
+//! Edits reserve memory before they change anything. A batch that fails in the middle, because
+//! memory is refused or the caller wants to stop, is undone by the inverse edits in reverse order;
+//! as each
 //! state is unique, they lead to the triangles of the start. Among segments, what an edit replaces is
 //! recorded (see `journal`).
 
@@ -88,7 +89,8 @@ impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
         Self::of(input, &rows, input.len(), workers, watch)
     }
 
-    /// The triangulation of `points` at `rows`, ascending, where `total` rows have been inserted ever.
+    /// The triangulation of `points` at `rows`, ascending, where `total` rows have ever been
+    /// inserted.
     pub fn of(
         input: &[[f64; D]],
         rows: &[u32],
@@ -108,7 +110,7 @@ impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
         })
     }
 
-    /// The number of rows that are there.
+    /// The number of present rows.
     pub fn len(&self) -> usize {
         self.rows.live()
     }
@@ -133,7 +135,7 @@ impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
         self.mesh.counts.simplices as usize
     }
 
-    /// Whether a row is there.
+    /// Whether a row is present.
     pub fn has(&self, row: i64) -> bool {
         self.rows.vertex(row).is_some()
     }

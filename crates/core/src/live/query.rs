@@ -115,7 +115,7 @@ impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
                 best = v;
             }
         }
-        // On to the nearest neighbor, until none is nearer.
+        // Continue to the nearest neighbor, until none is nearer.
         let mut here = best;
         loop {
             self.mesh.around(here, around, pace)?;
@@ -129,7 +129,7 @@ impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
             }
             here = best;
         }
-        // Then over all vertices that are as near.
+        // Then visit all vertices that are as near.
         ties.clear();
         push(ties, best)?;
         let mut done = 0;

@@ -28,7 +28,7 @@ const GONE: Row = Row {
     after: NONE,
 };
 
-/// All rows that ever were.
+/// All rows ever inserted.
 #[derive(Debug)]
 pub struct Rows {
     rows: Chunks<Row>,
@@ -67,7 +67,7 @@ impl Rows {
         self.live
     }
 
-    /// The vertex of a row; `None` if it is gone or never was.
+    /// The vertex of a row; `None` if it was removed or never existed.
     #[inline]
     pub fn vertex(&self, row: i64) -> Option<u32> {
         let row = usize::try_from(row).ok()?;
@@ -171,7 +171,7 @@ impl Rows {
         if row == head { after } else { head }
     }
 
-    /// Starts an edit that [`Self::take_back`] may end.
+    /// Starts an edit that [`Self::take_back`] may undo.
     pub fn begin(&mut self) -> Result<()> {
         self.before = self.live;
         self.rows.begin()
@@ -182,12 +182,12 @@ impl Rows {
         self.rows.room(0)
     }
 
-    /// Ends an edit that stays.
+    /// Ends an edit and keeps its changes.
     pub fn commit(&mut self) {
         self.rows.commit();
     }
 
-    /// Ends an edit, all changes of which are taken back. Returns whether none was missed.
+    /// Ends an edit and undoes all of its changes. Returns whether none was missed.
     pub fn take_back(&mut self) -> bool {
         self.live = self.before;
         self.rows.take_back()

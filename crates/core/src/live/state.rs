@@ -42,9 +42,9 @@ impl<K: Kernel<D, N>, const D: usize, const N: usize> Clone for State<K, D, N> {
 /// one, a tetrahedron with two. Lists are ascending.
 #[derive(Debug, Default)]
 pub struct Changes<const N: usize> {
-    /// Simplices that are not there anymore.
+    /// Simplices that no longer exist.
     pub gone: Vec<[i64; N]>,
-    /// Simplices that were not there.
+    /// Simplices that are new.
     pub new: Vec<[i64; N]>,
 }
 
@@ -59,7 +59,7 @@ impl<K: Kernel<D, N>, const D: usize, const N: usize> State<K, D, N> {
 }
 
 impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
-    /// The present state: the cost is that of what has changed since the last snapshot.
+    /// The current state: the cost depends on what has changed since the last snapshot.
     pub fn state(&mut self, watch: &Watch) -> Result<State<K, D, N>> {
         Ok(State {
             records: self.mesh.records.image(watch)?,
@@ -70,8 +70,8 @@ impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
         })
     }
 
-    /// Restores a state, of this triangulation or of any other. Rows and segments that were inserted
-    /// since are gone, and their numbers are not used again.
+    /// Restores a state, of this triangulation or of any other. Rows and segments that were
+    /// inserted since are removed, and their numbers are not used again.
     pub fn restore(&mut self, state: &State<K, D, N>, watch: &Watch) -> Result<()> {
         let (total, segments) = (self.rows.total(), self.segments.total());
         let mut flat = Vec::new();

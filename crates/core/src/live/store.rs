@@ -114,9 +114,9 @@ pub struct Store<const D: usize> {
     pub last: u32,
     /// Records visited so far.
     pub work: usize,
-    /// A tree of starting points for walks, and the work when it is out of date.
+    /// A tree of starting points for walks, and the work after which it is out of date.
     pub jump: Option<(Start<D>, usize)>,
-    /// Steps of long walks since there is no tree; far below zero where there shall be none.
+    /// Steps of long walks since there is no tree; far below zero where there should be none.
     pub strolled: isize,
 }
 
@@ -152,8 +152,8 @@ impl<const D: usize> Store<D> {
         self.records[t as usize][3] != FREE
     }
 
-    /// The vertex near `q` by a tree of starting points, less one; `None` without a tree. One that is due
-    /// is built, and lasts for so much work for each vertex.
+    /// The vertex near `q` by a tree of starting points, less one; `None` without a tree. A tree
+    /// that is due is built, and lasts for a given amount of work per vertex.
     pub fn near(
         &mut self,
         q: [f64; D],
@@ -168,14 +168,15 @@ impl<const D: usize> Store<D> {
             // Not the vertex at infinity.
             let sites = &self.sites.items()[1..];
             let start = match Start::of(sites.len(), |i| sites[i].at, watch) {
-                // A walk does without, also where memory for an edit was refused that is taken back.
+                // A walk works without a tree, also if memory for an edit that is being undone was
+                // refused.
                 Err(Error::Memory { .. }) => {
                     self.strolled = 0;
                     return Ok(None);
                 }
                 start => start?,
             };
-            // Most of its vertices are still there after so much work.
+            // Most of its vertices are still there after that much work.
             self.jump = Some((start, self.work + lasting * sites.len()));
             self.strolled = 0;
         }
@@ -194,7 +195,7 @@ impl<const D: usize> Store<D> {
         Ok(t)
     }
 
-    /// Gives a record back.
+    /// Frees a record.
     pub fn free_record(&mut self, t: u32) {
         *self.records.get_mut(t as usize) = [self.counts.record, 0, 0, FREE, 0, 0, 0, 0];
         self.counts.record = t;
@@ -213,7 +214,7 @@ impl<const D: usize> Store<D> {
         Ok(v)
     }
 
-    /// Gives a site back.
+    /// Frees a site.
     pub fn free_site(&mut self, v: u32) {
         let head = self.counts.site;
         let site = self.sites.get_mut(v as usize);

@@ -84,7 +84,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
         if self.cells[here as usize].is_ghost() {
             here = self.cells[here as usize].neighbors[D];
         }
-        // Down the rounded power, which falls with each step: no cell is visited twice.
+        // Descend the rounded power, which decreases with each step: no cell is visited twice.
         let mut value = self.value(here, p).0;
         loop {
             if value < 0.0 && self.conflict(here, p)? {
@@ -192,7 +192,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
             pace.spend(1)?;
             let c = self.star(p, old, i, outside)?;
             if self.hull.is_some() {
-                // There is nothing behind a facet; it stands for that itself.
+                // Nothing is behind a facet; the facet itself represents that.
                 self.cells[c as usize].neighbors[D] = c;
             }
             if self.cells[c as usize].is_ghost() {
@@ -213,7 +213,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
         Ok(())
     }
 
-    /// The cell of a point and a facet of the rim, opposite corner `i` of a cell that goes.
+    /// The cell of a point and a facet of the rim, opposite corner `i` of a cell that is removed.
     #[inline(always)]
     fn star(&mut self, p: u32, old: u32, i: usize, outside: u32) -> Result<u32> {
         let cell = &self.cells[old as usize];
@@ -265,7 +265,8 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     #[inline(always)]
     fn is_same_ridge(&self, v: &[u32; V], k: usize, other: u32, opposite: usize) -> bool {
         let w = &self.cells[other as usize].vertices;
-        // As both have as many vertices, it is enough that all of the one are among those of the other.
+        // Both have the same number of vertices, so it is enough that all of one are among those of
+        // the other.
         (1..V)
             .filter(|&j| j != k)
             .all(|j| (1..V).fold(false, |any, l| any | ((l != opposite) & (w[l] == v[j]))))

@@ -48,7 +48,7 @@ pub struct Slow<const D: usize> {
     pub frame: Option<Frame>,
 }
 
-/// How many decisions which stage has made.
+/// How many decisions each stage has made.
 #[derive(Default, Clone, Copy, Debug)]
 pub struct Counts {
     /// Decided by double-double.
@@ -66,7 +66,7 @@ pub struct Counts {
 /// Simplices and neighbors.
 pub type Exported<const V: usize> = (Vec<[u32; V]>, Vec<[i32; V]>);
 
-/// The cells of a triangulation in the making.
+/// The cells of a triangulation under construction.
 pub struct Mesh<const D: usize, const V: usize, const P: usize> {
     pub sites: Sites<D, P>,
     pub cells: Vec<Cell<D, V>>,

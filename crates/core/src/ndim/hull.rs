@@ -2,11 +2,11 @@
 //!
 //! The cells are the ghosts of a triangulation without its simplices. In place of the corner behind a
 //! facet there is one of D + 1 points that are not on one plane (`Inside`). The point that is farthest
-//! from its facet is inserted, and the points of the facets that go are kept with new facets (K. L.
-//! Clarkson, P. W. Shor, "Applications of random sampling in computational geometry, II", 1989; C. B.
-//! Barber, D. P. Dobkin, H. Huhdanpaa, "The quickhull algorithm for convex hulls", 1996). A point that
-//! sees none of these is inside: the plane of a new facet is a positive combination of the planes of the
-//! two facets at its ridge.
+//! from its facet is inserted, and the points of the facets that are removed are kept with new
+//! facets (K. L. Clarkson, P. W. Shor, "Applications of random sampling in computational geometry,
+//! II", 1989; C. B. Barber, D. P. Dobkin, H. Huhdanpaa, "The quickhull algorithm for convex hulls",
+//! 1996). A point that sees none of these is inside: the plane of a new facet is a positive
+//! combination of the planes of the two facets at its ridge.
 //!
 //! Where points were on the plane of a facet, a second pass over the extreme points makes the
 //! triangulation of each flat facet its Delaunay triangulation, with the canonical choice among ties.

@@ -1,7 +1,8 @@
 //! Point location in four to eight dimensions: exact, boundary included, for Delaunay triangulations.
 //!
-//! Points are located by `locate`; here is what these dimensions have of their own. Triangulations
-//! fill the convex hull of their points, so a walk that leaves them proves a point to be outside.
+//! Points are located by `locate`; this file has what is specific to these dimensions.
+//! Triangulations fill the convex hull of their points, so a walk that leaves them proves a point
+//! to be outside.
 
 use delone_predicates::Sign;
 use num_bigint::BigInt;

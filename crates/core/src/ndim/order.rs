@@ -5,7 +5,8 @@ use crate::base::memory::{filled, with_room};
 use crate::order::hilbert_n::key;
 
 /// Every 64th point of the curve, then every 8th of the others, then the rest: early points spread
-/// over the set, so that cavities stay small, and each round follows the curve, so that walks do.
+/// over the set, so that cavities stay small, and each round follows the curve, so that walks stay
+/// short.
 const STRIDES: [usize; 3] = [64, 8, 1];
 
 /// Numbers of the points in the order of insertion.
@@ -27,7 +28,8 @@ pub fn arranged<const D: usize, const P: usize>(points: &[[f64; P]]) -> Result<V
     Ok(order)
 }
 
-/// Keys on the curve, of up to 16 bits for each coordinate. They only order: roundings do no harm.
+/// Keys on the curve, of up to 16 bits for each coordinate. They only define an order, so roundings
+/// are harmless.
 fn keys<const D: usize, const P: usize>(points: &[[f64; P]]) -> Result<Vec<u64>> {
     let bits = (64 / D).min(16);
     let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);

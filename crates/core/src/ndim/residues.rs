@@ -91,9 +91,9 @@ pub struct Points {
     pub rows: [[Coordinate; ROWS - 1]; ROWS + 1],
     /// Their weights, in squared units.
     pub weights: [Coordinate; ROWS + 1],
-    /// How many points there are.
+    /// The number of points.
     pub count: usize,
-    /// How many coordinates.
+    /// The number of coordinates.
     pub dimension: usize,
 }
 

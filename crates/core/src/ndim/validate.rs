@@ -46,8 +46,8 @@ pub struct Findings<const D: usize> {
     pub overlaps: Vec<u32>,
 }
 
-/// Checks every property of the canonical Delaunay triangulation of the points. Where simplices are not
-/// positively oriented or neighbors are not mutual, the rest is not judged.
+/// Checks every property of the canonical Delaunay triangulation of the points. Where simplices are
+/// not positively oriented or neighbors are not mutual, the rest is not checked.
 pub fn validate<const D: usize, const V: usize, const P: usize>(
     given: Given<D, V>,
     watch: &Watch,
@@ -181,7 +181,7 @@ fn is_mutual<const D: usize, const V: usize>(given: &Given<D, V>, t: usize, rank
     })
 }
 
-/// Judges the facets of simplices, the ridges of the boundary, and one line.
+/// Checks the facets of simplices, the ridges of the boundary, and one line.
 fn judged<const D: usize, const V: usize, const P: usize>(
     given: &Given<D, V>,
     mesh: &mut Mesh<D, V, P>,

@@ -6,8 +6,8 @@ use super::simplex;
 use crate::base::arrays::{Given, Side};
 use crate::locate::{Located, Place};
 
-/// Steps before a walk gives up, times the number of simplices along an axis. A visibility walk ends in
-/// a Delaunay triangulation; in arrays that are none it may not.
+/// Steps before a walk gives up, times the number of simplices along an axis. A visibility walk
+/// ends in a Delaunay triangulation; in other arrays it may not.
 const BUDGET: usize = 1 << 8;
 
 /// Walks from simplex `from` to `q`, each time across the facet opposite the least barycentric

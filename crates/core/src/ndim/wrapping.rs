@@ -70,7 +70,7 @@ pub fn wrap<const D: usize, const V: usize, const P: usize>(
     }
     let mut list = Vec::new();
     while let Some(c) = work.pop() {
-        // A facet may be gone, or have come back with another number of points.
+        // A facet may have been removed, or have returned with a different number of points.
         if waiting.head[c as usize] == INFINITE {
             continue;
         }
@@ -78,7 +78,7 @@ pub fn wrap<const D: usize, const V: usize, const P: usize>(
         mesh.open(p, c, &mut room, pace)?;
         mesh.fill(p, &mut room, pace)?;
         waiting.widen(mesh.cells.len());
-        // The points of the facets that go, without the new vertex.
+        // The points of the removed facets, without the new vertex.
         list.clear();
         for &gone in &room.hole {
             let mut q = waiting.head[gone as usize];

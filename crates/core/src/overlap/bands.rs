@@ -15,8 +15,8 @@ use super::signs::above;
 /// Widest column, 30 degrees: what is between a parallel and its chord is integrated with errors of
 /// 1e-16 times the cube of the width.
 const WIDEST: f64 = std::f64::consts::PI / 6.0;
-/// Columns are cut to so many times the height of their row, into [`PARTS`] at most, for the same
-/// reason.
+/// Columns are cut to this many times the height of their row, into at most [`PARTS`] parts, for
+/// the same reason.
 const HEIGHTS: f64 = 16.0;
 /// See above.
 const PARTS: f64 = 64.0;
@@ -34,9 +34,9 @@ pub struct Rows<'a> {
     /// all.
     pub meridians: &'a [Point2],
     /// The number of the cell between each meridian and the next one of its row; -1 for none. The
-    /// entry of a row's last meridian means nothing.
+    /// entry of a row's last meridian is meaningless.
     pub numbers: &'a [i32],
-    /// How many cells there are.
+    /// The number of cells.
     pub count: usize,
 }
 
@@ -154,7 +154,7 @@ impl Rows<'_> {
         if given.len() < 2 || total > std::f64::consts::TAU + 1e-9 {
             return Err(Error::Shape(format!("row {row} is not within one turn")));
         }
-        // What is left of the turn has no cells.
+        // The rest of the turn has no cells.
         let (end, start) = (leveled2(given[given.len() - 1]), lon[0]);
         let closed = turn2(end, start) == Sign::Zero && end[0] * start[0] + end[1] * start[1] > 0.0;
         if !closed {

@@ -2,7 +2,7 @@
 //!
 //! A cell is what is to the left of its rings: outer ones run counterclockwise and holes clockwise,
 //! whatever the order in which they are given. Each ring starts at its smallest corner, so that a
-//! turned, reversed or repeated ring gives the same cell, bit for bit.
+//! rotated, reversed or repeated ring gives the same cell, bit for bit.
 //!
 //! All corners are within a hemisphere around `center`. So sides are within the cap of `radius`
 //! around it, the opposite side of the sphere is outside, and areas are below 2 pi.
@@ -19,7 +19,7 @@ use super::outline::{Fault, Prepared, distinct, start_at_smallest};
 use super::pairs::{Pair3, Turn, chart, chart_of, cross_of, factor, heads};
 use super::signs::{Moved, Side, side};
 
-/// Cells with more corners count as concave, so that testing that takes no long time.
+/// Cells with more corners count as concave, so that this test does not take long.
 const MANY: usize = 64;
 /// Cells with smaller areas, in steradians, are empty: sums of triangles err by less.
 pub const LEAST: f64 = 1e-29;
@@ -143,7 +143,7 @@ impl Prepared<3> for Cell {
         self.repeated
     }
 
-    /// Two sides that cross in their insides, or run the same way in a common part, if any do.
+    /// Two sides that cross in their interiors, or run the same way in a common part, if any do.
     fn crossing(&self) -> Option<[usize; 2]> {
         if self.convex {
             return None;
@@ -330,7 +330,7 @@ fn around(rings: &[(bool, Ring)]) -> Option<(Point3, f64)> {
     } else {
         smallest_cap(&units).filter(|&center| within(&units, center))?
     };
-    // By differences: near the center, products do not tell corners apart.
+    // By differences: near the center, products do not distinguish corners.
     let distance = |p: &Point3| (0..3).map(|k| (p[k] - center[k]).powi(2)).sum::<f64>();
     let farthest = units.iter().map(distance).fold(0.0, f64::max);
     Some((center, farthest.sqrt()))
@@ -355,8 +355,8 @@ fn within(units: &[Point3], center: Point3) -> bool {
 /// it touches two or three of them (E. Welzl, "Smallest enclosing disks", 1991). Where roundings
 /// mislead it, `within` fails.
 fn smallest_cap(units: &[Point3]) -> Option<Point3> {
-    // Places that differ, whatever the order of the ring, and in one that has nothing to do
-    // with where they are: else the loops below are cubic.
+    // Distinct places, in an order that is independent of the order of the ring and of where they
+    // are: otherwise the loops below are cubic.
     let mut places: Vec<[i64; 3]> = units
         .iter()
         .map(|p| p.map(|x| (x * GRAIN).round() as i64))

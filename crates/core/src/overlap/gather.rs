@@ -27,7 +27,8 @@ const LOT: usize = 256;
 const KEPT: usize = 1 << 12;
 /// Corners times corners between two checks for interruption.
 const PACE: usize = 1 << 18;
-/// Smaller parts, in steradians, cannot be told from cells that only touch: sums err by less.
+/// Smaller parts, in steradians, cannot be distinguished from cells that only touch: sums err by
+/// less.
 pub const TINY: f64 = 1e-30;
 
 /// What each cell of the first grid shares with cells of the second one, as compressed rows.
@@ -39,8 +40,8 @@ pub struct Shared {
     pub cells: Vec<i32>,
     /// Areas of the shared parts in steradians.
     pub areas: Vec<f64>,
-    /// Sums of the areas over each cell of the first grid, correctly rounded but for some 2^-100 of
-    /// them.
+    /// Sums of the areas over each cell of the first grid, correctly rounded up to an error of some
+    /// 2^-100 of them.
     pub first: Vec<f64>,
     /// The same for the second grid.
     pub second: Vec<f64>,

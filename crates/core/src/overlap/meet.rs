@@ -148,9 +148,9 @@ pub fn inside(cell: &Cell, q: Point3, moved: Moved) -> bool {
 
 /// Where a side of the first cell crosses one of the second, as a unit vector.
 ///
-/// On nearly equal circles the error of n x m points in any direction. Taking away what is off the
-/// first circle leaves an error along both, which does no harm. On circles that are equal but for
-/// roundings, any point of both arcs serves: an end of one that is on the other.
+/// On nearly equal circles the error of n x m points in any direction. Removing the component off
+/// the first circle leaves an error along both, which is harmless. On circles that are equal but
+/// for roundings, any point of both arcs serves: an end of one that is on the other.
 fn crossing((p, e): (&Cell, u32), (q, f): (&Cell, u32), leaves: bool) -> Pair3 {
     let ((a, b), (c, d)) = (ends(p, e), ends(q, f));
     let (n, m) = (&a.n, &c.n);

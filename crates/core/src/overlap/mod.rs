@@ -4,8 +4,8 @@
 //! Cells are polygons with arcs of great circles as sides ([`Polygons`]), or between meridians and
 //! parallels ([`Rows`]). Which parts there are is decided by exact signs without ties (`signs`),
 //! and each area is right to a few units in its last place and 1e-24 steradians, whatever the size
-//! of the cells: so sums over rows, columns and all are right together, without any exchange
-//! between cells (`meet`, `walk`).
+//! of the cells: so sums over rows, over columns and over all cells are consistent, without any
+//! exchange between cells (`meet`, `walk`).
 //!
 //! Polygons are prepared when they are needed, so that memory beyond input and output is that of
 //! boxes and areas: some 60 bytes per cell.
@@ -77,7 +77,7 @@ impl Grid<'_> {
     }
 }
 
-/// What is known of each cell.
+/// What is known about each cell.
 #[derive(Debug, Default)]
 pub struct Checked {
     /// The areas, 0 of cells that have none.

@@ -5,8 +5,8 @@
 //! sum of G_e(end) over sides e of either cell that end in the other one, and of +-(G_e(x) -
 //! G_f(x)) over all crossings x of a side e of the first and f of the second cell, + where e leaves
 //! the second one (W. R. Franklin, "Polygon properties calculated from the vertex neighborhoods",
-//! 1987, in the plane). Nothing is sorted along a side, and concave cells, parts and holes are like
-//! others.
+//! 1987, in the plane). Nothing is sorted along a side, and concave cells, parts and holes are not
+//! special cases.
 //!
 //! The second cell has moved, so that no sign is zero. Signs decide which terms there are; each term
 //! is computed from the corners as given.
@@ -66,14 +66,14 @@ pub enum Met {
     First,
     /// All of the second cell.
     Second,
-    /// What the sum says.
+    /// The result of the sum.
     Part,
 }
 
 /// Buffers.
 #[derive(Default)]
 pub struct Work {
-    /// Corners of the first cell at sides of the second one, and the other way round.
+    /// Corners of the first cell at sides of the second one, and vice versa.
     at: Vec<i8>,
     of: Vec<i8>,
     first: Near,
@@ -88,13 +88,12 @@ struct Near {
 }
 
 /// Whether two arcs cross, from the signs of the second one's ends at the first one, and of the
-/// first one's ends at the second one.
-///
-/// Both circles separate the other arc's ends, so each arc meets one of the two points where the
-/// circles meet. At n x m the second arc, with normal m, comes from the right of the first and ends
-/// to its left, and the first comes from the left of the second and ends to its right; at -n x m
-/// the other way round. So the points are the same if and only if the second sign of one is the
-/// first of the other. Lines meet in one point, where this always holds.
+/// first one's ends at the second one.  Both circles separate the other arc's ends, so each arc
+/// meets one of the two points where the circles meet. At n x m the second arc, with normal m,
+/// comes from the right of the first and ends to its left, and the first comes from the left of the
+/// second and ends to its right; at -n x m it is the reverse. So the points are the same if and
+/// only if the second sign of one is the first of the other. Lines meet in one point, where this
+/// always holds.
 #[inline]
 pub fn cross_at(at: [i8; 2], of: [i8; 2]) -> bool {
     at[0] != at[1] && of[0] != of[1] && of[0] == at[1]
@@ -232,7 +231,7 @@ fn corners_inside<C: Outline>(
 
 /// A cell made of rings.
 pub trait Prepared<const D: usize>: Outline {
-    /// Prepares a cell from its rings, of which each may be a hole.
+    /// Prepares a cell from its rings, each of which may be a hole.
     fn of(rings: &mut dyn Iterator<Item = (bool, &[[f64; D]])>) -> (Option<Self>, Option<Fault>);
     /// The area.
     fn area(&self) -> f64;
@@ -240,7 +239,7 @@ pub trait Prepared<const D: usize>: Outline {
     fn turned(&self) -> bool;
     /// Corners that repeat the one before.
     fn repeated(&self) -> usize;
-    /// Two sides that cross in their insides, or run the same way in a common part, if any do.
+    /// Two sides that cross in their interiors, or run the same way in a common part, if any do.
     fn crossing(&self) -> Option<[usize; 2]>;
 }
 
@@ -272,7 +271,7 @@ pub fn distinct<T>(
     found
 }
 
-/// Turns a ring so that the sequence of its corners is the smallest one.
+/// Rotates a ring so that the sequence of its corners is the smallest one.
 pub fn start_at_smallest<T>(ring: &mut [T], compare: impl Fn(&T, &T) -> Ordering) {
     let count = ring.len();
     let mut best = 0;

@@ -24,12 +24,12 @@ use super::outline::{Fault, Met, Outline, Prepared, Sum, Work, distinct, meet, s
 use super::pairs::{ZERO, pair, quotient};
 use super::signs::Moved;
 
-/// Cells with more corners count as concave, so that testing that takes no long time.
+/// Cells with more corners count as concave, so that this test does not take long.
 const MANY: usize = 64;
 /// Cells with smaller areas, over the square of their extent, are empty.
 const LEAST: f64 = 1e-28;
-/// Smaller parts, over the square of the extent of the smaller cell, cannot be told from cells that
-/// only touch.
+/// Smaller parts, over the square of the extent of the smaller cell, cannot be distinguished from
+/// cells that only touch.
 const TINY: f64 = 1e-24;
 
 /// A corner and the side that starts there.
@@ -146,7 +146,7 @@ impl Prepared<2> for Region {
         self.repeated
     }
 
-    /// Two sides that cross in their insides, or run the same way in a common part, if any do.
+    /// Two sides that cross in their interiors, or run the same way in a common part, if any do.
     fn crossing(&self) -> Option<[usize; 2]> {
         if self.convex {
             return None;
@@ -205,7 +205,8 @@ impl Region {
     }
 }
 
-/// Whether sides of one cell cross in their insides, or run the same way in a common part: the cell
+/// Whether sides of one cell cross in their interiors, or run the same way in a common part: the
+/// cell
 /// would cover what is beside that twice.
 fn crosses([a, b]: [Point2; 2], [c, d]: [Point2; 2]) -> bool {
     let [s, t] = [c, d].map(|v| orient2d(a, b, v));
@@ -220,7 +221,7 @@ fn crosses([a, b]: [Point2; 2], [c, d]: [Point2; 2]) -> bool {
     proper([a, b], [c, d])
 }
 
-/// Whether sides cross in their insides.
+/// Whether sides cross in their interiors.
 fn proper([a, b]: [Point2; 2], [c, d]: [Point2; 2]) -> bool {
     let apart = |a, b, c, d| orient2d(a, b, c) as i8 * orient2d(a, b, d) as i8 == -1;
     apart(a, b, c, d) && apart(c, d, a, b)

@@ -32,7 +32,7 @@
 //! | n_x^2 + n_y^2 - t^2 n_z^2, t > 0 | n | -2 n_i (n_x, n_y, -t^2 n_z)_j | never |
 //!
 //! (As n = a x b changes by h (tr(E) n - E^T n), and f is linear in n or quadratic and zero, the
-//! trace counts for nothing.)
+//! trace has no effect.)
 //!
 //! # Filters
 //!

@@ -79,8 +79,8 @@ fn imported(
             v + 1
         }
     };
-    // Triangles in the order of their smallest vertices, which is that of the curve: a place is a few
-    // chunks and a few lines of the cache then.
+    // Triangles in the order of their smallest vertices, which is that of the curve: a neighborhood
+    // then takes a few chunks and a few cache lines.
     let least = |t: u32| patch.corners(t).into_iter().min().unwrap_or_default() as usize;
     let mut start = filled(count + 1, 0u32)?;
     for t in 0..used {

@@ -7,18 +7,20 @@
 //!
 //! - *A point* empties its cavity as without segments, but not past marked edges. On a marked edge it
 //!   splits it: both parts are marked.
-//! - *A vertex* goes that no segment ends at. If segments run straight through it, the two marked edges
-//!   there become one. The hole gets any triangles, and flips do the rest (see `ears`).
+//! - *A vertex* is removed if no segment ends at it. If segments run straight through it, the two
+//! marked edges   there become one. The hole is filled with any triangles, and flips do the rest
+//! (see
+//! `ears`).
 //! - *A segment* becomes a chain of edges from vertex to vertex: edges that cross it are flipped until
 //!   none does, and flips do the rest. When it goes, edges that no other segment runs along are
 //!   unmarked, and flips do the rest.
 //!
 //! # Crossings
 //!
-//! A crossing is rounded, segments bend there, and by their rounding they may meet others. Such
-//! segments are *crossed*. What touches none of them is edited as above. An edit of one, or one that
-//! makes a new crossing, takes out all that cross it, directly or not, with their crossings (see
-//! `detach`), and puts them back where they cross now (see `reinsert`). A crossing vertex so goes with the
+//! A crossing is rounded, so segments bend there, and may then meet others. Such segments are
+//! *crossed*. Edits that touch none of them work as above. An edit of one, or one that makes a new
+//! crossing, takes out all that cross it, directly or not, with their crossings (see `detach`), and
+//! puts them back where they cross now (see `reinsert`). So a crossing vertex is removed with the
 //! segments that cross there.
 //!
 //! Where rounding makes more than the segments themselves meet, all points and segments are
@@ -50,7 +52,7 @@ use crate::order::{order_of, sort};
 /// Edits between two checks for interruption.
 const LOT: usize = 1 << 6;
 
-/// How an edit ends that has not failed.
+/// How an edit that has not failed ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
     /// It is done.
@@ -59,7 +61,7 @@ pub enum Outcome {
     Rebuild,
 }
 
-/// Goes on if the edit is done.
+/// Continues if the edit is done.
 macro_rules! done {
     ($outcome:expr) => {
         if $outcome == Outcome::Rebuild {
@@ -68,7 +70,7 @@ macro_rules! done {
     };
 }
 
-/// What an edit leaves: rows, ascending, with their points, and how many rows ever were.
+/// What an edit leaves: rows, ascending, with their points, and how many rows were ever inserted.
 pub struct Input {
     /// The points.
     pub points: Vec<Point2>,
@@ -209,8 +211,8 @@ impl Plane {
         Ok(first..first + input.len())
     }
 
-    /// Removes rows, each of which is there and named once, with their vertices, and if wanted with the
-    /// segments that end there, whose numbers are returned, ascending.
+    /// Removes rows, each of which is present and named once, with their vertices, and on request
+    /// with the segments that end there, whose numbers are returned, ascending.
     pub(super) fn remove_among(
         &mut self,
         pairs: &[(u32, u32)],
@@ -240,7 +242,7 @@ impl Plane {
                 Outcome::Done
             };
             let mut detached = Detached::default();
-            // The segments first: a vertex goes only if no segment ends there.
+            // The segments first: a vertex is removed only if no segment ends there.
             for &number in &numbers {
                 pace.spend(1)?;
                 outcome = plane.take_segment(number as u32, outcome, &mut detached)?;
@@ -262,7 +264,8 @@ impl Plane {
                     plane.detach(row, v);
                 }
             }
-            // Segments that crossed these go back last, when all that goes is out of the way.
+            // Segments that crossed these go back last, when everything to be removed is out of the
+            // way.
             if outcome == Outcome::Done {
                 return plane.finish(outcome, detached, None, workers, watch);
             }
@@ -277,7 +280,7 @@ impl Plane {
         Ok(numbers)
     }
 
-    /// Takes a segment that is there out of the mesh, if that still counts, and out of the list.
+    /// Takes a present segment out of the mesh, if that still matters, and out of the list.
     fn take_segment(
         &mut self,
         segment: u32,
@@ -310,7 +313,7 @@ impl Plane {
             places.extend(moves.iter().map(|&(_, row, p)| (row, p)));
             crate::order::sort_by(&mut places, watch, |a, b| a.0.cmp(&b.0))?;
             let mut pace = Pace::new(watch, LOT);
-            // All segments that move go first: halfway they may cross others.
+            // All segments that move are removed first: halfway they may cross others.
             let mut moved = Vec::new();
             for &(row, _) in &places {
                 for (segment, _) in plane.segments.at(row) {
@@ -368,7 +371,7 @@ impl Plane {
         })
     }
 
-    /// Checks that a row is there, and is not a crossing.
+    /// Checks that a row is present, and is not a crossing.
     fn require_point(&self, row: i64) -> Result<()> {
         if self.rows.vertex(row).is_none() {
             return Err(Error::Shape(format!("row {row} is not there")));
@@ -389,8 +392,9 @@ impl Plane {
         self.segments.total()
     }
 
-    /// Two segments and the row of the vertex where they cross, for each crossing, ascending. Of several
-    /// rows there it is the smallest, which another one is as soon as it is gone.
+    /// Two segments and the row of the vertex where they cross, for each crossing, ascending. If
+    /// there are several rows at the vertex, this is the smallest, so it changes when that row is
+    /// removed.
     pub fn crossings(&self) -> Result<Vec<[u32; 3]>> {
         let known = &self.segments.crossed.crossings;
         let mut crossings = with_room(known.len())?;
@@ -413,7 +417,7 @@ impl Plane {
         self.segments.at(row).map(|(segment, _)| segment)
     }
 
-    /// Whether a segment is there.
+    /// Whether a segment is present.
     pub fn has_segment(&self, number: i64) -> bool {
         self.segments.ends(number).is_some()
     }
@@ -423,7 +427,7 @@ impl Plane {
         self.segments.crossed.rows.binary_search(&row).is_ok()
     }
 
-    /// The vertex of a row that is there.
+    /// The vertex of a present row.
     pub fn vertex(&self, row: u32) -> u32 {
         self.rows.vertex(i64::from(row)).unwrap_or_default()
     }
@@ -464,7 +468,7 @@ impl Plane {
             .any(|[r, s]| passes(r, s, p) || p == r || p == s)
     }
 
-    /// Removes a vertex from the mesh that no segment ends at; its site stays.
+    /// Removes a vertex at which no segment ends from the mesh; its site stays.
     fn drop_vertex(&mut self, v: u32) -> Result<Outcome> {
         if self.mesh.is_flat() {
             return Ok(Outcome::Rebuild);
@@ -540,7 +544,7 @@ impl Plane {
         Ok(Outcome::Done)
     }
 
-    /// The rows that are there, without crossings, with the points that `place` gives them.
+    /// The present rows, without crossings, with the points that `place` gives them.
     pub fn present(&self, place: impl Fn(u32, Point2) -> Option<Point2>) -> Result<Input> {
         let mut input = Input {
             points: with_room(self.len())?,

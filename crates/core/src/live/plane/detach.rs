@@ -1,9 +1,11 @@
 //! Segments are taken out of the mesh: those that are removed or moved, and those that cross them.
 //!
-//! Segments that cross are taken out together, with all that cross those, and their crossings go as well:
-//! a *component*. A crossing may be a point of the input, and then a segment that bends there does so
-//! because of another one at the same point: these are of one component as well. What remains is
-//! triangulated as if they had never been there (see `constrained`), and `reinsert` puts back those that stay.
+//! Segments that cross are taken out together, with all that cross those, and so are their
+//! crossings: a *component*. A crossing may be a point of the input, and then a segment that bends
+//! there does so because of another one at the same point: these belong to one component as well.
+//! What remains is triangulated as if they had never been there (see `constrained`), and `reinsert`
+//! puts
+//! back those that stay.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -19,7 +21,7 @@ use crate::base::memory::{filled, push, with_room};
 use crate::live::store::Removed;
 
 impl Plane {
-    /// Takes a segment out of the mesh: marks of edges go that no other segment needs.
+    /// Takes a segment out of the mesh: edges that no other segment needs are unmarked.
     pub fn unlink_segment(&mut self, segment: u32, detached: &mut Detached) -> Result<Outcome> {
         let ends = self.segments.ends(i64::from(segment)).unwrap_or_default();
         let [a, b] = ends.map(|row| self.vertex(row));
@@ -46,8 +48,8 @@ impl Plane {
         Ok(Outcome::Done)
     }
 
-    /// The segments that run along the marked edge from `u` to `v`, which are straight then; `None` if all
-    /// must be triangulated again.
+    /// The segments that run along the marked edge from `u` to `v`, which are then straight; `None`
+    /// if all must be triangulated again.
     pub fn owners(&mut self, u: u32, v: u32, detached: &mut Detached) -> Result<Option<Vec<u32>>> {
         let Some(along) = self.straight_line(u, v, detached)? else {
             return Ok(None);
@@ -92,7 +94,7 @@ impl Plane {
         Ok(Some(along))
     }
 
-    /// The crossed segments with this edge.
+    /// The crossed segments that have this edge.
     pub fn crossed_along(&self, u: u32, v: u32) -> Vec<u32> {
         let edges = self.segments.crossed.edges.iter();
         let here = edges.filter(|(_, ends)| *ends == [u, v] || *ends == [v, u]);
@@ -102,7 +104,7 @@ impl Plane {
     fn line_of(&self, a: u32, b: u32) -> Result<Vec<u32>> {
         let mut halves = Vec::new();
         for (from, to) in [(a, b), (b, a)] {
-            // From the one end past the other one.
+            // From one end past the other.
             let mut half = with_room(1)?;
             half.push(from);
             while let Some(next) = self.marked_beyond(half[half.len() - 1], from, to)? {
@@ -242,7 +244,7 @@ fn component(
     Ok(part)
 }
 
-/// A crossed without some segments and rows.
+/// A list of crossed segments without some segments and rows.
 fn remaining(crossed: &Crossed, part: &BTreeSet<u32>, gone: &BTreeSet<u32>) -> Result<Crossed> {
     let mut left = Crossed {
         segments: with_room(crossed.segments.len())?,

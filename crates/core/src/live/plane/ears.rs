@@ -4,11 +4,11 @@
 //! decide (compare `remove`). The hole is filled with triangles that are cut off at its corners, which
 //! is possible because all of it is visible from the removed vertex, and flips make them canonical.
 //!
-//! A corner b between a and c is cut off if it is convex and the removed vertex v is on the left of a c
-//! or on it: the rest is visible from v again. There is one as long as there are more than three
-//! corners: the angles at the corners of a polygon with k of them add up to (k - 2) pi, and those at v
-//! to 2 pi. At the hull all of the hole is on one side of v, so only convexity is asked; where no corner
-//! is convex any more, the chain is the new hull.
+//! A corner b between a and c is cut off if it is convex and the removed vertex v is on the left of
+//! a c or on it: the rest is visible from v again. There is one as long as there are more than
+//! three corners: the angles at the corners of a polygon with k of them add up to (k - 2) pi, and
+//! those at v to 2 pi. At the hull all of the hole is on one side of v, so only convexity is
+//! required; where no corner is convex any more, the chain is the new hull.
 
 use delone_predicates::{Point2, Sign, orient2d};
 
@@ -51,7 +51,8 @@ impl Mesh {
             if is_open && i + 1 >= n {
                 break;
             }
-            // Corner i is an ear if it turns left and the triangle does not cover the vertex that went.
+            // Corner i is an ear if it turns left and the triangle does not cover the removed
+            // vertex.
             let (h, j) = ((i + n - 1) % n, (i + 1) % n);
             let [a, b, c] = [h, i, j].map(|k| self.at(ring[k].1));
             let is_ear = orient2d(a, b, c) == Sign::Positive

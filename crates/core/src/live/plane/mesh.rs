@@ -58,7 +58,7 @@ impl Mesh {
         }
     }
 
-    /// Starts an edit that [`Self::take_back`] may end.
+    /// Starts an edit that [`Self::take_back`] may undo.
     pub fn begin(&mut self) -> Result<()> {
         self.before = (self.counts, self.last, self.has_segments);
         self.records.begin()?;
@@ -72,13 +72,13 @@ impl Mesh {
         self.sites.room(n)
     }
 
-    /// Ends an edit that stays.
+    /// Ends an edit and keeps its changes.
     pub fn commit(&mut self) {
         self.records.commit();
         self.sites.commit();
     }
 
-    /// Ends an edit, all changes of which are taken back. Returns whether none was missed.
+    /// Ends an edit and undoes all of its changes. Returns whether none was missed.
     pub fn take_back(&mut self) -> bool {
         (self.store.counts, self.store.last, self.has_segments) = self.before;
         let sites = self.sites.len();

@@ -72,7 +72,7 @@ impl Mesh {
                 }
                 push(&mut stops, corners[k])?;
             }
-            // On across edges that come as near as a pixel.
+            // Continue across edges that come as near as a pixel.
             for k in 0..3 {
                 let [u, v] = [sides[(k + 1) % 3], sides[(k + 2) % 3]];
                 if u == Sign::Zero || u != v {

@@ -65,7 +65,7 @@ impl Mesh {
     }
 }
 
-/// The squared distance from `q` to an edge, less what it may be wrong by.
+/// The squared distance from `q` to an edge, less a bound of its error.
 fn squared_to_edge(q: Point2, a: Point2, b: Point2) -> f64 {
     let (ab, qa) = ([b[0] - a[0], b[1] - a[1]], [a[0] - q[0], a[1] - q[1]]);
     let length = ab[0] * ab[0] + ab[1] * ab[1];

@@ -227,7 +227,7 @@ impl Plane {
                     if is_on || self.is_near_crossing(x) {
                         return Ok(None);
                     }
-                    // A crossing that stood at this place before keeps its row.
+                    // A crossing that was at this place before keeps its row.
                     let v = self.create(x, t, &mut pace)?;
                     let known = detached.places.iter().find(|place| place.0 == x);
                     let row = match known {
@@ -285,7 +285,7 @@ impl Plane {
                 },
             }
         }
-        // Straight segments are linked as any other; pieces of the others must be edges.
+        // Straight segments are linked like any other; pieces of the others must be edges.
         let mut edges = Vec::new();
         for ((i, &(_, [a, b])), stops) in (0u32..).zip(inserted).zip(routes) {
             if stops.is_empty() && self.link_vertices(a, b)? == Outcome::Rebuild {

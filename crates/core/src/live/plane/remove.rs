@@ -14,7 +14,8 @@ use crate::live::rows::NONE;
 use crate::live::store::Removed;
 use crate::mesh::plane::{Code, half_edge, next, triangle};
 
-/// Tests for each vertex of the mesh that cost as much as a rebuild, and how many are always right.
+/// Tests for each vertex of the mesh that cost as much as a rebuild, and how many are always
+/// allowed.
 const HUB: usize = 16;
 const HUB_LEAST: usize = 1 << 16;
 
@@ -109,7 +110,7 @@ impl Mesh {
         let mut made = 0;
         let (mut start, mut end) = (0, self.rim.len());
         loop {
-            //          c              The triangle at the first edge a b parts the rest: b .. c
+            //          c              The triangle at the first edge a b splits the rest: b .. c
             //       /     \           with the edge c b, and a c .. with what is left.
             //      a ----- b
             let i = self.apex(start, end)?;

@@ -1,8 +1,8 @@
 //! The triangulation of all points and segments again, where segments cross.
 //!
-//! Crossings are rounded, and what that leads to is decided by `constrained` (see its `split`). Here its
-//! pieces become marked edges, its added vertices get rows, and the segments that are not straight any
-//! more are listed.
+//! Crossings are rounded, and what that leads to is decided by `constrained` (see its `split`).
+//! Here its pieces become marked edges, its added vertices get rows, and the segments that are no
+//! longer straight are listed.
 
 use std::sync::Arc;
 
@@ -80,7 +80,7 @@ impl Plane {
         Ok(())
     }
 
-    /// The crossings, and those that are gone, by their coordinates.
+    /// The crossings, and the removed ones, by their coordinates.
     fn crossings_by_place(
         &self,
         mut places: Vec<(Point2, u32)>,
@@ -171,7 +171,7 @@ impl Plane {
         Ok(())
     }
 
-    /// Marks the pieces of segments, which cross no more.
+    /// Marks the pieces of segments, which no longer cross.
     fn link_pieces(
         &mut self,
         made: &Constrained,

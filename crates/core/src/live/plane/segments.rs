@@ -1,7 +1,7 @@
 //! Segments of a live triangulation: pairs of rows, and for each row the segments that end there.
 //!
-//! A segment has a number that is never used again, as a row has. Its ends are rows and not vertices, so
-//! that they stay where points move, and where one of several equal points goes.
+//! Like a row, a segment has a number that is never used again. Its ends are rows and not vertices,
+//! so that they remain valid when points move, and when one of several equal points is removed.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::live::rows::NONE;
 /// A segment. A link is the number of a segment, doubled, plus 1 for its second end.
 #[derive(Debug, Clone, Copy)]
 struct Segment {
-    /// Its rows; [`NONE`] if it is gone.
+    /// Its rows; [`NONE`] if it was removed.
     ends: [u32; 2],
     /// For each end, the next link at the same row.
     after: [u32; 2],
@@ -44,11 +44,11 @@ pub struct Crossed {
 pub struct Detached {
     /// Segments that are there, but have no edges.
     pub segments: BTreeSet<u32>,
-    /// Crossings that are gone, and their rows.
+    /// Removed crossings, and their rows.
     pub places: Vec<(Point2, u32)>,
 }
 
-/// All segments that ever were.
+/// All segments ever inserted.
 #[derive(Debug)]
 pub struct Segments {
     items: Chunks<Segment>,
@@ -74,19 +74,19 @@ pub struct SegmentsImage {
 }
 
 impl Segments {
-    /// The number of segments that are there.
+    /// The number of present segments.
     pub fn live(&self) -> usize {
         self.live
     }
 
-    /// The rows of a segment that is there.
+    /// The rows of a present segment.
     pub fn ends(&self, segment: i64) -> Option<[u32; 2]> {
         let i = usize::try_from(segment).ok()?;
         let ends = self.items.items().get(i)?.ends;
         (ends[0] != NONE).then_some(ends)
     }
 
-    /// The segments that are there, ascending, with their rows.
+    /// The present segments, ascending, with their rows.
     pub fn iter(&self) -> impl Iterator<Item = (u32, [u32; 2])> + '_ {
         (0u32..)
             .zip(self.items.items())
@@ -110,7 +110,7 @@ impl Segments {
         })
     }
 
-    /// Appends a number whose segment is gone.
+    /// Appends a number whose segment is no longer present.
     fn push(&mut self) -> Result<u32> {
         if self.items.len() >= NONE as usize / 2 {
             return Err(Error::TooMany {
@@ -155,7 +155,7 @@ impl Segments {
         Ok(())
     }
 
-    /// Removes a segment that is there.
+    /// Removes a present segment.
     pub fn remove(&mut self, segment: u32) {
         self.unlist(segment);
         self.items.get_mut(segment as usize).ends = [NONE; 2];
@@ -195,27 +195,27 @@ impl Segments {
         }
     }
 
-    /// Starts an edit that [`Self::take_back`] may end.
+    /// Starts an edit that [`Self::take_back`] may undo.
     pub fn begin(&mut self) -> Result<()> {
         self.before = (self.live, Arc::clone(&self.crossed));
         self.items.begin()?;
         self.first.begin()
     }
 
-    /// Ends an edit that stays.
+    /// Ends an edit and keeps its changes.
     pub fn commit(&mut self) {
         self.before.1 = Arc::default();
         self.items.commit();
         self.first.commit();
     }
 
-    /// Ends an edit, all changes of which are taken back. Returns whether none was missed.
+    /// Ends an edit and undoes all of its changes. Returns whether none was missed.
     pub fn take_back(&mut self) -> bool {
         (self.live, self.crossed) = std::mem::take(&mut self.before);
         self.items.take_back() & self.first.take_back()
     }
 
-    /// The numbers of segments that are there, ascending, and their rows.
+    /// The numbers of present segments, ascending, and their rows.
     pub fn listed(&self) -> Result<(Vec<i64>, Vec<[i64; 2]>)> {
         let (mut numbers, mut ends) = (with_room(self.live)?, with_room(self.live)?);
         for (i, rows) in self.iter() {

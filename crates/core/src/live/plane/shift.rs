@@ -37,8 +37,9 @@ impl Mesh {
         Ok(true)
     }
 
-    /// Flips edges, starting from those on the stack, until none must be flipped. Where memory for the
-    /// stack is refused, all edges are searched instead. Fails in edits only that may be taken back.
+    /// Flips edges, starting from those on the stack, until none must be flipped. Where memory for
+    /// the stack is refused, all edges are searched instead. Fails only in edits that may be
+    /// undone.
     pub fn legalize(&mut self) -> Result<()> {
         let mut is_missing = false;
         while let Some((e, _)) = self.stack.pop() {

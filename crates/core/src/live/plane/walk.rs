@@ -10,8 +10,8 @@ use crate::live::store::Place;
 use crate::locate::squared;
 use crate::mesh::plane::{half_edge, next, prev, triangle};
 
-/// How far a walk goes from the last triangle, in lengths of its edge, squared, before a start is
-/// looked up.
+/// How far a walk goes from the last triangle, in lengths of its edge, squared, before a starting
+/// point is looked up.
 const REACH: f64 = 100.0;
 
 /// Vertices per node of the tree of starting points.
@@ -62,8 +62,8 @@ impl Mesh {
         let Some(i) = self.near(q, is_due, LASTING, watch)? else {
             return Ok(self.last);
         };
-        // The vertex may have gone, and another one may have its place. Most of those beside it have
-        // been along the curve since the triangulation was built.
+        // The vertex may have been removed, and another one may have its number. Most of the
+        // vertices beside it have been near it on the curve since the triangulation was built.
         let sites = &self.sites.items()[1..];
         let beside = &sites[i.saturating_sub(BESIDE)..sites.len().min(i + BESIDE + 1)];
         let mut best = (self.last, f64::INFINITY);

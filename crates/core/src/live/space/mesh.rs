@@ -19,7 +19,7 @@ pub struct Mesh {
     pub(super) store: Store<3>,
     /// Walks that started at a sampled vertex: the seed of the next sample.
     pub(super) samples: u32,
-    /// The edit at hand.
+    /// The current edit.
     pub patch: Patch,
     /// For each record, the number of the search that met it last, plus one if it is inside.
     marks: Vec<u32>,

@@ -18,7 +18,7 @@ pub enum Side {
     Made(Code),
 }
 
-/// The edit at hand.
+/// The current edit.
 #[derive(Debug, Default)]
 pub struct Patch {
     /// Records to be replaced.

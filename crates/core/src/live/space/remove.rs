@@ -33,7 +33,8 @@ use crate::base::watch::Pace;
 use crate::live::rows::NONE;
 use crate::live::store::Removed;
 
-/// Tests for each vertex of the mesh that cost as much as a rebuild, and how many are always right.
+/// Tests for each vertex of the mesh that cost as much as a rebuild, and how many are always
+/// allowed.
 const HUB: usize = 64;
 const HUB_LEAST: usize = 1 << 20;
 

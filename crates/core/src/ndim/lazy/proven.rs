@@ -628,7 +628,7 @@ impl Proven {
 /// The largest error of weights that are not made of integers.
 const CLOSE: f64 = 1e-15;
 
-/// Weights without what is rounding: zero where they are, never negative.
+/// Weights without rounding errors: exact zeros, never negative.
 fn clean(mut l: Vec<f64>, signs: &[i32]) -> Vec<f64> {
     for (weight, &side) in l.iter_mut().zip(signs) {
         *weight = if side == 0 { 0.0 } else { weight.max(0.0) };

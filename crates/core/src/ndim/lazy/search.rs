@@ -32,7 +32,7 @@ pub struct Inside {
     pub weights: Vec<f64>,
 }
 
-/// Points whose triangulation is never made.
+/// Points whose triangulation is never computed.
 pub struct Search {
     pub sites: Sites,
     /// A simplex of the triangulation, where exact walks start.
@@ -41,10 +41,10 @@ pub struct Search {
     spanning: Vec<u32>,
 }
 
-/// How many queries were answered how.
+/// How many queries were answered in each way.
 #[derive(Default, Clone, Copy, Debug, PartialEq)]
 pub struct Counts {
-    /// By the simplex of the query before.
+    /// By the simplex of the previous query.
     pub again: u64,
     /// By a proposal.
     pub proposed: u64,
@@ -56,7 +56,7 @@ pub struct Counts {
     pub walks: u64,
 }
 
-/// What one thread keeps between queries.
+/// What one thread keeps from query to query.
 #[derive(Default)]
 pub struct Worker {
     pub counts: Counts,
@@ -188,7 +188,7 @@ impl Search {
                     if !worst.is_empty() && added(&mut program, &worst)? {
                         continue;
                     }
-                    // Roundings hide what is left from the program.
+                    // Roundings hide the remaining conflicts from the program.
                     let (signs, _) = simplex.sides(at)?;
                     let contains = signs.iter().all(|&s| s >= 0);
                     return Ok(match (contains, worst.is_empty()) {

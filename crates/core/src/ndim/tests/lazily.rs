@@ -153,7 +153,7 @@ fn check_large<const D: usize, const V: usize, const P: usize>(
         let mut v: Vec<u32> = rows.iter().map(|&row| row as u32).collect();
         v.sort_unstable();
         assert!(known.contains(&v), "query {i}");
-        // More queries than one task has: each with the simplex and the weights of its own.
+        // More queries than one task has: each with its own simplex and weights.
         let weights = &found.weights[i * V..][..V];
         for k in 0..D {
             let mean: f64 = (0..V)

@@ -27,10 +27,11 @@ fn weights<const D: usize>(kind: u64, points: &[[f64; D]], r: &mut Random) -> Ve
             0 => 0.0,
             1 => r.integer(-2, 2),
             2 => (r.unit() - 0.5) * size * size,
-            // Lifted points in one plane but for roundings: ties, and doubts.
+            // Lifted points in one plane but for roundings: ties and near-ties.
             3 => p.iter().map(|x| x * x).sum(),
             4 => r.integer(-1, 1) * 1e3 * size * size,
-            // Far below the rounding of powers: only integers see it where points are cospherical.
+            // Far below the rounding of powers: only integers detect it where points are
+            // cospherical.
             _ => r.integer(-2, 2) * size * size * 2f64.powi(-140),
         })
         .collect()

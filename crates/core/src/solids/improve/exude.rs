@@ -4,9 +4,9 @@
 //! S.-W. Cheng, T. K. Dey, H. Edelsbrunner, M. A. Facello and S.-H. Teng, "Sliver exudation",
 //! Journal of the ACM 47 (2000). As the weight of one vertex grows, tetrahedra around its star join
 //! it, each at the weight that equals the power of the vertex with respect to the sphere orthogonal
-//! to its corners. The star then joins the vertex to the boundary of the joined tetrahedra. Below a
-//! quarter of the squared distance to the nearest vertex no vertex is hidden; the largest weight
-//! here is a fifth of it.
+//! to its corners. The star then joins the vertex to the boundary of the joined tetrahedra. A
+//! weight below a quarter of the squared distance to the nearest vertex hides no vertex; the
+//! largest weight here is a fifth of it.
 //!
 //! Powers are rounded. They only decide which changes are tried in which order: each change must
 //! pass the same proof as every other change.

@@ -5,7 +5,7 @@
 //! improvement using swapping and smoothing", International Journal for Numerical Methods in
 //! Engineering 40 (1997). That vector is found by the distance algorithm of E. G. Gilbert, D. W.
 //! Johnson and S. S. Keerthi (1988). The step length is where, to first order, another function
-//! becomes the smallest. It ends after [`STEPS`] steps, each of which gains.
+//! becomes the smallest. It ends after at most [`STEPS`] steps, each of which gains.
 
 use std::cmp::Ordering;
 
@@ -290,7 +290,7 @@ impl Simplex {
 
     /// The subset that contains the shortest vector, after adding another one.
     fn with(mut self, next: Vector) -> Self {
-        // At most three are kept: a full simplex contains zero, and ended the search before.
+        // At most three are kept: a full simplex contains zero, which ended the search.
         let place = self.count.min(3);
         self.corners[place] = next;
         let count = place + 1;

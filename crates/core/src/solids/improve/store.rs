@@ -105,12 +105,12 @@ impl Store {
         })
     }
 
-    /// How many slots for tetrahedra there are, empty ones included.
+    /// The number of slots for tetrahedra, including empty ones.
     pub fn places(&self) -> u32 {
         self.corners.len() as u32
     }
 
-    /// Whether there is a tetrahedron in a slot.
+    /// Whether a slot contains a tetrahedron.
     #[inline]
     pub fn is_there(&self, t: u32) -> bool {
         self.corners[t as usize][0] != NONE
@@ -158,7 +158,7 @@ impl Store {
     }
 
     /// Replaces old tetrahedra of one label by new ones, and returns their numbers in `made`. Both
-    /// fill the same region; with `turning` two walls in one plane may differ.
+    /// fill the same region; with `turning`, two walls in one plane may differ.
     pub fn replace(
         &mut self,
         old: &[u32],

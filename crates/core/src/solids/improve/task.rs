@@ -22,7 +22,7 @@ pub struct Task<'a> {
     pub flips: bool,
     /// Whether vertices move.
     pub smooth: bool,
-    /// Whether interior vertices get weights, before all else.
+    /// Whether interior vertices are given weights first.
     pub exude: bool,
     /// Whether coplanar faces of the boundary may be flipped.
     pub turn: bool,
@@ -45,8 +45,8 @@ pub struct Counts {
     pub weights: usize,
     /// Passes.
     pub passes: usize,
-    /// Changes that would have raised the worst quality but were not made: a smallest angle would
-    /// have become smaller, or rounding left it undecided.
+    /// Changes that would have raised the worst quality but were not made, because the smallest
+    /// angle would have become smaller or rounding left it undecided.
     pub refused: usize,
 }
 
@@ -65,7 +65,7 @@ pub struct Improved {
     pub weights: Vec<f64>,
     /// Counts of the changes.
     pub counts: Counts,
-    /// Whether the limit on passes ended it while it still gained.
+    /// Whether the limit on passes was reached while passes still improved the mesh.
     pub exhausted: bool,
 }
 

@@ -87,7 +87,7 @@ impl<'a> Work<'a> {
             if self.counts.passes == self.task.passes {
                 return Ok(false);
             }
-            // One pass: flips first, which need no new places, then movements.
+            // One pass: flips first, which need no new positions, then moves.
             let changes = self.changes();
             if self.task.flips {
                 self.remove_all(watch)?;
@@ -98,7 +98,7 @@ impl<'a> Work<'a> {
             self.counts.passes += 1;
             let now = self.standing();
             tell(self.counts.passes, now.0)?;
-            // Enough passes that gain little, or one that changes nothing, are the end.
+            // Stop after enough passes that gain little, or one that changes nothing.
             let gained = standing.1 - now.1 > STALLED * standing.1;
             stalled = if gained { 0 } else { stalled + 1 };
             if self.changes() == changes || stalled == PATIENCE {
@@ -160,7 +160,7 @@ impl<'a> Work<'a> {
             if changed < Some(tried) {
                 continue;
             }
-            // What replaces it may be below the bound, too.
+            // Its replacements may be below the bound, too.
             if self.remove_at(t)? {
                 for &t in self.made.iter().filter(|&&t| self.is_below(t)) {
                     push(&mut waiting, t)?;

@@ -52,7 +52,8 @@ pub fn center(planes: &[Plane]) -> Option<(Point3, f64)> {
         if slack(&all[worst]) > -1e-13 || base.contains(&worst) {
             break;
         }
-        // Weights of the base that make zero, and that make the new plane.
+        // Weights with which the base sums to zero, and weights with which it sums to the new
+        // plane.
         let column = |target: [f64; 4]| {
             let row = |k: usize| {
                 let at = |i: usize| match k {
@@ -66,7 +67,7 @@ pub fn center(planes: &[Plane]) -> Option<(Point3, f64)> {
         let n = all[worst].normal;
         let weights = column([0.0, 0.0, 0.0, 1.0])?;
         let change = column([n[0], n[1], n[2], 1.0])?;
-        // The one whose weight comes to zero first leaves it.
+        // The plane whose weight reaches zero first leaves the base.
         let ratio = |i: usize| weights[i].max(0.0) / change[i];
         let out = (0..4)
             .filter(|&i| change[i] > 1e-14)

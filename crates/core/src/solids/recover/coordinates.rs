@@ -58,7 +58,7 @@ impl Wide {
         self.lowered(low) == other.lowered(low)
     }
 
-    /// The sum with a step.
+    /// The point plus a step.
     pub fn plus(&self, step: Step) -> Self {
         let mut other = Self::of(step.at);
         other.exponent -= step.lift;
@@ -87,7 +87,7 @@ impl Step {
         self.at.map(|x| (0..times).fold(x, |x, _| x / POWER))
     }
 
-    /// The doubles next to a sum with a step.
+    /// The doubles nearest to a point plus this step.
     pub fn from(self, near: Point3) -> Point3 {
         let step = self.rounded();
         [0, 1, 2].map(|k| near[k] + step[k] + 0.0)
@@ -145,7 +145,7 @@ impl Coordinates {
         Ok(self.place(v, p).then_some(v))
     }
 
-    /// Takes back the point added last.
+    /// Removes the point added last.
     pub fn drop_last(&mut self) {
         self.near.pop();
         self.wide.pop();
@@ -186,7 +186,7 @@ impl Coordinates {
         filtered([p, q, r, s]).unwrap_or_else(|| self.orient_wide([a, b, c, d]))
     }
 
-    /// The same by integers.
+    /// The same in integers.
     #[cold]
     fn orient_wide(&self, vertices: [u32; 4]) -> Sign {
         let (p, _) = self.integers(&vertices);

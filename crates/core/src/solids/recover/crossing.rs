@@ -9,7 +9,7 @@ use super::work::{Work, number};
 use crate::base::error::{Error, Result};
 
 impl Work<'_> {
-    /// Whether an edge crosses the inside of a face.
+    /// Whether an edge crosses the interior of a face.
     pub fn pierces(&self, u: u32, v: u32, [a, b, c]: [u32; 3]) -> Result<bool> {
         if [a, b, c].contains(&u) || [a, b, c].contains(&v) {
             return Ok(false);
@@ -61,7 +61,7 @@ impl Work<'_> {
         ring.ok_or_else(|| internal("an edge is on the far hull"))
     }
 
-    /// The edges that cross the inside of a face whose rim is in the mesh.
+    /// The edges that cross the interior of a face whose rim is in the mesh.
     pub fn piercings(&mut self, f: u32) -> Result<BTreeSet<[u32; 2]>> {
         let face = self.faces[f as usize];
         let mut found = BTreeSet::new();
@@ -89,7 +89,7 @@ impl Work<'_> {
         Ok(found)
     }
 
-    /// Whether a segment crosses the inside of a triangle.
+    /// Whether a segment crosses the interior of a triangle.
     pub fn stabs(&self, [a, b]: [u32; 2], [p, q, r]: [u32; 3]) -> bool {
         if [p, q, r].contains(&a) || [p, q, r].contains(&b) {
             return false;
@@ -102,7 +102,7 @@ impl Work<'_> {
         !first.is_zero() && self.orient(a, b, q, r) == first && self.orient(a, b, r, p) == first
     }
 
-    /// Whether a segment and an edge cross, inside of both.
+    /// Whether a segment and an edge cross in the interior of both.
     pub fn cuts(&self, [a, b]: [u32; 2], [p, q]: [u32; 2]) -> bool {
         if p == a || p == b || q == a || q == b || !self.orient(a, b, p, q).is_zero() {
             return false;

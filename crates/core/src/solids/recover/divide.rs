@@ -1,9 +1,9 @@
 //! A second point where no double sees all faces around a point.
 //!
-//! The faces around a free point that is not a double are divided among it and a new double: this one
-//! takes over tetrahedra whose outer faces it sees, and fewer faces are left to the first, which then
-//! often fits a double. All tests are exact, so the mesh is valid at each step; what does not help is
-//! taken back.
+//! The faces around a free point whose coordinates are not doubles are divided between it and a new
+//! point in doubles. The new point takes over tetrahedra whose outer faces it sees. Fewer faces are
+//! left to the first point, which then often fits doubles. All tests are exact, so the mesh is
+//! valid at each step; changes that do not help are undone.
 
 use delone_predicates::Point3;
 
@@ -13,7 +13,8 @@ use super::place::Near;
 use super::work::{Origin, Work};
 use crate::base::error::Result;
 
-/// How many places are tried, first with few doubles for the point itself, then with many.
+/// The number of places that are tried, first with few doubles for the point itself, then with
+/// many.
 const TRIES: [(usize, Near); 2] = [(800, Near::One), (1200, Near::Many)];
 
 /// The most faces around all places of one call.
@@ -27,8 +28,8 @@ const STEPS: [f64; 3] = [
 ];
 
 /// The i-th place in a tetrahedron: the weights of the corners of its outer face, and the part of the way
-/// from there to the point. If `close`, most are next to the point: what sees through a narrow gap from
-/// nearby sees much of the other side.
+/// from there to the point. If `close`, most are next to the point: a point close to a narrow gap
+/// sees much of the other side.
 fn place(i: usize, close: bool) -> ([f64; 3], f64) {
     let [x, y, z] = STEPS.map(|step| (i as f64 * step).fract());
     // The upper triangle of the square is folded onto the lower one.
@@ -42,11 +43,11 @@ fn place(i: usize, close: bool) -> ([f64; 3], f64) {
 }
 
 impl Work<'_> {
-    /// Moves a free point to a double, with another one beside it. False, and nothing has changed, if no
-    /// place is found.
+    /// Moves a free point to doubles, with another point beside it. Returns false, without a
+    /// change, if no place is found.
     pub fn divide(&mut self, v: u32) -> Result<bool> {
         let star = self.mesh.star(v, usize::MAX);
-        // Large tetrahedra have the most room. Slots change when a try is taken back, faces do not.
+        // Large tetrahedra have the most room. Undoing an attempt changes slots, but not faces.
         let mut sized = Vec::with_capacity(star.len());
         for t in star {
             if let Some(k) = self.mesh.corner(t, v) {

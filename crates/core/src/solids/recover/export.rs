@@ -77,7 +77,7 @@ impl Work<'_> {
     }
 
     /// Checks that each tetrahedron is positive or has a point of wide coordinates outside, that
-    /// faces pair up, and that each face of the input is there.
+    /// faces pair up, and that each face of the input is present.
     ///
     /// Positive tetrahedra that are linked in pairs across each face, from both sides of it, cover
     /// the points off their faces equally often: a path from one point to another changes one
@@ -103,7 +103,7 @@ impl Work<'_> {
                     return Err(internal("a tetrahedron of doubles is not positive"));
                 }
             }
-            // Faces are linked from both sides, and those that were given are there.
+            // Faces are linked from both sides, and the given faces are present.
             for (k, &f) in walls[t as usize].iter().enumerate() {
                 if self.mesh.across[t as usize][k] == NONE {
                     push(&mut outer, ascending(self.mesh.face(t, k)))?;

@@ -1,8 +1,8 @@
 //! Faces of the input: cut where edges cross them, one after another.
 //!
 //! The tetrahedra around a crossing edge are joined to a point of the face near the crossing. New
-//! edges have an end in the plane, so each point leaves one crossing less, and the others as they
-//! were.
+//! edges have an end in the plane, so each point removes one crossing and leaves the others
+//! unchanged.
 
 use num_bigint::BigInt;
 
@@ -17,7 +17,7 @@ use crate::base::wide::determinant;
 const DIGITS: u32 = 40;
 
 impl Work<'_> {
-    /// Recovers a face, with points in it where it needs any, and locks its parts.
+    /// Recovers a face, adding points in it where needed, and locks its parts.
     pub fn cut_face(&mut self, f: u32) -> Result<()> {
         let piercings = self.piercings(f)?;
         for [u, v] in piercings {
@@ -43,7 +43,8 @@ impl Work<'_> {
         let weights = self.weights(corners, u, v);
         let total: BigInt = &weights[0] + &weights[1] + &weights[2];
         let plain = weights.clone().map(|w| quotient(&w, &total));
-        // The crossing sees all faces strictly, so digits enough give a point that sees them.
+        // The crossing sees all faces strictly, so weights with enough digits give a point that
+        // sees them.
         for digits in 2_u64.. {
             self.pace.spend(1)?;
             // Weights with so many binary digits: a double has enough for the first of them.

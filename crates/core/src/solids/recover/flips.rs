@@ -75,7 +75,7 @@ impl Work<'_> {
             for &face in &faces {
                 changed |= self.split_face(face, goal)?;
             }
-            // Then the edges of these faces: a face goes with one of them.
+            // Then the edges of these faces: a face is removed with any of them.
             around.clear();
             for [u, v, w] in faces {
                 around.extend([pair(u, v), pair(v, w), pair(w, u)]);
@@ -83,7 +83,7 @@ impl Work<'_> {
             around.sort_unstable();
             around.dedup();
             changed |= self.remove_edges(&around, goal)?;
-            // Last, each of these edges at the cost of flips around it, to a limited depth.
+            // Last, remove each of these edges after flips around it, to a limited depth.
             if !changed && depth > 0 {
                 around.extend(edges.iter().map(|&(_, e)| e));
                 for &[p, q] in &around {
@@ -91,7 +91,7 @@ impl Work<'_> {
                 }
             }
             if !changed {
-                // A try that was given up may leave the segment behind.
+                // An abandoned attempt may have recovered the segment.
                 return Ok(self.mesh.with_edge(s[0], s[1]).is_some());
             }
         }
@@ -109,7 +109,7 @@ impl Work<'_> {
         Ok(changed)
     }
 
-    /// Recovers one face, whose edges are there, by flips, if that is possible.
+    /// Recovers one face, whose edges are present, by flips, if that is possible.
     pub fn flip_face(&mut self, f: u32, depth: usize) -> Result<bool> {
         let face = self.faces[f as usize];
         let goal = Goal::Face(face);
@@ -130,7 +130,7 @@ impl Work<'_> {
         Ok(true)
     }
 
-    /// Removes an edge of a vertex, so that it has one less, if that is possible.
+    /// Removes an edge of a vertex, so that it has one fewer, if that is possible.
     pub fn flip_off(&mut self, v: u32, depth: usize) -> Result<bool> {
         let star = self.mesh.star(v, usize::MAX);
         let mut link: Vec<u32> = star
@@ -147,8 +147,8 @@ impl Work<'_> {
         Ok(changed)
     }
 
-    /// Removes an edge from an end of another one to its ring, so that this has one face less, if that is
-    /// possible.
+    /// Removes an edge from an end of another one to its ring, so that this has one face fewer, if
+    /// that is possible.
     pub fn loosen(&mut self, edge: [u32; 2], tries: &mut usize) -> Result<bool> {
         let ring = self.ring_of(edge[0], edge[1])?;
         for v in ring.vertices {
@@ -161,8 +161,9 @@ impl Work<'_> {
         Ok(false)
     }
 
-    /// Removes an edge, if that leaves fewer crossings than there are and `slack` more. Where its ring does
-    /// not allow that, edges from its ends to the ring are removed first, `depth` times in turn.
+    /// Removes an edge, if that leaves fewer crossings than the present number plus `slack`. Where
+    /// its ring does not allow that, edges from its ends to the ring are removed first, `depth`
+    /// times in turn.
     fn force(
         &mut self,
         [a, b]: [u32; 2],
@@ -258,7 +259,7 @@ impl Work<'_> {
         Ok(true)
     }
 
-    /// Removes an edge of a tetrahedron, if that leaves fewer crossings than there are and `slack` more.
+    /// Removes an edge of a tetrahedron, if that leaves fewer crossings than now plus `slack`.
     fn remove_edge(&mut self, t: u32, a: u32, b: u32, goal: Goal, slack: usize) -> Result<bool> {
         let Some(ring) = self.mesh.ring(t, a, b) else {
             return Ok(false);

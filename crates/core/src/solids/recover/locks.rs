@@ -1,8 +1,8 @@
 //! Which edges and faces of the mesh are parts of the input, and must stay.
 //!
 //! Nearly all of them are whole segments and faces of the input, which are found among those with
-//! the same first vertex. Most questions are about others: a bit that no row has set answers them,
-//! in a fifth of the time. Parts with added vertices are few; a hash table has them.
+//! the same first vertex. Most queries are for others: a bit that no row has set answers these in a
+//! fifth of the time. The few parts with added vertices are in a hash table.
 
 use std::collections::HashMap;
 
@@ -90,7 +90,7 @@ impl<const N: usize> Locks<N> {
         self.get(key).is_some()
     }
 
-    /// Locks a part of a segment or face; whether it was locked.
+    /// Locks a part of a segment or face; returns whether it was locked.
     pub fn insert(&mut self, key: [u32; N], of: u32) -> bool {
         match self.row(key) {
             Some(row) if row == of => std::mem::replace(&mut self.whole[row as usize], true),

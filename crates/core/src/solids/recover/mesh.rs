@@ -68,7 +68,7 @@ pub struct Mesh {
     /// A tetrahedron of each vertex, [`NONE`] if it has none.
     pub at: Vec<u32>,
     free: Vec<u32>,
-    /// Marks of tetrahedra that the present search has seen.
+    /// Marks of tetrahedra that the current search has visited.
     seen: Vec<u32>,
     search: u32,
     sides: Vec<Side>,
@@ -125,7 +125,7 @@ impl Mesh {
         (u != NONE).then(|| (0..4).find(|&i| self.across[u as usize][i] == t))?
     }
 
-    /// Starts a search that has seen nothing.
+    /// Starts a search that has visited nothing.
     pub fn new_search(&mut self) {
         if self.search == u32::MAX {
             self.seen.fill(0);
@@ -134,7 +134,7 @@ impl Mesh {
         self.search += 1;
     }
 
-    /// Whether the present search meets a tetrahedron for the first time.
+    /// Whether the current search visits a tetrahedron for the first time.
     pub fn is_new(&mut self, t: u32) -> bool {
         let fresh = self.seen[t as usize] != self.search;
         self.seen[t as usize] = self.search;
@@ -271,7 +271,7 @@ impl Mesh {
         Ok(v)
     }
 
-    /// Takes back the point added last, which no tetrahedron has.
+    /// Removes the point added last, which is not in any tetrahedron.
     pub fn drop_last(&mut self) {
         self.points.drop_last();
         self.at.pop();
@@ -323,7 +323,7 @@ impl Mesh {
             self.corners[t as usize] = [NONE; 4];
             push(&mut self.free, t)?;
         }
-        // A vertex that stays gets a new tetrahedron; another one has lost its last.
+        // A vertex that remains gets a new tetrahedron; a removed one has none.
         Ok(())
     }
 

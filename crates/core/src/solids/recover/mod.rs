@@ -1,18 +1,18 @@
 //! Tetrahedra that have given triangles as faces, bit for bit: exact recovery of a boundary.
 //!
-//! Points are added only strictly between the faces, and all end as doubles.
+//! Points are added only strictly between the faces, and all end up in doubles.
 //!
 //! # Why it ends
 //!
 //! The Delaunay triangulation of the vertices and four far ones fills a region with tetrahedra.
-//! Let e be a face or an edge inside of it, K the tetrahedra around e, and x a point inside e. Each outer
-//! face of K leaves out exactly one vertex of e, so the points from which K can be fanned are an
-//! open set that contains x. Fanning loses only what contains e.
+//! Let e be a face or an edge inside it, K the tetrahedra around e, and x a point inside e. Each
+//! outer face of K leaves out exactly one vertex of e, so the points from which K can be fanned are
+//! an open set that contains x. Fanning removes only what contains e.
 //!
 //! 1. Flips (`flips`): each lowers the number of crossings of what is missing, or keeps it and is one
 //!    of a limited number.
-//! 2. Segments (`segments`): the open tetrahedra on the rest of one become fewer with each point.
-//! 3. Faces (`facets`): each point leaves one crossing edge less.
+//! 2. Segments (`segments`): each point leaves fewer open tetrahedra on the rest of the segment.
+//! 3. Faces (`facets`): each point leaves one crossing edge fewer.
 //!    Where faces of one plane are missing, its Delaunay triangulation is recovered first (`planes`);
 //!    flips in the plane then bring those of the input back, with points on its sides where tetrahedra
 //!    do not allow them (`swap`): each leaves an edge of the input one crossing less.
@@ -61,14 +61,14 @@ use work::{Origin, Work};
 /// Sweeps that look for doubles.
 const SWEEPS: usize = 8;
 
-/// How many of these divide faces among two points.
+/// How many of these divide faces between two points.
 const DIVISIONS: usize = 2;
 
-/// How deep edges are removed to take points away. These are few, so that depth costs little.
+/// The depth of edge removals to remove points. There are few of these, so depth costs little.
 const DEEPEST: usize = 3;
 
-/// How deep edges are removed to recover segments and faces. Points that a greater depth would save are
-/// taken away again at less cost.
+/// The depth of edge removals to recover segments and faces. Points that a greater depth would save
+/// are removed later at less cost.
 const DEPTH: usize = 1;
 
 /// Recovers faces. Returns the tetrahedra that cannot be reached from far outside without crossing
@@ -76,7 +76,7 @@ const DEPTH: usize = 1;
 pub fn recover(task: Task, watch: &Watch) -> Result<Recovered> {
     let made = attempt(task, task.flips, watch);
     match &made {
-        // Other points are needed where planes keep their triangles, and they may have places.
+        // If planes keep their triangles, other points are needed, and these may have places.
         Ok(made) if !made.crowded.is_empty() && task.flips => attempt(task, false, watch),
         Err(Error::Budget { .. }) if task.flips => attempt(task, false, watch),
         _ => made,
@@ -231,7 +231,7 @@ impl Work<'_> {
         }
     }
 
-    /// Recovers faces one after another, and takes points of the boundary away as soon as possible.
+    /// Recovers faces one after another, and removes points of the boundary as soon as possible.
     fn cut_faces(&mut self, faces: &[u32]) -> Result<()> {
         for &f in faces {
             let first = self.mesh.points.len() as u32;
@@ -266,27 +266,27 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Moves free points to doubles and takes away what is not needed.
+    /// Moves free points to doubles and removes those that are not needed.
     fn finish(&mut self, flips: bool) -> Result<()> {
         for sweep in 0..SWEEPS {
             let before = self.free_points().len();
             if before == 0 {
                 break;
             }
-            // First, points that flips can take away without a move.
+            // First, points that flips can remove without a move.
             if flips {
                 let walls = self.walls()?;
                 let out = self.outside(&walls)?;
                 self.thin_by_flips(sweep.min(DEEPEST), &out)?;
             }
-            // Then those that are no longer needed when all stand well.
+            // Then those that are no longer needed when all are well placed.
             for v in self.free_points() {
                 self.pace.spend(32)?;
                 self.center_free(v, Near::One);
             }
             self.thin(self.given)?;
             let after = self.free_points().len();
-            // A twentieth less is worth another sweep.
+            // Another sweep is worthwhile if this one removed more than a twentieth.
             if before.saturating_sub(after) * 20 <= before && sweep >= DEEPEST {
                 break;
             }
@@ -305,7 +305,7 @@ impl Work<'_> {
                 break;
             }
             for v in wide {
-                // If one point has no place, those of others are of no use.
+                // If one point has no place, the places of others are useless.
                 if divisions == 0 || !self.divide(v)? {
                     divisions = 1;
                     break;

@@ -13,7 +13,7 @@ use crate::base::error::Result;
 /// The most halvings of a step.
 const HALVINGS: i32 = 1100;
 
-/// After a wide point was found, so many halvings more look for a double, in each direction.
+/// After a wide point is found, this many more halvings look for a double, in each direction.
 const FURTHER: i32 = 12;
 
 /// How many doubles are tried for a point on the way to the center of its kernel.

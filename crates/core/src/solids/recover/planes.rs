@@ -4,8 +4,8 @@
 //! must be recovered than of others. Those of the input come back later (`swap`).
 //!
 //! Edges are flipped until none is wrong (C. L. Lawson, "Software for C1 surface interpolation", 1977).
-//! That ends, as each flip lowers the lifted surface; where four vertices are on a circle, the edge of
-//! the smallest one is right, as if that were lifted a little less.
+//! That ends, as each flip lowers the lifted surface; where four vertices are on a circle, the edge
+//! at the smallest vertex is correct, as if that vertex were lifted a little less.
 
 use std::collections::HashMap;
 
@@ -146,7 +146,7 @@ impl Work<'_> {
         Ok(faces)
     }
 
-    /// Whether the edge between c and d belongs into their plane, not that between a and b.
+    /// Whether the edge between c and d belongs in their plane, not that between a and b.
     fn is_wrong(&self, [a, b]: [u32; 2], c: u32, d: u32) -> bool {
         let [p, q, r, s] = [a, b, c, d].map(|v| self.mesh.points.near(v));
         let beside = beside(p, q, r).unwrap_or_else(|| {

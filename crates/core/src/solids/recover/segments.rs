@@ -180,7 +180,7 @@ fn simplest([low, high]: &[Fraction; 2]) -> Result<Dyadic> {
     let (l, h) = (&low.0 * &high.1, &high.0 * &low.1);
     let (from, to) = (&l * 3 + &h, &l + &h * 3);
     let width: BigInt = &to - &from;
-    // No dyadic of fewer bits than the width has is certain to lie inside.
+    // A dyadic number with fewer bits than the width is not certain to lie inside.
     let most = unit.bits().saturating_sub(width.bits()) + 2;
     for bits in 0..=most {
         let scaled: BigInt = &from << bits;

@@ -1,8 +1,9 @@
 //! Points on faces and edges move into the inside, one in each sector.
 //!
 //! A point on the boundary has a sector of tetrahedra between each two faces that meet there. In
-//! each face the polygon around the point is cut into triangles, which all sectors use; each sector is
-//! closed by them and joined to a vertex of its own that sees all, or to a new point inside.
+//! each face the polygon around the point is cut into triangles, which all sectors use; each sector
+//! is closed by them and joined to one of its vertices that sees all of it, or to a new point
+//! inside.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -24,7 +25,7 @@ struct Sector {
 }
 
 impl Work<'_> {
-    /// Takes a point of the boundary away. True if that was possible.
+    /// Removes a point of the boundary. Returns true if that was possible.
     pub fn suppress(&mut self, s: u32) -> Result<bool> {
         self.pace.spend(8)?;
         let star = self.mesh.star(s, usize::MAX);
@@ -111,7 +112,7 @@ impl Work<'_> {
         Ok(all)
     }
 
-    /// Triangles of a polygon in the plane of a face, by cutting ears off.
+    /// Triangles of a polygon in the plane of a face, by ear clipping.
     fn ears(&mut self, f: u32, polygon: &[u32]) -> Result<Vec<[u32; 3]>> {
         let aside = self.aside(self.faces[f as usize])?;
         let turn = |t: [u32; 3]| self.turn(aside, t);
@@ -228,7 +229,7 @@ impl Work<'_> {
             );
             let sign = if side == Sign::Positive { 1.0 } else { -1.0 };
             let normal = unit(normal).map(|x| x * sign);
-            // Its triangles without the point, turned toward the sector.
+            // Its triangles without the point, oriented toward the sector.
             for &[p, q, r] in &triangles[f] {
                 faces.push(if side == Sign::Positive {
                     [p, q, r]
@@ -254,7 +255,7 @@ impl Work<'_> {
         }
     }
 
-    /// A vertex of faces that sees all others of them.
+    /// A vertex of these faces that sees all others of them.
     pub fn vertex_that_sees(&self, faces: &[[u32; 3]]) -> Option<u32> {
         let vertices: BTreeSet<u32> = faces.as_flattened().iter().copied().collect();
         vertices.into_iter().find(|&v| {

@@ -8,11 +8,11 @@
 //!
 //! # Why it ends
 //!
-//! An edge of the input crosses only edges that are not of the input. If a flip of one of these gives an
-//! edge that does not cross it, one crossing less is left. Otherwise let v be the vertex of the crossing edges
-//! that is farthest on its side. The vertices on the other side to which v is joined form a chain whose
-//! ends are higher, so at one of them the two triangles of v are convex: this flip gives v an edge less, and
-//! when only one is left, its flip removes a crossing.
+//! An edge of the input crosses only edges that are not of the input. If a flip of one of these
+//! gives an edge that does not cross it, one crossing fewer is left. Otherwise let v be the vertex
+//! of the crossing edges that is farthest on its side. The vertices on the other side to which v is
+//! joined form a chain whose ends are higher, so at one of them the two triangles of v are convex:
+//! this flip leaves v one edge fewer, and when only one is left, its flip removes a crossing.
 
 use std::collections::{HashMap, HashSet};
 
@@ -160,7 +160,7 @@ impl Work<'_> {
                     changed = self.swap_edge(sheet, e, false)?;
                 }
             }
-            // At last, points in the way are allowed.
+            // As a last resort, points may be added.
             if let (false, true, Some(&e)) = (changed, points, candidates.first()) {
                 changed = self.swap_edge(sheet, e, true)?;
             }
@@ -446,8 +446,8 @@ impl Work<'_> {
         None
     }
 
-    /// Whether a region has no locked face inside and no other vertex than its faces, which a vertex joins
-    /// without a gap.
+    /// Whether a region has no locked face inside and no vertices but those of its faces, which a
+    /// vertex joins without a gap.
     fn is_closed(&self, region: &[u32], faces: &[[u32; 3]], w: u32) -> bool {
         let on_faces: HashSet<u32> = faces.as_flattened().iter().copied().collect();
         for &t in region {

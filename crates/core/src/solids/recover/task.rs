@@ -7,9 +7,9 @@ use delone_predicates::Point3;
 pub struct Task<'a> {
     /// Rows of coordinates: finite and distinct.
     pub points: &'a [Point3],
-    /// Triangles that meet in common vertices and edges only.
+    /// Triangles that meet only in common vertices and edges.
     pub faces: &'a [[i32; 3]],
-    /// The limit of points added at any time.
+    /// The maximum number of added points at any time.
     pub max_points: usize,
     /// Whether faces and edges are recovered by flips before points are added.
     pub flips: bool,
@@ -30,15 +30,15 @@ pub struct Counts {
     pub flipped_edges: usize,
     /// Faces recovered by flips.
     pub flipped_faces: usize,
-    /// Points that were put on edges for a time.
+    /// Points that were temporarily put on edges.
     pub segment_points: usize,
-    /// Points that were put in faces for a time.
+    /// Points that were temporarily put in faces.
     pub face_points: usize,
     /// Sectors whose point on the boundary moved into the inside.
     pub suppressed: usize,
     /// Sectors that were joined to a vertex without a point.
     pub joined: usize,
-    /// Points inside that were taken away again.
+    /// Interior points that were removed again.
     pub thinned: usize,
 }
 

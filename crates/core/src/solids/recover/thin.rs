@@ -12,7 +12,7 @@ impl Work<'_> {
             .collect()
     }
 
-    /// Takes free points away until each that is left is needed where it is.
+    /// Removes free points until each that is left is needed where it is.
     pub fn thin(&mut self, from: u32) -> Result<()> {
         loop {
             let mut less = false;
@@ -27,7 +27,7 @@ impl Work<'_> {
         }
     }
 
-    /// Takes free points away from which edges can be flipped until a vertex sees all faces around them.
+    /// Removes free points whose edges can be flipped until a vertex sees all faces around them.
     pub fn thin_by_flips(&mut self, depth: usize, out: &[bool]) -> Result<()> {
         let inside = |v: &u32| !out[self.mesh.at[*v as usize] as usize];
         let points: Vec<u32> = self.free_points().into_iter().filter(inside).collect();
@@ -41,7 +41,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Takes a free point away if a vertex around it sees all faces around it.
+    /// Removes a free point if a vertex around it sees all faces around it.
     fn thin_one(&mut self, v: u32) -> Result<bool> {
         let star = self.mesh.star(v, usize::MAX);
         self.pace.spend(star.len())?;

@@ -185,7 +185,7 @@ impl<'a> Work<'a> {
         Ok(v)
     }
 
-    /// Takes back the point added last.
+    /// Removes the point added last.
     pub fn drop_last(&mut self) {
         self.mesh.drop_last();
         self.origin.pop();

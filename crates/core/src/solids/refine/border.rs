@@ -46,7 +46,7 @@ impl Work {
         Ok(false)
     }
 
-    /// Puts a point on a segment of a tetrahedron, at least so far from vertices.
+    /// Puts a point on a segment of a tetrahedron, at least a given distance from vertices.
     pub fn split_segment(&mut self, t: u32, ends: [u32; 2], least: f64) -> Result<bool> {
         let [a, b] = edge(ends[0], ends[1]);
         let [p, q] = self.mesh.places_of([a, b]);
@@ -67,7 +67,7 @@ impl Work {
         Ok(done)
     }
 
-    /// Puts a point on an edge of a tetrahedron, at least so far from vertices.
+    /// Puts a point on an edge of a tetrahedron, at least a given distance from vertices.
     fn split_at(&mut self, t: u32, ends: [u32; 2], p: Point3, least: f64) -> Result<bool> {
         let [a, b] = ends;
         let mut start = Start {

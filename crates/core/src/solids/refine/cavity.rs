@@ -38,7 +38,7 @@ pub struct Start {
     pub edge: Option<[u32; 2]>,
 }
 
-/// What a point would be too near to.
+/// What a point would be too close to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Encroached {
     Segment(u32, [u32; 2]),
@@ -57,7 +57,7 @@ pub struct Cavity {
     pub outer: Vec<Side>,
     /// The walls that are replaced, from each side.
     open: Vec<Side>,
-    /// The number of the cavity for tetrahedra in it; each turn of leaving out has its own.
+    /// The number of the cavity for tetrahedra in it; each round of exclusions has a different one.
     mark: Vec<u32>,
     number: u32,
     links: Vec<Link>,
@@ -91,13 +91,13 @@ impl Cavity {
         self.cells.contains(&t)
     }
 
-    /// Builds the cavity of a point; false if there is none that it sees whole.
+    /// Builds the cavity of a point; false if there is none that it sees completely.
     pub fn build(&mut self, mesh: &Mesh, p: Point3, start: &Start) -> Result<bool> {
         let places = mesh.corners.len();
         let missing = places.saturating_sub(self.mark.len());
         make_room(&mut self.mark, missing)?;
         self.mark.resize(self.mark.len() + missing, 0);
-        // Far from the end, as the turns below count as well.
+        // Well below the maximum, as the rounds below count as well.
         if self.number >= u32::MAX / 2 {
             self.mark.fill(0);
             self.number = 0;
@@ -109,7 +109,7 @@ impl Cavity {
         if !self.flood(mesh, start, |_, u| sees(u))? {
             return Ok(false);
         }
-        // Each turn leaves out tetrahedra, so there is an end.
+        // Each round excludes tetrahedra, so this terminates.
         loop {
             self.open_walls(mesh, start)?;
             self.bound(mesh)?;
@@ -459,7 +459,7 @@ impl Cavity {
                     self.rim[kept] = self.rim[at];
                     kept += 1;
                 }
-                // Between two open walls of a facet, the edge goes.
+                // An edge between two open walls of a facet is removed.
                 2 if !mesh.is_segment(ends[0], ends[1]) => {}
                 _ => return Ok(false),
             }

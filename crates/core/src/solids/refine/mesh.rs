@@ -29,7 +29,8 @@ pub struct Mesh {
     pub wall: Vec<[u32; 4]>,
     /// The label of each tetrahedron.
     pub label: Vec<i32>,
-    /// The size asked for at each, and whether it was asked for itself or comes from the one before.
+    /// The size requested for each, and whether it was requested for itself or inherited from the
+    /// one before.
     pub size: Vec<f64>,
     pub known: Vec<bool>,
     /// The facet of each input face: the smallest number of a face in it.
@@ -52,12 +53,12 @@ pub fn edge(a: u32, b: u32) -> [u32; 2] {
 }
 
 impl Mesh {
-    /// How many slots for tetrahedra there are, empty ones included.
+    /// The number of slots for tetrahedra, including empty ones.
     pub fn places(&self) -> u32 {
         self.corners.len() as u32
     }
 
-    /// Whether there is a tetrahedron in a slot.
+    /// Whether a slot contains a tetrahedron.
     #[inline]
     pub fn is_there(&self, t: u32) -> bool {
         self.corners[t as usize][0] != NONE
@@ -141,7 +142,7 @@ impl Mesh {
         !self.segments.is_empty() && self.segments.contains(&edge(a, b))
     }
 
-    /// A slot for a new tetrahedron: the one offered, an empty one or a further one.
+    /// A slot for a new tetrahedron: the one offered, an empty one or a new one.
     pub fn slot(&mut self, offered: Option<u32>) -> Result<u32> {
         if let Some(t) = offered.or_else(|| self.free.pop()) {
             return Ok(t);

@@ -5,7 +5,7 @@
 //! Computational Geometry (1998); G. L. Miller, S. E. Pav and N. J. Walkington, "When and why
 //! Delaunay refinement algorithms work", International Journal of Computational Geometry &
 //! Applications 15 (2005), for the rule that a point may not be nearer to others than the shortest
-//! edge of what asked for it.
+//! edge of the element that requested it.
 //!
 //! # Terms
 //!
@@ -16,12 +16,12 @@
 //! # Invariants
 //!
 //! Tetrahedra are positively oriented, exactly. An insertion replaces a cavity that its point sees
-//! whole, by the exact sign of each outer face, so old and new tetrahedra fill the same region and
-//! cover it once. Points inside never change walls. Points on facets and segments, which are
+//! completely, by the exact sign of each outer face, so old and new tetrahedra fill the same region
+//! and cover it once. Points inside never change walls. Points on facets and segments, which are
 //! rounded to doubles, replace the walls of one facet by others between the same edges.
 //!
-//! What is inserted, and where, is decided by measures in doubles: whatever they say, the mesh
-//! stays valid.
+//! What is inserted, and where, is decided by measures in doubles: the mesh stays valid whatever
+//! they are.
 //!
 //! # Why it terminates
 //!

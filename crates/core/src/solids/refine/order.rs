@@ -55,7 +55,7 @@ pub struct Refined {
     pub counts: Counts,
 }
 
-/// What leads back to rows.
+/// What is needed to map results back to rows.
 #[derive(Debug)]
 pub struct Order {
     /// The points as given.

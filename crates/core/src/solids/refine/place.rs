@@ -5,7 +5,7 @@ use delone_predicates::{Point3, Sign, orient3d};
 use super::judge::{Vector, cross, dot, minus, plus};
 use super::mesh::{Mesh, NONE, Side};
 
-/// A walk ends after so many steps: the place is too far.
+/// A walk ends after this many steps: the place is too far.
 const STEPS: usize = 1 << 10;
 
 /// Where a walk ends.
@@ -15,7 +15,7 @@ pub enum Found {
     Inside(u32),
     /// At a wall, from the inside.
     Wall(Side),
-    /// It was given up.
+    /// The walk was abandoned.
     Nothing,
 }
 
@@ -63,7 +63,7 @@ pub enum OnFacet {
     Wall(Side, Point3),
     /// At a segment, which is an edge of this wall.
     Segment(Side, [u32; 2]),
-    /// It was given up.
+    /// The walk was abandoned.
     Nothing,
 }
 
@@ -73,7 +73,7 @@ pub fn walk_on_facet(mesh: &Mesh, side: Side, p: Point3) -> OnFacet {
     for _ in 0..STEPS {
         let face = mesh.face(side);
         let [a, b, c] = mesh.places_of(face);
-        // The smallest share tells the edge that the point is beyond; without a negative one it is here.
+        // The point is beyond the edge with the smallest share; if none is negative, it is here.
         let shares = barycentric([a, b, c], p);
         let (least, k) = (0..3).fold((0.0, 3), |best: (f64, usize), k| {
             if shares[k] < best.0 {
@@ -102,7 +102,7 @@ pub fn walk_on_facet(mesh: &Mesh, side: Side, p: Point3) -> OnFacet {
     OnFacet::Nothing
 }
 
-/// The shares of corners in a point of their plane.
+/// The barycentric coordinates of a point in the plane of a triangle.
 fn barycentric([a, b, c]: [Point3; 3], p: Point3) -> Vector {
     let normal = cross(minus(b, a), minus(c, a));
     let over = 1.0 / dot(normal, normal);

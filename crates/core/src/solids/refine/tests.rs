@@ -357,7 +357,7 @@ fn a_limit_ends_it_and_leaves_a_mesh() {
         rounds.refine(1_000_000, &Watch::new(&|| true), &mut |_| Ok(())),
         Err(Error::Interrupted)
     ));
-    // What was done until then is a mesh as well.
+    // The work done until then is a valid mesh as well.
     assert_valid(&model, &rounds.export().unwrap(), true);
 }
 

@@ -18,7 +18,7 @@ use crate::base::watch::Watch;
 const WATCH_EVERY: usize = 1 << 8;
 /// Requests between two calls of `tell`.
 const TELL_EVERY: usize = 1 << 12;
-/// New edges are at least this share of the size that asks for them.
+/// New edges are at least this share of the size that requests them.
 const SHARE: f64 = 0.5;
 /// Points inside are at least this share of that length above walls.
 const HEIGHT: f64 = 0.5;
@@ -101,7 +101,7 @@ impl Work {
             if steps % TELL_EVERY == 0 {
                 tell(self.counts.total())?;
             }
-            // A record that was replaced since asks for nothing.
+            // A record that has been replaced since then requests nothing.
             if self.mesh.corners[request.t as usize] != request.corners {
                 continue;
             }
