@@ -72,7 +72,7 @@ impl<const D: usize, const N: usize> Given<'_, D, N> {
         let corner: usize = (1..N).map(|k| k * usize::from(back[k] == here)).sum();
         Some(Side {
             simplex: t as usize,
-            // Invalid arrays, in which two facets are shared, must not lead out of range.
+            // Invalid arrays, in which two facets are shared, must not cause access out of range.
             corner: corner.min(N - 1),
         })
     }

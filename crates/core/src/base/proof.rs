@@ -23,7 +23,7 @@ pub enum Verdict {
 pub struct Expected<'a> {
     /// One row for each distinct point.
     pub rows: &'a [u32],
-    /// `[row, row that stands for it]` for all other rows.
+    /// `[row, row that represents it]` for all other rows.
     pub others: &'a [[u32; 2]],
     /// Whether some of `rows` may be hidden.
     pub may_hide: bool,
@@ -31,7 +31,7 @@ pub struct Expected<'a> {
 
 impl Expected<'_> {
     /// The rows that no simplex uses, in the order of `rows`. Rows that are used although another
-    /// one stands for them go to `repeats`.
+    /// one represents them go to `repeats`.
     pub fn unused<const N: usize>(
         &self,
         simplices: &[[i32; N]],

@@ -42,7 +42,7 @@ impl Sets {
         number
     }
 
-    /// Joins the sets of two numbers; whether they were two.
+    /// Joins the sets of two numbers; returns whether they were different.
     #[inline]
     pub fn join(&mut self, a: u32, b: u32) -> bool {
         let (a, b) = (self.root(a), self.root(b));
@@ -50,7 +50,7 @@ impl Sets {
         a != b
     }
 
-    /// Makes the root the parent of each number: then all paths are as short as can be.
+    /// Makes the root the parent of each number: then all paths are as short as possible.
     pub fn flatten(&mut self) {
         for number in 0..self.parents.len() {
             // Parents are smaller, so this one has its root already.

@@ -1,7 +1,7 @@
 //! Vectors of numbers: doubles, pairs of doubles, doubles with derivatives, and integers of any length.
 //!
-//! Sums are from the first coordinate to the last one. The bounds of rounding errors, which depend on that,
-//! stay with the formulas that they are for.
+//! Sums are from the first coordinate to the last one. The bounds of rounding errors, which depend
+//! on that, are stated next to the formulas that they belong to.
 
 use std::ops::{Add, Mul, Sub};
 

@@ -52,7 +52,7 @@ pub fn ratio(n: &BigInt, d: &BigInt, low: i64) -> Option<f64> {
     Some(if positive { value } else { -value })
 }
 
-/// `digits * 2^exponent` rounded to a double. The last digit is sticky: it stands for all that
+/// `digits * 2^exponent` rounded to a double. The last digit is sticky: it represents all that
 /// follow.
 fn rounded(digits: u128, exponent: i64) -> Option<f64> {
     let top = exponent + 127 - i64::from(digits.leading_zeros());

@@ -1,6 +1,6 @@
 //! Where two segments cross: the exact point, each coordinate correctly rounded.
 //!
-//! The lines ab and cd meet at a + t (b - a) with t = (c - a) x (d - c) / (b - a) x (d - c). Correct
+//! The lines ab and cd meet at a + t (b - a) with t = (c - a) x (d - c) / (b - a) x (d - c).
 //! Correct rounding makes the result a function of the two lines: the order of the segments and of
 //! their ends does not matter. Rounding is monotone, so each coordinate stays in the closed
 //! interval between any doubles that enclose the exact one: the result lies in the closed box of

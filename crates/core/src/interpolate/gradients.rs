@@ -18,9 +18,9 @@ const SHARE: usize = 1 << 12;
 const EDGES: usize = 1 << 17;
 
 /// Share of the longest edge below which an edge counts in a local fit only as if it were that
-/// long. The rounding of two values causes a slope between them, the larger the nearer they are;
-/// and the nearer they are, the more they would count. So about 1e-11 of the values over the
-/// distances is left of that slope.
+/// long. The rounding of two values causes a slope between them, which is larger the nearer they
+/// are; and the nearer they are, the more weight they would have. So about 1e-11 of the values over
+/// the distances is left of that slope.
 pub const NEAR: f64 = 1e-5;
 
 /// An edge from a vertex.
@@ -119,7 +119,7 @@ impl Sweeps<'_> {
             (low, high) = (low.min(value), high.max(value));
         }
         let floor = (high - low).min(f64::MAX) / self.side;
-        // Missing or constant values have no slope, and neither have coincident points.
+        // Missing or constant values have no slope, and neither do coincident points.
         if floor.is_finite() { floor } else { 0.0 }
     }
 }
@@ -322,7 +322,7 @@ pub const CLOSE: f64 = 1e-10;
 /// Rings of this many vertices are not widened.
 pub const WIDE: usize = 1 << 10;
 
-/// A ring is widened at most so many times.
+/// A ring is widened at most this many times.
 pub const WIDER: usize = 8;
 
 /// The factors that turn differences to surrounding values into a gradient.
@@ -435,7 +435,7 @@ impl<'a> Fit<'a> {
         self.norm() <= SWING * plane.norm()
     }
 
-    /// Whether it is at least as large as `least`, and the rounding of values does not show.
+    /// Whether it is at least as large as `least`, and the rounding of values is negligible.
     fn is_steady(&self, least: f64) -> bool {
         self.size >= least && self.norm() * self.size <= NOISY
     }

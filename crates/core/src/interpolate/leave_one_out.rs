@@ -6,7 +6,7 @@
 //! triangles of that hole are those that the vertex, taken as a query, would remove: the hole is
 //! the cavity. It is triangulated ear by ear: an ear whose circumcircle contains no vertex of the
 //! hole is a Delaunay triangle. Ties are broken as everywhere, by coordinates, so the triangles are
-//! those of a triangulation that never had the vertex.
+//! those of a triangulation that never contained the vertex.
 
 use delone_predicates::{Point2, Sign, incircle_canonical, nearer, orient2d};
 

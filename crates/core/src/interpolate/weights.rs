@@ -286,7 +286,7 @@ impl<T: Number> Weights<T> {
             .iter()
             .position(|p| distance(p).value() == 0.0)
         {
-            // So near to a site, only its own plane counts.
+            // This near to a site, only its own plane counts.
             self.values.fill(zero);
             self.values[here] = T::constant(1.0);
             self.slopes.resize(self.values.len(), [zero; 2]);

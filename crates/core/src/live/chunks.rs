@@ -137,7 +137,7 @@ impl<T: Copy> Chunks<T> {
         self.journal.room(n)
     }
 
-    /// Ends an edit that stays.
+    /// Ends an edit and keeps its changes.
     pub fn commit(&mut self) {
         self.journal.end();
     }

@@ -209,7 +209,7 @@ impl Fit {
     }
 
     /// Whether it spans all directions, is at least as large as `least`, and the rounding of values
-    /// does not show.
+    /// is negligible.
     fn is_steady(&self, least: f64) -> bool {
         let factors = self.factors.as_flattened();
         let norm = factors.iter().fold(0.0, |norm: f64, f| norm.hypot(*f));

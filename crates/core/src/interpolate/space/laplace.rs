@@ -25,8 +25,8 @@
 //!
 //! # Loss by rounding
 //!
-//! Near a plane of the hull, centers are far away. A single one does not matter: areas are as
-//! large. For two, side by side, the cross product grows with the product of their distances, and
+//! Near a plane of the hull, centers are far away. A single one does not matter: areas are equally
+//! large. For two adjacent ones, the cross product grows with the product of their distances, and
 //! cancels. So the size of the terms is summed along with each sum, and if that is too large, by
 //! distances and then by coordinates, integers give the weights (see `exact`).
 

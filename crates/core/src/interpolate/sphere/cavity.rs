@@ -19,7 +19,7 @@ pub struct Edge {
     pub right: Option<usize>,
 }
 
-/// An edge whose other side has not been looked at.
+/// An edge whose other side has not been visited.
 struct Open {
     triangle: usize,
     corner: usize,
@@ -42,7 +42,7 @@ pub struct Cavity {
 impl Cavity {
     /// Finds the cavity of `q` from a triangle; false if the circle of this one does not contain it.
     ///
-    /// The triangles form a tree: each has one vertex more, as the star of the query is a disk, and no
+    /// The triangles form a tree: each adds one vertex, as the star of the query is a disk, and no
     /// vertex is inside it, because `q` is not a vertex.
     pub fn find(
         &mut self,

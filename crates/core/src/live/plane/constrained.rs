@@ -5,15 +5,14 @@
 //! A set of points and segments that cross only at vertices has one constrained triangulation: the one
 //! in which no edge but a marked one must be flipped (see `constrained`). Each edit ends in it:
 //!
-//! - *A point* empties its cavity as without segments, but not past marked edges. On a marked edge it
-//!   splits it: both parts are marked.
+//! - *A point* empties its cavity as without segments, but not past marked edges. A point on a
+//!   marked edge splits it: both parts are marked.
 //! - *A vertex* is removed if no segment ends at it. If segments run straight through it, the two
-//! marked edges   there become one. The hole is filled with any triangles, and flips do the rest
-//! (see
-//! `ears`).
+//!   marked edges there become one. The hole is filled with any triangles, and flips do the rest
+//!   (see `ears`).
 //! - *A segment* becomes a chain of edges from vertex to vertex: edges that cross it are flipped until
-//!   none does, and flips do the rest. When it goes, edges that no other segment runs along are
-//!   unmarked, and flips do the rest.
+//!   none does, and flips do the rest. When it is removed, edges that no other segment runs along
+//!   are unmarked, and flips do the rest.
 //!
 //! # Crossings
 //!
@@ -25,7 +24,7 @@
 //!
 //! Where rounding makes more than the segments themselves meet, all points and segments are
 //! triangulated again by `constrained`: a point in the range of rounding of a crossed segment, or a
-//! crossing in that of a segment that is not its own.
+//! crossing in that of a segment to which it does not belong.
 //!
 //! # All or nothing
 //!

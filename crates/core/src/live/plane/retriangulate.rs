@@ -26,7 +26,7 @@ const MOST_CROSSINGS: usize = 4_000_000;
 const LOT: usize = 1 << 6;
 
 impl Plane {
-    /// Ends an edit, by a triangulation of all points and segments if it must be.
+    /// Ends an edit, if necessary by a triangulation of all points and segments.
     pub fn finish(
         &mut self,
         mut outcome: Outcome,

@@ -15,9 +15,9 @@
 //! 3. Faces (`facets`): each point leaves one crossing edge fewer.
 //!    Where faces of one plane are missing, its Delaunay triangulation is recovered first (`planes`);
 //!    flips in the plane then bring those of the input back, with points on its sides where tetrahedra
-//!    do not allow them (`swap`): each leaves an edge of the input one crossing less.
+//!    do not allow them (`swap`): each leaves an edge of the input one crossing fewer.
 //! 4. Points on the boundary are suppressed (`suppress`): each is replaced by one point in each
-//!    sector between faces; then free points are taken away (`thin`) where a neighbor sees all, also
+//!    sector between faces; then free points are removed (`thin`) where a neighbor sees all, also
 //!    after flips that leave them fewer edges.
 //! 5. Coordinates are exact (`coordinates`) until doubles are found (`place`); where no double sees
 //!    all faces around a point, they are divided among two or three (`divide`).

@@ -1,11 +1,11 @@
 //! Joins directed edges into lines and rings that visit no place twice.
 //!
-//! The edges bound a region, which is to their left, except where the outline cuts them off. An edge
-//! whose reverse is there as well bounds nothing, and both are dropped. Where several edges meet,
-//! each incoming one continues with the next outgoing one clockwise from it: between the two is a
-//! sector of the region. So regions that touch at a place get separate rings. A ring that still
-//! visits a place twice surrounds, between the two visits, a part outside of the region: it is cut
-//! there into two rings.
+//! The edges bound a region, which is to their left, except where the outline cuts them off. An
+//! edge whose reverse is present as well bounds nothing, and both are dropped. Where several edges
+//! meet, each incoming one continues with the next outgoing one clockwise from it: between the two
+//! is a sector of the region. So regions that touch at a place get separate rings. A ring that
+//! still visits a place twice surrounds, between the two visits, a part outside of the region: it
+//! is cut there into two rings.
 
 use std::cmp::Ordering;
 
@@ -75,7 +75,7 @@ impl Linker {
         self.done.resize(edges.len(), false);
         self.follow(nodes, edges)?;
         let mut path = Vec::new();
-        // Lines start where no edge precedes; what is left are rings.
+        // Lines start where no edge precedes; the rest are rings.
         for rings in [false, true] {
             for e in 0..edges.len() {
                 if !self.done[e] && (rings || !self.preceded[e]) {
@@ -167,7 +167,7 @@ impl Linker {
         let mut open = Vec::new();
         for rays in rays.chunk_by(|a, b| a.0 == b.0) {
             open.clear();
-            // The second turn pairs what is on both sides of the start.
+            // The second round pairs those on both sides of the start.
             for &(_, _, leaves, e) in rays.iter().chain(rays) {
                 if leaves {
                     if !self.preceded[e as usize] {

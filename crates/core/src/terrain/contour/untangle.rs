@@ -6,9 +6,9 @@
 //! point that is not on an edge lies exactly one small triangle: the edges of the fans, contours
 //! among them, may touch but cannot cross.
 //!
-//! A cell for which no fan is like that loses its two nearest places that can be united: one takes
-//! the position of the other, and vertices stay. Positions become fewer with each union, so the
-//! passes end. Unions happen where nodes are a few units in the last place apart.
+//! If no fan of a cell is like that, the two nearest of its places that can be united are united:
+//! one takes the position of the other, and vertices stay. Positions become fewer with each union,
+//! so the passes end. Unions happen where nodes are a few units in the last place apart.
 //!
 //! In a triangle that is thinner than the resolution of the coordinates, a cell may be left with
 //! vertices alone and still be tangled: a node of a longer edge was united with the vertex beside it,
@@ -58,7 +58,7 @@ pub fn untangle(nodes: &mut Nodes, far: bool, watch: &Watch) -> Result<Vec<i32>>
 }
 
 /// Unites equal positions in the cells of a triangle, and places of cells that are tangled; returns
-/// whether the latter happened, and whether all cells are right then.
+/// whether the latter happened, and whether all cells are then valid.
 fn untangle_triangle(nodes: &mut Nodes, t: usize, crossed: &Crossed, far: bool) -> (bool, bool) {
     let (mut changed, mut possible) = (false, true);
     for level in crossed.ranks[0]..=crossed.ranks[2] {

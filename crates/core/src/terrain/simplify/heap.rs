@@ -95,7 +95,7 @@ impl Heap {
         self.entries[k] = own;
     }
 
-    /// Removes old entries if they are most of all; `live` is the number of those that are not.
+    /// Removes old entries if they are the majority; `live` is the number of current ones.
     pub fn tidy(&mut self, live: usize, is_live: impl Fn(&Worst) -> bool, places: &[Place]) {
         if self.entries.len() < 2 * live + FEW {
             return;

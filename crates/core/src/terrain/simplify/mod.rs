@@ -7,11 +7,11 @@
 //! points of the triangles that it changes.
 //!
 //! Errors are vertical distances as `plane` computes them: doubles that are proven to be at least
-//! the true distance, so a bound that they hold is held. Triangles are constrained Delaunay, with ties
-//! broken by coordinates; of points with equal errors, the lexicographically smallest comes first, and
-//! a point on an edge belongs to the triangle on its left seen from the vertex that made the edge, or
-//! from its smaller end. So the order does not depend on that of the rows, and each prefix of it is
-//! a level of detail.
+//! the true distance, so a bound that they satisfy is satisfied. Triangles are constrained
+//! Delaunay, with ties broken by coordinates; of points with equal errors, the lexicographically
+//! smallest comes first, and a point on an edge belongs to the triangle on its left seen from the
+//! vertex that made the edge, or from its smaller end. So the order does not depend on that of the
+//! rows, and each prefix of it is a level of detail.
 //!
 //! Terminates: each step inserts a point. A step takes time linear in the number of points in the
 //! triangles that it changes: for n points of terrain, O(n log n) altogether; O(n^2) at worst.

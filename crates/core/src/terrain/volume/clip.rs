@@ -218,7 +218,7 @@ impl Candidates {
             if row > 0 {
                 watch.check()?;
             }
-            // Without a branch: every fourth or so meets, in no order that could be predicted.
+            // Without a branch: about one in four meets, in an unpredictable order.
             for other in lot {
                 self.found[count] = row;
                 count += usize::from(meet(other, extent));

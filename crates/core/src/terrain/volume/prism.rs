@@ -90,7 +90,7 @@ impl Sums {
         for k in 1..corners.len() - 1 {
             let [b, c] = [corners[k], corners[k + 1]];
             let twice = (b[0] - apex[0]) * (c[1] - apex[1]) - (b[1] - apex[1]) * (c[0] - apex[0]);
-            // Rounding may turn a polygon that is nearly flat.
+            // Rounding may reverse the orientation of a polygon that is nearly flat.
             let area = twice.max(0.0) / 2.0;
             let values = [differences[0], differences[k], differences[k + 1]];
             self.area += area;
@@ -134,7 +134,7 @@ fn positive(mut values: [f64; 3]) -> (f64, f64) {
         let share = high / (high - mid) * (high / (high - low));
         (share * high / 3.0, share)
     } else {
-        // What is missing is a corner below zero.
+        // The missing part is a corner below zero.
         let share = low / (low - mid) * (low / (low - high));
         (mean - share * low / 3.0, 1.0 - share)
     }

@@ -1,9 +1,9 @@
 //! Walks from triangle to triangle of a surface, through those that have an area in common with a
 //! triangle of another one.
 //!
-//! A walk starts at the center, and crosses each edge that enters the interior of the triangle: one
-//! that is apart from it has a line along a side of one of both between them. Signs are exact. Each
-//! triangle is visited once, so a walk ends.
+//! A walk starts at the center, and crosses each edge that enters the interior of the triangle:
+//! otherwise a line along a side of one of the two separates them. Signs are exact. Each triangle
+//! is visited once, so a walk ends.
 //!
 //! Why all are found: from the center to a point that both have inside, a straight line within the
 //! triangle crosses edges which enter it, up to the boundary. If a walk reaches the boundary, or has
@@ -338,7 +338,7 @@ impl Visited {
         })
     }
 
-    /// Forgets all. Walks are counted from one.
+    /// Clears the table. Walks are counted from one.
     fn clear(&mut self) {
         self.count = 0;
         if self.walk == u32::MAX {
@@ -348,7 +348,7 @@ impl Visited {
         self.walk += 1;
     }
 
-    /// Adds a triangle, and says whether it is new.
+    /// Adds a triangle, and returns whether it is new.
     #[inline]
     fn insert(&mut self, t: u32) -> Result<bool> {
         if self.count * 2 >= self.places.len() {
@@ -359,7 +359,7 @@ impl Visited {
         Ok(new)
     }
 
-    /// The search ends, because half of the places are free.
+    /// The search terminates, because half of the places are free.
     #[inline]
     fn put(&mut self, t: u32) -> bool {
         let mask = self.places.len() - 1;
