@@ -211,10 +211,10 @@ class CellGrid:
     ) -> CellGrid:
         """Cells between meridians and parallels, by rows: tangents of latitudes, where the
         meridians of rows start, their directions, the number of the cell east of each or
-        -1, and how many cells there are.
+        -1, and the number of cells.
         """
     def check(self, crossing: bool, workers: int) -> CheckedCells:
-        """Areas and faults; sides that cross are looked for if `crossing`."""
+        """Areas and faults; sides that cross are only searched for if `crossing`."""
     def overlaps(self, other: CellGrid, workers: int) -> SharedCells:
         """What the cells share with those of another grid; cells with faults share nothing."""
 
@@ -277,7 +277,7 @@ class CellPieces2:
 
 @final
 class CheckedCells:
-    """What is known of each cell of a grid."""
+    """What is known about each cell of a grid."""
 
     @property
     def areas(self) -> NDArray[np.float64]:
@@ -874,7 +874,7 @@ class JudgedTriangles:
 
 @final
 class LazyN:
-    """Points with any number of coordinates, whose triangulation is not made."""
+    """Points with any number of coordinates, whose triangulation is not computed."""
 
     def __new__(cls, points: NDArray[np.float64]) -> LazyN: ...
     @property
@@ -918,11 +918,11 @@ class Live:
     ) -> None:
         """Moves points."""
     def faults(self, handles: NDArray[np.int64]) -> list[NDArray[np.int64]]:
-        """Which of these handles are not there, or are named earlier."""
+        """Which of these handles do not exist, or are named earlier."""
     def points(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """The handles, ascending, and their points."""
     def arrays(self) -> LiveArrays:
-        """The present triangulation; no simplices if all points are in one line or plane."""
+        """The current triangulation; no simplices if all points are in one line or plane."""
     def split_crossings(self, split: bool) -> None:
         """Chooses whether crossings of segments are split."""
     def constraints(self) -> list[bool]:
@@ -944,7 +944,7 @@ class Live:
     def segments(self) -> LiveSegments:
         """The segments and their crossings."""
     def segment_faults(self, handles: NDArray[np.int64]) -> list[NDArray[np.int64]]:
-        """Which of these handles of segments are not there, or are named earlier."""
+        """Which of these handles of segments do not exist, or are named earlier."""
     def held(self, handles: NDArray[np.int64]) -> NDArray[np.int64]:
         """Which of these handles of points are ends of segments, each with one, or crossings,
         with -1.
@@ -965,15 +965,15 @@ class Live:
     def changes(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """The simplices that were removed and added since the last call, as handles."""
     def state(self) -> LiveState:
-        """The present state."""
+        """The current state."""
     def restore(self, state: LiveState, known: int | None = None) -> bool:
         """Restores a state of the same dimension; not if `known` is given and is not the
-        number of edits so far. Whether it was restored.
+        number of edits so far. Returns whether it was restored.
         """
 
 @final
 class LiveArrays:
-    """The present triangulation."""
+    """The current triangulation."""
 
     @property
     def handles(self) -> NDArray[np.int64]:
@@ -1024,7 +1024,7 @@ class LiveState:
     def ndim(self) -> int:
         """The number of coordinates, 2 or 3."""
     def open(self) -> Live:
-        """A triangulation of its own in this state."""
+        """A separate triangulation in this state."""
     def own_bytes(self, other: LiveState) -> int:
         """Bytes that are not shared with another state of the same dimension."""
 
@@ -1198,7 +1198,7 @@ class PeriodicFaults:
         """Rows of distinct points that no triangle uses, (k,)."""
     @property
     def repeats(self) -> NDArray[np.int32]:
-        """Rows that are used although another row stands for them, (k,)."""
+        """Rows that are used although another row represents them, (k,)."""
     @property
     def hidden(self) -> NDArray[np.int32]:
         """Rows that should be vertices though triangles cover them, (k,)."""
@@ -1250,7 +1250,7 @@ class PlaneCells:
         whether rings are holes.
         """
     def check(self, crossing: bool, workers: int) -> CheckedCells:
-        """Areas and faults; sides that cross are looked for if `crossing`."""
+        """Areas and faults; sides that cross are only searched for if `crossing`."""
     def overlaps(self, other: PlaneCells, workers: int) -> SharedCells:
         """What the cells share with those of another grid; cells with faults share nothing."""
 
@@ -1272,7 +1272,7 @@ class RecoveredFaces:
         """The row of the face opposite each vertex, -1 if there is none, (t, 4)."""
     @property
     def nadded(self) -> int:
-        """How many points were added."""
+        """The number of points that were added."""
     @property
     def counts(self) -> RecoveryCounts:
         """What happened."""
@@ -1303,10 +1303,10 @@ class RecoveryCounts:
         """Faces recovered by flips."""
     @property
     def segment_points(self) -> int:
-        """Points that were put on edges for a time."""
+        """Points that were temporarily put on edges."""
     @property
     def face_points(self) -> int:
-        """Points that were put in faces for a time."""
+        """Points that were temporarily put in faces."""
     @property
     def suppressed(self) -> int:
         """Sectors whose point on the boundary moved into the inside."""
@@ -1315,7 +1315,7 @@ class RecoveryCounts:
         """Sectors that were joined to a vertex without a point."""
     @property
     def thinned(self) -> int:
-        """Points inside that were taken away again."""
+        """Interior points that were removed again."""
 
 @final
 class RefinedMesh:
@@ -1373,7 +1373,7 @@ class RefinedTetrahedra:
         """The label of each tetrahedron, (m,)."""
     @property
     def sizes(self) -> NDArray[np.float64]:
-        """The size that was asked for at each, infinite for none, (m,)."""
+        """The size that was requested for each, infinite for none, (m,)."""
     @property
     def faces(self) -> NDArray[np.int32]:
         """The faces that stayed, oriented as given, (k, 3)."""
@@ -1433,7 +1433,7 @@ class Refinement2:
 
 @final
 class Refinement3:
-    """A refinement of tetrahedra in rounds, between which sizes are asked for."""
+    """A refinement of tetrahedra in rounds, between which sizes are requested."""
 
     def __new__(
         cls,
@@ -1472,7 +1472,7 @@ class RegularFaults2:
         """Rows that should be vertices though triangles cover them, (k,)."""
     @property
     def stands_for(self) -> NDArray[np.int32]:
-        """The row that stands for each point, (n,)."""
+        """The row that represents each point, (n,)."""
 
 @final
 class RegularFaults3:
@@ -1486,7 +1486,7 @@ class RegularFaults3:
         """Rows that should be vertices though tetrahedra cover them, (k,)."""
     @property
     def stands_for(self) -> NDArray[np.int32]:
-        """The row that stands for each point, (n,)."""
+        """The row that represents each point, (n,)."""
 
 @final
 class RegularFaultsN:
@@ -1500,7 +1500,7 @@ class RegularFaultsN:
         """Rows that should be vertices though simplices cover them, (k,)."""
     @property
     def stands_for(self) -> NDArray[np.int32]:
-        """The row that stands for each point, (n,)."""
+        """The row that represents each point, (n,)."""
 
 @final
 class RegularTriangulation:
@@ -1881,8 +1881,8 @@ def contour_lines2(
     far: bool,
 ) -> ContourLines:
     """The contour lines of a surface, with higher ground to their left. Those in triangles
-    of `collapsed`, which may be empty, pass through vertices; `far` allows to unite
-    points of lines that are far apart.
+    of `collapsed`, which may be empty, pass through vertices; `far` allows points of
+    lines that are far apart to be united.
     """
 
 def deepest2(
@@ -2211,7 +2211,7 @@ def recover_faces(
     flips: bool,
     workers: int,
 ) -> RecoveredFaces:
-    """Tetrahedra that have all faces, which may meet in common vertices and edges only.
+    """Tetrahedra that have all faces, which may meet only in common vertices and edges.
     What can be reached from far outside without crossing a face is left out.
     """
 
@@ -2396,8 +2396,8 @@ def validate_periodic2(
     neighbors: NDArray[np.int32],
     partners: NDArray[np.int32],
 ) -> PeriodicFaults:
-    """What is wrong with a periodic triangulation: periods of 0 stand for none; `offsets`
-    has those of the three corners of each triangle in one row.
+    """What is wrong with a periodic triangulation: periods of 0 mean none; `offsets` has
+    those of the three corners of each triangle in one row.
     """
 
 def validate_regular2(

@@ -68,7 +68,7 @@ pub struct Live {
 #[pyclass(frozen, module = "delone._core")]
 pub struct LiveState(Either<plane::State, space::State>);
 
-/// The present triangulation.
+/// The current triangulation.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct LiveArrays {
     /// The handles of the points, ascending, (n,).
@@ -180,7 +180,7 @@ pub fn checked_handles(given: &[i64], count: usize, total: usize) -> Result<Vec<
     Ok(given.iter().map(|&h| h as u32).collect())
 }
 
-/// Which handles are not there, and which are named twice.
+/// Which handles do not exist, and which are named twice.
 fn faults_of(handles: &[i64], is_there: impl Fn(i64) -> bool) -> [Vec<i64>; 2] {
     let gone = handles.iter().copied().filter(|&h| !is_there(h)).collect();
     let mut sorted = handles.to_vec();
@@ -294,7 +294,7 @@ impl Live {
         })
     }
 
-    /// Which of these handles are not there, or are named earlier.
+    /// Which of these handles do not exist, or are named earlier.
     fn faults(&self, py: Python<'_>, handles: Handles<'_>) -> Outcome<[Column<i64>; 2]> {
         let handles = flat(&handles, "handles")?;
         let [gone, twice] = self.with(py, handles.len(), |core, _| {
@@ -314,7 +314,7 @@ impl Live {
         Ok((column(py, handles), wide(py, points, self.width)?))
     }
 
-    /// The present triangulation; no simplices if all points are in one line or plane.
+    /// The current triangulation; no simplices if all points are in one line or plane.
     fn arrays(&self, py: Python<'_>) -> Outcome<LiveArrays> {
         let (handles, points, simplices, neighbors, constrained, duplicates) =
             self.with(py, usize::MAX, |core, watch| {
@@ -436,7 +436,7 @@ impl Live {
         })
     }
 
-    /// Which of these handles of segments are not there, or are named earlier.
+    /// Which of these handles of segments do not exist, or are named earlier.
     fn segment_faults(&self, py: Python<'_>, handles: Handles<'_>) -> Outcome<[Column<i64>; 2]> {
         let handles = flat(&handles, "handles")?;
         let [gone, twice] = self.with(py, handles.len(), |core, _| {
@@ -527,7 +527,7 @@ impl Live {
         Ok((wide(py, gone, corners)?, wide(py, new, corners)?))
     }
 
-    /// The present state.
+    /// The current state.
     fn state(&self, py: Python<'_>) -> Outcome<LiveState> {
         self.with(py, usize::MAX, |core, watch| {
             Ok(LiveState(match core {
@@ -537,8 +537,8 @@ impl Live {
         })
     }
 
-    /// Restores a state of the same dimension; not if `known` is given and is not the number of edits so
-    /// far. Whether it was restored.
+    /// Restores a state of the same dimension; not if `known` is given and is not the number of
+    /// edits so far. Returns whether it was restored.
     #[pyo3(signature = (state, known=None))]
     fn restore(&self, py: Python<'_>, state: &LiveState, known: Option<i64>) -> Outcome<bool> {
         self.with(py, usize::MAX, |core, watch| {
@@ -569,7 +569,7 @@ impl LiveState {
         self.0.ndim()
     }
 
-    /// A triangulation of its own in this state.
+    /// A separate triangulation in this state.
     fn open(&self, py: Python<'_>) -> Outcome<Live> {
         let core = watched(py, |watch| {
             let mut core = match self.0 {

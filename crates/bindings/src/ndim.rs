@@ -199,7 +199,7 @@ impl LocatorN {
     }
 }
 
-/// Points with any number of coordinates, whose triangulation is not made.
+/// Points with any number of coordinates, whose triangulation is not computed.
 #[pyclass(frozen, module = "delone._core")]
 pub struct LazyN(Lazy);
 

@@ -108,7 +108,7 @@ impl Lent<'_> {
     }
 }
 
-/// What is known of each cell of a grid.
+/// What is known about each cell of a grid.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct CheckedCells {
     /// Areas, on the sphere in steradians, 0 of cells that have none, (n,).
@@ -187,8 +187,8 @@ impl CellGrid {
     }
 
     /// Cells between meridians and parallels, by rows: tangents of latitudes, where the meridians
-    /// of rows start, their directions, the number of the cell east of each or -1, and how many
-    /// cells there are.
+    /// of rows start, their directions, the number of the cell east of each or -1, and the number
+    /// of cells.
     #[staticmethod]
     fn rows(
         tangents: Py<PyArray2<f64>>,
@@ -206,7 +206,7 @@ impl CellGrid {
         })
     }
 
-    /// Areas and faults; sides that cross are looked for if `crossing`.
+    /// Areas and faults; sides that cross are only searched for if `crossing`.
     fn check(&self, py: Python<'_>, crossing: bool, workers: usize) -> Outcome<CheckedCells> {
         let lent = self.0.lent(py)?;
         let grid = lent.grid()?;
@@ -283,7 +283,7 @@ impl PlaneCells {
         }
     }
 
-    /// Areas and faults; sides that cross are looked for if `crossing`.
+    /// Areas and faults; sides that cross are only searched for if `crossing`.
     fn check(&self, py: Python<'_>, crossing: bool, workers: usize) -> Outcome<CheckedCells> {
         let lent = self.lent(py)?;
         let cells = lent.cells()?;

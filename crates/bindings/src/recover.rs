@@ -22,15 +22,15 @@ pub struct RecoveryCounts {
     pub flipped_edges: usize,
     /// Faces recovered by flips.
     pub flipped_faces: usize,
-    /// Points that were put on edges for a time.
+    /// Points that were temporarily put on edges.
     pub segment_points: usize,
-    /// Points that were put in faces for a time.
+    /// Points that were temporarily put in faces.
     pub face_points: usize,
     /// Sectors whose point on the boundary moved into the inside.
     pub suppressed: usize,
     /// Sectors that were joined to a vertex without a point.
     pub joined: usize,
-    /// Points inside that were taken away again.
+    /// Interior points that were removed again.
     pub thinned: usize,
 }
 
@@ -45,7 +45,7 @@ pub struct RecoveredFaces {
     pub neighbors: Table<i32>,
     /// The row of the face opposite each vertex, -1 if there is none, (t, 4).
     pub walls: Table<i32>,
-    /// How many points were added.
+    /// The number of points that were added.
     pub nadded: usize,
     /// What happened.
     pub counts: Py<RecoveryCounts>,
@@ -53,7 +53,7 @@ pub struct RecoveredFaces {
     pub crowded: Column<i32>,
 }
 
-/// Tetrahedra that have all faces, which may meet in common vertices and edges only. What can be
+/// Tetrahedra that have all faces, which may meet only in common vertices and edges. What can be
 /// reached from far outside without crossing a face is left out.
 #[pyfunction]
 pub fn recover_faces<'py>(

@@ -24,7 +24,7 @@ pub struct RefinedTetrahedra {
     pub neighbors: Table<i32>,
     /// The label of each tetrahedron, (m,).
     pub labels: Column<i32>,
-    /// The size that was asked for at each, infinite for none, (m,).
+    /// The size that was requested for each, infinite for none, (m,).
     pub sizes: Column<f64>,
     /// The faces that stayed, oriented as given, (k, 3).
     pub faces: Table<i32>,
@@ -40,7 +40,7 @@ pub struct RefinedTetrahedra {
     pub for_sizes: usize,
 }
 
-/// A refinement of tetrahedra in rounds, between which sizes are asked for.
+/// A refinement of tetrahedra in rounds, between which sizes are requested.
 #[pyclass(frozen, module = "delone._core")]
 pub struct Refinement3(Mutex<Rounds>);
 

@@ -24,7 +24,7 @@ pub struct RegularFaults2 {
     pub faults: Py<Faults2>,
     /// Rows that should be vertices though triangles cover them, (k,).
     pub hidden: Column<i32>,
-    /// The row that stands for each point, (n,).
+    /// The row that represents each point, (n,).
     pub stands_for: Column<i32>,
 }
 
@@ -35,7 +35,7 @@ pub struct RegularFaults3 {
     pub faults: Py<Faults3>,
     /// Rows that should be vertices though tetrahedra cover them, (k,).
     pub hidden: Column<i32>,
-    /// The row that stands for each point, (n,).
+    /// The row that represents each point, (n,).
     pub stands_for: Column<i32>,
 }
 
@@ -46,7 +46,7 @@ pub struct RegularFaultsN {
     pub faults: Py<FaultsN>,
     /// Rows that should be vertices though simplices cover them, (k,).
     pub hidden: Column<i32>,
-    /// The row that stands for each point, (n,).
+    /// The row that represents each point, (n,).
     pub stands_for: Column<i32>,
 }
 
@@ -63,7 +63,7 @@ pub struct PeriodicFaults {
     pub hull: Table<i32>,
     /// Rows of distinct points that no triangle uses, (k,).
     pub missing: Column<i32>,
-    /// Rows that are used although another row stands for them, (k,).
+    /// Rows that are used although another row represents them, (k,).
     pub repeats: Column<i32>,
     /// Rows that should be vertices though triangles cover them, (k,).
     pub hidden: Column<i32>,
@@ -139,7 +139,7 @@ pub fn validate_regular_n(
     })
 }
 
-/// What is wrong with a periodic triangulation: periods of 0 stand for none; `offsets` has those of the
+/// What is wrong with a periodic triangulation: periods of 0 mean none; `offsets` has those of the
 /// three corners of each triangle in one row.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "one array each")]

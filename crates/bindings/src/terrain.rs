@@ -63,8 +63,8 @@ fn levels_of<'a>(levels: &'a PyReadonlyArray1<'_, f64>) -> Result<&'a [f64]> {
 }
 
 /// The contour lines of a surface, with higher ground to their left. Those in triangles of
-/// `collapsed`, which may be empty, pass through vertices; `far` allows to unite points of lines that
-/// are far apart.
+/// `collapsed`, which may be empty, pass through vertices; `far` allows points of lines that are
+/// far apart to be united.
 #[pyfunction]
 pub fn contour_lines2(
     py: Python<'_>,
