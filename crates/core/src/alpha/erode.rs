@@ -4,9 +4,9 @@
 //! its corner opposite is on the boundary already. So the boundary stays a simple polygon, as
 //! proposed by M. Duckham, L. Kulik, M. Worboys and A. Galton, "Efficient generation of simple
 //! polygons for characterizing the shape of a set of points in the plane", Pattern Recognition 41
-//! (2008). In 3-D a tetrahedron is removed unless it is the last one of a point. Lengths are compared
-//! exactly, and equal ones by the coordinates of their ends, so that the order of rows plays no
-//! role.
+//! (2008). In 3-D a tetrahedron is removed unless it is the last one of a point. Lengths are
+//! compared exactly, and equal ones by the coordinates of their ends, so that the order of rows
+//! does not matter.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -154,7 +154,7 @@ struct Erosion<'a> {
     queue: Queue<Facet<2>>,
 }
 
-/// Which triangles remain: one polygon, with holes if wanted.
+/// Which triangles remain: one polygon, with holes if requested.
 pub fn erode2(given: Given<2, 3>, limit: Limit, holes: bool, watch: &Watch) -> Result<Vec<bool>> {
     let Given {
         points,
@@ -212,7 +212,7 @@ impl Erosion<'_> {
         })
     }
 
-    /// Removes a triangle, which bares those around it.
+    /// Removes a triangle, which exposes those around it.
     fn remove(&mut self, t: usize) -> Result<()> {
         self.is_kept[t] = false;
         for k in 0..3 {

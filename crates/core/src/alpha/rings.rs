@@ -2,7 +2,7 @@
 //!
 //! A walk along the boundary that stays with the triangles on its left turns back at a vertex that
 //! other parts of the boundary touch. Where it meets one of its own vertices again, the piece since
-//! then is a ring of its own. So rings are simple, touch others in vertices only, and of each
+//! then is a separate ring. So rings are simple, touch others only at vertices, and of each
 //! component, which is connected through edges, exactly one is counterclockwise: its outline.
 
 use delone_predicates::{Point2, Sign, orient2d};

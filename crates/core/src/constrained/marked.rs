@@ -18,7 +18,7 @@ pub const LOT: u32 = 1 << 16;
 
 /// Triangles that a walk to a new vertex may visit before all triangles are searched, and how many
 /// more for each vertex along the side of a square that holds all vertices. New vertices are near
-/// what they come from, and a visibility walk may cycle around marked edges.
+/// the elements that they come from, and a visibility walk may cycle around marked edges.
 const WALK: usize = 256;
 const WALK_ACROSS: usize = 4;
 
@@ -29,7 +29,7 @@ pub struct Marked<S = Vec<Point2>> {
     pub points: S,
     /// The mesh, with capacity for more vertices.
     pub mesh: Mesh2,
-    /// How many vertices there are.
+    /// The number of vertices.
     pub count: usize,
     /// How many records are fewer than in a mesh with a hull: none in the plane.
     lack: u32,

@@ -125,7 +125,7 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// Starts a search among so many triangles and vertices.
+    /// Starts a search among this many triangles and vertices.
     fn start(&mut self, triangles: u32, vertices: usize) -> Result<()> {
         let is_over = self.now == u32::MAX;
         for (last, count) in [

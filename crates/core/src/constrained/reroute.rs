@@ -8,9 +8,9 @@
 //!
 //! Some cases are not handled here, and `split` starts from the beginning: a rounded crossing lies
 //! on another segment; a segment passes through the pixel of a crossing of others; a crossing
-//! segment passes through the pixel of any vertex that is not its own; or a piece still crosses
-//! another. In all other cases the pieces are the same as there, and so are the triangles, since
-//! one set of pieces has one triangulation.
+//! segment passes through the pixel of any vertex that is neither on it nor one of its crossings;
+//! or a piece still crosses another. In all other cases the pieces are the same as there, and so
+//! are the triangles, since one set of pieces has one triangulation.
 
 use std::collections::BTreeSet;
 

@@ -8,7 +8,7 @@
 //! crosses no other stays straight, except that it passes through crossings of others whose pixel
 //! it meets: next to such a point, less than a unit in the last place away, it would leave a sliver
 //! that no input asked for. Points of the input that are not exactly on it stay beside it. On a
-//! grid with pixels of one size nothing would cross any more. Doubles are denser toward zero, so
+//! grid with pixels of one size nothing would cross any longer. Doubles are denser toward zero, so
 //! two pieces may still cross. Then, as in iterated snap rounding (D. Halperin and E. Packer,
 //! Computational Geometry 23, 2002), one is rerouted through an end of the other whose pixel it
 //! meets, or both are split where they cross, until no pieces cross.

@@ -1,9 +1,9 @@
 //! The sphere of influence graph: pairs whose spheres, each through the nearest neighbor of its
 //! center, meet.
 //!
-//! G. T. Toussaint, "A graph-theoretical primal sketch" (1988). The tree of boxes has, for each box,
-//! the largest radius in it; a box is skipped if it is farther than that and the own radius
-//! together.
+//! G. T. Toussaint, "A graph-theoretical primal sketch" (1988). The tree of boxes has, for each
+//! box, the largest radius in it; a box is skipped if its distance exceeds the sum of that and the
+//! radius of the point.
 
 use delone_predicates::Sign;
 use delone_predicates::proximity::spheres;

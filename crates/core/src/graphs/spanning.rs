@@ -4,8 +4,8 @@
 //! (1956). Equal lengths are ordered by the coordinates of the smaller and then of the larger end.
 //! That is a strict order of all pairs, so there is one tree, whatever the rows. It is inside the
 //! relative neighborhood graph: where p is in the lune of a b, a p and p b are shorter and replace
-//! a b. So edges of which a neighbor shows that they are not, by rounded lengths that differ enough,
-//! are left out first.
+//! a b. So edges that a neighbor shows not to be in that graph, by rounded lengths that differ
+//! enough, are left out first.
 //!
 //! Edges are sorted by rounded squares. Where these are too near to each other, the run is put in
 //! order exactly.

@@ -22,7 +22,7 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Buffers for blocks of up to `points` points,.
+    /// Buffers for blocks of up to `points` points.
     pub fn with_room(points: usize) -> Result<Self> {
         Ok(Self {
             items: with_room(points)?,

@@ -88,12 +88,13 @@ struct Near {
 }
 
 /// Whether two arcs cross, from the signs of the second one's ends at the first one, and of the
-/// first one's ends at the second one.  Both circles separate the other arc's ends, so each arc
-/// meets one of the two points where the circles meet. At n x m the second arc, with normal m,
-/// comes from the right of the first and ends to its left, and the first comes from the left of the
-/// second and ends to its right; at -n x m it is the reverse. So the points are the same if and
-/// only if the second sign of one is the first of the other. Lines meet in one point, where this
-/// always holds.
+/// first one's ends at the second one.
+///
+/// Both circles separate the other arc's ends, so each arc meets one of the two points where the
+/// circles meet. At n x m the second arc, with normal m, comes from the right of the first and ends
+/// to its left, and the first comes from the left of the second and ends to its right; at -n x m it
+/// is the reverse. So the points are the same if and only if the second sign of one is the first of
+/// the other. Lines meet in one point, where this always holds.
 #[inline]
 pub fn cross_at(at: [i8; 2], of: [i8; 2]) -> bool {
     at[0] != at[1] && of[0] != of[1] && of[0] == at[1]

@@ -38,7 +38,7 @@ const U: f64 = f64::EPSILON / 2.0;
 const TURN: f64 = 10.0 * U;
 /// Bound of the in-circle test for parts of side 1.
 const CIRCLE: f64 = 96.0 * U;
-/// Larger than t for parts of side 1, by so much that its product with a certain s is certain, too.
+/// So much larger than t for parts of side 1 that its product with a certain s is certain, too.
 const FAR: f64 = 16.0;
 
 /// Rounding bounds for points in a box.

@@ -81,9 +81,9 @@ pub fn validate(given: Triangles, watch: &Watch) -> Result<Findings> {
     Ok(found)
 }
 
-/// Checks that `given` tiles the convex hull of its vertices, and asks `judge` at each inner edge: about
-/// p, u, v, q, where triangle p, u, v is to the left of the edge from u to v, and q is opposite. Gives
-/// the faults, all but `missing`, and the expected rows that no triangle uses.
+/// Checks that `given` tiles the convex hull of its vertices, and asks `judge` at each inner edge:
+/// about p, u, v, q, where triangle p, u, v is to the left of the edge from u to v, and q is
+/// opposite. Returns all faults except `missing`, and the expected rows that no triangle uses.
 pub fn examine(
     given: Triangles,
     expected: Expected,

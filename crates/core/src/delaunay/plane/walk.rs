@@ -4,7 +4,7 @@
 //!
 //! O. Devillers, S. Pion and M. Teillaud, "Walking in a triangulation" (2002). In a Delaunay
 //! triangulation the power of the point with respect to the circumcircle, with ties as in the mesh,
-//! falls at each step; with exact signs the walk never returns to a triangle and terminates.
+//! decreases at each step; with exact signs the walk never returns to a triangle and terminates.
 
 use delone_predicates::{Point2, Sign, orient2d};
 

@@ -20,7 +20,7 @@
 //! affine function), so coplanar hull facets are triangulated canonically. No 2-D predicate is
 //! needed: for the finite neighbor abcd of the ghost, the perturbed determinant of a, b, c, d, p is
 //! orient3d(a, b, c, d) times the height of p above the affine function of a, b, c, d; as p is an
-//! affine combination of a, b, c only, the height of d does not count, and the answer for abcd is
+//! affine combination of a, b, c only, the height of d does not matter, and the answer for abcd is
 //! that for abc in its plane. So **a ghost with p in its plane is in conflict exactly when its
 //! finite neighbor is**.
 //!

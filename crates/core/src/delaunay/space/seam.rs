@@ -87,7 +87,7 @@ fn is_far(other: &Extent3, center: Point3, reach: f64) -> bool {
 pub struct Block {
     /// For each vertex, its row in the input.
     pub rows: Vec<u32>,
-    /// For each record what it is.
+    /// What each record is.
     pub kinds: Vec<u8>,
     /// The records that are not sound, ascending.
     pub holes: Vec<u32>,

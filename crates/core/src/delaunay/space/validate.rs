@@ -102,9 +102,9 @@ pub fn validate(given: Tetrahedra, watch: &Watch) -> Result<Findings3> {
     Ok(found)
 }
 
-/// Checks that `given` tiles the convex hull of its vertices, and asks `judge` at each inner facet: about
-/// the corners of a tetrahedron and the apex of its neighbor. Gives the faults, all but `missing`, and
-/// the expected rows that no tetrahedron uses.
+/// Checks that `given` tiles the convex hull of its vertices, and asks `judge` at each inner facet:
+/// about the corners of a tetrahedron and the apex of its neighbor. Returns all faults except
+/// `missing`, and the expected rows that no tetrahedron uses.
 pub fn examine(
     given: Tetrahedra,
     expected: Expected,

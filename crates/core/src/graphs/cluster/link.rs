@@ -115,7 +115,7 @@ fn length<const D: usize>(a: [f64; D], b: [f64; D]) -> f64 {
         .map(|k| scaled(a[k], low) - scaled(b[k], low))
         .map(|x| &x * &x)
         .sum();
-    // A last bit stands for all that follow.
+    // A last bit represents all that follow.
     let floor = root(&square);
     let sticky = u8::from(&floor * &floor != square << 128);
     ratio(&(2 * floor + sticky), &(BigInt::from(1) << 65), low).unwrap_or(f64::INFINITY)

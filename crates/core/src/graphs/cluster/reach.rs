@@ -8,12 +8,12 @@
 //! bound in all later ones, because components only grow; most points are never searched again. The
 //! largest component chooses none, as the others reach it.
 //!
-//! Equal weights need no rule. An edge that would close a circle of chosen edges is left out. Suppose
-//! that a component c chose e, which is in no minimum spanning tree T with the edges chosen before.
-//! On the circle that e closes in T, contracted to the components of the round, the last edge into c
-//! is no lighter than e, and no heavier, so it was chosen before (else e could replace it), and not
-//! by c. So the component before chose it, the edge before that one is no lighter either, and so on
-//! to the other end of e: its ends were joined already.
+//! Equal weights need no rule. An edge that would close a cycle of chosen edges is left out.
+//! Suppose that a component c chose e, which is in no minimum spanning tree T with the edges chosen
+//! before. On the cycle that e closes in T, contracted to the components of the round, the last
+//! edge into c is no lighter than e, and no heavier, so it was chosen before (else e could replace
+//! it), and not by c. So the component before chose it, the edge before that one is no lighter
+//! either, and so on to the other end of e: its ends were joined already.
 //!
 //! Rounds end because each joins every component but one to another.
 

@@ -11,7 +11,7 @@ use crate::base::memory::{signed, with_room, zeroed};
 use crate::base::parallel;
 use crate::base::watch::Watch;
 
-/// Stands for the other side of a hull edge after the ghosts are dropped; shifted like a code it
+/// Represents the other side of a hull edge after the ghosts are dropped; shifted like a code it
 /// gives -1.
 pub(super) const OUTSIDE: Code = Code::MAX;
 
