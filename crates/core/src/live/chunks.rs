@@ -125,8 +125,7 @@ impl<T: Copy> Chunks<T> {
     }
 
     /// Starts an edit that [`Self::take_back`] may undo. Before each step of it, callers make room
-    /// for
-    /// what it changes.
+    /// for what it changes.
     pub fn begin(&mut self) -> Result<()> {
         self.journal.begin(self.items.len())
     }

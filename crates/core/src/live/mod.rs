@@ -29,9 +29,8 @@
 //!
 //! Edits reserve memory before they change anything. A batch that fails in the middle, because
 //! memory is refused or the caller wants to stop, is undone by the inverse edits in reverse order;
-//! as each
-//! state is unique, they lead to the triangles of the start. Among segments, what an edit replaces is
-//! recorded (see `journal`).
+//! as each state is unique, they lead to the triangles of the start. Among segments, what an edit
+//! replaces is recorded (see `journal`).
 
 //! # One code for 2-D and 3-D
 //!

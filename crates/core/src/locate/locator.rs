@@ -25,7 +25,7 @@ pub enum Located<const N: usize = 3> {
     Outside(Option<Side>),
 }
 
-/// What location has of its own in a dimension; the type is what it keeps besides a [`Cache`].
+/// What is specific to location in a dimension; the type is what it keeps besides a [`Cache`].
 pub trait Dimension<const D: usize, const N: usize>: Sized + Send + Sync {
     /// The boundary of a tiling.
     type Boundary: Send + Sync;

@@ -206,8 +206,7 @@ impl Region {
 }
 
 /// Whether sides of one cell cross in their interiors, or run the same way in a common part: the
-/// cell
-/// would cover what is beside that twice.
+/// cell would cover what is beside that twice.
 fn crosses([a, b]: [Point2; 2], [c, d]: [Point2; 2]) -> bool {
     let [s, t] = [c, d].map(|v| orient2d(a, b, v));
     if s == Sign::Zero && t == Sign::Zero {

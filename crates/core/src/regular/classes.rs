@@ -100,7 +100,7 @@ pub fn periodic(
 
 /// The triangulation of the points without copies.
 struct Alone {
-    /// The rows that stand for distinct points, ascending.
+    /// The rows that represent distinct points, ascending.
     rows: Vec<u32>,
     /// None if all are collinear, or few.
     triangles: Arrays<3>,

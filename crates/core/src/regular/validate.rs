@@ -34,7 +34,8 @@ pub struct Checked<F> {
     /// Rows that are not vertices though their lifts lie below the simplices that hold them. They, and
     /// those that are missing, are looked for only where there is no other fault.
     pub hidden: Vec<u32>,
-    /// For each row the row that stands for it: the heaviest with its coordinates, the first of these.
+    /// For each row the row that represents it: the heaviest with its coordinates, the first of
+    /// these.
     pub stands_for: Vec<i32>,
 }
 
@@ -73,7 +74,7 @@ pub fn validate(given: Triangles, weights: &[f64], watch: &Watch) -> Result<Chec
     })
 }
 
-/// `[row, row that stands for it]` for each row for which another one stands.
+/// `[row, row that represents it]` for each row that another one represents.
 pub fn others(stands_for: &[i32]) -> Vec<[u32; 2]> {
     let all = (0_u32..).zip(stands_for);
     all.filter(|&(row, &standing)| row as i32 != standing)

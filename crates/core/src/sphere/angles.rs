@@ -73,7 +73,7 @@ const QUICK: f64 = 1.0 / (1_u64 << 62) as f64;
 /// How much of a result is needed.
 #[derive(Clone, Copy)]
 enum Care {
-    /// To 2^-62, which nearly always tells the nearest double.
+    /// To 2^-62, which nearly always determines the nearest double.
     Quick,
     /// To 2^-100, or 2^-96 for radians.
     Full,
@@ -225,7 +225,7 @@ fn reduced(angle: f64, measure: Measure) -> Reduced {
                 double(angle - parts[0].hi) - double(parts[0].lo) - parts[1] - parts[2]
             };
             Reduced {
-                // Beyond some turns nothing is promised.
+                // Beyond a few turns nothing is guaranteed.
                 quarters: (quarters % 4.0) as i32,
                 rest: Rest::Radians(rest),
             }

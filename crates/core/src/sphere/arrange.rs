@@ -34,7 +34,7 @@ pub struct Halves {
     pub first: u32,
 }
 
-/// Directions that are worth two triangulations; few where a fuzzer is to try them.
+/// Directions that are worth two triangulations; few if a fuzzer is to try them.
 #[allow(unexpected_cfgs)] // Set by fuzz/run.sh and by cargo fuzz.
 const MANY: usize = if cfg!(fuzzing) { 8 } else { 1 << 14 };
 /// Each octant must have this share of the directions, or some are too empty for a join.

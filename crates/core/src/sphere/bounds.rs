@@ -3,9 +3,9 @@
 //! Wrong signs need a near tie whose rounding errors all point one way: random ties come nowhere near the
 //! bounds, and a bound that is too small would show by luck only. So errors are measured here, not
 //! signs. Directions are the computed ones, and the true ones are as far from them as the bound of their
-//! error allows, each coordinate on the side where the determinant changes most. Each test says which
-//! share of its bound the largest error reaches, so a bound that is smaller by the inverse of that
-//! fails.
+//! error allows, each coordinate on the side where the determinant changes most. Each test states
+//! which share of its bound the largest error reaches, so a bound that is smaller by the inverse of
+//! that fails.
 
 use delone_predicates::Point3;
 use delone_predicates::sphere::{Unit, stages};

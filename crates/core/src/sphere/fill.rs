@@ -1,7 +1,8 @@
 //! Inserts the directions of a block, one after the other.
 //!
-//! The order is that of `delaunay::plane::bowyer_watson`. Here no other method takes over where cavities are
-//! large: any input ends, as each insertion does, but some take quadratic time.
+//! The order is that of `delaunay::plane::bowyer_watson`. Here no other method takes over where
+//! cavities are large: the build terminates for any input, as each insertion does, but takes
+//! quadratic time for some.
 
 use std::ops::Range;
 

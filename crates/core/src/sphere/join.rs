@@ -8,10 +8,10 @@
 //! inside a circle smaller than a hemisphere, and each flip raises the surface of flat triangles, so
 //! that they end. With ties broken by the perturbation the result is the canonical triangulation.
 //!
-//! Every triangle has a positive determinant, so the closed surface covers each direction equally often:
-//! once, as the axis lies inside the first half and in no triangle of the ring. Where one of these is not
-//! so, or where flips are so many that insertion is faster, there is no answer, and the caller starts
-//! again with all directions.
+//! Every triangle has a positive determinant, so the closed surface covers each direction equally
+//! often: once, as the axis lies inside the first half and in no triangle of the ring. If one of
+//! these does not hold, or if there are so many flips that insertion is faster, there is no answer,
+//! and the caller starts again with all directions.
 //!
 //! Each loop has a bound that does not depend on the geometry: a ring has no more sides than there are
 //! records, the bridge makes one step for each side, and flips have a budget.
@@ -278,7 +278,7 @@ fn flip(
         pace.spend(1)?;
         let o = patch.opposite(e);
         let corners = [next(e), prev(e), e, o].map(|c| patch.vertex(c));
-        // An edge that is not Delaunay is flipped, and the four around it are looked at again.
+        // An edge that is not Delaunay is flipped, and the four around it are tested again.
         if directions.in_circle(corners) {
             if flips == most {
                 return Ok(false);
@@ -322,7 +322,7 @@ mod tests {
     }
 
     /// The triangles of a mesh that covers the sphere, from their smallest corners, sorted. Where two
-    /// numbers are the same direction, its first one stands for both.
+    /// numbers are the same direction, its first one represents both.
     fn triangles(mesh: &mut Mesh2, arranged: &Arranged, filled: &Filled) -> Vec<[u32; 3]> {
         let directions = &arranged.directions;
         let count = directions.count() as usize - filled.repeats.len();

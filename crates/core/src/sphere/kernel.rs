@@ -21,7 +21,7 @@
 //! determinant exceeds 3 u (s + t) then s and t are above 3 u, so that this is 0.6 u (s + t). In all these
 //! are 2.4 u (s + t), where [`TURN_BOUND`] takes 3 u, and 10 u s t beside it.
 //!
-//! The infinite vertex is NaN: nothing is certain with it, and exact tests see to ghosts.
+//! The infinite vertex is NaN: nothing is certain with it, and exact tests handle ghosts.
 
 use std::ops::Range;
 
@@ -162,8 +162,9 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// Inserts direction `p`, or notes that it is there; the search starts at triangle `near`. Returns a
-    /// triangle at `p`, the one that points toward direction `aim` if that is known.
+    /// Inserts direction `p`, or notes that it is already present; the search starts at triangle
+    /// `near`. Returns a triangle at `p`, the one that points toward direction `aim` if that is
+    /// known.
     pub fn insert(&mut self, p: u32, near: u32, aim: u32) -> Result<u32> {
         let origin = self.directions.heads[p as usize];
         let seed = match self.seed(p, near)? {

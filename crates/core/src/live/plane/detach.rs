@@ -4,8 +4,7 @@
 //! crossings: a *component*. A crossing may be a point of the input, and then a segment that bends
 //! there does so because of another one at the same point: these belong to one component as well.
 //! What remains is triangulated as if they had never been there (see `constrained`), and `reinsert`
-//! puts
-//! back those that stay.
+//! puts back those that stay.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
