@@ -4,8 +4,8 @@
 #![no_main]
 
 use delone_core::Point3;
-use delone_core::overlap::{Checked, Grid, Polygons, Rows, check, overlaps};
 use delone_core::base::watch::Watch;
+use delone_core::overlap::{Checked, Grid, Polygons, Rows, check, overlaps};
 use delone_fuzz::Coordinates;
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 

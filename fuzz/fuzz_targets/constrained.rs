@@ -9,11 +9,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use delone_core::Point2;
 use delone_core::base::arrays::Given;
+use delone_core::base::error::{Error, Result};
+use delone_core::base::watch::Watch;
 use delone_core::constrained::{Constrained, Options, constrain};
 use delone_core::delaunay::plane::Method;
 use delone_core::delaunay::plane::validate::{Findings, validate};
-use delone_core::base::error::{Error, Result};
-use delone_core::base::watch::Watch;
 use delone_predicates::{Sign, orient2d};
 use libfuzzer_sys::arbitrary::{self, Unstructured};
 

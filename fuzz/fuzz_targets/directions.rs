@@ -8,8 +8,8 @@ use std::collections::BTreeSet;
 
 use delone_core::Point3;
 use delone_core::base::error::Error;
-use delone_core::sphere::{Constrained, constrain, triangulate};
 use delone_core::base::watch::Watch;
+use delone_core::sphere::{Constrained, constrain, triangulate};
 use delone_fuzz::Coordinates;
 use delone_fuzz::oracle::directions::{true_incircle, true_orient, whole};
 use delone_fuzz::oracle::points::{power_of_two, ulps};

@@ -8,8 +8,8 @@
 use std::collections::BTreeSet;
 
 use delone_core::Point3;
-use delone_core::hull::{Hull3, hull3};
 use delone_core::base::watch::Watch;
+use delone_core::hull::{Hull3, hull3};
 use delone_fuzz::Coordinates;
 use delone_fuzz::oracle::orientation;
 use delone_predicates::Sign;

@@ -5,11 +5,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use delone_core::Point2;
+use delone_core::base::error::Error;
+use delone_core::base::watch::Watch;
 use delone_core::constrained::{Options, constrain};
 use delone_core::delaunay::plane::Method;
-use delone_core::base::error::Error;
 use delone_core::live::plane::{Plane, State};
-use delone_core::base::watch::Watch;
 use delone_fuzz::Coordinates;
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 

@@ -5,9 +5,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use delone_core::Point3;
+use delone_core::base::watch::Watch;
 use delone_core::delaunay::space::triangulate;
 use delone_core::live::space::{Space, State};
-use delone_core::base::watch::Watch;
 use delone_fuzz::Coordinates;
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 

@@ -10,11 +10,11 @@ use std::collections::BTreeMap;
 
 use delone_core::Point2;
 use delone_core::base::arrays::Given;
+use delone_core::base::watch::Watch;
 use delone_core::constrained::{Constrained, Options, components, constrain};
 use delone_core::delaunay::plane::Method;
 use delone_core::delaunay::plane::validate::{Findings, validate};
 use delone_core::refine::{Refined, Task, refine};
-use delone_core::base::watch::Watch;
 use libfuzzer_sys::arbitrary::{self, Unstructured};
 use num_bigint::BigInt;
 

@@ -11,11 +11,11 @@ use std::collections::BTreeSet;
 
 use delone_core::base::arrays::Given;
 use delone_core::base::error::Error;
+use delone_core::base::watch::Watch;
 use delone_core::locate::{Batch, Cache, Locator};
 use delone_core::ndim::{
     Findings, Hyper, Lazy, Weighed, hull, regular, triangulate, validate, validate_regular, within,
 };
-use delone_core::base::watch::Watch;
 use delone_fuzz::Coordinates;
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 

@@ -6,10 +6,10 @@ use std::collections::BTreeSet;
 
 use delone_core::Point3;
 use delone_core::base::arrays::Given;
-use delone_core::delaunay::space::triangulate;
-use delone_core::delaunay::space::validate::{Findings3, validate};
 use delone_core::base::error::Error;
 use delone_core::base::watch::Watch;
+use delone_core::delaunay::space::triangulate;
+use delone_core::delaunay::space::validate::{Findings3, validate};
 use delone_fuzz::Coordinates;
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 

@@ -6,10 +6,10 @@ use std::collections::BTreeSet;
 
 use delone_core::Point2;
 use delone_core::base::arrays::Given;
-use delone_core::delaunay::plane::validate::{Findings, validate};
-use delone_core::delaunay::plane::{Method, triangulate};
 use delone_core::base::error::Error;
 use delone_core::base::watch::Watch;
+use delone_core::delaunay::plane::validate::{Findings, validate};
+use delone_core::delaunay::plane::{Method, triangulate};
 use delone_fuzz::Coordinates;
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 

@@ -106,7 +106,6 @@ ABSENCES: dict[tuple[str, str], str] = {
     ): "HDBSCAN has labels, probabilities and the condensed tree",
     ("coming_from/scikit_learn.rst", "other metrics"): "distances are Euclidean",
     ("coming_from/shapely.rst", "buffers, unions"): "geometries are triangulated, not changed",
-    ("howto.rst", "This is not in delone"): "there is no wavefront of edges",
     ("releasing.rst", "no release"): "the sentence says what the check looks for",
     ("coming_from/triangle.rst", "``X``: none"): "arithmetic is always exact",
     ("guide/compat.rst", "``QbB``"): "nothing is scaled",

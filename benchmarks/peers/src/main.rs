@@ -10,8 +10,8 @@ use std::env;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use delone_core::delaunay::plane::{Method, triangulate};
 use delone_core::base::watch::Watch;
+use delone_core::delaunay::plane::{Method, triangulate};
 use delone_peers::{Failure, Outcome, Peer, Points, compete, points};
 use spade::{DelaunayTriangulation, Triangulation};
 

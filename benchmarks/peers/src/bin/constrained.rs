@@ -9,9 +9,9 @@ use std::env;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+use delone_core::base::watch::Watch;
 use delone_core::constrained::{Options, constrain};
 use delone_core::delaunay::plane::{Method, triangulate};
-use delone_core::base::watch::Watch;
 use delone_peers::{Failure, Outcome, Peer, Points, compete, points, segments};
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Triangulation};
