@@ -63,8 +63,8 @@ impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
         (rows, K::weights(corners.map(|v| self.mesh.at(v)), q))
     }
 
-    /// For each query, the row of the nearest point, the smallest of several; -1 if the query is not
-    /// finite or there is no point.
+    /// The row of the point nearest to each query; of points as near, the smallest row. It is -1 for a
+    /// query that is not finite, and for all queries of an empty triangulation.
     pub fn nearest(&mut self, queries: &[[f64; D]], watch: &Watch) -> Result<Vec<i64>> {
         let mut found = with_room(queries.len())?;
         let mut pace = Pace::new(watch, LOT);
