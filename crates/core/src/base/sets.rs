@@ -97,4 +97,21 @@ mod tests {
         assert_eq!(numbers, [0, 1, 1, 2, -1, 2, 3, 2, 2]);
         assert_eq!(count, 4);
     }
+
+    #[test]
+    fn many_sets_are_numbered_as_few() {
+        // Numbers with the same remainder are one set.
+        let mut sets = Sets::of(20_000).unwrap();
+        for number in 7..20_000 {
+            sets.join(number, number - 7);
+        }
+        let (numbers, count) = sets.numbered(|_| true).unwrap();
+        assert_eq!(count, 7);
+        assert!(
+            numbers
+                .iter()
+                .enumerate()
+                .all(|(i, &set)| set as usize == i % 7)
+        );
+    }
 }
