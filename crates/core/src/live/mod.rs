@@ -62,7 +62,7 @@ use crate::base::error::Result;
 use crate::base::memory::with_room;
 use crate::base::points;
 use crate::base::watch::Watch;
-use rows::Rows;
+use rows::{NONE, Rows};
 
 /// A live Delaunay triangulation by the mesh `K` of simplices with `N` corners of `D` coordinates.
 #[derive(Debug)]
@@ -150,6 +150,9 @@ impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
         let flat = self.mesh.is_flat();
         if flat != (self.flat.len() == self.vertices()) && self.vertices() > 0 {
             return Err(format!("{} vertices in the list", self.flat.len()));
+        }
+        if flat && self.mesh.counts.site != NONE {
+            return Err("a free site without simplices, which `restore` would list".into());
         }
         let at = |v: &u32| self.mesh.at(*v);
         let sorted = |w: &[[f64; D]]| lexicographic(w[0], w[1]).is_lt();

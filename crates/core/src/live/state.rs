@@ -76,18 +76,11 @@ impl<K: Kernel<D, N>, const D: usize, const N: usize> Live<K, D, N> {
         let (total, segments) = (self.rows.total(), self.segments.total());
         let mut flat = Vec::new();
         if state.counts.simplices == 0 {
+            // All sites are in use: only edits among simplices free any, and what makes the last simplex
+            // vanish is a rebuild.
             let sites = state.sites.to_vec()?;
             flat = with_room(sites.len())?;
-            let used = |v: &u32| sites[*v as usize].at[0].is_finite();
-            flat.extend((1..sites.len() as u32).filter(used));
-            let mut free = state.counts.site;
-            let mut gone = with_room(sites.len())?;
-            while free != NONE {
-                gone.push(free);
-                free = sites[free as usize].head;
-            }
-            gone.sort_unstable();
-            flat.retain(|v| gone.binary_search(v).is_err());
+            flat.extend(1..sites.len() as u32);
             let at = |v: u32| sites[v as usize].at;
             sort_by(&mut flat, watch, |&u, &v| lexicographic(at(u), at(v)))?;
         }
