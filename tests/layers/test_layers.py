@@ -67,6 +67,7 @@ BASE: dict[str, set[str]] = {
     "vector": set(),
     "parallel": GROUND,
     "points": {"error", "memory", "delone_predicates"},
+    "boxes": {"points"} | GROUND,
     "proof": GROUND,
     "wide": {"delone_predicates"},
     "joins": {"error", "memory", "watch"},
@@ -79,11 +80,13 @@ CORE: dict[str, set[str]] = {
     "mesh": {"parallel"} | GROUND,
     "delaunay": {"mesh", "order", "points", "parallel", "proof", "delone_predicates"} | GROUND,
     "measure": {"parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
-    "constrained": {"delaunay", "joins", "mesh", "order", "points", "delone_predicates"} | GROUND,
+    "constrained": {"boxes", "delaunay", "joins", "mesh", "order", "points", "delone_predicates"}
+    | GROUND,
     "refine": {"constrained", "delaunay", "measure", "mesh", "wide", "delone_predicates"} | GROUND,
-    "locate": {"order", "points", "parallel", "wide", "delone_predicates"} | GROUND,
+    "locate": {"boxes", "order", "points", "parallel", "wide", "delone_predicates"} | GROUND,
     "alpha": {"measure", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
-    "graphs": {"order", "points", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
+    "graphs": {"boxes", "order", "points", "parallel", "wide", "num_bigint", "delone_predicates"}
+    | GROUND,
     "hull": {"order", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "ndim": {
         "consistency",

@@ -1,6 +1,7 @@
-//! What all rooms stand on: errors, arrays, points, refused memory, interruption and workers.
+//! What all rooms stand on: errors, arrays, points, boxes, refused memory, interruption and workers.
 
 pub mod arrays;
+pub(crate) mod boxes;
 pub mod consistency;
 pub mod error;
 pub mod joins;

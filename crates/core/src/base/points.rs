@@ -48,6 +48,11 @@ impl<const D: usize> Extent<D> {
         e
     }
 
+    /// The box of all that is in some boxes.
+    pub fn over(boxes: &[Self]) -> Self {
+        Self::of(boxes.iter().flat_map(|e| [e.min, e.max]))
+    }
+
     /// The longest side, rounded; infinite if it exceeds the range of doubles.
     pub fn side(&self) -> f64 {
         (0..D).fold(f64::NEG_INFINITY, |side, k| {

@@ -18,10 +18,11 @@
 use delone_predicates::{Point2, Sign, stages};
 
 use super::intersection::crosses;
+use crate::base::boxes::Levels;
 use crate::base::error::{Error, Result};
 use crate::base::memory::{filled, with_room};
 use crate::base::points::Extent;
-use crate::base::watch::{Pace, Watch};
+use crate::base::watch::Watch;
 use crate::order::curve::{Scratch, along_curve};
 use crate::order::sort;
 
@@ -31,8 +32,6 @@ const FAN: usize = 8;
 const CLASS: u32 = 3;
 /// Size classes; the last has everything smaller.
 const CLASSES: usize = 8;
-/// More levels than any tree has.
-const LEVELS: usize = 12;
 /// Joins of two nodes between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 12;
 /// Segments that are put in place between two checks for interruption.
@@ -120,26 +119,18 @@ pub(crate) fn overlap(a: &Extent, b: &Extent) -> bool {
         & (b.min[1] <= a.max[1])
 }
 
-fn union(boxes: &[Extent]) -> Extent {
-    Extent::of(boxes.iter().flat_map(|e| [e.min, e.max]))
-}
+/// The boxes of the segments of a class, and above them those of `FAN` each.
+type Tree = Levels<2, 1, FAN>;
 
-/// Segments and boxes: first the boxes of the segments, then those of all nodes, tree by tree and
-/// level by level.
+/// Segments, tree by tree.
 struct Forest {
     items: Vec<Item>,
-    boxes: Vec<Extent>,
     trees: Vec<Tree>,
+    /// The first item of each tree.
+    starts: Vec<usize>,
 }
 
-/// Where the boxes of each level start; the segments are level 0, and the last level is one node.
-struct Tree {
-    levels: Vec<usize>,
-    /// The number of boxes on each level.
-    counts: Vec<usize>,
-}
-
-/// A node of a tree: its level and the index of its box; at level 0 a segment.
+/// A node of a tree: its level and the number of its box there; at level 0 a segment.
 #[derive(Clone, Copy)]
 struct Node {
     tree: usize,
@@ -157,8 +148,8 @@ impl Forest {
         }
         let mut forest = Self {
             items: with_room(rows.len())?,
-            boxes: with_room(rows.len() + rows.len() / (FAN - 1) + CLASSES * LEVELS)?,
             trees: Vec::new(),
+            starts: Vec::new(),
         };
         for lot in rows.chunks(LOT) {
             watch.check()?;
@@ -168,57 +159,44 @@ impl Forest {
                 row,
             }));
         }
-        for lot in forest.items.chunks(LOT) {
-            watch.check()?;
-            forest.boxes.extend(lot.iter().map(Item::extent));
-        }
         for w in starts.windows(2).filter(|w| w[0] < w[1]) {
-            forest.build_tree(w[0], w[1], watch)?;
+            let mut boxes = with_room(w[1] - w[0])?;
+            for lot in forest.items[w[0]..w[1]].chunks(LOT) {
+                watch.check()?;
+                boxes.extend(lot.iter().map(Item::extent));
+            }
+            forest.trees.push(Tree::over(boxes.len(), boxes, watch)?);
+            forest.starts.push(w[0]);
         }
         Ok(forest)
     }
 
-    /// Builds the tree over the segments from `start` to `end`.
-    fn build_tree(&mut self, start: usize, end: usize, watch: &Watch) -> Result<()> {
-        let mut pace = Pace::new(watch, LOT);
-        let (mut levels, mut counts) = (vec![start], vec![end - start]);
-        let (mut start, mut end) = (start, end);
-        // Even a single segment gets a node: a root is not a segment.
-        while levels.len() == 1 || end - start > 1 {
-            let next = self.boxes.len();
-            for first in (start..end).step_by(FAN) {
-                pace.spend(FAN)?;
-                let node = union(&self.boxes[first..end.min(first + FAN)]);
-                self.boxes.push(node);
-            }
-            (start, end) = (next, self.boxes.len());
-            levels.push(start);
-            counts.push(end - start);
-        }
-        self.trees.push(Tree { levels, counts });
-        Ok(())
-    }
-
     fn root(&self, tree: usize) -> Node {
-        let levels = &self.trees[tree].levels;
         Node {
             tree,
-            level: levels.len() - 1,
-            place: levels[levels.len() - 1],
+            level: self.trees[tree].top(),
+            place: 0,
         }
     }
 
     fn children(&self, node: Node) -> impl Iterator<Item = Node> + use<> {
-        let Tree { levels, counts } = &self.trees[node.tree];
-        let level = node.level - 1;
-        let first = FAN * (node.place - levels[node.level]);
-        let last = counts[level].min(first + FAN);
-        let start = levels[level];
-        (start + first..start + last).map(move |place| Node {
-            tree: node.tree,
-            level,
+        let below = self.trees[node.tree].below(node.level, node.place);
+        below.map(move |place| Node {
+            level: node.level - 1,
             place,
+            ..node
         })
+    }
+
+    #[inline]
+    fn extent(&self, node: Node) -> &Extent {
+        &self.trees[node.tree].at(node.level)[node.place]
+    }
+
+    /// The segment that is a node of level 0.
+    #[inline]
+    fn item(&self, node: Node) -> &Item {
+        &self.items[self.starts[node.tree] + node.place]
     }
 }
 
@@ -323,21 +301,22 @@ impl Join<'_> {
 
     /// All pairs of a segment below `a` and one below `b`, another node.
     fn between(&mut self, a: Node, b: Node) -> Result<()> {
-        let Forest { boxes, items, .. } = self.forest;
-        if !overlap(&boxes[a.place], &boxes[b.place]) || self.done() {
+        let forest = self.forest;
+        let (box_a, box_b) = (forest.extent(a), forest.extent(b));
+        if !overlap(box_a, box_b) || self.done() {
             return Ok(());
         }
         if a.level == 0 && b.level == 0 {
-            return self.pair(&items[a.place], &items[b.place]);
+            return self.pair(forest.item(a), forest.item(b));
         }
-        if a.level == 0 && !items[a.place].may_meet(&boxes[b.place])
-            || b.level == 0 && !items[b.place].may_meet(&boxes[a.place])
+        if a.level == 0 && !forest.item(a).may_meet(box_b)
+            || b.level == 0 && !forest.item(b).may_meet(box_a)
         {
             return Ok(());
         }
         self.step()?;
         // Descends into the larger box, so that few small ones wait for one of their size.
-        let larger = boxes[a.place].side() >= boxes[b.place].side();
+        let larger = box_a.side() >= box_b.side();
         if b.level == 0 || a.level > 0 && larger {
             for child in self.forest.children(a) {
                 self.between(child, b)?;

@@ -120,14 +120,15 @@ fn from<const D: usize>(
     let mut far = Vec::new();
     let enter =
         |extent: &Extent<D>, _, _| !around.iter().any(|&v| is_beyond(a, skeleton.at(v), extent));
-    tree.each(&mut Vec::with_capacity(64), enter, |place| {
-        let (other, b) = (tree.rows[place] as i32, tree.points[place]);
-        let open = |&v: &i32| angle(a, skeleton.at(v), b) != Sign::Negative;
-        if other > row && !around.contains(&other) && around.iter().all(open) {
-            far.push([row, other]);
-        }
-        true
-    });
+    tree.boxes
+        .each(&mut Vec::with_capacity(64), enter, |place| {
+            let (other, b) = (tree.rows[place] as i32, tree.points[place]);
+            let open = |&v: &i32| angle(a, skeleton.at(v), b) != Sign::Negative;
+            if other > row && !around.contains(&other) && around.iter().all(open) {
+                far.push([row, other]);
+            }
+            true
+        });
     for edge in far {
         push(found, edge)?;
     }

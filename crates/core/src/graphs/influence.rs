@@ -38,17 +38,10 @@ pub fn influence<const D: usize>(
     // A little larger, so that rounding excludes no box.
     let radius = |&(square, _): &(f64, u32)| square.sqrt() * (1.0 + 1e-14) + TINY;
     let radii: Vec<f64> = near.iter().map(radius).collect();
-    let largest = |level: usize, i: usize| {
-        let places = tree.places(level, i);
-        radii[places].iter().fold(0.0, |most: f64, &r| most.max(r))
-    };
-    let reach: Vec<Vec<f64>> = (0..tree.levels.len())
-        .map(|level| {
-            (0..tree.levels[level].len())
-                .map(|i| largest(level, i))
-                .collect()
-        })
-        .collect();
+    let largest = |radii: &[f64]| radii.iter().fold(0.0, |most: f64, &r| most.max(r));
+    let reach = tree
+        .boxes
+        .values(|places| largest(&radii[places]), largest)?;
     let shares = (0..tree.len()).step_by(SHARE).collect();
     let parts = parallel::map_watched(workers, shares, watch, |first| {
         let (mut found, mut open) = (Vec::new(), Vec::with_capacity(64));
@@ -56,12 +49,13 @@ pub fn influence<const D: usize>(
         let mut pace = Pace::new(watch, LOT);
         for place in first..tree.len().min(first + SHARE) {
             let (a, c) = (tree.points[place], tree.points[near[place].1 as usize]);
-            tree.each(
+            tree.boxes.each(
                 &mut open,
                 |extent, level, i| {
                     let most = radii[place] + reach[level][i];
                     let away = squared_gap(extent, a).sqrt() * (1.0 - 1e-14);
-                    tree.places(level, i).end > place + 1 && (away <= most || away == f64::INFINITY)
+                    tree.boxes.items(level, i).end > place + 1
+                        && (away <= most || away == f64::INFINITY)
                 },
                 |other| {
                     if other > place {

@@ -10,6 +10,7 @@ use delone_predicates::proximity::shorter;
 
 use super::edges::{SHARE, joined, sorted};
 use super::tree::{LEAF, Tree, certainly_above, squared, squared_gap};
+use crate::base::boxes::Open;
 use crate::base::error::Result;
 use crate::base::memory::{push, with_room};
 use crate::base::parallel;
@@ -70,7 +71,7 @@ pub(crate) fn each<const D: usize, T: Send + Copy>(
             tree,
             k,
             best: with_room(k + 1)?,
-            open: Vec::with_capacity(64),
+            open: Open::with_capacity(64),
             pace: Pace::new(watch, LOT),
         };
         for place in first..tree.len().min(first + SHARE) {
@@ -82,13 +83,19 @@ pub(crate) fn each<const D: usize, T: Send + Copy>(
     joined(&parts)
 }
 
+/// Whether nothing at this squared distance can be among the `k` best.
+#[inline]
+fn excludes(best: &Nearest, k: usize, away: f64) -> bool {
+    best.len() == k && certainly_above(away, best[k - 1].0)
+}
+
 /// The search for the neighbors of one place after another.
 struct Search<'a, const D: usize> {
     tree: &'a Tree<D>,
     k: usize,
     best: Nearest,
-    /// Boxes to enter: squared distance, level and number.
-    open: Vec<(f64, usize, usize)>,
+    /// Boxes to enter, by squared distance.
+    open: Open,
     pace: Pace<'a>,
 }
 
@@ -105,33 +112,25 @@ impl<const D: usize> Search<'_, D> {
         let end = ((place + self.k / 2) / LEAF * LEAF + LEAF).min(tree.len());
         (first..end).for_each(|other| self.offer(place, other));
         let q = tree.points[place];
-        self.open.push((0.0, tree.levels.len() - 1, 0));
+        tree.boxes.open(&mut self.open, 0.0);
         while let Some((away, level, i)) = self.open.pop() {
             if self.excludes(away) {
                 continue;
             }
+            let (level, i) = (level as usize, i as usize);
             if level == 0 {
-                let places = tree.places(0, i);
+                let places = tree.boxes.items(0, i);
                 self.pace.spend(places.len())?;
                 if places.start < first || places.start >= end {
                     places.for_each(|other| self.offer(place, other));
                 }
                 continue;
             }
-            let from = self.open.len();
-            for child in tree.below(level, i) {
-                let away = squared_gap(&tree.levels[level - 1][child], q);
-                if self.excludes(away) {
-                    continue;
-                }
-                // The nearest box goes last on the stack, so it is next.
-                self.open.push((away, level - 1, child));
-                let mut at = self.open.len() - 1;
-                while at > from && self.open[at - 1].0 < away {
-                    self.open.swap(at - 1, at);
-                    at -= 1;
-                }
-            }
+            let (best, k) = (&self.best, self.k);
+            tree.boxes
+                .open_below(&mut self.open, level, i, |extent, _| {
+                    Some(squared_gap(extent, q)).filter(|&away| !excludes(best, k, away))
+                });
         }
         Ok(())
     }
@@ -139,7 +138,7 @@ impl<const D: usize> Search<'_, D> {
     /// Whether no point at this squared distance can be a neighbor.
     #[inline]
     fn excludes(&self, away: f64) -> bool {
-        self.best.len() == self.k && certainly_above(away, self.best[self.k - 1].0)
+        excludes(&self.best, self.k, away)
     }
 
     /// Puts a place among the best if it is one of them.

@@ -91,7 +91,7 @@ fn is_clear<const D: usize>(
     holds: impl Fn([f64; D]) -> bool,
 ) -> bool {
     let within = squared(a, b);
-    tree.each(
+    tree.boxes.each(
         &mut Vec::with_capacity(64),
         |extent, _, _| {
             let beyond = |q| certainly_above(squared_gap(extent, q), within);

@@ -1,13 +1,9 @@
-//! A tree of bounding boxes over distinct points along the curve (as in `locate`, an R-tree packed
-//! along the Hilbert curve: I. Kamel and C. Faloutsos, 1993).
-//!
-//! A search is complete because it skips only boxes that contain no point of the region: each bound
-//! of a box allows for its roundings.
-
-use std::ops::Range;
+//! A tree of bounding boxes over distinct points along the curve (see `base::boxes`), and distances
+//! whose roundings are allowed for.
 
 use delone_predicates::{Point2, Point3};
 
+use crate::base::boxes::Levels;
 use crate::base::error::Result;
 use crate::base::memory::with_room;
 use crate::base::parallel;
@@ -65,8 +61,8 @@ pub struct Tree<const D: usize> {
     pub(crate) rows: Vec<u32>,
     /// `[row, first row of the same point]` for each further row, ascending.
     pub duplicates: Vec<[u32; 2]>,
-    /// The boxes of each level, from those of points up to a single one.
-    pub(crate) levels: Vec<Vec<Extent<D>>>,
+    /// Their boxes.
+    pub(crate) boxes: Levels<D, LEAF, WIDTH>,
 }
 
 impl<const D: usize> Tree<D> {
@@ -87,17 +83,11 @@ impl<const D: usize> Tree<D> {
             );
             Ok(boxes)
         })?;
-        let mut levels = vec![parts.concat()];
-        while levels[levels.len() - 1].len() > 1 {
-            watch.check()?;
-            let join = |run: &[Extent<D>]| Extent::of(run.iter().flat_map(|e| [e.min, e.max]));
-            levels.push(levels[levels.len() - 1].chunks(WIDTH).map(join).collect());
-        }
         Ok(Self {
+            boxes: Levels::over(along.points.len(), parts.concat(), watch)?,
             points: along.points,
             rows: along.rows,
             duplicates: along.duplicates,
-            levels,
         })
     }
 
@@ -109,45 +99,6 @@ impl<const D: usize> Tree<D> {
     /// Whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
-    }
-
-    /// The places of the points of a box.
-    #[inline]
-    pub(crate) fn places(&self, level: usize, i: usize) -> Range<usize> {
-        let width = LEAF * WIDTH.pow(level as u32);
-        i * width..((i + 1) * width).min(self.points.len())
-    }
-
-    /// The boxes of a box on a level above 0.
-    #[inline]
-    pub(crate) fn below(&self, level: usize, i: usize) -> Range<usize> {
-        i * WIDTH..((i + 1) * WIDTH).min(self.levels[level - 1].len())
-    }
-
-    /// Calls `visit` on the places of points in all boxes that `enter` accepts, by level and
-    /// number, until it answers `false`; whether it never did.
-    #[inline]
-    pub(crate) fn each(
-        &self,
-        open: &mut Vec<(usize, usize)>,
-        enter: impl Fn(&Extent<D>, usize, usize) -> bool,
-        mut visit: impl FnMut(usize) -> bool,
-    ) -> bool {
-        open.clear();
-        if !self.is_empty() {
-            open.push((self.levels.len() - 1, 0));
-        }
-        while let Some((level, i)) = open.pop() {
-            if !enter(&self.levels[level][i], level, i) {
-                continue;
-            }
-            if level > 0 {
-                open.extend(self.below(level, i).map(|child| (level - 1, child)));
-            } else if !self.places(0, i).all(&mut visit) {
-                return false;
-            }
-        }
-        true
     }
 }
 

@@ -3,16 +3,17 @@
 //! For arrays with holes or a concave boundary, where a walk that leaves the tiling proves nothing,
 //! and for faces of a boundary.
 //!
-//! Items are sorted along the curve, eight to a box, eight boxes to the next, and so on (like an
-//! R-tree packed along the Hilbert curve: I. Kamel and C. Faloutsos, 1993).
+//! Items are sorted along the curve, eight to a box, eight boxes to the next, and so on (see
+//! `base::boxes`).
 
+use crate::base::boxes::{Levels, Open};
 use crate::base::error::Result;
 use crate::base::memory::with_room;
 use crate::base::points::Extent;
 use crate::base::watch::{Pace, Watch};
 use crate::order::order_of;
 
-/// Boxes, or items, per box.
+/// Items per lowest box, and boxes per box.
 const WIDTH: usize = 8;
 
 /// Items between two checks for interruption.
@@ -23,8 +24,7 @@ const LOT: usize = 1 << 16;
 pub struct Boxes<const D: usize> {
     /// Items along the curve.
     order: Vec<u32>,
-    /// The boxes of each level, from the items up to a single one.
-    levels: Vec<Vec<Extent<D>>>,
+    levels: Levels<D, WIDTH, WIDTH>,
 }
 
 impl<const D: usize> Boxes<D> {
@@ -49,20 +49,13 @@ impl<const D: usize> Boxes<D> {
     ) -> Result<Self> {
         let mut pace = Pace::new(watch, LOT);
         let ends = |e: Extent<D>| [e.min, e.max];
-        let join_items =
-            |run: &[u32]| Extent::of(run.iter().flat_map(|&i| ends(box_of(i as usize))));
-        let mut level = with_room(order.len().div_ceil(WIDTH))?;
+        let mut lowest = with_room(order.len().div_ceil(WIDTH))?;
         for run in order.chunks(WIDTH) {
             pace.spend(run.len())?;
-            level.push(join_items(run));
+            let boxes = run.iter().flat_map(|&i| ends(box_of(i as usize)));
+            lowest.push(Extent::of(boxes));
         }
-        let mut levels = Vec::new();
-        while level.len() > 1 {
-            let join = |run: &[Extent<D>]| Extent::of(run.iter().flat_map(|e| [e.min, e.max]));
-            let above = level.chunks(WIDTH).map(join).collect();
-            levels.push(std::mem::replace(&mut level, above));
-        }
-        levels.push(level);
+        let levels = Levels::over(order.len(), lowest, watch)?;
         Ok(Self { order, levels })
     }
 
@@ -99,7 +92,7 @@ impl<const D: usize> Boxes<D> {
         mut visit: impl FnMut(usize, f64) -> f64,
     ) {
         let far = |p: [f64; D]| p.iter().any(|x| x.abs() > 1e300);
-        let Some(root) = self.levels[self.levels.len() - 1].first() else {
+        let Some(root) = self.levels.root() else {
             return;
         };
         let unit = if far(q) || far(root.min) || far(root.max) {
@@ -119,39 +112,26 @@ impl<const D: usize> Boxes<D> {
         bound: impl Fn(&Extent<D>) -> f64,
         mut visit: impl FnMut(usize) -> f64,
     ) {
-        if self.order.is_empty() {
+        let mut open: Open = Vec::with_capacity(WIDTH * (self.levels.top() + 1));
+        self.levels.open(&mut open, f64::NEG_INFINITY);
+        if open.is_empty() {
             return;
         }
         let mut within = hint.map_or(f64::INFINITY, &mut visit);
-        let mut open = Vec::with_capacity(WIDTH * self.levels.len());
-        open.push((f64::NEG_INFINITY, self.levels.len() - 1, 0));
         while let Some((away, level, i)) = open.pop() {
+            let (level, i) = (level as usize, i as usize);
             if away > within {
                 continue;
             }
-            let first = i * WIDTH;
             if level == 0 {
-                let end = (first + WIDTH).min(self.order.len());
-                for &item in &self.order[first..end] {
+                for &item in &self.order[self.levels.items(0, i)] {
                     within = visit(item as usize);
                 }
                 continue;
             }
-            let from = open.len();
-            let below = &self.levels[level - 1];
-            let end = (first + WIDTH).min(below.len());
-            for (child, extent) in (first..end).zip(&below[first..end]) {
-                let away = bound(extent);
-                if away <= within {
-                    open.push((away, level - 1, child));
-                    // The nearest box goes last on the stack, so it is next.
-                    let mut at = open.len() - 1;
-                    while at > from && open[at - 1].0 < away {
-                        open.swap(at - 1, at);
-                        at -= 1;
-                    }
-                }
-            }
+            self.levels.open_below(&mut open, level, i, |extent, _| {
+                Some(bound(extent)).filter(|&away| away <= within)
+            });
         }
     }
 
@@ -162,23 +142,13 @@ impl<const D: usize> Boxes<D> {
 
     /// Calls `visit` on the items of each lowest box that meets `extent`.
     pub fn meeting(&self, extent: &Extent<D>, mut visit: impl FnMut(usize)) {
-        let meets =
-            |e: &Extent<D>| (0..D).all(|k| e.min[k] <= extent.max[k] && extent.min[k] <= e.max[k]);
-        let mut open = vec![(self.levels.len() - 1, 0)];
-        while let Some((level, i)) = open.pop() {
-            if !self.levels[level].get(i).is_some_and(meets) {
-                continue;
-            }
-            let children = i * WIDTH..(i + 1) * WIDTH;
-            if level > 0 {
-                open.extend(children.map(|child| (level - 1, child)));
-                continue;
-            }
-            let end = children.end.min(self.order.len());
-            for &item in &self.order[children.start..end] {
-                visit(item as usize);
-            }
-        }
+        let meets = |e: &Extent<D>, _, _| {
+            (0..D).all(|k| e.min[k] <= extent.max[k] && extent.min[k] <= e.max[k])
+        };
+        self.levels.each(&mut Vec::new(), meets, |place| {
+            visit(self.order[place] as usize);
+            true
+        });
     }
 }
 

@@ -14,6 +14,7 @@ use delone_predicates::Sign;
 use delone_predicates::proximity::shorter;
 
 use super::cores::multiplicities;
+use crate::base::boxes::Open;
 use crate::base::error::Result;
 use crate::base::memory::{filled, with_room};
 use crate::base::parallel;
@@ -60,7 +61,7 @@ pub fn density<const D: usize>(
     let is_core = ball.each(workers, watch, |search, place| {
         search.is_core(place, k, &starts)
     })?;
-    let cores = Cores::of(tree, is_core, watch)?;
+    let cores = Cores::of(tree, is_core)?;
     let mut sets = Sets::of(tree.len())?;
     Joined::of(&ball, &cores, &mut sets, watch)?;
     let homes = ball.each(workers, watch, |search, place| search.home(place, &cores))?;
@@ -110,7 +111,7 @@ struct Ball<'a, const D: usize> {
 /// A search in a tree.
 struct Search<'a, 'b, const D: usize> {
     ball: &'b Ball<'a, D>,
-    open: Vec<(f64, u32, u32)>,
+    open: Open,
     pace: Pace<'b>,
 }
 
@@ -189,20 +190,19 @@ impl<const D: usize> Search<'_, '_, D> {
         let tree = self.ball.tree;
         let q = tree.points[place];
         let mut rows = 0;
-        self.open.clear();
-        self.open.push((0.0, tree.levels.len() as u32 - 1, 0));
+        tree.boxes.open(&mut self.open, 0.0);
         while let Some((_, level, i)) = self.open.pop() {
             let (level, i) = (level as usize, i as usize);
-            let extent = &tree.levels[level][i];
+            let extent = &tree.boxes.at(level)[i];
             self.pace.spend(1)?;
             if self.ball.misses(squared_gap(extent, q)) {
                 continue;
             }
-            let places = tree.places(level, i);
+            let places = tree.boxes.items(level, i);
             if self.ball.holds(q, extent) {
                 rows += (starts[places.end] - starts[places.start]) as usize;
             } else if level > 0 {
-                let below = tree.below(level, i);
+                let below = tree.boxes.below(level, i);
                 self.open
                     .extend(below.map(|child| (0.0, level as u32 - 1, child as u32)));
             } else {
@@ -229,8 +229,7 @@ impl<const D: usize> Search<'_, '_, D> {
         let q = tree.points[place];
         let mut best = NONE;
         let mut bound = self.ball.square;
-        self.open.clear();
-        self.open.push((0.0, tree.levels.len() as u32 - 1, 0));
+        tree.boxes.open(&mut self.open, 0.0);
         while let Some((gap, level, i)) = self.open.pop() {
             let (level, i) = (level as usize, i as usize);
             if certainly_above(gap, bound) || !cores.any[level][i] {
@@ -238,16 +237,11 @@ impl<const D: usize> Search<'_, '_, D> {
             }
             if level > 0 {
                 self.pace.spend(1)?;
-                let from = self.open.len();
-                for child in tree.below(level, i) {
-                    let gap = squared_gap(&tree.levels[level - 1][child], q);
-                    self.open.push((gap, level as u32 - 1, child as u32));
-                }
-                // The nearest box goes last on the stack, so it is next.
-                self.open[from..].sort_unstable_by(|one, other| other.0.total_cmp(&one.0));
+                let gap = |extent: &Extent<D>, _| Some(squared_gap(extent, q));
+                tree.boxes.open_below(&mut self.open, level, i, gap);
                 continue;
             }
-            let places = tree.places(0, i);
+            let places = tree.boxes.items(0, i);
             self.pace.spend(places.len())?;
             for other in places {
                 let p = tree.points[other];
@@ -277,21 +271,12 @@ struct Cores {
 }
 
 impl Cores {
-    fn of<const D: usize>(tree: &Tree<D>, is_core: Vec<bool>, watch: &Watch) -> Result<Self> {
-        let mut any: Vec<Vec<bool>> = Vec::new();
-        for (level, extents) in tree.levels.iter().enumerate() {
-            watch.check()?;
-            let mut found = with_room(extents.len())?;
-            found.extend((0..extents.len()).map(|i| {
-                let below = match level {
-                    0 => &is_core[tree.places(0, i)],
-                    _ => &any[level - 1][tree.below(level, i)],
-                };
-                below.contains(&true)
-            }));
-            any.push(found);
-        }
-        Ok(Self { is_core, any })
+    fn of<const D: usize>(tree: &Tree<D>, is_core: Vec<bool>) -> Result<Self> {
+        let any = |below: &[bool]| below.contains(&true);
+        Ok(Self {
+            any: tree.boxes.values(|places| any(&is_core[places]), any)?,
+            is_core,
+        })
     }
 }
 
@@ -317,23 +302,19 @@ impl<'a, 'b, const D: usize> Joined<'a, 'b, D> {
         watch: &'b Watch<'b>,
     ) -> Result<()> {
         let tree = ball.tree;
-        let mut one = Vec::new();
-        for extents in &tree.levels {
-            one.push(filled(extents.len(), NONE)?);
-        }
         let mut all = Self {
             ball,
             cores,
             sets,
-            one,
+            one: tree.boxes.values(|_| NONE, |_| NONE)?,
             pace: Pace::new(watch, LOT),
         };
-        for i in 0..tree.levels[0].len() {
+        for i in 0..tree.boxes.at(0).len() {
             all.within_leaf(i)?;
         }
-        for level in 1..tree.levels.len() {
-            for i in 0..tree.levels[level].len() {
-                let below = tree.below(level, i);
+        for level in 1..=tree.boxes.top() {
+            for i in 0..tree.boxes.at(level).len() {
+                let below = tree.boxes.below(level, i);
                 for a in below.clone() {
                     for b in a + 1..below.end {
                         all.between((level - 1, a), (level - 1, b))?;
@@ -348,7 +329,7 @@ impl<'a, 'b, const D: usize> Joined<'a, 'b, D> {
     /// Joins the core points of a lowest box.
     fn within_leaf(&mut self, i: usize) -> Result<()> {
         let tree = self.ball.tree;
-        let places = tree.places(0, i);
+        let places = tree.boxes.items(0, i);
         self.pace.spend(places.len() * places.len() / 2)?;
         for a in places.clone().filter(|&a| self.cores.is_core[a]) {
             for b in a + 1..places.end {
@@ -371,11 +352,11 @@ impl<'a, 'b, const D: usize> Joined<'a, 'b, D> {
             *root.get_or_insert(found) == found
         };
         let is_one = if level == 0 {
-            let places = self.ball.tree.places(0, i);
+            let places = self.ball.tree.boxes.items(0, i);
             let mut inside = places.filter(|&place| self.cores.is_core[place]);
             inside.all(|place| see(self.sets, place as u32))
         } else {
-            let mut below = self.ball.tree.below(level, i);
+            let mut below = self.ball.tree.boxes.below(level, i);
             below.all(|child| match self.one[level - 1][child] {
                 NONE => !self.cores.any[level - 1][child],
                 other => see(self.sets, other),
@@ -391,7 +372,7 @@ impl<'a, 'b, const D: usize> Joined<'a, 'b, D> {
         if !self.cores.any[a.0][a.1] || !self.cores.any[b.0][b.1] || self.are_one(a, b) {
             return Ok(());
         }
-        let (one, other) = (&tree.levels[a.0][a.1], &tree.levels[b.0][b.1]);
+        let (one, other) = (&tree.boxes.at(a.0)[a.1], &tree.boxes.at(b.0)[b.1]);
         if self.ball.misses(gap_between(one, other)) {
             return Ok(());
         }
@@ -400,7 +381,7 @@ impl<'a, 'b, const D: usize> Joined<'a, 'b, D> {
         }
         // The larger box is split.
         let (a, b) = if a.0 >= b.0 { (a, b) } else { (b, a) };
-        for child in tree.below(a.0, a.1) {
+        for child in tree.boxes.below(a.0, a.1) {
             self.between((a.0 - 1, child), b)?;
         }
         self.mark(a);
@@ -416,7 +397,7 @@ impl<'a, 'b, const D: usize> Joined<'a, 'b, D> {
     /// Joins core points of two lowest boxes.
     fn between_leaves(&mut self, a: usize, b: usize) -> Result<()> {
         let tree = self.ball.tree;
-        let (ones, others) = (tree.places(0, a), tree.places(0, b));
+        let (ones, others) = (tree.boxes.items(0, a), tree.boxes.items(0, b));
         self.pace.spend(ones.len() * others.len())?;
         for p in ones.filter(|&p| self.cores.is_core[p]) {
             for q in others.clone().filter(|&q| self.cores.is_core[q]) {

@@ -21,6 +21,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::cores::Cores;
 use super::link::{Link, Span};
+use crate::base::boxes::Open;
 use crate::base::error::{Error, Result};
 use crate::base::memory::{filled, with_room};
 use crate::base::parallel;
@@ -127,33 +128,16 @@ impl<'a, const D: usize> Forest<'a, D> {
     fn of(tree: &'a Tree<D>, cores: &'a Cores) -> Result<Self> {
         let mut components = with_room(tree.len())?;
         components.extend(0..tree.len() as u32);
-        let (mut boxes, mut least) = (Vec::new(), Vec::<Vec<f64>>::new());
-        for (level, extents) in tree.levels.iter().enumerate() {
-            let mut squares = with_room(extents.len())?;
-            squares.extend((0..extents.len()).map(|i| {
-                let below = match level {
-                    0 => &cores.squares[tree.places(0, i)],
-                    _ => &least[level - 1][tree.below(level, i)],
-                };
-                below.iter().copied().fold(f64::INFINITY, f64::min)
-            }));
-            least.push(squares);
-            // A box of one point is its component.
-            let mut of_boxes = filled(extents.len(), NONE)?;
-            for (i, component) in of_boxes.iter_mut().enumerate() {
-                let places = tree.places(level, i);
-                if places.len() == 1 {
-                    *component = places.start as u32;
-                }
-            }
-            boxes.push(of_boxes);
-        }
+        let smallest = |squares: &[f64]| squares.iter().copied().fold(f64::INFINITY, f64::min);
+        // A box of one point is its component.
+        let single = |below: &[u32]| if let [one] = *below { one } else { NONE };
+        let boxes = &tree.boxes;
         Ok(Self {
             tree,
             cores,
+            boxes: boxes.values(|places| single(&components[places]), single)?,
+            least: boxes.values(|places| smallest(&cores.squares[places]), smallest)?,
             components,
-            boxes,
-            least,
         })
     }
 
@@ -240,40 +224,30 @@ impl<'a, const D: usize> Forest<'a, D> {
         &self,
         place: usize,
         mut bound: f64,
-        open: &mut Vec<(f64, u32, u32)>,
+        open: &mut Open,
         pace: &mut Pace<'_>,
     ) -> Result<Known> {
         let (tree, own) = (self.tree, self.components[place]);
         let q = tree.points[place];
         let here = self.cores.span(place);
         let mut best: Option<(Span, u32)> = None;
-        open.clear();
-        open.push((here.square, tree.levels.len() as u32 - 1, 0));
+        tree.boxes.open(open, here.square);
         while let Some((away, level, i)) = open.pop() {
             if certainly_above(away, bound) {
                 continue;
             }
             let (level, i) = (level as usize, i as usize);
             if level > 0 {
-                let from = open.len();
                 pace.spend(1)?;
-                for child in tree.below(level, i) {
-                    let gap = squared_gap(&tree.levels[level - 1][child], q);
+                tree.boxes.open_below(open, level, i, |extent, child| {
+                    let gap = squared_gap(extent, q);
                     let away = gap.max(self.least[level - 1][child]).max(here.square);
-                    if self.boxes[level - 1][child] == own || certainly_above(away, bound) {
-                        continue;
-                    }
-                    // The nearest box goes last on the stack, so it is next.
-                    open.push((gap, level as u32 - 1, child as u32));
-                    let mut at = open.len() - 1;
-                    while at > from && open[at - 1].0 < gap {
-                        open.swap(at - 1, at);
-                        at -= 1;
-                    }
-                }
+                    let is_out = self.boxes[level - 1][child] == own;
+                    (!is_out && !certainly_above(away, bound)).then_some(gap)
+                });
                 continue;
             }
-            let places = tree.places(0, i);
+            let places = tree.boxes.items(0, i);
             pace.spend(places.len())?;
             for other in places {
                 if self.components[other] == own {
@@ -353,8 +327,8 @@ impl<'a, const D: usize> Forest<'a, D> {
             for (i, component) in boxes[0].iter_mut().enumerate() {
                 pace.spend(1)?;
                 let parts = match level {
-                    0 => &self.components[self.tree.places(0, i)],
-                    _ => &below[level - 1][self.tree.below(level, i)],
+                    0 => &self.components[self.tree.boxes.items(0, i)],
+                    _ => &below[level - 1][self.tree.boxes.below(level, i)],
                 };
                 let is_one = parts.iter().all(|part| *part == parts[0]);
                 *component = if is_one { parts[0] } else { NONE };
