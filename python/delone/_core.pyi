@@ -26,9 +26,7 @@ __all__ = [
     "Diagram2",
     "Diagram3",
     "FacePairs",
-    "Faults2",
-    "Faults3",
-    "FaultsN",
+    "Faults",
     "FlippedTriangulation",
     "Hull3",
     "HullN",
@@ -55,9 +53,6 @@ __all__ = [
     "RefinedTetrahedra",
     "Refinement2",
     "Refinement3",
-    "RegularFaults2",
-    "RegularFaults3",
-    "RegularFaultsN",
     "RegularTriangulation",
     "SharedCells",
     "Simplified2",
@@ -158,13 +153,9 @@ __all__ = [
     "triangulate2",
     "triangulate3",
     "triangulate_n",
-    "validate2",
-    "validate3",
-    "validate_n",
+    "validate",
     "validate_periodic2",
-    "validate_regular2",
-    "validate_regular3",
-    "validate_regular_n",
+    "validate_regular",
     "volumes2",
     "voronoi2",
     "voronoi3",
@@ -655,75 +646,18 @@ class FacePairs:
         """The number of all pairs that cross."""
 
 @final
-class Faults2:
-    """Faults of a 2-D triangulation; arrays are empty if there are none."""
-
-    @property
-    def orientation(self) -> NDArray[np.int32]:
-        """Triangles that are not counter-clockwise, (k,)."""
-    @property
-    def edges(self) -> NDArray[np.int32]:
-        """Directed edges that more than one triangle uses, (k, 2)."""
-    @property
-    def neighbors(self) -> NDArray[np.int32]:
-        """Triangles whose row of neighbors is wrong, (k,)."""
-    @property
-    def hull(self) -> NDArray[np.int32]:
-        """Boundary edges that are not on the hull, (k, 2)."""
-    @property
-    def missing(self) -> NDArray[np.int32]:
-        """Rows of distinct points that no triangle uses, (k,)."""
-    @property
-    def repeats(self) -> NDArray[np.int32]:
-        """Rows that are used although an earlier row has the same coordinates, (k,)."""
-    @property
-    def delaunay(self) -> NDArray[np.int32]:
-        """Pairs of triangles that are not locally Delaunay, (k, 2)."""
-    @property
-    def ties(self) -> NDArray[np.int32]:
-        """Pairs of cocircular triangles that are not canonical, (k, 2)."""
-    @property
-    def count(self) -> NDArray[np.int32]:
-        """Numbers of triangles expected and found, (2,), if they differ; otherwise (0,)."""
-
-@final
-class Faults3:
-    """Faults of a 3-D triangulation; arrays are empty if there are none."""
-
-    @property
-    def orientation(self) -> NDArray[np.int32]:
-        """Tetrahedra that are not positively oriented, (k,)."""
-    @property
-    def facets(self) -> NDArray[np.int32]:
-        """Oriented faces that more than one tetrahedron has, (k, 3)."""
-    @property
-    def neighbors(self) -> NDArray[np.int32]:
-        """Tetrahedra whose row of neighbors is wrong, (k,)."""
-    @property
-    def hull(self) -> NDArray[np.int32]:
-        """Boundary faces that are not on the hull, (k, 3)."""
-    @property
-    def missing(self) -> NDArray[np.int32]:
-        """Rows of distinct points that no tetrahedron uses, (k,)."""
-    @property
-    def repeats(self) -> NDArray[np.int32]:
-        """Rows that are used although an earlier row has the same coordinates, (k,)."""
-    @property
-    def delaunay(self) -> NDArray[np.int32]:
-        """Pairs of tetrahedra that are not locally Delaunay, (k, 2)."""
-    @property
-    def ties(self) -> NDArray[np.int32]:
-        """Pairs of cospherical tetrahedra that are not canonical, (k, 2)."""
-
-@final
-class FaultsN:
-    """Faults of a triangulation in four to eight dimensions; arrays are empty if there are
-    none.
-    """
+class Faults:
+    """Faults of a triangulation with d coordinates; arrays are empty if there are none."""
 
     @property
     def orientation(self) -> NDArray[np.int32]:
         """Simplices that are not positively oriented, (k,)."""
+    @property
+    def edges(self) -> NDArray[np.int32]:
+        """In 2-D, directed edges that more than one triangle uses, (k, 2)."""
+    @property
+    def facets(self) -> NDArray[np.int32]:
+        """In 3-D, oriented faces that more than one tetrahedron has, (k, d)."""
     @property
     def neighbors(self) -> NDArray[np.int32]:
         """Simplices whose row of neighbors is wrong, (k,)."""
@@ -732,19 +666,27 @@ class FaultsN:
         """Boundary facets that are not on the hull, (k, d)."""
     @property
     def missing(self) -> NDArray[np.int32]:
-        """Rows of distinct points that no simplex uses, (k,)."""
+        """Rows of distinct points that no simplex uses; with weights, those outside all
+        simplices, (k,).
+        """
+    @property
+    def hidden(self) -> NDArray[np.int32]:
+        """With weights, rows that should be vertices though simplices cover them, (k,)."""
     @property
     def repeats(self) -> NDArray[np.int32]:
-        """Rows that are used although an earlier row has the same coordinates, (k,)."""
+        """Rows that are used although another row represents their coordinates, (k,)."""
     @property
     def delaunay(self) -> NDArray[np.int32]:
-        """Pairs of simplices that are not locally Delaunay, (k, 2)."""
+        """Pairs of simplices that are not locally Delaunay or regular, (k, 2)."""
     @property
     def ties(self) -> NDArray[np.int32]:
-        """Pairs of cospherical simplices that are not canonical, (k, 2)."""
+        """Pairs of simplices on a tie that are not canonical, (k, 2)."""
+    @property
+    def count(self) -> NDArray[np.int32]:
+        """In 2-D, numbers of triangles expected and found, (2,), if they differ; otherwise (0,)."""
     @property
     def overlaps(self) -> NDArray[np.int32]:
-        """Simplices that cover a point of simplex 0, (k,)."""
+        """In more than three dimensions, simplices that cover a point of simplex 0, (k,)."""
 
 @final
 class FlippedTriangulation:
@@ -1179,38 +1121,16 @@ class NaturalWeights:
 
 @final
 class PeriodicFaults:
-    """What is wrong with a periodic triangulation; arrays are empty where nothing is."""
+    """Faults of a periodic triangulation; arrays are empty if there are none."""
 
     @property
     def offsets(self) -> NDArray[np.int32]:
         """Triangles with impossible offsets; if there are any, nothing else is checked, (k,)."""
     @property
-    def orientation(self) -> NDArray[np.int32]:
-        """Triangles that are not counter-clockwise, (k,)."""
-    @property
-    def neighbors(self) -> NDArray[np.int32]:
-        """Triangles whose neighbors or partners are wrong, (k,)."""
-    @property
-    def hull(self) -> NDArray[np.int32]:
-        """Edges without a partner that are not on the boundary of the strip, (k, 2)."""
-    @property
-    def missing(self) -> NDArray[np.int32]:
-        """Rows of distinct points that no triangle uses, (k,)."""
-    @property
-    def repeats(self) -> NDArray[np.int32]:
-        """Rows that are used although another row represents them, (k,)."""
-    @property
-    def hidden(self) -> NDArray[np.int32]:
-        """Rows that should be vertices though triangles cover them, (k,)."""
-    @property
-    def delaunay(self) -> NDArray[np.int32]:
-        """Pairs of triangles that are not locally Delaunay or regular, (k, 2)."""
-    @property
-    def ties(self) -> NDArray[np.int32]:
-        """Pairs of triangles on a tie that are not canonical, (k, 2)."""
-    @property
-    def count(self) -> NDArray[np.int32]:
-        """Numbers of triangles expected and found, (2,), where they differ; otherwise (0,)."""
+    def faults(self) -> Faults:
+        """Faults as without periods: `neighbors` has triangles whose neighbors or partners are
+        wrong, and `hull` edges without a partner that are not on the boundary of the strip.
+        """
     @property
     def layers(self) -> NDArray[np.int32]:
         """How often the triangles cover the plane, (1,), if not once; otherwise (0,)."""
@@ -1459,48 +1379,6 @@ class Refinement3:
         """
     def export(self) -> RefinedTetrahedra:
         """The mesh, with the points of all rounds."""
-
-@final
-class RegularFaults2:
-    """What is wrong with a 2-D regular triangulation."""
-
-    @property
-    def faults(self) -> Faults2:
-        """Faults as without weights; `missing` has points outside all triangles."""
-    @property
-    def hidden(self) -> NDArray[np.int32]:
-        """Rows that should be vertices though triangles cover them, (k,)."""
-    @property
-    def stands_for(self) -> NDArray[np.int32]:
-        """The row that represents each point, (n,)."""
-
-@final
-class RegularFaults3:
-    """What is wrong with a 3-D regular triangulation."""
-
-    @property
-    def faults(self) -> Faults3:
-        """Faults as without weights; `missing` has points outside all tetrahedra."""
-    @property
-    def hidden(self) -> NDArray[np.int32]:
-        """Rows that should be vertices though tetrahedra cover them, (k,)."""
-    @property
-    def stands_for(self) -> NDArray[np.int32]:
-        """The row that represents each point, (n,)."""
-
-@final
-class RegularFaultsN:
-    """What is wrong with a regular triangulation in four to eight dimensions."""
-
-    @property
-    def faults(self) -> FaultsN:
-        """Faults as without weights; `missing` has points outside all simplices."""
-    @property
-    def hidden(self) -> NDArray[np.int32]:
-        """Rows that should be vertices though simplices cover them, (k,)."""
-    @property
-    def stands_for(self) -> NDArray[np.int32]:
-        """The row that represents each point, (n,)."""
 
 @final
 class RegularTriangulation:
@@ -2372,20 +2250,10 @@ def triangulate3(points: NDArray[np.float64], workers: int) -> Triangulation:
 def triangulate_n(points: NDArray[np.float64]) -> Triangulation:
     """The Delaunay triangulation of points with four to eight coordinates."""
 
-def validate2(
+def validate(
     points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
-) -> Faults2:
-    """Returns the faults of a 2-D triangulation."""
-
-def validate3(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
-) -> Faults3:
-    """Returns the faults of a 3-D triangulation."""
-
-def validate_n(
-    points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
-) -> FaultsN:
-    """Returns the faults of a triangulation in four to eight dimensions."""
+) -> Faults:
+    """Returns the faults of a triangulation with two to eight coordinates."""
 
 def validate_periodic2(
     points: NDArray[np.float64],
@@ -2396,33 +2264,17 @@ def validate_periodic2(
     neighbors: NDArray[np.int32],
     partners: NDArray[np.int32],
 ) -> PeriodicFaults:
-    """What is wrong with a periodic triangulation: periods of 0 mean none; `offsets` has
-    those of the three corners of each triangle in one row.
+    """Returns the faults of a periodic triangulation: periods of 0 mean none; `offsets`
+    has those of the three corners of each triangle in one row.
     """
 
-def validate_regular2(
+def validate_regular(
     points: NDArray[np.float64],
     weights: NDArray[np.float64],
     simplices: NDArray[np.int32],
     neighbors: NDArray[np.int32],
-) -> RegularFaults2:
-    """What is wrong with a 2-D regular triangulation."""
-
-def validate_regular3(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-) -> RegularFaults3:
-    """What is wrong with a 3-D regular triangulation."""
-
-def validate_regular_n(
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-) -> RegularFaultsN:
-    """What is wrong with a regular triangulation in four to eight dimensions."""
+) -> tuple[Faults, NDArray[np.int32]]:
+    """The same of a regular triangulation; also, for each row, the one that represents it."""
 
 def volumes2(
     surface: _Sheet,

@@ -18,7 +18,7 @@ from delone._tiling.higher.size import require_room
 from delone._tiling.space.plane import plane_of
 from delone._tiling.triangulation import PointTriangulation
 from delone.errors import DegenerateInputError, DtypeError, InputError, InternalError
-from delone.validation import HigherReport, SpaceReport, ValidationReport
+from delone.validation import judged
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone._base.types import Indices
+    from delone.validation import ValidationReport
 
 __all__ = ["Delaunay"]
 
@@ -260,12 +261,7 @@ class Delaunay(PointTriangulation):
         >>> print(Delaunay([(0, 0), (1, 0), (0, 1)]).validate())
         a canonical Delaunay triangulation
         """
-        arrays = self._points, self._simplices, self._neighbors
-        if self.ndim == 2:
-            return ValidationReport._of(_core.validate2(*arrays))
-        if self.ndim == 3:
-            return SpaceReport._of(_core.validate3(*arrays))
-        return HigherReport._of(_core.validate_n(*arrays))
+        return judged(self._points, self._simplices, self._neighbors)
 
     def _described(self) -> str:
         points = counted(self.npoints, "point")

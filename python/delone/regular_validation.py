@@ -190,16 +190,11 @@ def validate_regular(
     points: Floats, weights: Floats, simplices: Indices, neighbors: Indices, duplicates: Indices
 ) -> RegularReport | RegularSpaceReport | RegularHigherReport:
     """Check a regular triangulation; duplicates are rows, and those that they repeat."""
-    checks: Any = {
-        2: (_core.validate_regular2, RegularReport),
-        3: (_core.validate_regular3, RegularSpaceReport),
-    }
-    check, report = checks.get(points.shape[1], (_core.validate_regular_n, RegularHigherReport))
-    found = check(points, weights, simplices, neighbors)
+    reports: Any = {2: RegularReport, 3: RegularSpaceReport}
+    report = reports.get(points.shape[1], RegularHigherReport)
+    faults, stands_for = _core.validate_regular(points, weights, simplices, neighbors)
     made: RegularReport | RegularSpaceReport | RegularHigherReport = report._of(
-        found.faults,
-        hidden=found.hidden,
-        duplicates=_differing(duplicates, repeated_rows(found.stands_for, weights)),
+        faults, duplicates=_differing(duplicates, repeated_rows(stands_for, weights))
     )
     return made
 
@@ -230,4 +225,4 @@ def validate_periodic(
         neighbors,
         partners,
     )
-    return PeriodicReport._of(found)
+    return PeriodicReport._of(found.faults, offsets=found.offsets, layers=found.layers)

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._base.types import Floats, Indices
+
     Rows = NDArray[np.integer]
     # By kind of fault: what is said about one element, and about several.
     Sentences = Mapping[str, tuple[str, str]]
@@ -287,15 +289,19 @@ def validate(
             beside = space.neighbors(cells) if d == 3 else higher.neighbors(cells)
         else:
             beside = as_neighbors(neighbors, len(cells), d)
-        if d == 3:
-            return SpaceReport._of(_core.validate3(rows, cells, beside))
-        return HigherReport._of(_core.validate_n(rows, cells, beside))
+        return judged(rows, cells, beside)
     triangles = as_simplices(simplices, len(rows), 2)
     if neighbors is None:
         beyond = topology.neighbors(triangles, len(rows))
     else:
         beyond = as_neighbors(neighbors, len(triangles), 2)
-    return ValidationReport._of(_core.validate2(rows, triangles, beyond))
+    return judged(rows, triangles, beyond)
+
+
+def judged(points: Floats, simplices: Indices, neighbors: Indices) -> ValidationReport:
+    """Check arrays that are known to fit together."""
+    report = {2: ValidationReport, 3: SpaceReport}.get(points.shape[1], HigherReport)
+    return report._of(_core.validate(points, simplices, neighbors))
 
 
 def not_across(

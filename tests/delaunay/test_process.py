@@ -38,7 +38,7 @@ def finish(process: subprocess.Popen[str]) -> str:
     ("name", "call"),
     [
         ("triangulate2", "Delaunay(points, workers=1)"),
-        ("validate2", "mesh.validate()"),
+        ("validate", "mesh.validate()"),
         ("find", "mesh.find_simplex(queries)"),
     ],
     ids=["triangulate", "validate", "find_simplex"],

@@ -95,6 +95,7 @@ CORE: dict[str, set[str]] = {
         "order",
         "parallel",
         "points",
+        "proof",
         "regular",
         "wide",
         "num_bigint",

@@ -11,6 +11,7 @@ mod consistency;
 mod constrained;
 mod distributed;
 mod errors;
+mod faults;
 mod given;
 mod graphs;
 mod hull;
@@ -30,10 +31,8 @@ mod recover;
 mod refine;
 mod refine3;
 mod regular;
-mod regular_faults;
 mod results;
 mod signals;
-mod space;
 mod sphere;
 mod surface;
 mod terrain;
@@ -74,6 +73,8 @@ mod _core {
     #[pymodule_export]
     use super::distributed::{DeepestPoints, deepest2, disks2, within2};
     #[pymodule_export]
+    use super::faults::{Faults, PeriodicFaults, validate, validate_periodic2, validate_regular};
+    #[pymodule_export]
     use super::graphs::{
         antipodes, graph_components, influence, knn, not_longer, of_triangles2, proximity,
         spanning, spanning_triangles2,
@@ -103,9 +104,7 @@ mod _core {
         qualities, sizes, transforms,
     };
     #[pymodule_export]
-    use super::ndim::{
-        FaultsN, HullN, LazyN, LocatorN, hull_n, orientations_n, triangulate_n, validate_n,
-    };
+    use super::ndim::{HullN, LazyN, LocatorN, hull_n, orientations_n, triangulate_n};
     #[pymodule_export]
     use super::overlap::{CellGrid, CheckedCells, PlaneCells, SharedCells};
     #[pymodule_export]
@@ -123,13 +122,6 @@ mod _core {
         PeriodicTriangulation, RegularTriangulation, periodic_centers2, periodic2, regular,
     };
     #[pymodule_export]
-    use super::regular_faults::{
-        PeriodicFaults, RegularFaults2, RegularFaults3, RegularFaultsN, validate_periodic2,
-        validate_regular_n, validate_regular2, validate_regular3,
-    };
-    #[pymodule_export]
-    use super::space::{Faults3, triangulate3, validate3};
-    #[pymodule_export]
     use super::sphere::{
         SphereDual, SphereLocator, SphereTriangulation, SphereWeights, sphere_areas,
         sphere_circumcenters, sphere_constrained, sphere_delaunay, sphere_directions, sphere_dual,
@@ -143,7 +135,7 @@ mod _core {
         volumes2,
     };
     #[pymodule_export]
-    use super::triangulation::{Faults2, Triangulation, methods2, triangulate2, validate2};
+    use super::triangulation::{Triangulation, methods2, triangulate2, triangulate3};
     #[pymodule_export]
     use super::voronoi::{
         CellMeasures2, CellPieces2, ClippedCells2, Diagram2, measures2, pieces2, touched2,

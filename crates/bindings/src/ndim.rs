@@ -2,7 +2,7 @@
 
 use delone_core::base::arrays::Arrays;
 use delone_core::locate::find;
-use delone_core::ndim::{self, Findings, Hyper, Lazy, Weighed};
+use delone_core::ndim::{self, Hyper, Lazy, Weighed};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
@@ -10,7 +10,7 @@ use crate::arrays::{
     Column, Table, column, columns, flattened, in_many, number_rows, numbers, rows, shaped,
 };
 use crate::errors::Outcome;
-use crate::given::{checked, simplices_of};
+use crate::given::simplices_of;
 use crate::interpolate::Points;
 use crate::locator::Tiling;
 use crate::signals::watched;
@@ -27,56 +27,6 @@ pub fn triangulate_n(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> Outco
             neighbors: made.neighbors,
         };
         arrays_of(py, arrays, &made.duplicates, &[])
-    })
-}
-
-/// Faults of a triangulation in four to eight dimensions; arrays are empty if there are none.
-#[pyclass(frozen, get_all, module = "delone._core")]
-pub struct FaultsN {
-    /// Simplices that are not positively oriented, (k,).
-    pub orientation: Column<i32>,
-    /// Simplices whose row of neighbors is wrong, (k,).
-    pub neighbors: Column<i32>,
-    /// Boundary facets that are not on the hull, (k, d).
-    pub hull: Table<i32>,
-    /// Rows of distinct points that no simplex uses, (k,).
-    pub missing: Column<i32>,
-    /// Rows that are used although an earlier row has the same coordinates, (k,).
-    pub repeats: Column<i32>,
-    /// Pairs of simplices that are not locally Delaunay, (k, 2).
-    pub delaunay: Table<i32>,
-    /// Pairs of cospherical simplices that are not canonical, (k, 2).
-    pub ties: Table<i32>,
-    /// Simplices that cover a point of simplex 0, (k,).
-    pub overlaps: Column<i32>,
-}
-
-/// Returns the faults of a triangulation in four to eight dimensions.
-#[pyfunction]
-pub fn validate_n<'py>(
-    py: Python<'py>,
-    points: PyReadonlyArray2<'py, f64>,
-    simplices: PyReadonlyArray2<'py, i32>,
-    neighbors: PyReadonlyArray2<'py, i32>,
-) -> Outcome<FaultsN> {
-    in_many!(columns(&points), D, N, P => {
-        let given = checked(&points, &simplices, &neighbors)?;
-        let found = watched(py, |watch| ndim::validate::<D, N, P>(given, watch))?;
-        faults(py, found)
-    })
-}
-
-/// What is wrong, as arrays.
-pub fn faults<const D: usize>(py: Python<'_>, found: Findings<D>) -> Outcome<FaultsN> {
-    Ok(FaultsN {
-        orientation: numbers(py, found.orientation),
-        neighbors: numbers(py, found.neighbors),
-        hull: number_rows(py, &found.hull)?,
-        missing: numbers(py, found.missing),
-        repeats: numbers(py, found.repeats),
-        delaunay: number_rows(py, &found.delaunay)?,
-        ties: number_rows(py, &found.ties)?,
-        overlaps: numbers(py, found.overlaps),
     })
 }
 

@@ -1,19 +1,18 @@
-//! 2-D triangulations as arrays.
+//! 2-D and 3-D triangulations as arrays.
 
 use std::time::Duration;
 
-use delone_core::Point2;
 use delone_core::base::arrays::Arrays;
-use delone_core::delaunay::plane::validate::{Findings, validate};
 use delone_core::delaunay::plane::{Method, triangulate};
+use delone_core::delaunay::space;
+use delone_core::{Point2, Point3};
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::{Column, Table, number_rows, numbers, rows, table};
+use crate::arrays::{Table, number_rows, rows, table};
 use crate::errors::Outcome;
-use crate::given::checked;
 use crate::results::Stages;
 use crate::signals::watched;
 
@@ -64,6 +63,18 @@ pub fn triangulate2(
     arrays_of(py, made.arrays, &made.duplicates, &made.stages)
 }
 
+/// The Delaunay triangulation of 3-D points.
+#[pyfunction]
+pub fn triangulate3(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    workers: usize,
+) -> Outcome<Triangulation> {
+    let points: &[Point3] = rows(&points, "points")?;
+    let made = watched(py, |watch| space::triangulate(points, workers, watch))?;
+    arrays_of(py, made.arrays, &made.duplicates, &made.stages)
+}
+
 /// A triangulation as arrays.
 pub fn arrays_of<const N: usize>(
     py: Python<'_>,
@@ -76,56 +87,5 @@ pub fn arrays_of<const N: usize>(
         neighbors: table(py, arrays.neighbors)?,
         duplicates: number_rows(py, duplicates)?,
         stages: seconds(py, stages)?,
-    })
-}
-
-/// Faults of a 2-D triangulation; arrays are empty if there are none.
-#[pyclass(frozen, get_all, module = "delone._core")]
-pub struct Faults2 {
-    /// Triangles that are not counter-clockwise, (k,).
-    pub orientation: Column<i32>,
-    /// Directed edges that more than one triangle uses, (k, 2).
-    pub edges: Table<i32>,
-    /// Triangles whose row of neighbors is wrong, (k,).
-    pub neighbors: Column<i32>,
-    /// Boundary edges that are not on the hull, (k, 2).
-    pub hull: Table<i32>,
-    /// Rows of distinct points that no triangle uses, (k,).
-    pub missing: Column<i32>,
-    /// Rows that are used although an earlier row has the same coordinates, (k,).
-    pub repeats: Column<i32>,
-    /// Pairs of triangles that are not locally Delaunay, (k, 2).
-    pub delaunay: Table<i32>,
-    /// Pairs of cocircular triangles that are not canonical, (k, 2).
-    pub ties: Table<i32>,
-    /// Numbers of triangles expected and found, (2,), if they differ; otherwise (0,).
-    pub count: Column<i32>,
-}
-
-/// Returns the faults of a 2-D triangulation.
-#[pyfunction]
-pub fn validate2<'py>(
-    py: Python<'py>,
-    points: PyReadonlyArray2<'py, f64>,
-    simplices: PyReadonlyArray2<'py, i32>,
-    neighbors: PyReadonlyArray2<'py, i32>,
-) -> Outcome<Faults2> {
-    let given = checked(&points, &simplices, &neighbors)?;
-    let found = watched(py, |watch| validate(given, watch))?;
-    faults2(py, found)
-}
-
-/// What is wrong, as arrays.
-pub fn faults2(py: Python<'_>, found: Findings) -> Outcome<Faults2> {
-    Ok(Faults2 {
-        orientation: numbers(py, found.orientation),
-        edges: number_rows(py, &found.edges)?,
-        neighbors: numbers(py, found.neighbors),
-        hull: number_rows(py, &found.hull)?,
-        missing: numbers(py, found.missing),
-        repeats: numbers(py, found.repeats),
-        delaunay: number_rows(py, &found.delaunay)?,
-        ties: number_rows(py, &found.ties)?,
-        count: numbers(py, found.count.into_flattened()),
     })
 }

@@ -92,7 +92,7 @@ def validate(
     Rows of a conforming triangulation are split: rounding may move such vertices off the row.
     """
     simplices, neighbors = made.simplices, made.neighbors
-    faults = _core.validate2(points, simplices, neighbors)
+    faults = _core.validate(points, simplices, neighbors)
     edges = edge_keys(simplices[:, [1, 2, 0]], simplices[:, [2, 0, 1]], len(points))
     segments = edge_keys(made.segments[:, 0], made.segments[:, 1], len(points))
     wanted = among(edges, segments)

@@ -79,7 +79,7 @@ class DynamicReport(ConstrainedReport):
 def validate(made: Any, own: Any, *, split: bool, workers: int | None) -> DynamicReport:
     """Check the arrays `made` of a live triangulation with the segments `own`."""
     points, simplices, neighbors = made.points, made.simplices, made.neighbors
-    faults = _core.validate2(points, simplices, neighbors)
+    faults = _core.validate(points, simplices, neighbors)
     given = np.flatnonzero(~np.isin(made.handles, own.added))
     ends = np.searchsorted(made.handles[given], own.ends).astype(np.int32)
     fresh = ConstrainedDelaunay(

@@ -44,7 +44,7 @@ def validate(
     points: Floats, simplices: Indices, neighbors: Indices, constrained: Bools
 ) -> MeshValidation:
     """Check the triangles of a mesh; `constrained` says which edges are part of a segment."""
-    found = _core.validate2(points, simplices, neighbors)
+    found = _core.validate(points, simplices, neighbors)
     used = np.zeros(len(points), dtype=bool)
     used[simplices] = True
     return MeshValidation(

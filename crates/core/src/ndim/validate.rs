@@ -23,28 +23,7 @@ use delone_predicates::Sign;
 /// Simplices between two checks for interruption: one with integers takes up to a millisecond.
 const PACE: usize = 1 << 8;
 
-/// Faults by kind; all are empty if the triangulation is right.
-#[derive(Debug, Default, PartialEq, Eq)]
-pub struct Findings<const D: usize> {
-    /// Simplices that are not positively oriented.
-    pub orientation: Vec<u32>,
-    /// Simplices whose neighbor across some facet does not share that facet.
-    pub neighbors: Vec<u32>,
-    /// Facets of the boundary at which it is not convex or not closed.
-    pub hull: Vec<[u32; D]>,
-    /// Distinct points that are not vertices; with weights, those outside of all simplices.
-    pub missing: Vec<u32>,
-    /// Points with weights that are in no simplex and should be.
-    pub hidden: Vec<u32>,
-    /// Vertices that are not the first row with their coordinates.
-    pub repeats: Vec<u32>,
-    /// Adjacent simplices one of which has the other's apex in its circumsphere.
-    pub delaunay: Vec<[u32; 2]>,
-    /// Adjacent cospherical simplices whose common facet is not a canonical one.
-    pub ties: Vec<[u32; 2]>,
-    /// Simplices that have a point that another one, the first, also covers.
-    pub overlaps: Vec<u32>,
-}
+pub use crate::base::proof::Findings;
 
 /// Checks every property of the canonical Delaunay triangulation of the points. Where simplices are
 /// not positively oriented or neighbors are not mutual, the rest is not checked.

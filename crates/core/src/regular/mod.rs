@@ -29,7 +29,7 @@ pub use insertion::Sites;
 pub use periodic::Images;
 pub use power::{Weighted, power_sign};
 pub use records::{GHOST, NONE, Records};
-pub use validate::{Checked, others, unused, validate};
+pub use validate::{Checked, checked, validate};
 pub use validate_periodic::{PeriodicFindings, Wrapped, validate_periodic};
 
 /// The regular triangulation of weighted points.

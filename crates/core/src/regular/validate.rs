@@ -18,60 +18,65 @@ use super::power::Weighted;
 use crate::base::arrays::{Given, Triangles};
 use crate::base::error::{Error, Result};
 use crate::base::points;
-use crate::base::proof::Expected;
+use crate::base::proof::{Expected, Findings, Tiling, Verdict, examine};
 use crate::base::watch::{Pace, Watch};
-use crate::delaunay::plane::validate::{Findings, examine};
 use crate::order::arrange;
 
 /// Steps of walks between two checks for interruption.
 const STEPS: usize = 1 << 14;
 
-/// What is wrong with a regular triangulation.
-#[derive(Debug, Default, PartialEq, Eq)]
-pub struct Checked<F> {
-    /// Faults as without weights; those in `missing` lie outside all simplices.
-    pub faults: F,
-    /// Rows that are not vertices though their lifts lie below the simplices that hold them. They, and
-    /// those that are missing, are looked for only where there is no other fault.
-    pub hidden: Vec<u32>,
-    /// For each row the row that represents it: the heaviest with its coordinates, the first of
-    /// these.
-    pub stands_for: Vec<i32>,
-}
+/// The faults of a triangulation with weights, and for each row the row that represents it: the heaviest
+/// with its coordinates, the first of these.
+pub type Checked<const D: usize> = (Findings<D>, Vec<i32>);
 
 /// Checks everything that makes `given` the canonical regular triangulation of its points with
 /// finite weights, as many.
-pub fn validate(given: Triangles, weights: &[f64], watch: &Watch) -> Result<Checked<Findings>> {
+pub fn validate(given: Triangles, weights: &[f64], watch: &Watch) -> Result<Checked<2>> {
     points::scan(given.points)?;
     let arranged = arrange(given.points, 1, watch)?;
-    let Heaviest {
-        rows, stands_for, ..
-    } = heaviest(weights, &arranged.rows, &arranged.duplicates)?;
     let sites = Weighted {
         points: given.points,
         weights,
     };
+    let judge = |t: usize, k: usize, q: i32| {
+        let [u, v] = given.facet(t, k);
+        sites.verdict([given.simplices[t][k], u, v, q].map(|v| v as u32))
+    };
+    let beyond = |corners: [u32; 3], k: usize, p: u32| {
+        let (u, v) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
+        sites.turn([u, v, p]) == Sign::Negative
+    };
+    let below = |[a, b, c]: [u32; 3], p: u32| sites.is_below([a, b, c, p]);
+    let own = heaviest(weights, &arranged.rows, &arranged.duplicates)?;
+    checked(given, own, judge, (beyond, below), watch)
+}
+
+/// The checks of both dimensions, by the heaviest rows. Of the last two functions the first tells
+/// whether a row is strictly beyond the facet opposite a corner, the other whether its lift is below a
+/// simplex, ties broken.
+pub fn checked<'a, const D: usize, const N: usize>(
+    given: Given<'a, D, N>,
+    own: Heaviest,
+    judge: impl Fn(usize, usize, i32) -> Verdict,
+    (beyond, below): (
+        impl Fn([u32; N], usize, u32) -> bool,
+        impl Fn([u32; N], u32) -> bool,
+    ),
+    watch: &Watch,
+) -> Result<Checked<D>>
+where
+    Given<'a, D, N>: Tiling<D, N>,
+{
     let expected = Expected {
-        rows: &rows,
-        others: &others(&stands_for),
+        rows: &own.rows,
+        others: &others(&own.stands_for),
         may_hide: true,
     };
-    let judge = |sites4: [i32; 4]| sites.verdict(sites4.map(|v| v as u32));
     let (mut faults, left) = examine(given, expected, judge, watch)?;
-    let mut hidden = Vec::new();
     if faults == Findings::default() {
-        let beyond = |corners: [u32; 3], k: usize, p: u32| {
-            let (u, v) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
-            sites.turn([u, v, p]) == Sign::Negative
-        };
-        let below = |[a, b, c]: [u32; 3], p: u32| sites.is_below([a, b, c, p]);
-        (hidden, faults.missing) = unused(given, &left, beyond, below, watch)?;
+        (faults.hidden, faults.missing) = unused(given, &left, beyond, below, watch)?;
     }
-    Ok(Checked {
-        faults,
-        hidden,
-        stands_for,
-    })
+    Ok((faults, own.stands_for))
 }
 
 /// `[row, row that represents it]` for each row that another one represents.
@@ -83,8 +88,7 @@ pub fn others(stands_for: &[i32]) -> Vec<[u32; 2]> {
 }
 
 /// Parts rows that no simplex uses: first those below the simplices that hold them, then those outside
-/// all simplices, both ascending. `beyond` tells whether a row is strictly beyond the facet opposite a
-/// corner, `below` whether its lift is below a simplex, ties broken.
+/// all simplices, both ascending; `beyond` and `below` are those of [`checked`].
 pub fn unused<const D: usize, const N: usize>(
     given: Given<D, N>,
     rows: &[u32],

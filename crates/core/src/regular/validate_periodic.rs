@@ -18,7 +18,7 @@ use super::validate::others;
 use crate::base::error::{Error, Result};
 use crate::base::memory::filled;
 use crate::base::points;
-use crate::base::proof::{Expected, Verdict};
+use crate::base::proof::{Expected, Findings, Verdict};
 use crate::base::watch::{Pace, Watch};
 use crate::order::arrange;
 
@@ -45,32 +45,17 @@ pub struct Wrapped<'a> {
     pub partners: &'a [[i32; 3]],
 }
 
-/// Culprits by kind; all empty where the triangulation is right.
+/// Faults by kind; all are empty if the triangulation is right.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct PeriodicFindings {
     /// Triangles whose first corner is moved, or any other by more than one period, or in a direction
-    /// without a period. Where there are any, nothing else is looked at.
+    /// without a period. If there are any, nothing else is checked.
     pub offsets: Vec<u32>,
-    /// Triangles that do not turn left.
-    pub orientation: Vec<u32>,
-    /// Triangles whose neighbors or partners are wrong.
-    pub neighbors: Vec<u32>,
-    /// Edges without a partner that are not on the boundary of the strip.
-    pub hull: Vec<[u32; 2]>,
-    /// Distinct points that are not vertices; with weights, those outside all triangles.
-    pub missing: Vec<u32>,
-    /// Vertices for which another row stands.
-    pub repeats: Vec<u32>,
-    /// Rows that are not vertices though their lifts lie below the triangles that hold them; looked for
-    /// only where there is no other fault.
-    pub hidden: Vec<u32>,
-    /// Adjacent triangles that are not locally Delaunay (regular).
-    pub delaunay: Vec<[u32; 2]>,
-    /// Adjacent triangles on a tie whose common edge is not the canonical one.
-    pub ties: Vec<[u32; 2]>,
-    /// Triangles expected, 2 n - h, and found, where they differ.
-    pub count: Vec<[u32; 2]>,
-    /// How often the triangles cover the plane, where this is not once.
+    /// Faults as without periods: `neighbors` has triangles whose neighbors or partners are wrong,
+    /// `hull` edges without a partner that are not on the boundary of the strip, and `count` expects
+    /// 2 n - h triangles.
+    pub faults: Findings<2>,
+    /// How often the triangles cover the plane, if not once.
     pub layers: Vec<u32>,
 }
 
@@ -191,7 +176,8 @@ impl Check<'_> {
             others: &others(&stands_for),
             may_hide: true,
         };
-        let unused = expected.unused(self.given.simplices, &mut self.found.repeats, watch)?;
+        let unused =
+            expected.unused(self.given.simplices, &mut self.found.faults.repeats, watch)?;
         let vertices = rows.len() - unused.len();
         Ok((unused, vertices))
     }
@@ -201,11 +187,11 @@ impl Check<'_> {
             pace.spend(1)?;
             self.sites.of[..3].copy_from_slice(&self.given.corners(t));
             if self.sites.turn([0, 1, 2]) != Sign::Positive {
-                self.found.orientation.push(t as u32);
+                self.found.faults.orientation.push(t as u32);
             }
             let edges = [0, 1, 2].map(|k| self.edge(t, k));
             if edges.contains(&false) {
-                self.found.neighbors.push(t as u32);
+                self.found.faults.neighbors.push(t as u32);
             }
         }
         Ok(())
@@ -226,8 +212,8 @@ impl Check<'_> {
             let around = [k, (k + 1) % 3, (k + 2) % 3, 3].map(|i| i as u32);
             let pair = [t as u32, (code / 3) as u32];
             match self.sites.verdict(around) {
-                Verdict::Wrong => self.found.delaunay.push(pair),
-                Verdict::Tie => self.found.ties.push(pair),
+                Verdict::Wrong => self.found.faults.delaunay.push(pair),
+                Verdict::Tie => self.found.faults.ties.push(pair),
                 Verdict::Right => {}
             }
         }
@@ -239,10 +225,13 @@ impl Check<'_> {
         let found = self.given.simplices.len();
         let expected = (2 * vertices).saturating_sub(self.boundary.len());
         if expected != found {
-            self.found.count.push([expected as u32, found as u32]);
+            self.found
+                .faults
+                .count
+                .push([expected as u32, found as u32]);
         }
         let lower = self.lower_boundary();
-        let fits = &self.found;
+        let fits = &self.found.faults;
         if !(fits.orientation.is_empty() && fits.neighbors.is_empty() && fits.hull.is_empty()) {
             return Ok(());
         }
@@ -295,7 +284,7 @@ impl Check<'_> {
                 let along = self.in_periods(ends[1], ends[0]);
                 length += along[1 - axis.unwrap_or(0)].abs();
             } else if !at(high) {
-                self.found.hull.push(rows);
+                self.found.faults.hull.push(rows);
             }
         }
         length
@@ -304,17 +293,17 @@ impl Check<'_> {
     /// Judges the rows that are not vertices.
     fn unused(&mut self, rows: Vec<u32>, pace: &mut Pace) -> Result<()> {
         if self.given.weights.is_empty() {
-            self.found.missing = rows;
-            self.found.missing.sort_unstable();
+            self.found.faults.missing = rows;
+            self.found.faults.missing.sort_unstable();
         } else if self.found == PeriodicFindings::default() {
             let mut place = (0, [0, 0]);
             for p in rows {
                 place = self.holder(p, place, pace)?;
                 if self.sites.is_below([0, 1, 2, 3]) {
-                    self.found.hidden.push(p);
+                    self.found.faults.hidden.push(p);
                 }
             }
-            self.found.hidden.sort_unstable();
+            self.found.faults.hidden.sort_unstable();
         }
         Ok(())
     }

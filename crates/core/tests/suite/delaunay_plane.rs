@@ -280,7 +280,7 @@ fn validation_finds_each_kind_of_fault() {
         m.arrays.simplices.push(m.arrays.simplices[0]);
         m.arrays.neighbors.push(m.arrays.neighbors[0]);
     });
-    assert_eq!(twice.edges.len(), 3);
+    assert_eq!(twice.facets.len(), 3);
     assert_eq!(
         twice.count,
         [[right.arrays.simplices.len() as u32, twice.count[0][1]]]

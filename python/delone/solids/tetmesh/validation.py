@@ -80,7 +80,7 @@ def faults(
     points: Floats, simplices: Indices, neighbors: Indices, input_faces: Indices
 ) -> TetMeshReport:
     """Check tetrahedra, and the surface where there are input faces."""
-    found = _core.validate3(points, simplices, neighbors)
+    found = _core.validate(points, simplices, neighbors)
     wrong = np.union1d(found.neighbors, unjoined(simplices, neighbors))
     tiling = {"orientation": found.orientation, "facets": found.facets, "neighbors": wrong}
     if not len(input_faces):

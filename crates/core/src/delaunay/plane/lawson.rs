@@ -126,7 +126,7 @@ fn fault(found: &Findings) -> Option<String> {
         ));
     }
     // Orientations are checked; `adjacency` repeats no edge and links correctly.
-    let broken = found.orientation.len() + found.edges.len() + found.neighbors.len();
+    let broken = found.orientation.len() + found.facets.len() + found.neighbors.len();
     (broken > 0).then(|| "the simplices do not meet edge to edge".into())
 }
 

@@ -12,49 +12,45 @@ use crate::base::arrays::Triangles;
 use crate::base::error::Result;
 use crate::base::memory::zeroed;
 use crate::base::points;
-use crate::base::proof::{Expected, Verdict};
+use crate::base::proof::{self, Tiling, Verdict};
 use crate::base::watch::{Pace, Watch};
 use crate::order::arrange;
 
 /// Triangles, or vertices, between two checks for interruption in cheap loops.
 const LOT: usize = 1 << 16;
-/// Triangles between two checks for interruption.
-const WATCH_EVERY: usize = 1 << 14;
 
-/// Faults by kind; all are empty if the triangulation is right.
-#[derive(Debug, Default, PartialEq, Eq)]
-pub struct Findings {
-    /// Triangles that are not counterclockwise.
-    pub orientation: Vec<u32>,
-    /// Directed edges that belong to more than one triangle.
-    pub edges: Vec<[u32; 2]>,
-    /// Triangles whose neighbor across some edge does not share that edge.
-    pub neighbors: Vec<u32>,
-    /// Boundary edges after which the boundary is not a convex cycle.
-    pub hull: Vec<[u32; 2]>,
-    /// Distinct points that are not vertices.
-    pub missing: Vec<u32>,
-    /// Vertices that are not the first row with their coordinates.
-    pub repeats: Vec<u32>,
-    /// Adjacent triangles one of which has the other's apex in its circumcircle.
-    pub delaunay: Vec<[u32; 2]>,
-    /// Adjacent cocircular triangles whose common edge is not the canonical one.
-    pub ties: Vec<[u32; 2]>,
-    /// The expected number of triangles, 2 n - h - 2, and the actual one, if they differ.
-    pub count: Vec<[u32; 2]>,
-}
+/// Faults of a 2-D triangulation.
+pub type Findings = proof::Findings<2>;
 
-impl Triangles<'_> {
-    /// The ends of edge k of triangle t, counterclockwise.
-    fn edge(&self, t: usize, k: usize) -> [i32; 2] {
+impl Tiling<2, 3> for Triangles<'_> {
+    /// Its ends, counterclockwise.
+    fn facet(self, t: usize, k: usize) -> [i32; 2] {
         let s = self.simplices[t];
         [s[(k + 1) % 3], s[(k + 2) % 3]]
     }
 
-    /// The corner of triangle `other` whose opposite edge is edge k of t, reversed.
-    fn mutual(&self, t: usize, k: usize, other: usize) -> Option<usize> {
-        let [u, v] = self.edge(t, k);
-        (0..3).find(|&j| self.neighbors[other][j] == t as i32 && self.edge(other, j) == [v, u])
+    fn turned([u, v]: [i32; 2]) -> [i32; 2] {
+        [v, u]
+    }
+
+    fn is_positive(self, t: usize) -> bool {
+        let [a, b, c] = self.corners(t);
+        orient2d(a, b, c) == Sign::Positive
+    }
+
+    fn repeated(self, watch: &Watch) -> Result<Vec<[u32; 2]>> {
+        repeated_edges(self, watch)
+    }
+
+    fn check_boundary(self, boundary: Vec<[i32; 2]>, used: usize, found: &mut Findings) {
+        let (expected, actual) = (
+            (2 * used).saturating_sub(boundary.len() + 2),
+            self.simplices.len(),
+        );
+        if expected != actual {
+            found.count.push([expected as u32, actual as u32]);
+        }
+        hull(self, boundary, found);
     }
 }
 
@@ -62,96 +58,16 @@ impl Triangles<'_> {
 pub fn validate(given: Triangles, watch: &Watch) -> Result<Findings> {
     points::scan(given.points)?;
     let ordered = arrange(given.points, 1, watch)?;
-    let expected = Expected {
-        rows: &ordered.rows,
-        others: &ordered.duplicates,
-        may_hide: false,
-    };
-    let judge = |sites: [i32; 4]| {
-        let [p, u, v, q] = sites.map(|v| given.point(v));
+    let judge = |t: usize, k: usize, q: i32| {
+        let [u, v] = given.facet(t, k);
+        let [p, u, v, q] = [given.simplices[t][k], u, v, q].map(|v| given.point(v));
         match incircle(p, u, v, q) {
             Sign::Positive => Verdict::Wrong,
             Sign::Zero if tie_flips(u, v, p, q) => Verdict::Tie,
             _ => Verdict::Right,
         }
     };
-    let (mut found, mut unused) = examine(given, expected, judge, watch)?;
-    unused.sort_unstable();
-    found.missing = unused;
-    Ok(found)
-}
-
-/// Checks that `given` tiles the convex hull of its vertices, and asks `judge` at each inner edge:
-/// about p, u, v, q, where triangle p, u, v is to the left of the edge from u to v, and q is
-/// opposite. Returns all faults except `missing`, and the expected rows that no triangle uses.
-pub fn examine(
-    given: Triangles,
-    expected: Expected,
-    judge: impl Fn([i32; 4]) -> Verdict,
-    watch: &Watch,
-) -> Result<(Findings, Vec<u32>)> {
-    let mut found = Findings {
-        edges: repeated_edges(given, watch)?,
-        ..Findings::default()
-    };
-    let unused = expected.unused(given.simplices, &mut found.repeats, watch)?;
-    let mut boundary = Vec::new();
-    for t in 0..given.simplices.len() {
-        if t % WATCH_EVERY == 0 {
-            watch.check()?;
-        }
-        triangle(given, t, &judge, &mut found, &mut boundary);
-    }
-    let hidden = if expected.may_hide { unused.len() } else { 0 };
-    let count = [2 * (expected.rows.len() - hidden), boundary.len() + 2];
-    let count = count[0].saturating_sub(count[1]);
-    if count != given.simplices.len() {
-        found
-            .count
-            .push([count as u32, given.simplices.len() as u32]);
-    }
-    watch.check()?;
-    hull(given, boundary, &mut found);
-    Ok((found, unused))
-}
-
-/// Checks one triangle: its orientation, its neighbors, the verdicts across its edges.
-fn triangle(
-    given: Triangles,
-    t: usize,
-    judge: &impl Fn([i32; 4]) -> Verdict,
-    found: &mut Findings,
-    boundary: &mut Vec<[i32; 2]>,
-) {
-    let [a, b, c] = given.corners(t);
-    if orient2d(a, b, c) != Sign::Positive {
-        found.orientation.push(t as u32);
-    }
-    let mut joined = true;
-    for k in 0..3 {
-        let other = given.neighbors[t][k];
-        if other < 0 {
-            boundary.push(given.edge(t, k));
-            continue;
-        }
-        let other = other as usize;
-        let Some(j) = given.mutual(t, k, other) else {
-            joined = false;
-            continue;
-        };
-        if t < other {
-            let [u, v] = given.edge(t, k);
-            let pair = [t as u32, other as u32];
-            match judge([given.simplices[t][k], u, v, given.simplices[other][j]]) {
-                Verdict::Wrong => found.delaunay.push(pair),
-                Verdict::Tie => found.ties.push(pair),
-                Verdict::Right => {}
-            }
-        }
-    }
-    if !joined {
-        found.neighbors.push(t as u32);
-    }
+    proof::examine_all(given, &ordered.rows, &ordered.duplicates, judge, watch)
 }
 
 /// Directed edges that occur twice, by a counting sort of the ends by origin.

@@ -21,51 +21,41 @@ use delone_predicates::{orient2d, orient3d};
 
 use crate::base::arrays::Tetrahedra;
 use crate::base::error::Result;
-use crate::base::memory::{filled, push, zeroed};
+use crate::base::memory::{filled, zeroed};
 use crate::base::points;
-use crate::base::proof::{Expected, Verdict};
+use crate::base::proof::{self, Tiling, Verdict};
 use crate::base::watch::{Pace, Watch};
 use crate::mesh::space::FACETS;
 use crate::order::space::arrange;
 
 /// Facets, or tetrahedra, between two checks for interruption in cheap loops.
 const LOT: usize = 1 << 16;
-/// Tetrahedra between two checks for interruption.
-const WATCH_EVERY: usize = 1 << 12;
 
-/// Faults by kind; all are empty if the triangulation is right.
-#[derive(Debug, Default, PartialEq, Eq)]
-pub struct Findings3 {
-    /// Tetrahedra that are not positively oriented.
-    pub orientation: Vec<u32>,
-    /// Oriented facets that belong to more than one tetrahedron.
-    pub facets: Vec<[u32; 3]>,
-    /// Tetrahedra whose neighbor across some facet does not share that facet.
-    pub neighbors: Vec<u32>,
-    /// Boundary facets, outward, at which the boundary is not convex or not closed.
-    pub hull: Vec<[u32; 3]>,
-    /// Distinct points that are not vertices.
-    pub missing: Vec<u32>,
-    /// Vertices that are not the first row with their coordinates.
-    pub repeats: Vec<u32>,
-    /// Adjacent tetrahedra one of which has the other's apex in its circumsphere.
-    pub delaunay: Vec<[u32; 2]>,
-    /// Adjacent cospherical tetrahedra whose common facet is not a canonical one.
-    pub ties: Vec<[u32; 2]>,
-}
+/// Faults of a 3-D triangulation.
+pub type Findings3 = proof::Findings<3>;
 
-impl Tetrahedra<'_> {
-    /// The facet opposite corner k of tetrahedron t, outward, from its smallest row on.
-    fn facet(&self, t: usize, k: usize) -> [i32; 3] {
+impl Tiling<3, 4> for Tetrahedra<'_> {
+    /// From its smallest row on.
+    fn facet(self, t: usize, k: usize) -> [i32; 3] {
         let [a, b, c] = FACETS[k].map(|i| self.simplices[t][i]);
         smallest_first([b, a, c])
     }
 
-    /// The corner of tetrahedron `other` whose opposite facet is facet k of t, from the other side.
-    fn mutual(&self, t: usize, k: usize, other: usize) -> Option<usize> {
-        let [a, b, c] = self.facet(t, k);
-        let turned = smallest_first([b, a, c]);
-        (0..4).find(|&j| self.neighbors[other][j] == t as i32 && self.facet(other, j) == turned)
+    fn turned([a, b, c]: [i32; 3]) -> [i32; 3] {
+        smallest_first([b, a, c])
+    }
+
+    fn is_positive(self, t: usize) -> bool {
+        let [a, b, c, d] = self.corners(t);
+        orient3d(a, b, c, d) == Sign::Positive
+    }
+
+    fn repeated(self, watch: &Watch) -> Result<Vec<[u32; 3]>> {
+        repeated_facets(self, watch)
+    }
+
+    fn check_boundary(self, boundary: Vec<[i32; 3]>, _used: usize, found: &mut Findings3) {
+        hull(self, &boundary, found);
     }
 }
 
@@ -83,89 +73,15 @@ fn smallest_first([a, b, c]: [i32; 3]) -> [i32; 3] {
 pub fn validate(given: Tetrahedra, watch: &Watch) -> Result<Findings3> {
     points::scan(given.points)?;
     let ordered = arrange(given.points, watch)?;
-    let expected = Expected {
-        rows: &ordered.rows,
-        others: &ordered.duplicates,
-        may_hide: false,
-    };
-    let judge = |sites: [i32; 5]| {
-        let [a, b, c, d, e] = sites.map(|v| given.point(v));
+    let judge = |t: usize, _, apex: i32| {
+        let ([a, b, c, d], e) = (given.corners(t), given.point(apex));
         match insphere(a, b, c, d, e) {
             Sign::Positive => Verdict::Wrong,
             Sign::Zero if insphere_canonical(a, b, c, d, e) == Sign::Positive => Verdict::Tie,
             _ => Verdict::Right,
         }
     };
-    let (mut found, mut unused) = examine(given, expected, judge, watch)?;
-    unused.sort_unstable();
-    found.missing = unused;
-    Ok(found)
-}
-
-/// Checks that `given` tiles the convex hull of its vertices, and asks `judge` at each inner facet:
-/// about the corners of a tetrahedron and the apex of its neighbor. Returns all faults except
-/// `missing`, and the expected rows that no tetrahedron uses.
-pub fn examine(
-    given: Tetrahedra,
-    expected: Expected,
-    judge: impl Fn([i32; 5]) -> Verdict,
-    watch: &Watch,
-) -> Result<(Findings3, Vec<u32>)> {
-    let mut found = Findings3 {
-        facets: repeated_facets(given, watch)?,
-        ..Findings3::default()
-    };
-    let unused = expected.unused(given.simplices, &mut found.repeats, watch)?;
-    let mut boundary = Vec::new();
-    for t in 0..given.simplices.len() {
-        if t % WATCH_EVERY == 0 {
-            watch.check()?;
-        }
-        tetrahedron(given, t, &judge, &mut found, &mut boundary)?;
-    }
-    watch.check()?;
-    hull(given, &boundary, &mut found);
-    Ok((found, unused))
-}
-
-/// Checks one tetrahedron: its orientation, its neighbors, the verdicts across its facets.
-fn tetrahedron(
-    given: Tetrahedra,
-    t: usize,
-    judge: &impl Fn([i32; 5]) -> Verdict,
-    found: &mut Findings3,
-    boundary: &mut Vec<[i32; 3]>,
-) -> Result<()> {
-    let [a, b, c, d] = given.corners(t);
-    if orient3d(a, b, c, d) != Sign::Positive {
-        found.orientation.push(t as u32);
-    }
-    let mut joined = true;
-    for k in 0..4 {
-        let other = given.neighbors[t][k];
-        if other < 0 {
-            push(boundary, given.facet(t, k))?;
-            continue;
-        }
-        let other = other as usize;
-        let Some(j) = given.mutual(t, k, other) else {
-            joined = false;
-            continue;
-        };
-        if t < other {
-            let [a, b, c, d] = given.simplices[t];
-            let pair = [t as u32, other as u32];
-            match judge([a, b, c, d, given.simplices[other][j]]) {
-                Verdict::Wrong => found.delaunay.push(pair),
-                Verdict::Tie => found.ties.push(pair),
-                Verdict::Right => {}
-            }
-        }
-    }
-    if !joined {
-        found.neighbors.push(t as u32);
-    }
-    Ok(())
+    proof::examine_all(given, &ordered.rows, &ordered.duplicates, judge, watch)
 }
 
 /// Oriented facets that occur twice, by a counting sort by their smallest vertex.
