@@ -200,3 +200,23 @@ def test_archives_keep_the_numbers(tmp_path):
     assert again.adjustments.points_leveled == tin.adjustments.points_leveled
     assert TIN.from_points(slope()).adjustments is None
     assert repr(tin.adjustments).startswith("<Adjustments: ")
+
+
+def test_points_that_snap_to_a_shore_are_left_out():
+    """A shore has one height, so the heights of points merged with it cannot count."""
+    beside = [(9.98, 15), (9.99, 10.01), (15, 20.02), (9, 5.01), (20.1, 15)]
+    points = np.vstack((slope(), [(x, y, x) for x, y in beside]))
+    x, y, _ = points.T
+    inside = (x >= 10) & (x <= 20) & (y >= 10) & (y <= 20)
+    line = [(5, 5, 5), (25, 5, 25)]
+    tin = TIN.from_points(points, level=[SQUARE], breaklines=[line], snap=0.05, duplicates="mean")
+    near = (x > 9.95) & (x < 20.05) & (y > 9.95) & (y < 20.05) & ~inside
+    assert near.sum() >= 3
+    assert tin.adjustments.points_leveled == inside.sum() + near.sum()
+    places = 10 + 10 * np.random.default_rng(1).random((1000, 2))
+    assert (tin.heights(places) == tin.adjustments.levels[0]).all()
+    # A point beside the line became part of it, and one farther from the shore stayed.
+    on_line = (np.abs(y - 5) < 0.05) & (x > 5) & (x < 25)
+    assert tin.adjustments.points_moved == on_line.sum() > 1
+    assert tin.adjustments.largest_move == pytest.approx(np.abs(y[on_line] - 5).max())
+    assert tin.heights((20.1, 15)) == 20.1

@@ -32,7 +32,8 @@ class Adjustments(ReadOnly):
     largest_move : float
         The largest distance that a point moved; 0 if none moved.
     points_leveled : int
-        The number of points that were left out inside level polygons or on their shores.
+        The number of points that were left out inside level polygons, on their shores, or nearer
+        to a shore than `snap`.
     levels : ndarray of float64, shape (k,)
         The height of each level polygon; NaN where a feature has no geometry.
 
@@ -83,6 +84,7 @@ def adjustments_of(merged: Joined | None, level: Level | None) -> Adjustments | 
         points_moved=0 if merged is None else merged.points_moved,
         line_points_moved=0 if merged is None else merged.line_points_moved,
         largest_move=0.0 if merged is None else merged.largest_move,
-        points_leveled=0 if level is None else int((~level.outside).sum()),
+        points_leveled=(0 if level is None else int((~level.outside).sum()))
+        + (0 if merged is None else merged.points_leveled),
         levels=np.empty(0) if level is None else level.heights,
     )

@@ -143,7 +143,7 @@ def build(
         # Sides are divided, so that a shore causes no long edges beside it.
         longest = np.inf if limit is None else limit / 2
         lakes = leveled(level, points, system, longest, surface_of)
-        kept, points = lakes.outside, points[lakes.outside]
+        kept, points = lakes.outside.copy(), points[lakes.outside]
     shores = [] if lakes is None else lakes.shores
     around = [shore.points for shore in shores]
     lines = gathered(

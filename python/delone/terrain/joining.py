@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from delone.terrain.gathering import BOUNDARY, HULL, SOFT, Lines
+from delone.terrain.gathering import BOUNDARY, HULL, LEVEL, SOFT, Lines
 from delone.terrain.heights import conflict
 from delone.terrain.merging import merged, near_segments, onto
 
@@ -20,15 +20,19 @@ class Joined(NamedTuple):
     """Points and lines after merging, which points remain, and how many moved how far."""
 
     points: Floats  # (n, 3), all of them
-    kept: Bools  # (n,), False for those that are part of a line now
+    kept: Bools  # (n,), False for those that are part of a line now, or on a shore
     lines: Lines
+    points_leveled: int  # on shores of level polygons, which are left out
     points_moved: int
     line_points_moved: int
     largest_move: float
 
 
 def joined(points: Floats, lines: Lines, limit: float, policy: str, tolerance: float) -> Joined:
-    """Merge points of lines, then points with lines, then points with each other."""
+    """Merge points of lines, then points with lines, then points with each other.
+
+    Points that are merged with a shore of a level polygon are left out: it has one height.
+    """
     places = lines.points[:, :2]
     fixed = np.zeros(len(places), dtype=bool)
     fixed[lines.segments[lines.kinds >= BOUNDARY]] = True
@@ -47,14 +51,18 @@ def joined(points: Floats, lines: Lines, limit: float, policy: str, tolerance: f
     # Points of lines, then their sides, then other points.
     vertices = first.places[np.unique(used)]
     second = onto(points[:, :2], vertices, limit)
-    away = np.hypot(*(second.places - points[:, :2]).T)
+    shores = first.places[np.unique(lines.segments[lines.kinds == LEVEL])]
+    leveled = second.moved & _at(second.places, shores)
+    away = np.hypot(*(second.places - points[:, :2])[~leveled].T)
     rest = np.flatnonzero(~second.moved)
     ends = first.places[used]
     row, segment, share, distance = near_segments(points[rest, :2], ends, limit)
-    row = rest[row]
-    numbers = np.flatnonzero(lines.kinds != HULL)
-    lines = _threaded(points, lines, row, numbers[segment], share, policy, tolerance)
-    kept = np.ones(len(points), dtype=bool)
+    row, segment = rest[row], np.flatnonzero(lines.kinds != HULL)[segment]
+    beside = lines.kinds[segment] != LEVEL
+    leveled[row[~beside]] = True
+    row, segment, share, distance = (each[beside] for each in (row, segment, share, distance))
+    lines = _threaded(points, lines, row, segment, share, policy, tolerance)
+    kept = ~leveled
     kept[row] = False
     alone = np.flatnonzero(kept & ~second.moved)
     rank = np.empty(len(alone), dtype=np.int64)
@@ -68,10 +76,18 @@ def joined(points: Floats, lines: Lines, limit: float, policy: str, tolerance: f
         found,
         kept,
         lines,
+        int(leveled.sum()),
         int((away > 0).sum()) + len(row) + int(third.moved.sum()),
         int(first.moved.sum()),
         max(float(each.max(initial=0.0)) for each in moves),
     )
+
+
+def _at(places: Floats, known: Floats) -> Bools:
+    """Which places are equal to one of others."""
+    _, number = np.unique(np.concatenate((known, places)), axis=0, return_inverse=True)
+    found: Bools = np.isin(number[len(known) :], number[: len(known)])
+    return found
 
 
 def _from_smaller(places: Floats, segments: Indices) -> Indices:
