@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from delone import io
+from delone import distributed, io
 from delone.terrain import TIN
 
 geopandas = pytest.importorskip("geopandas")
@@ -62,3 +62,20 @@ def test_lines_stay_unless_told(hill, figures):
 def test_what_cannot_be_is_refused(hill, command, options, message):
     code, _, err = command("simplify", hill, *options)
     assert code != 0 and message in err
+
+
+def test_tiles_take_the_place_of_a_file(hill, command, figures):
+    pytest.importorskip("pyarrow")
+    folder = hill.with_name("the hill.tin")
+    assert command("tile", hill, "-o", folder, "--tile-points", 100)[0] == 0
+    out = hill.with_name("small.ply")
+    found = figures("simplify", folder, "--max-error", 0.5, "--prove", "-o", out)
+    small = distributed.open(folder).simplify(max_error=0.5)
+    assert (found["points"], found["triangles"]) == (small.npoints, small.nsimplex)
+    assert (found["points_before"], found["triangles_before"]) == (441, 800)
+    assert 0.1 < found["error"] <= 0.5
+    assert len(io.read_mesh(out).simplices) == small.nsimplex
+    assert figures("simplify", folder, "--max-error", 0.5)["error"] is None
+    for options in (["--max-triangles", 9], ["--max-error", 1, "--keep", "hard"]):
+        code, _, err = command("simplify", folder, *options)
+        assert code == 2 and "folders of tiles have --max-error alone" in err

@@ -18,16 +18,23 @@ from delone.cli.surfaces import (
     Survey,
     figures_of,
     print_figures,
-    surface,
     with_surface,
 )
+from delone.cli.tiled import surface_or_tiles
+from delone.distributed.read import simplifying
 from delone.errors import InternalError
+from delone.terrain import TIN
 from delone.terrain.simplifying import KEEP
 
 if TYPE_CHECKING:
-    from delone.terrain import Simplification
+    from collections.abc import Callable
+
+    from delone.distributed import TiledDelaunay
+    from delone.terrain.deviations import Deviations
 
 __all__ = ["simplify"]
+
+_KEEP = KEEP[0]
 
 
 @with_surface
@@ -41,9 +48,7 @@ def simplify(
     max_triangles: Annotated[
         int | None, typer.Option(help="Number of triangles instead, with the smallest error.")
     ] = None,
-    keep: Annotated[
-        str, typer.Option(help="Edges that stay: " + ", ".join(KEEP) + ".")
-    ] = "breaklines",
+    keep: Annotated[str, typer.Option(help="Edges that stay: " + ", ".join(KEEP) + ".")] = _KEEP,
     prove: Annotated[
         bool, typer.Option("--prove", help="Prove the error by exact arithmetic.")
     ] = False,
@@ -63,26 +68,68 @@ def simplify(
     watch = Stopwatch()
     goal: dict[str, Any] = {"max_error": max_error, "max_triangles": max_triangles}
     with spinner(options.silent) as say:
-        tin = surface(source, options, watch, say)
+        tin = surface_or_tiles(source, options, watch, say)
         say("simplifying")
-        with watch.stage("simplify"):
-            levels = tin.simplification(**goal, keep=keep)
-            small = levels.surface(**goal)
-        if prove:
-            say("proving the error")
-            with watch.stage("prove"):
-                _prove(levels, goal)
+        if isinstance(tin, TIN):
+            small, error = _one_piece(tin, goal, keep, watch, say, prove=prove)
+        else:
+            if max_error is None or keep != _KEEP:
+                raise Failure(
+                    "folders of tiles have --max-error alone, without --max-triangles and --keep",
+                    Exit.USAGE,
+                )
+            small, error = _tiles(tin, max_error, watch, say, prove=prove)
         write_all(writers, small, watch, say, z=small.z, crs=small.crs)
     figures = figures_of(source, small, output) | {
         "points_before": tin.npoints,
         "triangles_before": tin.nsimplex,
-        "error": float(levels.errors[levels.triangles == small.nsimplex].min()),
+        "error": error,
         "stages": watch.rows(tin.npoints),
     }
     print_figures(source, figures, as_json=options.as_json, quiet=options.quiet)
 
 
-def _prove(levels: Simplification, goal: dict[str, Any]) -> None:
-    found = levels.validate(**goal)
-    if not found:
-        raise InternalError(f"the error of the surface does not hold: {found}")
+def _one_piece(
+    tin: TIN,
+    goal: dict[str, Any],
+    keep: str,
+    watch: Stopwatch,
+    say: Callable[[str], None],
+    *,
+    prove: bool,
+) -> tuple[TIN, float | None]:
+    """Return the simplified surface and its error."""
+    with watch.stage("simplify"):
+        levels = tin.simplification(**goal, keep=keep)
+        small = levels.surface(**goal)
+    if prove:
+        say("proving the error")
+        with watch.stage("prove"):
+            _require([levels.validate(**goal)])
+    return small, float(levels.errors[levels.triangles == small.nsimplex].min())
+
+
+def _tiles(
+    tin: TiledDelaunay,
+    max_error: float,
+    watch: Stopwatch,
+    say: Callable[[str], None],
+    *,
+    prove: bool,
+) -> tuple[TIN, float | None]:
+    """Return the simplified surface of tiles; its error is known if it is proven."""
+    with watch.stage("simplify"):
+        small = tin.simplify(max_error=max_error)
+    if not prove:
+        return small, None
+    say("proving the error")
+    with watch.stage("prove"):
+        found = simplifying.prove(tin, small, max_error)
+        _require(found)
+    return small, max(float(each.distances.max(initial=0.0)) for each in found)
+
+
+def _require(found: list[Deviations]) -> None:
+    bad = [each for each in found if not each]
+    if bad:
+        raise InternalError(f"the error of the surface does not hold: {bad[0]}")

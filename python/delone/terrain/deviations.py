@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -19,8 +19,9 @@ from delone._base.counting import counted
 from delone._base.immutable import ReadOnly
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from delone._base.types import Bools, Floats, Indices, Rows
-    from delone.constrained.delaunay import ConstrainedDelaunay
 
 __all__ = ["Deviations", "deviations"]
 
@@ -64,6 +65,25 @@ class Deviations(ReadOnly):
         return f"<Deviations of {points}: {above} {self.limit:g}{beyond}>"
 
 
+class Mesh(Protocol):
+    """Triangles in which points can be located: those of a mesh, or of a surface."""
+
+    @property
+    def points(self) -> Floats:
+        """Vertices, (n, 2)."""
+
+    @property
+    def npoints(self) -> int:
+        """Number of vertices."""
+
+    @property
+    def simplices(self) -> Indices:
+        """Triangles, (m, 3)."""
+
+    def find_simplex(self, xi: ArrayLike) -> Indices:
+        """The triangles at positions."""
+
+
 class _Part(NamedTuple):
     """Some points in their triangles."""
 
@@ -71,9 +91,7 @@ class _Part(NamedTuple):
     corners: Floats  # (n, 3, 3)
 
 
-def deviations(
-    mesh: ConstrainedDelaunay, kept: Bools, z: Floats, points: Floats, limit: float
-) -> Deviations:
+def deviations(mesh: Mesh, kept: Bools, z: Floats, points: Floats, limit: float) -> Deviations:
     """Compare points with a surface over the triangles of a mesh that are kept."""
     home = _homes(mesh, kept, points[:, :2])
     raised = np.column_stack((mesh.points, z))
@@ -94,7 +112,7 @@ def deviations(
     )
 
 
-def _homes(mesh: ConstrainedDelaunay, kept: Bools, places: Floats) -> Indices:
+def _homes(mesh: Mesh, kept: Bools, places: Floats) -> Indices:
     """The triangles of points; at vertices one that is kept, if there is any."""
     home = mesh.find_simplex(places)
     chosen = np.flatnonzero(kept)

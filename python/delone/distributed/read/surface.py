@@ -1,17 +1,17 @@
-"""A tiled triangulation as a surface: contours, volumes and profiles beyond memory."""
+"""A tiled triangulation as a surface: what is computed from heights beyond memory."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from delone.distributed.read import contours, volumes
+from delone.distributed.read import contours, simplifying, volumes
 from delone.distributed.read.folder import TileFolder
 from delone.terrain.contouring import MOST, Finish
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from delone.terrain import Contours, Profile, Volume
+    from delone.terrain import TIN, Contours, Profile, Volume
 
 __all__ = ["TiledSurface"]
 
@@ -174,3 +174,56 @@ class TiledSurface(TileFolder):
         <Volume: cut 3429.5, fill 0, net -3429.5, area 361>
         """
         return volumes.volume(self, other, region, values, executor)
+
+    def simplify(self, *, max_error: float, values: str = "z", executor: Any = "serial") -> TIN:
+        """Return a surface with fewer points, within an error bound at all points of the tiles.
+
+        Parameters
+        ----------
+        max_error : float
+            The greatest vertical distance of a point from the new surface.
+        values : str, optional
+            The name of the attribute; by default heights.
+        executor : {"serial"} or dask.distributed.Client, optional
+            As for `contours`.
+
+        Returns
+        -------
+        TIN
+            The surface, which must fit into memory. Edges along the cuts between tiles are soft
+            breaklines.
+
+        Raises
+        ------
+        InputError
+            `max_error` is negative or infinite, there is no such attribute, one of its values is
+            NaN, or `executor` is neither.
+
+        See Also
+        --------
+        delone.terrain.TIN.simplify : The same of a surface in memory, without cuts.
+
+        Notes
+        -----
+        Along the cuts between tiles, the profile of the surface is simplified first, to half of the
+        error. Both tiles beside a cut get the same line, so there are no cracks. Then each tile is
+        simplified as by `delone.terrain.TIN.simplify`, with the lines around it as edges that stay.
+        The bound holds exactly, at all points, including those on cuts. Points of lines where a cut
+        crosses an edge of the surface are not points of the survey; their heights are rounded.
+
+        Memory is that of one tile and of the result, which has more triangles than one that is made
+        in one piece, by what the lines add. The result depends on the tiles, not on the executor.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> from delone import datasets, distributed
+        >>> points = datasets.grid(2500)
+        >>> bowl = np.column_stack((points, ((points - 25) ** 2).sum(axis=1) / 25))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     tin = distributed.triangulate(bowl, folder + "/tin", tile_points=700)
+        ...     tin.simplify(max_error=1)
+        <TIN of 86 points: 138 triangles, heights 0 to 50>
+        """
+        return simplifying.simplify(self, max_error, values, executor)

@@ -1,0 +1,289 @@
+"""Simplification of a tiled triangulation: each tile alone, and no cracks between them.
+
+Tiles meet along the cuts of their tree, which are parallel to an axis. The profile of the surface
+along a cut is simplified first, from the triangles along it alone: where a cut ends at another one,
+and at the hull, it has fixed points. Then each tile inserts points between the lines around it,
+which stay, so both sides of a cut have the same edges. Points on a cut are within the error of its
+line, which leaves room for rounding; all others are within it as in one piece.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone import _core
+from delone._base.counting import counted
+from delone._tiling.plane import topology
+from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.distributed.read.folder import TileFolder
+from delone.distributed.read.parts import heights_of
+from delone.distributed.read.tasks import mapped
+from delone.distributed.read.volumes import profile
+from delone.errors import DegenerateInputError, InputError, InternalError
+from delone.terrain.building import Built
+from delone.terrain.deviations import deviations
+from delone.terrain.simplifying import Ground, as_goal, simplified
+from delone.terrain.tin import TIN
+
+if TYPE_CHECKING:
+    from delone._base.types import Bools, Floats, Indices
+    from delone.terrain.deviations import Deviations
+
+__all__ = ["prove", "simplify"]
+
+_EPS = float(np.finfo(np.float64).eps)
+
+
+class _Cut(NamedTuple):
+    """A cut of the tree: the axis that it is perpendicular to, its place, and where it ends."""
+
+    axis: int
+    place: float
+    low: float
+    high: float
+
+    def points(self, way: Floats) -> Floats:
+        """Return places along the cut."""
+        across = np.full(len(way), self.place)
+        return np.column_stack((across, way) if self.axis == 0 else (way, across))
+
+    def on(self, points: Floats) -> Bools:
+        """Return which points are on the cut."""
+        way = points[:, 1 - self.axis]
+        found: Bools = points[:, self.axis] == self.place
+        return found & (way >= self.low) & (way <= self.high)
+
+
+class _Piece(NamedTuple):
+    """The simplified surface of a tile."""
+
+    points: Floats  # (n, 3)
+    simplices: Indices
+
+
+def simplify(tin: TileFolder, max_error: float, value: str, executor: Any) -> TIN:
+    """Return a surface within an error of all points, with the cuts between tiles as edges."""
+    tin._require(value)
+    error, _ = as_goal(max_error, None)
+    cuts, cells, sides = _layout(tin)
+    of_tiles = [(str(tin.path), value, number) for number in range(tin.ntiles)]
+    scans = [(*tile, [cuts[k] for k in some]) for tile, some in zip(of_tiles, sides, strict=True)]
+    given = np.concatenate([np.empty((0, 3)), *mapped(executor, _on_cuts, scans)])
+    of_cuts = [(str(tin.path), value, cut, given[cut.on(given)]) for cut in cuts]
+    lines = list(mapped(executor, _profile, of_cuts))
+    simple = _simplified_lines(cuts, _meeting(cuts, lines), error)
+    tasks = [
+        (*tile, [_within(simple[k], cell) for k in some], error)
+        for tile, some, cell in zip(of_tiles, sides, cells, strict=True)
+    ]
+    return _together(list(mapped(executor, _simplified_tile, tasks)), tin.crs)
+
+
+def prove(tin: TileFolder, surface: TIN, max_error: float, value: str = "z") -> list[Deviations]:
+    """Compare the points of each tile with a surface, in exact arithmetic."""
+    every = np.ones(surface.nsimplex, dtype=bool)
+    points = (_own(tin, number, value) for number in range(tin.ntiles))
+    return [deviations(surface, every, surface.z, some, max_error) for some in points]
+
+
+def _layout(tin: TileFolder) -> tuple[list[_Cut], Floats, list[list[int]]]:
+    """Return the cuts, the cells of the tiles within the bounds, and the cuts around each cell."""
+    tree = tin._tree()
+    cuts: list[_Cut | None] = [None] * len(tree.cut)
+    cells = np.empty((tin.ntiles, 4))
+    sides: list[list[int]] = [[] for _ in range(tin.ntiles)]
+    whole = np.array(tin.bounds)
+    around: tuple[int, ...] = (-1, -1, -1, -1)
+    open_nodes = [(0 if len(tree.cut) else ~0, whole, around)]
+    while open_nodes:  # each node is visited once
+        node, cell, around = open_nodes.pop()
+        if node < 0:
+            cells[~node] = cell
+            sides[~node] = [k for k in around if k >= 0]
+            continue
+        axis, place = int(tree.axis[node]), float(tree.cut[node])
+        cuts[node] = _Cut(axis, place, float(cell[1 - axis]), float(cell[3 - axis]))
+        for child, side in zip(tree.children[node].tolist(), (2 + axis, axis), strict=True):
+            smaller, others = cell.copy(), list(around)
+            smaller[side], others[side] = place, node
+            open_nodes.append((child, smaller, tuple(others)))
+    return [cut for cut in cuts if cut is not None], cells, sides
+
+
+def _own(tin: TileFolder, number: int, value: str) -> Floats:
+    """The points of a tile, without those of others, (n, 3)."""
+    tile = tin.tile(number)
+    # Negative zeros are zeros.
+    places: Floats = np.column_stack((tile.points, heights_of(tile, value)))[tile.owned] + 0.0
+    bad = np.flatnonzero(~np.isfinite(places[:, 2]))
+    if len(bad):
+        rows = tile.ids[tile.owned][bad]
+        raise InputError(
+            f"{value} is NaN or infinite at {counted(len(bad), 'point')} of tile {number}, first "
+            f"in row {rows[0]}: a simplified surface needs a value at each point"
+        )
+    return places
+
+
+def _on_cuts(path: str, value: str, number: int, cuts: list[_Cut]) -> Floats:
+    """The points of a tile that are on a cut."""
+    points = _own(TileFolder._at(path), number, value)
+    found = np.zeros(len(points), dtype=bool)
+    for cut in cuts:
+        found |= cut.on(points)
+    return points[found]
+
+
+def _within(line: Floats, cell: Floats) -> Floats:
+    """The points of a line that are in a closed cell."""
+    found: Floats = line[((line[:, :2] >= cell[:2]) & (line[:, :2] <= cell[2:])).all(axis=1)]
+    return found
+
+
+def _profile(path: str, value: str, cut: _Cut, own: Floats) -> Floats:
+    """The heights of the surface along a cut, (n, 3), with all points of the survey on it."""
+    ends = cut.points(np.array([cut.low, cut.high]))
+    heights = profile(TileFolder._at(path), ends, value)
+    table = np.column_stack((heights.points, heights.z))[~np.isnan(heights.z)]
+    # The cut is parallel to an axis, so only the place along it is rounded.
+    table[:, cut.axis] = cut.place
+    both = np.concatenate((own, table[cut.on(table)]))
+    _, first = np.unique(both[:, 1 - cut.axis], return_index=True)
+    found: Floats = both[first]
+    return found
+
+
+def _meeting(cuts: list[_Cut], lines: list[Floats]) -> list[tuple[Floats, Bools]]:
+    """Return the lines with the ends of others on them, and which points are such ends.
+
+    Where lines meet, the height is that of the first one, which is nearer to the root.
+    """
+    ends = np.concatenate([np.empty((0, 3)), *(line[[0, -1]] for line in lines if len(line))])
+    found: list[tuple[Floats, Bools]] = []
+    height: dict[tuple[float, float], float] = {}
+    for cut, line in zip(cuts, lines, strict=True):
+        both = np.concatenate((line, ends[cut.on(ends)]))
+        way, first = np.unique(both[:, 1 - cut.axis], return_index=True)
+        joint = np.isin(way, both[len(line) :, 1 - cut.axis])
+        points = both[first]
+        for row in np.flatnonzero(joint).tolist():
+            x, y, z = points[row].tolist()
+            points[row, 2] = height.setdefault((x, y), z)
+        found.append((points, joint))
+    return found
+
+
+def _simplified_lines(
+    cuts: list[_Cut], lines: list[tuple[Floats, Bools]], error: float
+) -> list[Floats]:
+    """Return the points of lines that stay: all others are within half of the error."""
+    simple = []
+    for cut, (points, fixed) in zip(cuts, lines, strict=True):
+        slack = 8 * _EPS * float(np.abs(points[:, 2]).max(initial=0.0))
+        # If rounding could matter, all points stay.
+        kept = _kept(points[:, 1 - cut.axis], points[:, 2], fixed, error / 2)
+        simple.append(points if error / 2 <= slack else points[kept])
+    return simple
+
+
+def _kept(way: Floats, z: Floats, fixed: Bools, limit: float) -> Bools:
+    """Which points of a profile stay, by the greatest vertical distance (Douglas and Peucker)."""
+    kept = fixed.copy()
+    kept[:1] = kept[-1:] = True
+    marks = np.flatnonzero(kept).tolist()
+    spans = list(pairwise(marks))
+    while spans:  # each round with a split keeps one more point
+        a, b = spans.pop()
+        if b - a < 2:
+            continue
+        share = (way[a + 1 : b] - way[a]) / (way[b] - way[a])
+        away = np.abs(z[a + 1 : b] - (z[a] + share * (z[b] - z[a])))
+        k = int(away.argmax())
+        if not away[k] <= limit:
+            kept[a + 1 + k] = True
+            spans += [(a, a + 1 + k), (a + 1 + k, b)]
+    return kept
+
+
+def _simplified_tile(
+    path: str, value: str, number: int, lines: list[Floats], error: float
+) -> _Piece:
+    """Simplify a tile between the lines around it."""
+    tin = TileFolder._at(path)
+    border, segments = _edges(lines)
+    # Points on a cut are within the error of its line, so they are never inserted.
+    every = np.concatenate((border, _own(tin, number, value)))
+    nothing = _Piece(np.empty((0, 3)), np.empty((0, 3), dtype=np.int32))
+    flat = np.ascontiguousarray(every[:, :2])
+    if len(flat) < 3:
+        return nothing
+    try:
+        corners, _ = _core.hull2(flat)
+    except DegenerateInputError:
+        return nothing  # a cell that has no area in common with the hull
+    fixed = np.arange(len(flat)) < len(border)
+    fixed[corners] = True
+    ground = Ground(
+        flat,
+        np.ascontiguousarray(every[:, 2]),
+        np.flatnonzero(fixed),
+        np.flatnonzero(~fixed),
+        segments,
+        np.ones(len(segments), dtype=bool),
+        np.empty((0, 2), dtype=np.int32),
+        tin.crs,
+        None,
+        None,
+    )
+    levels = simplified(ground, lambda built, _: built, error, None)
+    made: Built = levels.surface(max_error=error)
+    return _Piece(np.column_stack((made.points, made.z)), made.simplices)
+
+
+def _edges(lines: list[Floats]) -> tuple[Floats, Indices]:
+    """Return the points of lines, each once, and the segments between them."""
+    counts = np.array([0, *map(len, lines)], dtype=np.int64)
+    points = np.concatenate([np.empty((0, 3)), *lines])
+    _, first, same = np.unique(points[:, :2], axis=0, return_index=True, return_inverse=True)
+    rows = np.delete(np.arange(len(points)), np.cumsum(counts)[1:][counts[1:] > 0] - 1)
+    pairs = np.column_stack((rows, rows + 1)).astype(np.int64)
+    return points[first], same.reshape(-1)[pairs].astype(np.int32)
+
+
+def _together(pieces: list[_Piece], crs: str | None) -> TIN:
+    """Return the surface of all pieces, whose borders are edges of it."""
+    starts = np.cumsum([0, *(len(piece.points) for piece in pieces)])
+    every = np.concatenate([piece.points for piece in pieces])
+    _, first, same = np.unique(every[:, :2], axis=0, return_index=True, return_inverse=True)
+    rows = [
+        same.reshape(-1)[at : at + len(piece.points)]
+        for piece, at in zip(pieces, starts, strict=False)
+    ]
+    faces = [row[piece.simplices] for row, piece in zip(rows, pieces, strict=True)]
+    borders = [row[_border(piece)] for row, piece in zip(rows, pieces, strict=True)]
+    simplices = np.concatenate(faces).astype(np.int32)
+    segments = np.unique(np.sort(np.concatenate(borders), axis=1), axis=0).astype(np.int32)
+    flat = np.ascontiguousarray(every[first, :2])
+    mesh = ConstrainedDelaunay(flat, segments, planar=True)
+    kept = topology.triangles_among(mesh.simplices, simplices)
+    if np.count_nonzero(kept) != len(simplices):
+        raise InternalError("the borders of simplified tiles differ")
+    # Edges of the hull need no segment.
+    hull = topology.boundary_edges(mesh.simplices, mesh.neighbors)
+    keys, outer = (
+        topology.edge_keys(each[:, 0], each[:, 1], len(flat)) for each in (mesh.segments, hull)
+    )
+    inner = mesh.segments[~topology.among(keys, outer)]
+    soft = np.ones(len(inner), dtype=bool)
+    z = every[first, 2].copy()
+    built = Built(flat, z, mesh.simplices, mesh.neighbors, kept, inner, soft, crs, None)
+    return TIN._built(built, None)
+
+
+def _border(piece: _Piece) -> Indices:
+    """The edges of a piece that have one triangle."""
+    beside = topology.neighbors(piece.simplices, len(piece.points))
+    return topology.boundary_edges(piece.simplices, beside)

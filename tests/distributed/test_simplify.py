@@ -1,0 +1,206 @@
+"""Simplified tiles: the bound at each point by a judge on fractions, and no cracks."""
+
+from __future__ import annotations
+
+from collections import Counter
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from delone import datasets, distributed
+from delone.distributed.read import simplifying
+from delone.errors import InputError
+from delone.terrain import TIN
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    Points = NDArray[np.float64]
+
+
+def survey() -> Points:
+    """Soundings, without those that repeat a place."""
+    baja = datasets.baja()
+    points = np.column_stack([baja.points, baja.z])[::5]
+    _, first = np.unique(points[:, :2], axis=0, return_index=True)
+    return points[np.sort(first)]
+
+
+def cliffs() -> Points:
+    """A lattice with a cliff in it, and points on cuts wherever they are."""
+    x, y = (each.ravel() for each in np.meshgrid(np.arange(40.0), np.arange(25.0)))
+    return np.column_stack([x, y, 30 * (x + y / 2 > 31) + np.sin(x) * np.cos(y / 2)])
+
+
+def slanted() -> Points:
+    """A lattice along a diamond: cuts meet the hull where its sides are slanted."""
+    x, y = (each.ravel() for each in np.meshgrid(np.arange(-20.0, 21), np.arange(-20.0, 21)))
+    inside = abs(x) + abs(y) <= 20
+    x, y = x[inside], y[inside]
+    return np.column_stack([x / 3, y / 3, np.hypot(x, y) + (x % 5 == 0)])
+
+
+def straight() -> Points:
+    """Points along a slanted line, on the hull up to rounding, and scattered ones beside it."""
+    dice = np.random.default_rng(3)
+    way = np.sort(dice.random(150))
+    side = np.column_stack([0.1 + 9.6 * way, 0.2 + 1.1 * way])
+    xy = np.concatenate([side, [3.0, 2.0] + dice.random((600, 2)) * [5, 7]])
+    return np.column_stack([xy, np.sin(3 * xy[:, 0]) + np.cos(5 * xy[:, 1]) + dice.random(len(xy))])
+
+
+POINTS = {"survey": survey, "cliffs": cliffs, "slanted": slanted, "straight": straight}
+
+
+def judge(tin: TIN, points: Points) -> list[Fraction | None]:
+    """The exact distance of each point from the surface, by a loop; None if it is outside."""
+    corners = np.column_stack((tin.points, tin.z))[tin.simplices]
+    low, high = corners[:, :, :2].min(axis=1), corners[:, :, :2].max(axis=1)
+    found: list[Fraction | None] = []
+    for point in points:
+        near = ((low <= point[:2]) & (point[:2] <= high)).all(axis=1)
+        found.append(None)
+        x, y, z = map(Fraction, point.tolist())
+        for k in np.flatnonzero(near).tolist():
+            (ax, ay, az), (bx, by, bz), (cx, cy, cz) = (
+                tuple(map(Fraction, corner)) for corner in corners[k].tolist()
+            )
+            u = (bx - x) * (cy - y) - (by - y) * (cx - x)
+            v = (cx - x) * (ay - y) - (cy - y) * (ax - x)
+            w = (ax - x) * (by - y) - (ay - y) * (bx - x)
+            if min(u, v, w) >= 0:
+                found[-1] = abs((u * az + v * bz + w * cz) / (u + v + w) - z)
+                break
+    return found
+
+
+def edges_once(tin: TIN) -> int:
+    """The number of edges with one triangle: those of the outline, if there is no crack."""
+    ends = np.sort(tin.simplices[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1)
+    count = Counter(map(tuple, ends.tolist()))
+    assert max(count.values()) == 2
+    return sum(number == 1 for number in count.values())
+
+
+@pytest.fixture(scope="module", params=list(POINTS))
+def tiled(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> tuple[distributed.TiledDelaunay, Points]:
+    points = POINTS[request.param]()
+    if len(points) > 2000:
+        points = points[::6]
+    folder = tmp_path_factory.mktemp(request.param) / "tin"
+    tiles = distributed.triangulate(points, folder, tile_points=len(points) // 9)
+    assert tiles.ntiles > 6
+    return tiles, points
+
+
+@pytest.mark.parametrize("share", [0.2, 0.01, 0.0])
+def test_the_bound_holds_at_each_point(tiled: Any, share: float) -> None:
+    tiles, points = tiled
+    error = share * float(np.ptp(points[:, 2]))
+    tin = tiles.simplify(max_error=error)
+    found = judge(tin, points)
+    assert None not in found
+    assert max(distance for distance in found if distance is not None) <= Fraction(error)
+    assert all(simplifying.prove(tiles, tin, error))
+    if share == 0.2:
+        assert tin.npoints < len(points) / 2
+
+
+def test_there_is_no_crack(tiled: Any) -> None:
+    tiles, points = tiled
+    tin = tiles.simplify(max_error=0.1 * float(np.ptp(points[:, 2])))
+    assert tin.validate()
+    outline = edges_once(tin)
+    # One cycle: each vertex of it has two of these edges.
+    ends = tin.simplices[:, [[1, 2], [2, 0], [0, 1]]][tin.neighbors < 0]
+    assert outline == len(ends) == len(np.unique(ends))
+    whole = TIN.from_points(points)
+    assert tin.areas.sum() == pytest.approx(whole.areas.sum(), rel=1e-12)
+    # Lines along cuts are parallel to an axis, and soft.
+    sides = tin.points[tin.breaklines]
+    parallel = (sides[:, 0] == sides[:, 1]).any(axis=1)
+    hull = np.isin(tin.breaklines, ends).all(axis=1)
+    assert (parallel | hull).all() and parallel.any() and tin.soft.all()
+
+
+def test_one_tile_is_one_piece(tmp_path: Path) -> None:
+    points = survey()[::4]
+    tiles = distributed.triangulate(points, tmp_path / "tin")
+    assert tiles.ntiles == 1
+    found, right = tiles.simplify(max_error=50), TIN.from_points(points).simplify(max_error=50)
+    rows = [each.xyz[np.lexsort(each.xyz.T)] for each in (found, right)]
+    assert np.array_equal(*rows)
+    assert found.nsimplex == right.nsimplex and not len(found.breaklines)
+
+
+def test_lines_cost_few_triangles(tmp_path: Path) -> None:
+    points = survey()
+    tiles = distributed.triangulate(points, tmp_path / "tin", tile_points=len(points) // 9)
+    one = TIN.from_points(points).simplify(max_error=80)
+    assert one.nsimplex < tiles.simplify(max_error=80).nsimplex < 1.1 * one.nsimplex
+
+
+def test_other_values_and_wrong_arguments(tmp_path: Path) -> None:
+    points = survey()[::4]
+    path = tmp_path / "points.csv"
+    depth = np.where(np.arange(len(points)) == 7, np.nan, -points[:, 2])
+    table = np.column_stack([points, depth, 2 * points[:, 2]])
+    np.savetxt(path, table, delimiter=",", header="x,y,z,depth,twice", comments="")
+    tiles = distributed.triangulate(
+        path, tmp_path / "tin", tile_points=600, attributes=["depth", "twice"]
+    )
+    assert tiles.simplify(max_error=100, values="twice").z.min() == 2 * points[:, 2].min()
+    with pytest.raises(InputError, match=r"depth is NaN or infinite at 1 point .* row 7: "):
+        tiles.simplify(max_error=100, values="depth")
+    with pytest.raises(InputError, match="has no 'slope'"):
+        tiles.simplify(max_error=100, values="slope")
+    with pytest.raises(InputError, match="from 0 on, got -1"):
+        tiles.simplify(max_error=-1)
+    with pytest.raises(InputError, match="executor must be"):
+        tiles.simplify(max_error=1, executor="threads")
+
+
+def test_a_cluster_gives_the_same(tmp_path: Path) -> None:
+    library = pytest.importorskip("distributed")
+    points = survey()[::4]
+    tiles = distributed.triangulate(points, tmp_path / "tin", tile_points=500)
+    with library.Client(
+        n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None
+    ) as client:
+        found = tiles.simplify(max_error=80, executor=client)
+    right = tiles.simplify(max_error=80)
+    assert np.array_equal(found.xyz, right.xyz)
+    assert np.array_equal(found.simplices, right.simplices)
+
+
+def test_a_flat_survey_has_lines_of_two_points(tmp_path: Path) -> None:
+    grid = cliffs()
+    grid[:, 2] = 3 + grid[:, 0] / 4
+    tiles = distributed.triangulate(grid, tmp_path / "tin", tile_points=120)
+    tin = tiles.simplify(max_error=1e-9)
+    # Corners of the hull, and the places where cuts meet each other and the hull.
+    assert tin.npoints <= 4 + 4 * tiles.ntiles
+    assert np.isin([0.0, 39.0], tin.points[:, 0]).all()
+
+
+def test_lines_that_end_at_one_place_agree_on_its_height() -> None:
+    cuts = [
+        simplifying._Cut(0, 5.0, 0.0, 9.0),
+        simplifying._Cut(1, 4.0, 0.0, 5.0),
+        simplifying._Cut(1, 4.0, 5.0, 9.0),
+    ]
+    ends = [[(5.0, 0.0, 1.0), (5.0, 9.0, 1.0)], [(0.0, 4.0, 2.0), (5.0, 4.0, 3.0)]]
+    lines = [np.array(line) for line in [*ends, [(5.0, 4.0, 3.5), (9.0, 4.0, 2.0)]]]
+    found = simplifying._meeting(cuts, lines)
+    assert [points.tolist() for points, _ in found] == [
+        [[5, 0, 1], [5, 4, 3], [5, 9, 1]],
+        [[0, 4, 2], [5, 4, 3]],
+        [[5, 4, 3], [9, 4, 2]],
+    ]
+    assert found[0][1].all()
