@@ -178,6 +178,32 @@ def test_nodes_of_quadrilaterals_and_targets() -> None:
         Regridder("10x10", "10x10", cells="nodes")
 
 
+def test_nodes_where_parts_touch_have_several_rings() -> None:
+    xarray = pytest.importorskip("xarray")
+    lon = [0.0, 10, 10, 0, -10, -10, 0, 30]
+    lat = [0.0, 0, 10, 10, 0, -10, -10, 30]
+    # Two squares that share node 0 only; one clockwise, with a corner repeated as padding.
+    faces = [[0, 1, 2, 3, 3], [0, 6, 5, 4, 0]]
+    ds = xarray.Dataset(
+        {
+            "mesh": ((), 0, {"cf_role": "mesh_topology", "node_coordinates": "x y",
+                             "face_node_connectivity": "faces"}),
+            "faces": (("face", "most"), faces),
+            "x": ("node", lon, {"units": "degrees_east"}),
+            "y": ("node", lat, {"units": "degrees_north"}),
+        }
+    )  # fmt: skip
+    nodes, cells = Grid.from_dataset(ds, cells="nodes"), Grid.from_dataset(ds)
+    corners, rings, starts = nodes.rings
+    assert np.diff(starts).tolist() == [2, 1, 1, 1, 1, 1, 1, 0]
+    assert (np.diff(rings) == 4).all()
+    assert len(corners) == 32
+    assert nodes.areas.sum() == pytest.approx(cells.areas.sum(), rel=1e-14)
+    assert nodes.report.empty.tolist() == [7]
+    shares = Overlaps(cells, nodes).matrix.toarray()
+    assert (shares[0] > 0.2 * cells.areas).all()
+
+
 @pytest.mark.parametrize("corners", [3, 4])
 def test_fields_at_nodes_are_interpolated_on_the_mesh_itself(corners: int) -> None:
     xarray = pytest.importorskip("xarray")
@@ -244,7 +270,7 @@ def test_centers_are_those_of_datasets() -> None:
 
 def test_what_is_refused(tmp_path: Path) -> None:
     lonlat, triangles = mesh(20)
-    folder = written(tmp_path, lonlat, np.concatenate((triangles, triangles[:1])))
+    folder = written(tmp_path, lonlat, np.concatenate((triangles, triangles[:3])))
     with pytest.raises(delone.InputError, match="cells 0 and 36 overlap"):
         Grid.from_fesom(folder)
     with pytest.raises(delone.InputError, match="cells must be"):
