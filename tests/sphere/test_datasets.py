@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,8 @@ import numpy as np
 import pytest
 
 import delone
-from delone.sphere import Grid
+from delone.sphere import Grid, Overlaps
+from delone.sphere.gaussian import gaussian_bounds
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -358,6 +360,94 @@ def test_inferred_bounds_are_halfway() -> None:
         Grid.from_dataset(ds.isel(lat=slice(1)), infer_bounds=True)
 
 
+def boxes(rows: Any, columns: list[Any], dtype: Any = float, **extra: Any) -> Any:
+    """A reduced grid: cells of rows between parallels, with as many columns as each row has."""
+    lat = [pair for pair, edges in zip(rows, columns, strict=True) for _ in edges[1:]]
+    lon = [pair for edges in columns for pair in pairwise(edges)]
+    x, y = (np.array(table, dtype=dtype) for table in (lon, lat))
+    return xarray.Dataset(
+        {"x": (("cell", "nv"), x), "y": (("cell", "nv"), y)},
+        coords={
+            "lon": ("cell", x.mean(axis=1), {**EAST, "bounds": "x"}),
+            "lat": ("cell", y.mean(axis=1), {**NORTH, "bounds": "y"}),
+        },
+    ).assign(**extra)
+
+
+def test_lists_of_cells_between_meridians_and_parallels() -> None:
+    expected = Grid.from_gaussian(8, "octahedral")
+    rows, columns = gaussian_bounds(8, "octahedral")
+    parallels = list(pairwise(rows))
+    ds = boxes(parallels, columns)
+    grid = Grid.from_dataset(ds)
+    assert (grid.edges, grid.grid_shape, grid.report.merged) == ("parallel", (expected.ncells,), 0)
+    assert np.allclose(grid.areas, expected.areas, rtol=1e-13)
+    assert grid.areas.sum() == pytest.approx(4 * np.pi, rel=1e-14)
+    assert np.array_equal(grid.centers_lonlat[:, 1], ds.lat.values)
+    assert np.allclose(grid.rings[0], expected.rings[0], atol=1e-14)
+    assert grid.validate()
+    # Any order of cells, and of the bounds of each.
+    order = np.random.default_rng(0).permutation(grid.ncells)
+    moved = ds.isel(cell=order, nv=[1, 0])
+    moved["x"] = moved.x - 360 * (np.arange(grid.ncells) % 2)[:, None]
+    assert np.allclose(Grid.from_dataset(moved).areas, grid.areas[order], rtol=1e-13)
+    # Bounds in float32 meet, between columns and between rows and once around.
+    other = boxes(parallels, [edges - edges[0] + 0.1 for edges in columns], np.float32)
+    other["y"][:, 0] = np.nextafter(other.y[:, 0].values, np.float32(90))
+    rounded = Grid.from_dataset(other)
+    assert rounded.report.merged > 500
+    assert rounded.areas.sum() == pytest.approx(4 * np.pi, rel=1e-14)
+    again = pickle.loads(pickle.dumps(grid))
+    assert np.array_equal(again.areas, grid.areas)
+    # Sides of great circles, if wanted.
+    arcs = Grid.from_dataset(ds, edges="arc")
+    assert (arcs.edges, arcs.ncells) == ("arc", grid.ncells)
+    assert np.allclose(arcs.areas, grid.areas, rtol=0.2)
+
+
+def test_lists_of_boxes_with_gaps_overlaps_and_wide_cells() -> None:
+    # Two cells that overlap between the same parallels, a gap, a cell around, one over the date
+    # line by its center alone, one of 200 degrees, and one that overlaps the first from the west.
+    lon = np.array([[0.0, 20], [10, 30], [50, 60], [-180, 180], [-170, 170], [0, 200], [-10, 5]])
+    lat = np.array([[0.0, 10], [0, 10], [10, 0], [80, 90], [-10, 0], [-90, -80], [0, 10]])
+    ds = boxes(lat, [*lon])
+    ds["lon"] = ("cell", [10.0, 20, 55, 0, 180, 100, -2], ds.lon.attrs)
+    grid = Grid.from_dataset(ds)
+    width = np.radians([20, 20, 10, 360, 20, 200, 15])
+    sines = np.abs(np.diff(np.sin(np.radians(lat)), axis=1))[:, 0]
+    assert np.allclose(grid.areas, width * sines, rtol=1e-14)
+    assert grid.validate().overlapping.tolist() == [[0, 1], [0, 6]]
+    shares = Overlaps(Grid.from_lonlat([0, 20], [0, 10]), grid).matrix.toarray()[:, 0]
+    assert np.allclose(shares / grid.areas, [1, 0.5, 0, 0, 0, 0, 1 / 3], atol=1e-15)
+    target = Grid.from_lonlat([-175, 175], [-10, 0])
+    assert np.isclose(Overlaps(target, grid).matrix.toarray()[4, 0], grid.areas[4] / 2)
+    for table, what in ((lon, "x"), (lat, "y")):
+        flat = table.copy()
+        flat[2] = flat[2, 0]
+        with pytest.raises(delone.InputError, match=r"x and y: 1 cell has no width.*first cell 2"):
+            Grid.from_dataset(ds.assign({what: (("cell", "nv"), flat)}))
+    with pytest.raises(delone.DirectionError, match="y: cell 3 reaches beyond a pole"):
+        Grid.from_dataset(ds.assign(y=(("cell", "nv"), lat + np.eye(7)[:, [3, 3]])))
+
+
+def test_inferred_cells_of_a_list_are_nearest_to_their_centers() -> None:
+    sites = np.random.default_rng(5).normal(size=(60, 3))
+    places = delone.sphere.Delaunay(xyz=sites).lonlat
+    ds = xarray.Dataset(
+        coords={"lon": ("cell", places[:, 0], EAST), "lat": ("cell", places[:, 1], NORTH)}
+    )
+    with pytest.raises(delone.InputError, match=r"lon has no bounds.*infer_bounds=True"):
+        Grid.from_dataset(ds)
+    grid = Grid.from_dataset(ds, infer_bounds=True)
+    expected = Grid.from_voronoi(delone.sphere.Voronoi(lonlat=places))
+    assert np.array_equal(grid.areas, expected.areas)
+    assert np.array_equal(grid.centers_lonlat, places)
+    with pytest.raises(delone.InputError, match="centers 3 and 60 are the same place"):
+        Grid.from_dataset(ds.isel(cell=[*range(60), 3]), infer_bounds=True)
+    with pytest.raises(delone.InputError, match="all centers are within a hemisphere"):
+        Grid.from_dataset(ds.isel(cell=np.flatnonzero(places[:, 1] > 0)), infer_bounds=True)
+
+
 def test_inferred_corners_are_in_the_middle() -> None:
     x, y = np.meshgrid(np.arange(10.0, 20), np.arange(-3.0, 4))
     ds = xarray.Dataset(coords={"lon": (("j", "i"), x, EAST), "lat": (("j", "i"), y, NORTH)})
@@ -514,7 +604,7 @@ def test_healpix() -> None:
         (
             lambda: xarray.Dataset(coords={"lon": ("c", [1.0], EAST), "lat": ("c", [1.0], NORTH)}),
             delone.InputError,
-            "Grid.from_voronoi",
+            "cells of the places nearest to each center",
         ),
     ],
 )

@@ -9,6 +9,7 @@ import numpy as np
 from delone._base.arrays import as_choice, as_flag, as_number, as_workers
 from delone.errors import InputError
 from delone.sphere import rings as rings_of
+from delone.sphere.boxes import rows_of
 from delone.sphere.coordinates import directions_of, lonlat_of
 from delone.sphere.fesom import median_dual, read_text
 from delone.sphere.formats import Choices, read_cells
@@ -125,8 +126,8 @@ class Grid(GridCells):
         coords : pair of str, optional
             Names of the longitude and the latitude of centers, where there are several.
         edges : {"parallel", "arc"}, optional
-            The kind of sides. By default "parallel" for CF rows and columns, and otherwise "arc".
-            SCRIP grids can also have "parallel".
+            The kind of sides. By default "parallel" for CF rows and columns and for lists of pairs
+            of bounds, and otherwise "arc". SCRIP grids can also have "parallel".
         degrees : bool, optional
             Whether angles without an attribute ``units`` are in degrees. By default they raise an
             error, unless the convention fixes their unit.
@@ -159,10 +160,15 @@ class Grid(GridCells):
         Node numbers start where the dataset or its convention says. Padding after the corners of a
         cell is ignored; cells without corners are empty.
 
-        Bounds are inferred as follows. In one dimension, they are halfway between neighbors, and
+        Cells in one list, such as those of a reduced grid, have the corners of their bounds, or lie
+        between meridians and parallels if bounds have two entries. Of the two intervals between
+        meridians, the one that contains the center is meant.
+
+        Bounds are inferred as follows. In rows and columns, they are halfway between neighbors, and
         the outer bounds are as far from their center as the inner ones; latitudes beyond a pole
         become the pole. In two dimensions, corners are in the middle of four centers, and the outer
-        ones are mirrored.
+        ones are mirrored. Of centers in one list, the cells are those of the Voronoi diagram, which
+        cover the whole sphere.
 
         Bounds of neighboring columns or rows that differ by rounding in their dtype are merged.
 
@@ -194,6 +200,12 @@ class Grid(GridCells):
             columns = as_bounds(cells.columns, name="lon", degrees=True)
             rows = as_bounds(cells.rows, name="lat", degrees=True)
             return cls._product(columns, rows, cells.merged, workers, cells.mask)
+        if cells.boxes is not None:
+            arrays, merged = rows_of(cells.boxes, cells.near)
+            return cls._of(
+                "parallel", arrays, cells.shape, merged, workers, mask=cells.mask,
+                centers=cells.centers,
+            )  # fmt: skip
         assert cells.nodes is not None
         assert cells.starts is not None
         if cells.location == "node":

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from delone.sphere.voronoi import Voronoi
 
 __all__ = [
+    "BEYOND",
+    "WIDE",
     "Rings",
     "as_bounds",
     "as_corners",
@@ -31,13 +33,14 @@ __all__ = [
     "merged_corners",
     "rows",
     "shapes",
+    "tangents_of",
     "voronoi",
 ]
 
 # Latitudes beyond a pole by a rounding of float32 mean the pole.
-_BEYOND = 1 + 2.0**-22
+BEYOND = 1 + 2.0**-22
 # Columns that are wider are cut, because directions do not tell turns apart.
-_WIDE = 90.0
+WIDE = 90.0
 
 
 class Rings(NamedTuple):
@@ -84,26 +87,30 @@ def _on_earth(edges: Floats, name: str) -> Floats:
     """Return edges with poles and whole turns as such, or refuse what is beyond."""
     top = float(np.abs(edges).max())
     if name == "lat":
-        if top > 90 * _BEYOND:
+        if top > 90 * BEYOND:
             raise InputError(f"lat: {top:g} degrees is beyond a pole: are these radians?")
         return np.clip(edges, -90.0, 90.0)
     span = abs(float(edges[-1] - edges[0]))
-    if span > 360 * _BEYOND or top > 1080:
+    if span > 360 * BEYOND or top > 1080:
         raise InputError(f"lon spans {span:g} degrees, more than one turn")
-    if span * _BEYOND >= 360:
+    if span * BEYOND >= 360:
         edges = edges.copy()
         edges[-1] = edges[0] + np.copysign(360.0, edges[-1] - edges[0])
     return edges
 
 
+def tangents_of(lat: Floats) -> Floats:
+    """Return the tangents of latitudes in degrees, infinite at the poles."""
+    places = np.column_stack((np.zeros(len(lat)), lat))
+    sloped = _core.sphere_directions(places, True, as_workers(None))
+    found = np.copysign(np.inf, lat)
+    np.divide(sloped[:, 2], sloped[:, 0], out=found, where=np.abs(lat) != 90)
+    return found
+
+
 def rows(lat: Floats, columns: list[Floats]) -> tuple[Any, ...]:
     """Return the arrays of the core for rows of cells between meridians, numbered as given."""
-    workers = as_workers(None)
-    places = np.column_stack((np.zeros(len(lat)), lat))
-    sloped = _core.sphere_directions(places, True, workers)
-    pole = np.abs(lat) == 90
-    tangents = np.copysign(np.inf, lat)
-    np.divide(sloped[:, 2], sloped[:, 0], out=tangents, where=~pole)
+    tangents = tangents_of(lat)
     both = np.sort(np.column_stack((tangents[:-1], tangents[1:])), axis=1)
     made: dict[int, tuple[Floats, NDArray[np.int32]]] = {}
     meridians, numbers, first = [], [], 0
@@ -127,7 +134,7 @@ def _meridians(edges: Floats) -> tuple[Floats, NDArray[np.int32]]:
     if edges[0] > edges[-1]:
         edges, own = edges[::-1], own[::-1]
     # Narrow columns remain as they are; wide ones are cut into equal parts.
-    parts = np.maximum(np.ceil(np.diff(edges) / _WIDE), 1).astype(np.int64)
+    parts = np.maximum(np.ceil(np.diff(edges) / WIDE), 1).astype(np.int64)
     west, number = np.repeat(edges[:-1], parts), np.repeat(own, parts)
     within = np.arange(len(west)) - np.repeat(np.cumsum(parts) - parts, parts)
     west = west + within * np.repeat(np.diff(edges) / parts, parts)

@@ -40,6 +40,10 @@ class Cells(NamedTuple):
     # Edges between columns and between rows in degrees, for cells between meridians and parallels.
     columns: Floats | None = None
     rows: Floats | None = None
+    # West, east, south and north of cells in one list, (n, 4), in degrees.
+    boxes: Floats | None = None
+    # Within how many degrees meridians of boxes are one, and parallels.
+    near: tuple[float, float] = (0.0, 0.0)
     # Places of corners, which of them each cell has (all in sequence without numbers), and where
     # the corners of each cell start.
     nodes: Floats | None = None

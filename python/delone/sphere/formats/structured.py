@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone._base.arrays import as_workers
-from delone.errors import InputError, ShapeError
+from delone.errors import DirectionError, InputError, ShapeError
 from delone.interpolate.places import is_angle
+from delone.sphere.boxes import as_boxes
 from delone.sphere.coordinates import units_of
 from delone.sphere.formats.cells import Cells
 from delone.sphere.formats.corners import listed
 from delone.sphere.formats.variables import attribute, in_degrees, numbers, places
 from delone.sphere.healpix import healpix_corners
-from delone.sphere.rings import as_bounds
+from delone.sphere.rings import BEYOND, as_bounds, voronoi
+from delone.sphere.voronoi import Voronoi
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -185,11 +187,12 @@ def _read_listed(variables: Variables, names: Pair, choices: Choices) -> Cells:
     rest: dict[str, Any] = {"format": "CF", "dims": own.dims, "shape": own.shape, "coords": names}
     bounds = [bounds_name(variables, n, required=not choices.infer) for n in names]
     if bounds[0] is None or bounds[1] is None:
-        if choices.infer and own.ndim == 2:
-            return Cells(**rest, **_between(variables, names, choices))
+        if choices.infer:
+            inferred = _between if own.ndim == 2 else _nearest
+            return Cells(**rest, **inferred(variables, names, choices))
         lacking = names[0] if bounds[0] is None else names[1]
         cure = _INFER if own.ndim == 2 else (
-            "its cells may be those of Grid.from_voronoi(sphere.Voronoi(lonlat=...))"
+            "give infer_bounds=True for cells of the places nearest to each center"
         )  # fmt: skip
         raise InputError(
             f"{lacking} has no bounds: no attribute names them, and there is no variable "
@@ -214,6 +217,15 @@ def _read_listed(variables: Variables, names: Pair, choices: Choices) -> Cells:
             )
         order = [given.index(dim) for dim in own.dims] + others
         flat.append(array.transpose(order).reshape(-1, array.shape[others[0]]))
+    if flat[0].shape[1] == flat[1].shape[1] == 2:
+        found, near = _intervals(variables, names, pair, (flat[0], flat[1]), choices)
+        if choices.edges != "arc":
+            return Cells(**rest, boxes=found, near=near)
+        west, east, south, north = found.T
+        around = (west, east, east, west), (south, south, north, north)
+        lon, lat = (np.stack(each, axis=1) for each in around)
+        nodes = places(lon, lat, (True, True), names, choices)
+        return Cells(**rest, nodes=nodes, starts=np.arange(len(found) + 1, dtype=np.int64) * 4)
     if flat[0].shape[1] < 3:
         raise ShapeError(f"{pair[0]} has {flat[0].shape[1]} corners for each cell, not 3 or more")
     # Units of bounds are those of their coordinate, if they have none.
@@ -222,6 +234,65 @@ def _read_listed(variables: Variables, names: Pair, choices: Choices) -> Cells:
         for name, bound in zip(names, pair, strict=True)
     }
     return Cells(**rest, **listed(known, pair, (flat[0], flat[1]), choices))
+
+
+def _intervals(
+    variables: Variables,
+    names: Pair,
+    bounds: Pair,
+    arrays: tuple[NDArray[Any], NDArray[Any]],
+    choices: Choices,
+) -> tuple[Floats, tuple[float, float]]:
+    """Return west, east, south and north of cells in degrees, and how near bounds are one."""
+    near, found = [float(np.degrees(choices.merge))] * 2, []
+    for axis, (name, bound, array) in enumerate(zip(names, bounds, arrays, strict=True)):
+        values = array.astype(np.float64)
+        if not _unit(variables, name, bound, axis, choices):
+            values = np.degrees(values)
+        if array.dtype.kind == "f":
+            size = float(np.nanmax(np.abs(values), initial=0.0))
+            near[axis] = max(near[axis], 4 * float(np.finfo(array.dtype).eps) * size)
+        found.append(values)
+    centers = numbers(variables[names[0]], names[0]).astype(np.float64).ravel()
+    if not in_degrees(variables[names[0]], 0, names[0], choices):
+        centers = np.degrees(centers)
+    lat = _within_poles(found[1], bounds[1])
+    return as_boxes(found[0], lat, centers, bounds), (near[0], near[1])
+
+
+def _within_poles(lat: Floats, name: str) -> Floats:
+    """Return latitudes in degrees, of which those beyond a pole by a rounding are the pole."""
+    far = np.abs(lat) > 90 * BEYOND
+    if far.any():
+        row = int(np.flatnonzero(far.any(axis=1))[0])
+        raise DirectionError(
+            f"{name}: cell {row} reaches beyond a pole: are these the right units?", rows=[row]
+        )
+    found: Floats = np.clip(lat, -90.0, 90.0)
+    return found
+
+
+def _nearest(variables: Variables, names: Pair, choices: Choices) -> dict[str, Any]:
+    """Return the corners of the Voronoi cells of centers."""
+    degrees = [in_degrees(variables[name], axis, name, choices) for axis, name in enumerate(names)]
+    lon, lat = (numbers(variables[name], name) for name in names)
+    sites = places(lon, lat, (degrees[0], degrees[1]), names, choices)
+    diagram = Voronoi(xyz=sites, workers=choices.workers)
+    again = np.flatnonzero(diagram.duplicate_of != np.arange(len(sites)))
+    if len(again):
+        first, second = diagram.duplicate_of[again[0]], again[0]
+        raise InputError(
+            f"{names[0]}, {names[1]}: centers {first} and {second} are the same place, so no cells "
+            "follow: leave one out"
+        )
+    if diagram.triangulation is None or not diagram.triangulation.covers_sphere:
+        raise InputError(
+            f"{names[0]}, {names[1]}: all centers are within a hemisphere, so the outer cells have "
+            "no end there: clip them, Grid.from_polygons(sphere.Voronoi(lonlat=..., "
+            "clip=region).to_geopandas())"
+        )
+    nodes, starts = voronoi(diagram)
+    return {"nodes": nodes, "starts": starts, "shared": True}
 
 
 def _between(variables: Variables, names: Pair, choices: Choices) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from delone._base.counting import agreed, counted
 from delone.errors import DirectionError, DtypeError, InputError, NonFiniteError, ShapeError
 from delone.interpolate.places import unit_of
 from delone.sphere.coordinates import directions_of
+from delone.sphere.rings import BEYOND
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,9 +28,6 @@ __all__ = [
     "ragged",
     "variables_of",
 ]
-
-# Latitudes beyond a pole by a rounding of float32 mean the pole.
-_BEYOND = 1 + 2.0**-22
 
 
 def variables_of(given: Any) -> dict[str, Any]:
@@ -106,7 +104,7 @@ def places(
     pole = 90.0 if any(degrees) else np.pi / 2
     far = np.abs(both[:, 1])
     hint = "beyond a pole: are these the right units?"
-    _refuse(far > pole * _BEYOND, names[1], hint, error=DirectionError)
+    _refuse(far > pole * BEYOND, names[1], hint, error=DirectionError)
     beyond = far > pole
     both[beyond, 1] = np.copysign(pole, both[beyond, 1])
     if not len(both):
