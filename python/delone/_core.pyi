@@ -794,6 +794,9 @@ class ImprovementCounts:
     def weights(self) -> int:
         """Weights assigned."""
     @property
+    def added(self) -> int:
+        """Vertices added."""
+    @property
     def passes(self) -> int:
         """Passes."""
     @property
@@ -1905,6 +1908,7 @@ def improve3(
     exude: bool,
     turn: bool,
     passes: int,
+    most: int,
     progress: Callable[[int, int], object] | None = None,
 ) -> ImprovedMesh:
     """Improves tetrahedra. `progress` is called after each pass with its number and the

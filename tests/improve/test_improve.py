@@ -15,6 +15,7 @@ import pytest
 import delone
 from delone import DtypeError, InputError, NonFiniteError, ShapeError, TetMesh
 from rational import cross, dot, exact, minus
+from tiers import seeds
 
 FACES = ((1, 3, 2), (0, 2, 3), (0, 3, 1), (0, 1, 2))
 Tetrahedra = tuple[np.ndarray, np.ndarray]
@@ -78,7 +79,8 @@ def checked(given: Tetrahedra, **options: Any) -> TetMesh:
         assert walls == outside(simplices)
     rim = np.unique(list(itertools.chain(*outside(simplices))))
     assert np.array_equal(mesh.points[rim], points[rim])
-    assert set(np.unique(mesh.simplices)) == set(np.unique(simplices))
+    added = range(len(points), mesh.npoints)
+    assert set(np.unique(mesh.simplices)) == set(np.unique(simplices)) | set(added)
     assert {tuple(sorted(f)) for f in walls} == {tuple(sorted(f)) for f in mesh.boundary.tolist()}
     for t, row in enumerate(mesh.neighbors.tolist()):
         for k, u in enumerate(row):
@@ -301,6 +303,49 @@ def test_fixed_points_stay() -> None:
     assert np.array_equal(same.points, mesh.points)
     still = delone.improve((points, simplices), fixed=np.arange(300))
     assert np.array_equal(still.points, points)
+
+
+@pytest.mark.parametrize("seed", seeds(2, deep=10))
+def test_added_points_make_angles_larger(seed: int) -> None:
+    # Most slivers have all four vertices on the hull.
+    points = np.random.default_rng(seed).normal(size=(100, 3))
+    points /= np.linalg.norm(points, axis=1)[:, None]
+    tri = delone.Delaunay(points)
+    without = delone.improve(tri)
+    mesh = checked((tri.points, tri.simplices), max_points=200)
+    assert 0 < mesh.nadded == mesh.report.points_added == mesh.npoints - len(points) <= 200
+    assert mesh.report.smallest_after > without.report.smallest_after
+    assert f"{mesh.nadded} points added" in str(mesh.report)
+    few = checked((tri.points, tri.simplices), max_points=3)
+    assert few.nadded == 3
+
+
+def test_added_points_of_a_mesh_are_its_last_rows() -> None:
+    points = [
+        (0, 0, 0),
+        (4, 0, 0),
+        (4, 4, 0),
+        (0, 4, 0),
+        (0, 0, 1),
+        (4, 0, 1),
+        (4, 4, 1),
+        (0, 4, 1),
+    ]
+    sides = [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+    faces = [face for a, b, c, d in sides for face in ((a, b, c), (a, c, d))]
+    markers = np.arange(12)
+    box = delone.tetrahedralize(np.array(points, float), faces, face_markers=markers)
+    mesh = delone.improve(box, min_angle=40, max_points=50)
+    assert mesh.nadded == box.nadded + mesh.report.points_added > box.nadded
+    assert np.array_equal(mesh.points[:8], points)
+    assert np.array_equal(mesh.input_faces, box.input_faces)
+    assert np.array_equal(mesh.face_markers, box.face_markers)
+    assert mesh.validate().ok
+    again = delone.improve(mesh, min_angle=40, max_points=50, flips=False, smooth=False)
+    assert again.nadded == mesh.nadded + again.report.points_added
+    copied = pickle.loads(pickle.dumps(mesh))
+    assert copied.nadded == mesh.nadded
+    assert copied.report.points_added == mesh.report.points_added
 
 
 def test_flat_sides_may_be_flipped() -> None:

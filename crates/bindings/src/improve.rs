@@ -24,6 +24,8 @@ pub struct ImprovementCounts {
     pub moves: usize,
     /// Weights assigned.
     pub weights: usize,
+    /// Vertices added.
+    pub added: usize,
     /// Passes.
     pub passes: usize,
     /// Changes rejected.
@@ -53,7 +55,7 @@ pub struct ImprovedMesh {
 /// tetrahedra below the bound.
 #[pyfunction]
 #[pyo3(signature = (points, simplices, labels, fixed, min_angle, flips, smooth, exude, turn, passes,
-                    progress=None))]
+                    most, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "one option each")]
 pub fn improve3<'py>(
     py: Python<'py>,
@@ -67,6 +69,7 @@ pub fn improve3<'py>(
     exude: bool,
     turn: bool,
     passes: usize,
+    most: usize,
     progress: Option<Passes>,
 ) -> Outcome<ImprovedMesh> {
     let task = || -> Result<Task<'_>> {
@@ -84,6 +87,7 @@ pub fn improve3<'py>(
             exude,
             turn,
             passes,
+            most,
         })
     };
     let task = task()?;
@@ -113,6 +117,7 @@ fn arrays_of(py: Python<'_>, made: Improved) -> Outcome<ImprovedMesh> {
         faces: made.counts.faces,
         moves: made.counts.moves,
         weights: made.counts.weights,
+        added: made.counts.added,
         passes: made.counts.passes,
         refused: made.counts.refused,
     };

@@ -63,6 +63,7 @@ fn task<'a>(points: &'a [Point3], simplices: &'a [[i32; 4]]) -> Task<'a> {
         exude: false,
         turn: false,
         passes: 10,
+        most: 0,
     }
 }
 
@@ -184,18 +185,29 @@ fn the_result_is_independent_of_row_order() {
         .map(|[a, b, c, d]| [c, a, b, d])
         .collect();
     other.reverse();
-    let (one, two) = (
-        run(task(&points, &simplices)).unwrap(),
-        run(task(&mixed, &other)).unwrap(),
-    );
-    for (v, p) in one.points.iter().enumerate() {
-        assert_eq!(*p, two.points[row(v)]);
+    for most in [0, 100] {
+        let ask = |task| Task {
+            most,
+            flips: most == 0,
+            smooth: most == 0,
+            ..task
+        };
+        let (one, two) = (
+            run(ask(task(&points, &simplices))).unwrap(),
+            run(ask(task(&mixed, &other))).unwrap(),
+        );
+        // Added vertices have the same rows in both.
+        let row = |v: usize| if v < n { row(v) } else { v };
+        for (v, p) in one.points.iter().enumerate() {
+            assert_eq!(*p, two.points[row(v)]);
+        }
+        let same = one.simplices.iter().zip(&two.simplices);
+        for (a, b) in same {
+            assert_eq!(a.map(|v| row(v as usize) as i32), *b);
+        }
+        assert_eq!(one.counts, two.counts);
+        assert_eq!(one.counts.added > 0, most > 0);
     }
-    let same = one.simplices.iter().zip(&two.simplices);
-    for (a, b) in same {
-        assert_eq!(a.map(|v| row(v as usize) as i32), *b);
-    }
-    assert_eq!(one.counts, two.counts);
 }
 
 #[test]
@@ -230,6 +242,82 @@ fn labels_are_walls_and_fixed_vertices_stay() {
 }
 
 #[test]
+fn added_vertices_fill_the_same_regions() {
+    let (points, simplices) = shaken(4, 0.6);
+    let labels: Vec<i32> = (0..simplices.len())
+        .map(|t| (t >= simplices.len() / 2) as i32)
+        .collect();
+    let fixed = vec![true; points.len()];
+    for most in [0, 5, 1000] {
+        // Nothing else changes: no vertex may move, and no edge is removed.
+        let made = run(Task {
+            labels: &labels,
+            fixed: &fixed,
+            flips: false,
+            most,
+            ..task(&points, &simplices)
+        });
+        let made = made.unwrap();
+        let added = made.points.len() - points.len();
+        assert_eq!(added, made.counts.added);
+        assert!(if most < 1000 {
+            added == most
+        } else {
+            added > 20
+        });
+        assert_eq!(made.points[..points.len()], points);
+        let used: BTreeSet<i32> = made.simplices.iter().flatten().copied().collect();
+        assert!(used.into_iter().eq(0..made.points.len() as i32));
+        boundary(&made.simplices, Some(&made.neighbors));
+        for label in 0..2 {
+            let part = |simplices: &[[i32; 4]], labels: &[i32]| -> Vec<[i32; 4]> {
+                let all = simplices.iter().zip(labels).filter(|(_, l)| **l == label);
+                all.map(|(v, _)| *v).collect()
+            };
+            let (old, new) = (
+                part(&simplices, &labels),
+                part(&made.simplices, &made.labels),
+            );
+            assert_eq!(boundary(&old, None), boundary(&new, None));
+            assert_eq!(total(&points, &old), total(&made.points, &new));
+        }
+        let sharper = sharpest(&made.points, &made.simplices) < sharpest(&points, &simplices);
+        assert_eq!(sharper, most > 0);
+    }
+}
+
+#[test]
+fn a_sliver_with_vertices_on_the_boundary_gets_a_vertex() {
+    // Nearly a square, between two vertices above and below: no vertex may move.
+    let points = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.01],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 0.01],
+        [0.5, 0.5, 1.0],
+        [0.5, 0.5, -1.0],
+    ];
+    let simplices = [
+        [0, 1, 2, 3],
+        [0, 1, 3, 4],
+        [1, 2, 3, 4],
+        [1, 0, 2, 5],
+        [0, 3, 2, 5],
+    ];
+    let made = run(Task {
+        flips: false,
+        most: 3,
+        ..task(&points, &simplices)
+    });
+    let made = made.unwrap();
+    assert_eq!((made.counts.added, made.simplices.len()), (1, 8));
+    assert_eq!(
+        total(&points, &simplices),
+        total(&made.points, &made.simplices)
+    );
+}
+
+#[test]
 fn faces_of_the_boundary_turn_in_their_plane() {
     // Two tetrahedra over a flat kite: the long diagonal is the worse one.
     let points = [
@@ -259,11 +347,20 @@ fn faces_of_the_boundary_turn_in_their_plane() {
 #[test]
 fn tiny_and_huge_coordinates_behave_as_others() {
     let (points, simplices) = shaken(3, 0.5);
-    let plain = run(task(&points, &simplices)).unwrap();
+    let ask = |points: &[Point3]| {
+        run(Task {
+            most: 100,
+            flips: false,
+            smooth: false,
+            ..task(points, &simplices)
+        })
+    };
+    let plain = ask(&points).unwrap();
+    assert!(plain.counts.added > 0);
     for power in [-600, 700] {
         let scale = 2_f64.powi(power);
         let scaled: Vec<Point3> = points.iter().map(|p| p.map(|x| x * scale)).collect();
-        let made = run(task(&scaled, &simplices)).unwrap();
+        let made = ask(&scaled).unwrap();
         assert_eq!(made.simplices, plain.simplices);
         let back: Vec<Point3> = made.points.iter().map(|p| p.map(|x| x / scale)).collect();
         assert_eq!(back, plain.points);

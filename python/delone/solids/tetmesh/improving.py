@@ -40,13 +40,14 @@ def improved(
     goal: float,
     *,
     kinds: tuple[bool, bool, bool] = (True, True, False),
-    limits: tuple[bool, int] = (False, 30),
+    limits: tuple[bool, int, int] = (False, 30, 0),
     progress: Callable[[int, int], object] | None = None,
 ) -> tuple[ImprovedMesh, ImproveReport, TetQuality]:
     """Improve ``(points, simplices, labels)``; return the mesh, its report and its measures.
 
     `held` are points that must not move, or empty; `kinds` are (flips, smooth, exude), and `limits`
-    whether coplanar faces of the boundary may be flipped, and the number of passes.
+    whether coplanar faces of the boundary may be flipped, the number of passes, and that of added
+    points.
     """
     points, simplices, labels = mesh
     try:
@@ -54,7 +55,7 @@ def improved(
     except ShapeError as error:
         raise InputError(*error.args) from None
     before = quality.measured(points, simplices)
-    if not len(held):
-        held = np.zeros(len(points), dtype=bool)
+    free = np.zeros(len(made.points) - len(held), dtype=bool)
+    held = np.concatenate((held, free))
     judged, after = report.report(before, made, held, goal)
     return made, judged, after

@@ -51,6 +51,8 @@ _BOUNDARIES = ("faces", "surface")
 _MOST_ROUNDS = 80
 # Moving vertices makes some tetrahedra too large again: these are refined again, this many times.
 _AGAIN = 2
+# Twice as many passes as without added points, which come in four levels of angles.
+_PASSES = 60
 # Sizes are met up to the rounding of volumes and edges.
 _ROUNDING = 1e-9
 _SHOWN = 5
@@ -250,7 +252,9 @@ def refined(mesh: Any, marked: ArrayLike | None, bounds: Bounds) -> Any:
         state = _continued(state, made)
         if not bounds.min_angle:
             break
-        state, improvement = _improved(state, bounds.min_angle)
+        state, improvement = _improved(state, bounds.min_angle, left)
+        total["for_shapes"] += improvement.points_added
+        left -= improvement.points_added
         excess = _excess(state.points, state.simplices, lengths.at(*_placed(state)))
         if not enough or excess.max(initial=0) <= 1 + _ROUNDING:
             break
@@ -326,12 +330,14 @@ def _continued(state: _State, made: RefinedTetrahedra) -> _State:
     )
 
 
-def _improved(state: _State, goal: float) -> tuple[_State, ImproveReport]:
-    """Return a mesh with better tetrahedra, and how it was improved."""
+def _improved(state: _State, goal: float, left: int) -> tuple[_State, ImproveReport]:
+    """Return a mesh with better tetrahedra and at most `left` more points, and how it was made."""
     neighbors = _core.facet_neighbors(state.simplices, len(state.points))
     kept = Kept.of(state.simplices, neighbors, state.faces, state.labels)
     none = np.empty(0, dtype=bool)
-    made, report, _ = improving.improved((state.points, state.simplices, kept.labels), none, goal)
+    made, report, _ = improving.improved(
+        (state.points, state.simplices, kept.labels), none, goal, limits=(False, _PASSES, left)
+    )
     return (
         state._replace(points=made.points, simplices=made.simplices, labels=kept.own[made.labels]),
         report,

@@ -32,6 +32,7 @@ COUNTS = (
     "face_removals",
     "moves",
     "exudations",
+    "points_added",
     "refused",
     "passes",
     "exhausted",
@@ -59,6 +60,8 @@ class ImproveReport(ReadOnly):
         on), of the faces between two vertices (2-3 and so on), and of moves of vertices.
     exudations : int
         Number of vertices that got a weight.
+    points_added : int
+        Number of points that were added.
     weights : ndarray of float64, shape (n,)
         These weights, in the square of the unit of the points; 0 for other points.
     refused : int
@@ -104,6 +107,7 @@ class ImproveReport(ReadOnly):
     moves: int
     exudations: int
     weights: Floats
+    points_added: int
     refused: int
     passes: int
     exhausted: bool
@@ -126,6 +130,8 @@ class ImproveReport(ReadOnly):
             f"{counted(self.face_removals, 'set')} of faces removed, "
             f"{counted(self.moves, 'vertex move')} in {counted(self.passes, 'pass')}",
         ]
+        if self.points_added:
+            lines.append(f"{counted(self.points_added, 'point')} added")
         if self.exudations:
             lines.append(f"{counted(self.exudations, 'weight')} assigned to vertices")
         lines += self._histogram()
@@ -223,6 +229,7 @@ def report(
         moves=counts.moves,
         exudations=counts.weights,
         weights=made.weights,
+        points_added=counts.added,
         refused=counts.refused,
         passes=counts.passes,
         exhausted=made.exhausted,

@@ -1,5 +1,5 @@
-//! Improves tetrahedral meshes: edge and face removal and smoothing, while the worst tetrahedron
-//! gets better.
+//! Improves tetrahedral meshes: edge and face removal, smoothing and vertex insertion, while the
+//! worst tetrahedron gets better.
 //!
 //! L. A. Freitag and C. Ollivier-Gooch, "Tetrahedral mesh improvement using swapping and smoothing",
 //! International Journal for Numerical Methods in Engineering 40 (1997); J. R. Shewchuk, "Two
@@ -17,8 +17,9 @@
 //!
 //! # Why it terminates
 //!
-//! Each change makes the ascending list of all qualities lexicographically larger, so no mesh
-//! repeats, and there are finitely many meshes on doubles. The number of passes is also limited,
+//! Each change makes the ascending list of all qualities lexicographically larger, where the end of
+//! a list counts as infinite, so no mesh repeats. The number of added vertices is limited, so there
+//! are finitely many meshes on doubles. The number of passes is also limited,
 //! and a pass that gains nothing is the last one.
 //!
 //! # Determinism
@@ -29,6 +30,7 @@
 mod edge;
 mod exude;
 mod face;
+mod insert;
 mod measure;
 mod order;
 mod smooth;

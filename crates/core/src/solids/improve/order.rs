@@ -7,7 +7,7 @@ use super::store::{Corners, NONE, Store};
 use super::task::{Improved, Task};
 use super::work::Work;
 use crate::base::error::{Error, Result};
-use crate::base::memory::{filled, with_room};
+use crate::base::memory::{filled, push, with_room};
 
 /// Tetrahedra sorted by coordinates.
 pub struct Imported {
@@ -126,17 +126,23 @@ fn star_size(store: &Store, v: u32, star: &mut Vec<u32>) -> Result<u32> {
 pub fn export(
     work: Work,
     task: Task,
-    rows: Vec<u32>,
+    mut rows: Vec<u32>,
     scale: f64,
     exhausted: bool,
 ) -> Result<Improved> {
     let store = work.store;
-    let mut points = with_room(task.points.len())?;
+    // Added vertices get the rows behind the given ones.
+    let count = task.points.len() + store.points.len() - rows.len();
+    for row in task.points.len()..count {
+        push(&mut rows, row as u32)?;
+    }
+    let mut points = with_room(count)?;
     points.extend_from_slice(task.points);
+    points.resize(count, [0.0; 3]);
     for (&row, p) in rows.iter().zip(&store.points) {
         points[row as usize] = p.map(|x| x / scale);
     }
-    let mut weights = filled(task.points.len(), 0.0)?;
+    let mut weights = filled(count, 0.0)?;
     for (&row, w) in rows.iter().zip(&work.weights) {
         // Divided twice, as the square of the scale may be out of range.
         weights[row as usize] = w / scale / scale;

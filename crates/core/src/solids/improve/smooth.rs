@@ -169,7 +169,7 @@ impl Star {
     }
 
     /// The worst quality with the vertex at `x`; not meaningful below `above`.
-    fn worst(&mut self, x: Point3, above: f64) -> f64 {
+    pub fn worst(&mut self, x: Point3, above: f64) -> f64 {
         let mut worst = f64::INFINITY;
         for i in 0..self.cones.len() {
             worst = worst.min(self.cones[i].quality(x));
@@ -183,14 +183,19 @@ impl Star {
     }
 
     /// Ascends from `x`; if that gains, returns the new position and its worst quality.
-    pub fn climb(&mut self, mut x: Point3) -> Option<(Point3, f64)> {
+    pub fn climb(&mut self, x: Point3) -> Option<(Point3, f64)> {
+        self.ascend(x, STEPS)
+    }
+
+    /// As `climb`, with another limit on the number of steps.
+    pub fn ascend(&mut self, mut x: Point3, steps: usize) -> Option<(Point3, f64)> {
         let mut value = self.worst(x, 0.0);
         let start = value;
         // So flat that its gradients are noise: left to edge and face removal.
         if start <= 0.0 {
             return None;
         }
-        for _ in 0..STEPS {
+        for _ in 0..steps {
             let Some((next, better)) = self.step(x, value) else {
                 break;
             };

@@ -28,6 +28,8 @@ pub struct Task<'a> {
     pub turn: bool,
     /// The limit on passes.
     pub passes: usize,
+    /// The limit on new vertices.
+    pub most: usize,
 }
 
 /// Changes by kind.
@@ -43,6 +45,8 @@ pub struct Counts {
     pub moves: usize,
     /// Weights assigned.
     pub weights: usize,
+    /// Vertices added.
+    pub added: usize,
     /// Passes.
     pub passes: usize,
     /// Changes that would have raised the worst quality but were not made, because the smallest
@@ -53,7 +57,7 @@ pub struct Counts {
 /// Improved tetrahedra.
 #[derive(Debug)]
 pub struct Improved {
-    /// Rows of coordinates, with the moved ones at their new positions.
+    /// Rows of coordinates, with the moved ones at their new positions, then those of added vertices.
     pub points: Vec<Point3>,
     /// Tetrahedra in rows.
     pub simplices: Vec<[i32; 4]>,

@@ -1,7 +1,8 @@
 //! The passes: removals for each tetrahedron below the bound, worst first; then moves of its
-//! vertices.
+//! vertices; and, where these gain little, new vertices.
 
 use super::edge::{self, Plan, Ring};
+use super::insert::{Insertion, Search};
 use super::measure::{Bounds, are_positive, bounds, quality};
 use super::smooth::Star;
 use super::store::{FACES, NONE, Store};
@@ -20,8 +21,17 @@ const GAIN: f64 = 1.0 + 1e-9;
 /// pass takes as long as the one before: with a hundredth here, half of the time went into the last
 /// twentieth of the gain.
 const STALLED: f64 = 3e-2;
-/// This many stalled passes end the work.
+/// This many stalled passes end the work; with new vertices, one.
 const PATIENCE: usize = 2;
+/// The bounds below which vertices are inserted, one after the other, as shares of the bound. With
+/// the bound alone, on 12 public surfaces of parts, most vertices improved tetrahedra just below
+/// it, and the median of the smallest angles was 3.9 degrees instead of 6.4.
+const LEVELS: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
+/// A new vertex must gain this factor, or reach the level: it stays in the mesh.
+const WORTH: f64 = 1.3;
+/// The first insertion that reaches this multiple of the level is taken without a search for a
+/// better one.
+const ENOUGH: f64 = 1.2;
 /// The edges of a tetrahedron.
 const EDGES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
 
@@ -36,6 +46,7 @@ pub struct Work<'a> {
     bound: f64,
     ring: Ring,
     star: Star,
+    search: Search,
     made: Vec<u32>,
     around: Vec<u32>,
     /// The number of the next attempt: what has not changed since its last attempt is not tried
@@ -44,8 +55,9 @@ pub struct Work<'a> {
     /// For each vertex, when a tetrahedron at it last changed, and when a move was last tried.
     touched: Vec<u64>,
     moved: Vec<u64>,
-    /// For each tetrahedron, when its removal was last tried.
+    /// For each tetrahedron, when its removal and an insertion were last tried.
     tried: Vec<u64>,
+    entered: Vec<u64>,
 }
 
 /// The measure of progress: how many are below the bound, and by how much in total.
@@ -64,12 +76,14 @@ impl<'a> Work<'a> {
             touched: filled(n, 1)?,
             moved: filled(n, 0)?,
             tried: filled(m, 0)?,
+            entered: filled(m, 0)?,
             store,
             counts: Counts::default(),
             bound: task.min_angle.to_radians().sin(),
             task,
             ring: Ring::default(),
             star: Star::default(),
+            search: Search::default(),
             made: Vec::new(),
             around: Vec::new(),
         })
@@ -81,14 +95,34 @@ impl<'a> Work<'a> {
         if self.task.exude {
             self.weigh_all(watch)?;
         }
-        let mut standing = self.standing();
+        // Without new vertices, as long as that gains; then with vertices at the worst tetrahedra,
+        // and at better ones when these gain nothing more.
+        let mut ended = self.run_passes(None, watch, tell)?;
+        for level in LEVELS {
+            if ended && self.counts.added < self.task.most {
+                ended = self.run_passes(Some(level * self.bound), watch, tell)?;
+            }
+        }
+        Ok(ended)
+    }
+
+    /// Runs passes until all are above the level, by default the bound (true), nothing more is
+    /// gained (true), or the limit is reached (false). With a level, vertices are inserted at
+    /// tetrahedra below it.
+    fn run_passes(&mut self, level: Option<f64>, watch: &Watch, tell: Tell) -> Result<bool> {
+        let goal = level.unwrap_or(self.bound);
+        let patience = if level.is_some() { 1 } else { PATIENCE };
+        let mut standing = self.standing(goal);
         let mut stalled = 0;
         while standing.0 > 0 {
             if self.counts.passes == self.task.passes {
                 return Ok(false);
             }
-            // One pass: flips first, which need no new positions, then moves.
+            // One pass: vertices, then flips, which need no new positions, then moves.
             let changes = self.changes();
+            if let Some(level) = level {
+                self.insert_all(level, watch)?;
+            }
             if self.task.flips {
                 self.remove_all(watch)?;
             }
@@ -96,12 +130,12 @@ impl<'a> Work<'a> {
                 self.move_all(watch)?;
             }
             self.counts.passes += 1;
-            let now = self.standing();
-            tell(self.counts.passes, now.0)?;
+            let now = self.standing(goal);
+            tell(self.counts.passes, self.standing(self.bound).0)?;
             // Stop after enough passes that gain little, or one that changes nothing.
             let gained = standing.1 - now.1 > STALLED * standing.1;
             stalled = if gained { 0 } else { stalled + 1 };
-            if self.changes() == changes || stalled == PATIENCE {
+            if self.changes() == changes || stalled == patience {
                 break;
             }
             standing = now;
@@ -109,27 +143,27 @@ impl<'a> Work<'a> {
         Ok(true)
     }
 
-    /// Whether a tetrahedron is to be improved.
-    fn is_below(&self, t: u32) -> bool {
-        self.store.is_there(t) && self.store.quality[t as usize] < self.bound
+    /// Whether a tetrahedron has a quality below a level.
+    fn is_below(&self, t: u32, level: f64) -> bool {
+        self.store.is_there(t) && self.store.quality[t as usize] < level
     }
 
     fn changes(&self) -> usize {
-        self.counts.edges + self.counts.faces + self.counts.moves
+        self.counts.edges + self.counts.faces + self.counts.moves + self.counts.added
     }
 
-    fn standing(&self) -> Standing {
+    fn standing(&self, goal: f64) -> Standing {
         let all = (0..self.store.places()).filter(|&t| self.store.is_there(t));
-        let missing = all.map(|t| self.bound - self.store.quality[t as usize]);
+        let missing = all.map(|t| goal - self.store.quality[t as usize]);
         missing
             .filter(|&m| m > 0.0)
             .fold((0, 0.0), |(count, sum), m| (count + 1, sum + m))
     }
 
-    /// The tetrahedra below the bound, worst first.
-    fn below(&self) -> Result<Vec<u32>> {
+    /// The tetrahedra below a level, worst first.
+    fn below(&self, level: f64) -> Result<Vec<u32>> {
         let store = &self.store;
-        let all = (0..store.places()).filter(|&t| self.is_below(t));
+        let all = (0..store.places()).filter(|&t| self.is_below(t, level));
         let mut found: Vec<u32> = with_room(all.clone().count())?;
         found.extend(all);
         found.sort_by(|&t, &u| {
@@ -141,7 +175,7 @@ impl<'a> Work<'a> {
 
     /// Tries to remove an edge or faces of each tetrahedron below the bound, and of the new ones.
     fn remove_all(&mut self, watch: &Watch) -> Result<()> {
-        let mut waiting = self.below()?;
+        let mut waiting = self.below(self.bound)?;
         waiting.reverse();
         let mut steps = 0;
         while let Some(t) = waiting.pop() {
@@ -149,7 +183,7 @@ impl<'a> Work<'a> {
             if steps % WATCH_EVERY == 0 {
                 watch.check()?;
             }
-            if !self.is_below(t) {
+            if !self.is_below(t, self.bound) {
                 continue;
             }
             self.clock += 1;
@@ -162,7 +196,7 @@ impl<'a> Work<'a> {
             }
             // Its replacements may be below the bound, too.
             if self.remove_at(t)? {
-                for &t in self.made.iter().filter(|&&t| self.is_below(t)) {
+                for &t in self.made.iter().filter(|&&t| self.is_below(t, self.bound)) {
                     push(&mut waiting, t)?;
                 }
             }
@@ -224,10 +258,11 @@ impl<'a> Work<'a> {
         }
         store.replace(&plan.old, &plan.new, plan.turning, &mut self.made)?;
         self.tried.resize(store.corners.len(), 0);
+        self.entered.resize(store.corners.len(), 0);
         for &t in &self.made {
             let t = t as usize;
             store.quality[t] = quality(store.places_of(store.corners[t]));
-            self.tried[t] = 0;
+            (self.tried[t], self.entered[t]) = (0, 0);
             for v in store.corners[t] {
                 self.touched[v as usize] = self.clock;
             }
@@ -239,9 +274,9 @@ impl<'a> Work<'a> {
     fn weigh_all(&mut self, watch: &Watch) -> Result<()> {
         let mut met = filled(self.store.points.len(), false)?;
         let mut steps = 0;
-        for t in self.below()? {
+        for t in self.below(self.bound)? {
             // A slot that was reused has other corners now.
-            if !self.is_below(t) {
+            if !self.is_below(t, self.bound) {
                 continue;
             }
             for v in self.store.corners[t as usize] {
@@ -254,7 +289,7 @@ impl<'a> Work<'a> {
                 if steps % WATCH_EVERY == 0 {
                     watch.check()?;
                 }
-                if !self.is_below(t) || self.store.corner(t, v).is_none() {
+                if !self.is_below(t, self.bound) || self.store.corner(t, v).is_none() {
                     break;
                 }
             }
@@ -277,11 +312,61 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
+    /// Inserts a vertex near each tetrahedron below a level, worst first, where that gains enough.
+    fn insert_all(&mut self, level: f64, watch: &Watch) -> Result<()> {
+        for t in self.below(level)? {
+            if self.counts.added == self.task.most {
+                return Ok(());
+            }
+            watch.check()?;
+            if !self.is_below(t, level) {
+                continue;
+            }
+            self.clock += 1;
+            // Unless a corner has changed since the last try, it would fail again.
+            let corners = self.store.corners[t as usize];
+            let changed = corners.map(|v| self.touched[v as usize]).into_iter().max();
+            let tried = std::mem::replace(&mut self.entered[t as usize], self.clock);
+            if changed < Some(tried) {
+                continue;
+            }
+            let own = self.store.quality[t as usize];
+            let above = (WORTH * own).min(level).max(GAIN * own);
+            let insertion = self.search.best(&self.store, t, above, ENOUGH * level)?;
+            if let Some(insertion) = insertion {
+                self.insert_one(&insertion)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a vertex if the new tetrahedra are certainly better.
+    fn insert_one(&mut self, insertion: &Insertion) -> Result<()> {
+        push(&mut self.store.points, insertion.place)?;
+        push(&mut self.store.fixed, false)?;
+        push(&mut self.store.at, NONE)?;
+        push(&mut self.weights, 0.0)?;
+        push(&mut self.touched, self.clock)?;
+        push(&mut self.moved, 0)?;
+        if self.carry_out(&insertion.plan)? {
+            self.counts.added += 1;
+            return Ok(());
+        }
+        self.counts.refused += 1;
+        self.store.points.pop();
+        self.store.fixed.pop();
+        self.store.at.pop();
+        self.weights.pop();
+        self.touched.pop();
+        self.moved.pop();
+        Ok(())
+    }
+
     /// Moves each free vertex of a tetrahedron below the bound.
     fn move_all(&mut self, watch: &Watch) -> Result<()> {
         let mut met = filled(self.store.points.len(), false)?;
         let mut steps = 0;
-        for t in self.below()? {
+        for t in self.below(self.bound)? {
             for v in self.store.corners[t as usize] {
                 if met[v as usize] || self.store.fixed[v as usize] {
                     continue;

@@ -89,6 +89,7 @@ pub fn import(given: &Given) -> Result<(Mesh, Order)> {
         exude: false,
         turn: false,
         passes: 0,
+        most: 0,
     })?;
     let mut place = repeated(given.points.len(), NONE)?;
     for (v, &row) in (0..).zip(&rows) {
