@@ -12,7 +12,7 @@ from delone.errors import DtypeError
 if TYPE_CHECKING:
     from typing import TypeGuard
 
-__all__ = ["hides", "is_masked", "refuse_masks"]
+__all__ = ["hides", "is_masked", "refuse_hidden", "refuse_masks"]
 
 
 # Items that are not arrays.
@@ -34,6 +34,12 @@ def hides(value: Any) -> bool:
     Files of NetCDF are read as masked arrays, most of which mask nothing: these are plain arrays.
     """
     return is_masked(value) and bool(np.ma.is_masked(value))
+
+
+def refuse_hidden(values: Any, name: str) -> None:
+    """Reject values that are masked, which may be missing as NaN."""
+    if hides(values):
+        raise DtypeError(f"{name} is a masked array; fill it: {name}.filled(numpy.nan)")
 
 
 def refuse_masks(given: Any, name: str) -> None:

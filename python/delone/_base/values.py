@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone._base.arrays import as_plain_array
-from delone._base.masks import hides
+from delone._base.masks import refuse_hidden
 from delone.errors import DtypeError, ShapeError
 
 if TYPE_CHECKING:
@@ -22,8 +22,7 @@ def as_values(
     """Return one float64 value for each of `count` points; None for None."""
     if values is None:
         return None
-    if hides(values):
-        raise DtypeError(f"{name} is a masked array; fill it: {name}.filled(numpy.nan)")
+    refuse_hidden(values, name)
     array = as_plain_array(values, name)
     if array.dtype.kind not in "iufb":
         raise DtypeError(f"{name} must hold real numbers, got dtype {array.dtype}")

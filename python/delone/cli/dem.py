@@ -11,6 +11,7 @@ import typer
 from delone import __version__, distributed
 from delone._base.atomic import check_target
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.options import numbers
 from delone.cli.outputs import write_all
 from delone.cli.referenced import require_known
 from delone.cli.report import Stopwatch
@@ -175,10 +176,7 @@ def _figures(found: Grid, what: str) -> dict[str, Any]:
 
 def _numbers(text: str, option: str, counts: tuple[int, ...]) -> list[float]:
     words = {(1, 2): "one or two numbers", (4,): "four numbers"}[counts]
-    try:
-        found = [float(part) for part in text.split(",")]
-    except ValueError:
-        raise Failure(f"{option} takes numbers, got {text!r:.80}", Exit.USAGE) from None
+    found = numbers(text, option)
     if len(found) not in counts:
         raise Failure(f"{option} takes {words}, got {text!r:.80}", Exit.USAGE)
     return found

@@ -17,11 +17,18 @@ from delone.cli.outputs import write_all
 from delone.cli.referenced import require_known
 from delone.cli.report import Stopwatch, peak_memory
 from delone.cli.show import spinner
-from delone.cli.surfaces import SurfaceOptions, four_of, print_figures, surface, with_surface
+from delone.cli.surfaces import (
+    SurfaceOptions,
+    band_of,
+    four_of,
+    height_of,
+    print_figures,
+    surface,
+    with_surface,
+)
 from delone.errors import InputError
 from delone.io import raster_suffixes
 from delone.io.dem import is_raster
-from delone.io.netcdf import is_netcdf
 from delone.io.raster import raster_writer
 
 if TYPE_CHECKING:
@@ -80,12 +87,12 @@ def difference(
             check_target(path)
     watch = Stopwatch()
     box = None if options.window is None else four_of(options.window)
-    bands = {"band": _band(source, options.layer), "bounds": box, "nodata": options.nodata}
+    bands = {"band": band_of(source, options.layer), "bounds": box, "nodata": options.nodata}
     with spinner(options.silent) as say:
-        goal: Any = _height(other)
+        goal: Any = height_of(other)
         if goal is None and is_raster(Path(other)) and not as_surface:
             goal = Path(other)
-            bands["other_band"] = _band(goal, other_layer or options.layer)
+            bands["other_band"] = band_of(goal, other_layer or options.layer)
         elif goal is None:
             # A window is that of the first raster; the surface is all of the other one.
             own = replace(options, layer=other_layer, window=None)
@@ -136,25 +143,6 @@ def _draw(path: Path, found: Difference) -> None:
     from delone.plot.raster import draw_difference
 
     draw_difference(path, found.values, found.x, found.y, units=found.units, crs=found.crs)
-
-
-def _height(text: str) -> float | None:
-    """Return a number; None for a file."""
-    if Path(text).exists():
-        return None
-    try:
-        return float(text)
-    except ValueError:
-        raise Failure(f"{text}: neither a file nor a height", Exit.INPUT) from None
-
-
-def _band(path: Path, layer: str | None) -> int | str | None:
-    """Return the number of a band, or the name of a variable of NetCDF."""
-    if layer is None or is_netcdf(path):
-        return layer
-    if not layer.isdecimal():
-        raise Failure(f"{path}: the layer of a raster is the number of a band", Exit.USAGE)
-    return int(layer)
 
 
 def _figures(source: Path, other: str, found: Difference, output: list[Path]) -> dict[str, Any]:

@@ -9,16 +9,16 @@ import numpy as np
 import typer
 
 from delone import __version__
+from delone._base.arrays import as_choice
 from delone._base.atomic import check_target
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
-from delone.cli.options import Classes, Json, Layer, Quiet, Workers, outputs, split
+from delone.cli.options import Classes, Json, Layer, Quiet, Workers, numbers, outputs, split
 from delone.cli.outputs import write_all
 from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none
 from delone.cli.show import print_json, print_rows, show_figures, spinner
 from delone.interpolate import Grid, Interpolator, cross_validate, grid, interpolator
 from delone.interpolate.methods import METHODS
-from delone.interpolate.values import chosen
 from delone.io import PointSet, raster_suffixes, read_points
 from delone.io.raster import WITH_CRS, raster_writer
 
@@ -163,7 +163,7 @@ def crossval(
     named = ",".join(methods or [_COMPARED]).split(",")
     names = list(dict.fromkeys(name.strip() for name in named))
     for name in names:
-        chosen("--method", name, tuple(METHODS))
+        as_choice(name, tuple(METHODS), name="--method")
     require_known(crs)
     watch = Stopwatch()
     found: dict[str, dict[str, Any]] = {}
@@ -230,7 +230,7 @@ def _read(  # noqa: PLR0917
         survey = read_points(
             source,
             columns=split(columns),
-            classes=None if classes is None else _numbers(classes, int, "--classes"),
+            classes=None if classes is None else numbers(classes, "--classes", int),
             layer=layer,
             attributes=() if value is None else (value,),
         )
@@ -260,28 +260,21 @@ def _raster_options(size: str | None, resolution: str | None, bounds: str | None
         raise Failure("give the raster as --grid 500x400 or as --resolution 0.01", Exit.USAGE)
     found: dict[str, Any] = {}
     if size is not None:
-        found["shape"] = tuple(_numbers(size.replace("x", ","), int, "--grid"))
+        found["shape"] = tuple(numbers(size.replace("x", ","), "--grid", int))
         if len(found["shape"]) != 2:
             raise Failure(
                 f"--grid takes columns and rows, such as 500x400; got {size!r:.80}", Exit.USAGE
             )
     if resolution is not None:
-        cells = _numbers(resolution, float, "--resolution")
+        cells = numbers(resolution, "--resolution")
         if len(cells) > 2:
             raise Failure(
                 f"--resolution takes one or two numbers, got {resolution!r:.80}", Exit.USAGE
             )
         found["resolution"] = cells[0] if len(cells) == 1 else tuple(cells)
     if bounds is not None:
-        found["bounds"] = _numbers(bounds, float, "--bounds")
+        found["bounds"] = numbers(bounds, "--bounds")
     return found
-
-
-def _numbers(text: str, kind: type, option: str) -> list[Any]:
-    try:
-        return [kind(part) for part in text.split(",")]
-    except ValueError:
-        raise Failure(f"{option} takes numbers, got {text!r:.80}", Exit.USAGE) from None
 
 
 def _figures(

@@ -97,6 +97,14 @@ def split(text: str | None) -> list[str] | None:
     return None if text is None else [part.strip() for part in text.split(",")]
 
 
+def numbers(text: str, option: str, kind: type = float) -> list[Any]:
+    """Return the numbers between commas."""
+    try:
+        return [kind(part) for part in text.split(",")]
+    except ValueError:
+        raise Failure(f"{option} takes numbers, got {text!r:.80}", Exit.USAGE) from None
+
+
 def space_or_plane(solid: bool, flat: bool) -> bool | None:
     """Return the choice of --3d and --2d: True, False, or None for neither."""
     if solid and flat:

@@ -277,17 +277,32 @@ def other_surface(
 def _read_raster(source: Path, options: SurfaceOptions) -> PointSet:
     if options.columns is not None or options.classes is not None:
         raise Failure(f"{source}: rasters have neither columns nor classes", Exit.USAGE)
-    layer = options.layer
-    named = is_netcdf(source)
-    if layer is not None and not (named or layer.isdecimal()):
-        raise Failure(f"{source}: the layer of a raster is the number of a band", Exit.USAGE)
     return read_raster(
         source,
-        band=layer if layer is None or named else int(layer),
+        band=band_of(source, options.layer),
         step=options.step,
         bounds=None if options.window is None else four_of(options.window),
         nodata=options.nodata,
     )
+
+
+def band_of(path: Path, layer: str | None) -> int | str | None:
+    """Return the number of a band, or the name of a variable of NetCDF."""
+    if layer is None or is_netcdf(path):
+        return layer
+    if not layer.isdecimal():
+        raise Failure(f"{path}: the layer of a raster is the number of a band", Exit.USAGE)
+    return int(layer)
+
+
+def height_of(text: str) -> float | None:
+    """Return a number; None for a file."""
+    if Path(text).exists():
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        raise Failure(f"{text}: neither a file nor a height", Exit.INPUT) from None
 
 
 def four_of(text: str) -> list[float]:

@@ -15,7 +15,7 @@ from delone._base.atomic import check_target, replacing
 from delone._base.extras import require
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
-from delone.cli.options import outputs
+from delone.cli.options import numbers, outputs
 from delone.cli.profiles import (
     PROFILE_SUFFIXES,
     SectionOptions,
@@ -41,6 +41,7 @@ from delone.cli.surfaces import (
     Survey,
     curves_of,
     figures_of,
+    height_of,
     is_landxml,
     other_surface,
     print_figures,
@@ -111,7 +112,7 @@ def contours(
     options: SurfaceOptions,
 ) -> None:
     """Compute contour lines, or the polygons between them, of points with heights."""
-    wanted = None if levels is None else _numbers(levels, "--levels")
+    wanted = None if levels is None else numbers(levels, "--levels")
     if bands and smooth:
         raise Failure("--smooth is for lines, not for --bands", Exit.USAGE)
     if bands and min_length:
@@ -318,13 +319,6 @@ def volume(
     )
 
 
-def _numbers(text: str, option: str) -> list[float]:
-    try:
-        return [float(part) for part in text.split(",")]
-    except ValueError:
-        raise Failure(f"{option} takes numbers, got {text!r:.80}", Exit.USAGE) from None
-
-
 def _check(output: list[Path], source: Path, options: SurfaceOptions, *, bands: bool) -> None:
     require_known(options.crs)
     with writing():
@@ -343,11 +337,8 @@ def _goal(
     other: str, options: SurfaceOptions, watch: Stopwatch, say: Callable[[str], None]
 ) -> float | TIN | TiledDelaunay:
     """Return the height or surface that is to be reached."""
-    if not Path(other).exists():
-        try:
-            return float(other)
-        except ValueError:
-            raise Failure(f"{other}: neither a file nor a height", Exit.INPUT) from None
+    if (height := height_of(other)) is not None:
+        return height
     if Path(other).is_dir():
         with reading(quiet=options.quiet):
             return distributed.open(Path(other))

@@ -8,7 +8,7 @@ import numpy as np
 
 from delone._base.arrays import as_plain_array, as_points, as_queries
 from delone._base.immutable import own_copy
-from delone._base.masks import hides
+from delone._base.masks import refuse_hidden
 from delone._tiling.complex import Stored
 from delone.constrained import ConstrainedDelaunay
 from delone.delaunay import Delaunay
@@ -55,8 +55,7 @@ def own_points(points: ArrayLike, ndim: int, crs: str | None) -> Floats:
 
 def as_any_values(values: ArrayLike) -> NDArray[Any]:
     """Return values of any dtype as an array, of which none is masked."""
-    if hides(values):
-        raise DtypeError("values is a masked array; fill it: values.filled(numpy.nan)")
+    refuse_hidden(values, "values")
     return as_plain_array(values, "values")
 
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from delone._base.arrays import as_flag, as_number, as_queries, as_workers
+from delone._base.arrays import as_choice, as_flag, as_number, as_queries, as_workers
 from delone._base.counting import agreed
 from delone._base.georeference import crs_of, warn_of_degrees
 from delone._base.immutable import own_copy
@@ -36,7 +36,9 @@ from delone.interpolate.values import (
     NAN,
     Field,
     as_field,
-    chosen,
+    differing,
+    no_values,
+    of_field,
 )
 from delone.interpolate.weights import joined
 from delone.periodic import PeriodicDelaunay
@@ -115,10 +117,10 @@ class Interpolator:
         workers: int | None = None,
         planar: bool = False,
     ) -> None:
-        self._extrapolate = chosen("extrapolate", extrapolate, self.EXTRAPOLATE)
+        self._extrapolate = as_choice(extrapolate, self.EXTRAPOLATE, name="extrapolate")
         self._tolerance = location.as_tolerance(tolerance)
-        self._duplicates = chosen("duplicates", duplicates, DUPLICATES)
-        self._nan = chosen("nan", nan, NAN)
+        self._duplicates = as_choice(duplicates, DUPLICATES, name="duplicates")
+        self._nan = as_choice(nan, NAN, name="nan")
         self._workers = workers
         self._respect_constraints = as_flag(respect_constraints, name="respect_constraints")
         self._cache: dict[str, Any] = {}
@@ -630,7 +632,7 @@ class Interpolator:
         if self._parts is not None:
             return self._parts[0]
         if self._field is None:
-            raise InputError("no values: pass them to the constructor or to the call")
+            raise no_values()
         return self._field[0]
 
     def _with(self, values: ArrayLike | None) -> tuple[Self, Field, Floats]:
@@ -659,16 +661,13 @@ class Interpolator:
         for which in field.patterns():
             part = field.only(which)
             kept = self._kept_rows(part)
-            try:
+            with of_field(which[0]):
                 owner = self._without(kept)
                 used[_key(kept)] = owner
                 narrow = copy.copy(owner)
                 # Gradients are those of a field.
                 narrow._cache = {k: v for k, v in owner._cache.items() if k != "gradients"}
                 narrow._field = part, narrow._settled(part)
-            except InputError as error:
-                error.add_note(f"of the fields among values, number {which[0]}")
-                raise
             found.append((which, narrow))
         self._others = used
         return found
@@ -688,10 +687,7 @@ class Interpolator:
         """Refuse what depends on the sites if fields have different ones."""
         several = self._several(values)
         if several is not None:
-            raise InputError(
-                f"nan='drop' removes different sites from {len(several[1])} groups of fields, "
-                "which have no sites or weights in common: give the fields of one group"
-            )
+            raise differing(len(several[1]))
 
     def _kept_rows(self, field: Field | None) -> Rows | None:
         if self._nan != "drop" or field is None or not (dropped := field.not_finite).size:

@@ -14,7 +14,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_callback, as_least, as_optional_flag, as_points, as_workers
+from delone._base.arrays import (
+    as_callback,
+    as_choice,
+    as_least,
+    as_optional_flag,
+    as_points,
+    as_workers,
+)
 from delone._base.georeference import warn_of_degrees
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, DtypeError, InputError
@@ -24,7 +31,6 @@ from delone.interpolate.values import (
     NAN,
     Field,
     as_field,
-    chosen,
     require_finite_values,
 )
 
@@ -235,11 +241,11 @@ def cross_validate(
     warn_of_degrees(points, sites, planar=planar)
     field = as_field(values, len(sites))
     groups = [np.arange(0)]
-    if chosen("nan", nan, NAN[:2]) == "drop":
+    if as_choice(nan, NAN[:2], name="nan") == "drop":
         groups = field.patterns()
     else:
         require_finite_values(field)
-    policy = chosen("duplicates", duplicates, DUPLICATES)
+    policy = as_choice(duplicates, DUPLICATES, name="duplicates")
     parts = []
     # Fields that are missing at other sites are predicted from their own ones.
     for k, which in enumerate(groups):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from delone._base.arrays import as_workers
+from delone._base.arrays import as_choice, as_workers
 from delone._base.blocks import blocks
 from delone._tiling.higher.dimension import MOST
 from delone._tiling.location import Location
@@ -17,7 +17,6 @@ from delone.interpolate.hull import Terms, edge_terms, plane_gradients, summed
 from delone.interpolate.lazily import Lazily
 from delone.interpolate.rectilinear import Rectilinear, rectilinear
 from delone.interpolate.space import SPACE, face_terms, hull_gradients, slopes
-from delone.interpolate.values import chosen
 from delone.interpolate.weights import Weights, rectangular
 from delone.memory import TooLargeError
 
@@ -156,7 +155,7 @@ class Linear(Interpolator):
         workers: int | None = None,
         planar: bool = False,
     ) -> None:
-        self._method = chosen("method", method, ("auto", "mesh", "lazy", "grid"))
+        self._method = as_choice(method, ("auto", "mesh", "lazy", "grid"), name="method")
         # What is evaluated in place of a triangulation.
         self._implicit: Rectilinear | Lazily | None = None
         super().__init__(

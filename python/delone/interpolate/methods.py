@@ -5,12 +5,12 @@ from __future__ import annotations
 import inspect
 from typing import TYPE_CHECKING, Any
 
+from delone._base.arrays import as_choice
 from delone.errors import DtypeError, InputError
 from delone.interpolate.clough_tocher import CloughTocher
 from delone.interpolate.linear import Linear
 from delone.interpolate.natural import NaturalNeighbor
 from delone.interpolate.nearest import Nearest
-from delone.interpolate.values import chosen
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -75,7 +75,7 @@ def interpolator(
             "the arguments are points, values and the method, as in interpolator(points, values, "
             f"'linear'); the method is an object of type {type(method).__name__}"
         )
-    kind, fixed = METHODS[chosen("method", method, tuple(METHODS))]
+    kind, fixed = METHODS[as_choice(method, tuple(METHODS), name="method")]
     require_options(method, options)
     return kind(points, values, **fixed, **options)
 

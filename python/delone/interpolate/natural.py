@@ -14,13 +14,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_workers
+from delone._base.arrays import as_choice, as_workers
 from delone.delaunay import Delaunay
 from delone.errors import InputError
 from delone.interpolate.hull import Terms, edge_terms, plane_gradients
 from delone.interpolate.smooth import Smooth
 from delone.interpolate.space import SPACE, face_terms, hull_gradients, refuse
-from delone.interpolate.values import chosen
 from delone.interpolate.weights import Weights
 
 if TYPE_CHECKING:
@@ -114,7 +113,7 @@ class NaturalNeighbor(Smooth):
         workers: int | None = None,
         planar: bool = False,
     ) -> None:
-        self._kind = chosen("kind", kind, KINDS)
+        self._kind = as_choice(kind, KINDS, name="kind")
         super().__init__(
             points,
             values,

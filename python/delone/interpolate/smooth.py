@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_limit, as_number, as_workers
+from delone._base.arrays import as_choice, as_limit, as_number, as_workers
 from delone.errors import InputError
 from delone.interpolate.base import Interpolator, Sheet, shaped_derivatives
 from delone.interpolate.hull import Terms, edge_terms
 from delone.interpolate.space import SPACE, refuse
-from delone.interpolate.values import chosen
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -54,7 +53,7 @@ class Smooth(Interpolator):
         max_iter: int,
         **options: Any,
     ) -> None:
-        self._estimate = chosen("gradients", gradients, GRADIENTS)
+        self._estimate = as_choice(gradients, GRADIENTS, name="gradients")
         self._tol = as_number(tol, name="tol")
         self._maxiter = as_limit(max_iter, name="max_iter")
         if not self._tol > 0:

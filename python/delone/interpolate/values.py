@@ -7,6 +7,7 @@ linear in the values. Points that coincide have equal rows after `Field.merged`.
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -14,15 +15,26 @@ import numpy as np
 
 from delone._base.arrays import as_plain_array
 from delone._base.counting import agreed, counted
-from delone._base.masks import hides
+from delone._base.masks import refuse_hidden
 from delone.errors import ConflictingValuesError, DtypeError, InputError, NonFiniteError, ShapeError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import ArrayLike, NDArray
 
     from delone._base.types import Floats
 
-__all__ = ["DUPLICATES", "NAN", "Field", "as_field", "chosen", "require_finite_values"]
+__all__ = [
+    "DUPLICATES",
+    "NAN",
+    "Field",
+    "as_field",
+    "differing",
+    "no_values",
+    "of_field",
+    "require_finite_values",
+]
 
 DUPLICATES = ("raise", "mean", "first", "last", "min", "max")
 NAN = ("raise", "drop", "propagate")
@@ -156,8 +168,7 @@ class Field:
 
 def as_field(values: ArrayLike, count: int, *, name: str = "values") -> Field:
     """Convert values, (count, ...), to a field without rounding; NaN is allowed."""
-    if hides(values):
-        raise DtypeError(f"{name} is a masked array; fill it: {name}.filled(numpy.nan)")
+    refuse_hidden(values, name)
     array = as_plain_array(values, name)
     if array.dtype.kind not in "iufc":
         raise DtypeError(f"{name} must hold numbers, got dtype {array.dtype}")
@@ -173,13 +184,27 @@ def as_field(values: ArrayLike, count: int, *, name: str = "values") -> Field:
     return Field(columns, array.shape[1:], is_complex)
 
 
-def chosen(what: str, value: str, choices: tuple[str, ...]) -> str:
-    """Validate an argument that must be one of several strings."""
-    if not isinstance(value, str) or value not in choices:
-        raise InputError(
-            f"{what} must be one of {', '.join(map(repr, choices))}, got {value!r:.80}"
-        )
-    return value
+def no_values() -> InputError:
+    """Return the error of an interpolator that is asked for values and has none."""
+    return InputError("no values: pass them to the constructor or to the call")
+
+
+def differing(groups: int) -> InputError:
+    """Return the error of what depends on the sites, if groups of fields have different ones."""
+    return InputError(
+        f"nan='drop' removes different sites from {groups} groups of fields, which have no sites "
+        "or weights in common: give the fields of one group"
+    )
+
+
+@contextmanager
+def of_field(number: int) -> Iterator[None]:
+    """Say in errors of the input which of several fields they are about."""
+    try:
+        yield
+    except InputError as error:
+        error.add_note(f"of the fields among values, number {number}")
+        raise
 
 
 def require_finite_values(field: Field) -> None:

@@ -36,6 +36,11 @@ __all__ = [
 _LARGEST = 1 << 31
 
 
+def truncated(path: Path) -> FileFormatError:
+    """Return the error of a file that ends too early."""
+    return FileFormatError(f"{path} is truncated: it declares more than it contains")
+
+
 def read_text(path: Path) -> list[str]:
     """Return the lines of a file without comments; blank ones are left out."""
     try:
@@ -78,7 +83,7 @@ class Numbers:
         """Return the next numbers, (rows, columns)."""
         end = self._at + rows * columns
         if rows < 0 or columns < 0 or end > len(self._values):
-            raise FileFormatError(f"{self.path} is truncated: it declares more than it contains")
+            raise truncated(self.path)
         found = self._values[self._at : end].reshape(rows, columns)
         self._at = end
         return found
@@ -114,6 +119,11 @@ class Lines:
         """How many lines are left."""
         return len(self._lines) - self._at
 
+    def require(self, count: int) -> None:
+        """Raise an error if fewer lines are left than the file declares."""
+        if count > self.left:
+            raise truncated(self.path)
+
     def word(self) -> str:
         """Return the word that opens the file, with or without numbers behind it."""
         word, _, rest = (self._lines[0] if self._lines else "").partition(" ")
@@ -122,8 +132,7 @@ class Lines:
 
     def numbers(self) -> list[float]:
         """Return the numbers of the next line."""
-        if self.ended:
-            raise FileFormatError(f"{self.path} is truncated: it declares more than it contains")
+        self.require(1)
         line, self._at = self._lines[self._at], self._at + 1
         try:
             return [float(word) for word in line.split()]
@@ -142,8 +151,7 @@ class Lines:
 
     def rows(self, count: int, columns: int) -> Floats:
         """Return so many lines, (count, columns); further columns are left out."""
-        if count > self.left:
-            raise FileFormatError(f"{self.path} is truncated: it declares more than it contains")
+        self.require(count)
         rows = [self.numbers()[:columns] for _ in range(count)]
         if any(len(row) < columns for row in rows):
             raise FileFormatError(f"{self.path} has lines with fewer than {columns} numbers")

@@ -43,8 +43,7 @@ def read_points(
 def read_mesh(path: Path) -> MeshFile:
     """Read triangles, and triangles of polygons; see `delone.io.read_mesh`."""
     points, count, lines = _opened(path)
-    if count > lines.left:
-        raise FileFormatError(f"{path} is truncated: it declares more than it contains")
+    lines.require(count)
     faces: list[list[int]] = []
     nothing = np.empty((0, 3))
     for _ in range(count):

@@ -138,8 +138,7 @@ def _facets(path: Path) -> MeshFile:
         raise FileFormatError(f"{path} contains segments in 2-D, not triangles")
     points, first, lines = _opened(path)
     count, marked, *_ = [*lines.counts(1), 0]
-    if count > lines.left:
-        raise FileFormatError(f"{path} is truncated: it declares more than it contains")
+    lines.require(count)
     read = _polygons if path.suffix.lower() == ".poly" else _polygon
     faces: list[list[int]] = []
     markers: list[float] = []

@@ -13,7 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_plain_array, as_points, as_vectors, as_workers, require_finite
+from delone._base.arrays import (
+    as_number,
+    as_plain_array,
+    as_points,
+    as_vectors,
+    as_workers,
+    require_finite,
+)
 from delone._base.counting import agreed, counted
 from delone._base.georeference import caller_level, crs_of, parsed
 from delone._base.immutable import own_copy
@@ -24,7 +31,15 @@ if TYPE_CHECKING:
 
     from delone._base.types import Bools, Floats
 
-__all__ = ["LongitudeWarning", "directions_of", "lonlat_of", "numbers_of", "queries_of", "units_of"]
+__all__ = [
+    "LongitudeWarning",
+    "as_step",
+    "directions_of",
+    "lonlat_of",
+    "numbers_of",
+    "queries_of",
+    "units_of",
+]
 
 # Longitudes of more turns are a mistake, such as a wrong unit.
 _TURNS = 3
@@ -110,6 +125,14 @@ def _refuse_projected(given: Any, name: str) -> None:
             f"{name} are coordinates of {system:.60}, not longitudes and latitudes: "
             "transform them to EPSG:4326 first, as to_crs does, or use the classes of the plane"
         )
+
+
+def as_step(step: Any) -> float:
+    """Return the largest distance between points of a drawn arc, in degrees, checked."""
+    width = as_number(step, name="step")
+    if not 0 < width < np.inf:
+        raise InputError(f"step must be positive and finite, got {step!r:.60}")
+    return width
 
 
 def units_of(vectors: Floats, workers: int | None) -> Floats:

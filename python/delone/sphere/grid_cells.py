@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_number, as_workers
+from delone._base.arrays import as_workers
 from delone._base.counting import agreed, counted
 from delone._base.immutable import kept, sealed
 from delone._tiling.complex import Stored
-from delone.errors import DirectionError, InputError, ShapeError
+from delone.errors import DirectionError, ShapeError
 from delone.sphere import rings as rings_of
-from delone.sphere.coordinates import lonlat_of, units_of
+from delone.sphere.coordinates import as_step, lonlat_of, units_of
 from delone.sphere.grid_report import GridFaults, GridReport
 
 if TYPE_CHECKING:
@@ -306,9 +306,7 @@ class GridCells(Stored):
         """
         from delone.exchange.geopandas import beside
 
-        width = as_number(step, name="step")
-        if not 0 < width < np.inf:
-            raise InputError(f"step must be positive and finite, got {step!r:.60}")
+        width = as_step(step)
         if self._edges == "parallel":
             shapes = rings_of.boxes(self._arrays)
         else:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_flag, as_number, as_plain_array, as_workers
+from delone._base.arrays import as_choice, as_flag, as_number, as_plain_array, as_workers
 from delone._base.counting import agreed
 from delone._base.renames import renamed
 from delone._tiling.location import as_tolerance
@@ -22,7 +22,7 @@ from delone.errors import DtypeError, InputError, ShapeError
 from delone.interpolate.base import as_max_distance, shaped_derivatives
 from delone.interpolate.hull import Terms
 from delone.interpolate.policies import Policies
-from delone.interpolate.values import DUPLICATES, NAN, as_field, chosen
+from delone.interpolate.values import DUPLICATES, NAN, as_field, differing, no_values, of_field
 from delone.interpolate.weights import Weights, joined, rectangular
 from delone.sphere.coordinates import numbers_of, queries_of
 from delone.sphere.delaunay import Delaunay
@@ -62,10 +62,10 @@ class _Interpolator(VectorInterpolation):
         degrees: bool = True,
         workers: int | None = None,
     ) -> None:
-        self._extrapolate = chosen("extrapolate", extrapolate, self.EXTRAPOLATE)
+        self._extrapolate = as_choice(extrapolate, self.EXTRAPOLATE, name="extrapolate")
         self._tolerance = as_tolerance(tolerance)
-        self._duplicates = chosen("duplicates", duplicates, DUPLICATES)
-        self._nan = chosen("nan", nan, NAN)
+        self._duplicates = as_choice(duplicates, DUPLICATES, name="duplicates")
+        self._nan = as_choice(nan, NAN, name="nan")
         as_workers(workers)
         self._workers = workers
         as_flag(degrees, name="degrees")
@@ -275,7 +275,7 @@ class _Interpolator(VectorInterpolation):
             owner = self._for(field)
             return field, owner, owner._settled(field)
         if self._field is None:
-            raise InputError("no values: pass them to the constructor or to the call")
+            raise no_values()
         return self._field
 
     def _for(self, field: Field) -> _Interpolator:
@@ -317,14 +317,11 @@ class _Interpolator(VectorInterpolation):
             part, narrow = field.only(which), copy.copy(self)
             dropped = part.not_finite
             owner: _Interpolator = self
-            try:
+            with of_field(which[0]):
                 if dropped.size:
                     kept = np.delete(np.arange(self.npoints), dropped)
                     owner = used[kept.tobytes()] = self._without(kept)
                 narrow._field = part, owner, owner._settled(part)
-            except InputError as error:
-                error.add_note(f"of the fields among values, number {which[0]}")
-                raise
             narrow._parts = None
             found.append((which, narrow))
         self._others = used
@@ -333,10 +330,7 @@ class _Interpolator(VectorInterpolation):
     def _require_one(self) -> None:
         """Refuse what depends on the sites if fields have different ones."""
         if self._parts is not None:
-            raise InputError(
-                f"nan='drop' removes different sites from {len(self._parts[1])} groups of fields, "
-                "which have no sites or weights in common: give the fields of one group"
-            )
+            raise differing(len(self._parts[1]))
 
     def _queries(self, xi: ArrayLike) -> tuple[Floats, Rows, tuple[int, ...]]:
         """Vectors of queries, (k, 3), which of them have a direction, and their leading axes."""
@@ -617,7 +611,7 @@ class NaturalNeighbor(_Continuous):
         degrees: bool = True,
         workers: int | None = None,
     ) -> None:
-        self._kind = chosen("kind", kind, ("sibson", "laplace"))
+        self._kind = as_choice(kind, ("sibson", "laplace"), name="kind")
         super().__init__(
             points,
             values,

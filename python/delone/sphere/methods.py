@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.arrays import as_choice
 from delone.errors import InputError
-from delone.interpolate.values import chosen
 from delone.sphere.coordinates import queries_of
 from delone.sphere.interpolation import Linear, NaturalNeighbor, Nearest
 from delone.sphere.raster import globe_nodes
@@ -35,7 +35,7 @@ def interpolator(
     points: ArrayLike, values: ArrayLike | None = None, method: str = "linear", **options: Any
 ) -> Linear | NaturalNeighbor | Nearest:
     """Return an interpolator of sites on the sphere by the name of its method."""
-    kind, fixed = METHODS[chosen("method", method, tuple(METHODS))]
+    kind, fixed = METHODS[as_choice(method, tuple(METHODS), name="method")]
     known = [name for name in [*inspect.signature(kind).parameters][2:] if name not in fixed]
     for name in options:
         if name not in known:

@@ -19,7 +19,7 @@ from delone._base.arrays import as_plain_array, as_workers
 from delone._base.blocks import blocks
 from delone.errors import InputError, ShapeError
 from delone.interpolate.base import as_max_distance
-from delone.interpolate.values import as_field
+from delone.interpolate.values import as_field, no_values
 from delone.sphere.coordinates import numbers_of
 
 if TYPE_CHECKING:
@@ -333,7 +333,7 @@ class VectorInterpolation:
         """The values of the constructor."""
         held = self._field if self._parts is None else self._parts
         if held is None:
-            raise InputError("no values: pass them to the constructor or to the call")
+            raise no_values()
         field = held[0]
         return field.shaped(field.columns, (self.npoints,))
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._base.arrays import as_number, as_workers
+from delone._base.arrays import as_workers
 from delone._base.counting import counted
 from delone._base.extras import require
 from delone._base.immutable import kept, sealed
@@ -22,7 +22,7 @@ from delone.sphere.clipping import (
     sums,
     whole_rings,
 )
-from delone.sphere.coordinates import directions_of, lonlat_of, queries_of, units_of
+from delone.sphere.coordinates import as_step, directions_of, lonlat_of, queries_of, units_of
 from delone.sphere.delaunay import Delaunay
 from delone.sphere.globe import OnGlobe
 from delone.voronoi.results import Neighbors
@@ -545,9 +545,7 @@ class Voronoi(OnGlobe):
         from delone.exchange.geopandas import beside, shapely_or_say
         from delone.sphere.flat import flat_polygon
 
-        width = as_number(step, name="step")
-        if not 0 < width < np.inf:
-            raise InputError(f"step must be positive and finite, got {step!r:.60}")
+        width = as_step(step)
         shapely = shapely_or_say()
         left = self._left
         cells = self._rings() if left is None else left.polygons(self.npoints)

@@ -144,14 +144,17 @@ def warn_of_nothing(region: Any) -> None:
     )
 
 
+def require_same_crs(one: str | None, other: str | None) -> None:
+    """Raise an error if two surfaces are known to be in different reference systems."""
+    if one and other and not same_crs(one, other):
+        raise InputError(f"the surfaces are in {one:.60} and in {other:.60}: transform one of them")
+
+
 def goal_of(tin: Surface, other: Any) -> tuple[Sheet | None, list[float]]:
     """Return the surface to be reached, or None and a plane."""
     if not hasattr(other, "_sheet"):
         return None, plane_of(other)
-    if tin.crs and other.crs and not same_crs(tin.crs, other.crs):
-        raise InputError(
-            f"the surfaces are in {tin.crs:.60} and in {other.crs:.60}: transform one of them"
-        )
+    require_same_crs(tin.crs, other.crs)
     require_same_units(tin.units, other.units, what="the surfaces")
     return other._sheet(), [0.0, 0.0, 0.0]
 

@@ -9,16 +9,14 @@ import numpy as np
 
 from delone import _core
 from delone._base.arrays import as_workers
-from delone._base.georeference import same_crs
 from delone._tiling.plane.geometry import shares, summed
 from delone.distributed.read.folder import TileFolder
 from delone.distributed.read.parts import gathered, sheet_of, surface_of
 from delone.distributed.read.tasks import mapped
-from delone.errors import InputError
 from delone.predicates import orient2d
 from delone.terrain.lines import line_of
 from delone.terrain.profiles import Profile
-from delone.terrain.volumes import Volume, goal_of, wanted_region, warn_of_nothing
+from delone.terrain.volumes import Volume, goal_of, require_same_crs, wanted_region, warn_of_nothing
 
 if TYPE_CHECKING:
     from delone._base.types import Bools, Floats
@@ -40,10 +38,7 @@ def volume(tin: TileFolder, other: Any, region: Any, value: str, executor: Any) 
     goal: Any
     if isinstance(other, TileFolder):
         other._require("z")
-        if tin.crs and other.crs and not same_crs(tin.crs, other.crs):
-            raise InputError(
-                f"the surfaces are in {tin.crs:.60} and in {other.crs:.60}: transform one of them"
-            )
+        require_same_crs(tin.crs, other.crs)
         goal = str(other.path)
     else:
         goal = goal_of(_Side(tin.crs), other)  # type: ignore[arg-type]
