@@ -273,7 +273,7 @@ class Reader:
             fields = ", ".join(part for part in split(inside))
             body = self.macro.replace("$($field: $kind),+", fields)
             body = re.sub(r"\$\(.*?\),\+", "", body)
-            for made, marks in self.functions(body[body.index("impl $name") :]):
+            for made, marks in self.functions(body[body.index("#[pymethods]") :]):
                 yield method(made, marks, name)
 
     def classes(self) -> Iterator[Class]:

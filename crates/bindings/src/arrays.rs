@@ -30,15 +30,18 @@ pub fn flattened<'a, T: Element>(
     width: usize,
     name: &str,
 ) -> Result<&'a [T]> {
-    let flat = array
-        .as_slice()
-        .map_err(|_| Error::Shape(format!("{name} is not C-contiguous")))?;
-    match array.shape()[1] {
-        found if found == width => Ok(flat),
-        found => Err(Error::Shape(format!(
-            "{name} has {found} columns, not {width}"
-        ))),
+    let items = flat(array, name)?;
+    require_width(array.shape()[1], width, name)?;
+    Ok(items)
+}
+
+/// Checks a number of columns.
+pub fn require_width(found: usize, width: usize, name: &str) -> Result<()> {
+    if found == width {
+        return Ok(());
     }
+    let message = format!("{name} has {found} columns, not {width}");
+    Err(Error::Shape(message))
 }
 
 /// The number of columns of an array: of points, their coordinates.

@@ -90,6 +90,17 @@ fn measured<R: Send, const D: usize, const N: usize>(
     watched(py, |watch| of(points, simplices, workers, watch))
 }
 
+/// The same, as a table.
+fn tabled<const C: usize, const D: usize, const N: usize>(
+    py: Python<'_>,
+    points: &PyReadonlyArray2<'_, f64>,
+    simplices: &PyReadonlyArray2<'_, i32>,
+    workers: usize,
+    of: Measure<Vec<[f64; C]>, D, N>,
+) -> Outcome<Table<f64>> {
+    table(py, measured(py, points, simplices, workers, of)?)
+}
+
 /// The areas of triangles, or the volumes of simplices of more dimensions.
 #[pyfunction]
 pub fn sizes(
@@ -128,10 +139,7 @@ pub fn face_normals3(
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> Outcome<Table<f64>> {
-    table(
-        py,
-        measured(py, &points, &simplices, workers, measure::face_normals)?,
-    )
+    tabled(py, &points, &simplices, workers, measure::face_normals)
 }
 
 /// The centers of the circles or spheres through the corners of simplices.
@@ -143,16 +151,10 @@ pub fn circumcenters(
     workers: usize,
 ) -> Outcome<Table<f64>> {
     match columns(&points) {
-        2 => table(
-            py,
-            measured(py, &points, &simplices, workers, measure::circumcenters2)?,
-        ),
-        3 => table(
-            py,
-            measured(py, &points, &simplices, workers, measure::circumcenters3)?,
-        ),
+        2 => tabled(py, &points, &simplices, workers, measure::circumcenters2),
+        3 => tabled(py, &points, &simplices, workers, measure::circumcenters3),
         many => in_many!(many, D, N, P => {
-            table(py, measured(py, &points, &simplices, workers, ndim::circumcenters::<D, N, P>)?)
+            tabled(py, &points, &simplices, workers, ndim::circumcenters::<D, N, P>)
         }),
     }
 }
@@ -180,10 +182,7 @@ pub fn dihedral_angles3(
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> Outcome<Table<f64>> {
-    table(
-        py,
-        measured(py, &points, &simplices, workers, measure::dihedral_angles)?,
-    )
+    tabled(py, &points, &simplices, workers, measure::dihedral_angles)
 }
 
 /// 1 for triangles with an angle below a bound, given by its squared cosine; else 0.

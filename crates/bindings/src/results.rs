@@ -1,11 +1,13 @@
 //! Results that Python can also construct: from a file, from a pickle, or from arrays.
 
-use delone_core::base::error::{Error, Result};
-use numpy::{Element, PyUntypedArrayMethods};
+use delone_core::base::error::Result;
+use numpy::ndarray::Dimension;
+use numpy::{Element, PyArray, PyArrayMethods, PyReadonlyArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::{Column, Table};
+use crate::arrays::{Column, Table, require_width};
+use crate::errors::Outcome;
 use crate::given::unequal;
 
 /// `tuple[NDArray[np.generic], ...]`
@@ -23,8 +25,24 @@ pub type Added = Py<PyAny>;
 /// `Callable[[int, int], object]`: called with the pass and the number of poor tetrahedra.
 pub type Passes = Py<PyAny>;
 
-/// Gives a class that consists of arrays a constructor, which checks them, and pickling.
+/// Gives a class that consists of arrays a constructor, which checks them, and pickling; with a name at
+/// the end, also a struct of that name, which has the arrays borrowed for one call, and `lend`.
 macro_rules! made_of_arrays {
+    ($name:ident { $($field:ident: $kind:ty),+ $(,)? } lent as $lent:ident) => {
+        made_of_arrays!($name { $($field: $kind),+ });
+
+        #[allow(dead_code, reason = "some arrays are not read")]
+        struct $lent<'py> {
+            $($field: <$kind as crate::results::Borrowed>::Lent<'py>),+
+        }
+
+        impl $name {
+            fn lend<'py>(&self, py: Python<'py>) -> crate::errors::Outcome<$lent<'py>> {
+                use crate::results::Borrowed;
+                Ok($lent { $($field: self.$field.lend(py)?),+ })
+            }
+        }
+    };
     ($name:ident { $($field:ident: $kind:ty),+ $(,)? }) => {
         #[pymethods]
         impl $name {
@@ -53,6 +71,23 @@ macro_rules! made_of_arrays {
 }
 pub(crate) use made_of_arrays;
 
+/// An array that can be borrowed for one call.
+pub trait Borrowed {
+    /// What is borrowed.
+    type Lent<'py>;
+
+    /// Borrows it.
+    fn lend<'py>(&self, py: Python<'py>) -> Outcome<Self::Lent<'py>>;
+}
+
+impl<T: Element, D: Dimension> Borrowed for Py<PyArray<T, D>> {
+    type Lent<'py> = PyReadonlyArray<'py, T, D>;
+
+    fn lend<'py>(&self, py: Python<'py>) -> Outcome<Self::Lent<'py>> {
+        Ok(self.bind(py).try_readonly()?)
+    }
+}
+
 /// Checks that a table has `columns` columns; returns the number of its rows.
 pub fn rows_of<T: Element>(
     py: Python<'_>,
@@ -60,14 +95,9 @@ pub fn rows_of<T: Element>(
     columns: usize,
     name: &str,
 ) -> Result<usize> {
-    let shape = table.bind(py).shape();
-    if shape[1] == columns {
-        return Ok(shape[0]);
-    }
-    let width = shape[1];
-    Err(Error::Shape(format!(
-        "{name} has {width} columns, not {columns}"
-    )))
+    let table = table.bind(py);
+    require_width(table.shape()[1], columns, name)?;
+    Ok(table.shape()[0])
 }
 
 /// The number of entries of a column.

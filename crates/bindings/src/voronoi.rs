@@ -3,7 +3,7 @@
 use delone_core::Point2;
 use delone_core::base::error::{Error, Result};
 use delone_core::voronoi::{self, Cells, Convex, Given, Outline};
-use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{
@@ -69,7 +69,7 @@ made_of_arrays!(Diagram2 {
     region_starts: Column<i32>,
     region_vertices: Column<i32>,
     region_ridges: Column<i32>,
-});
+} lent as Lent2);
 
 impl Diagram2 {
     fn check(&self, py: Python<'_>) -> Result<()> {
@@ -90,33 +90,6 @@ impl Diagram2 {
             ),
         ])
     }
-
-    fn lend<'py>(&self, py: Python<'py>) -> Outcome<Lent2<'py>> {
-        Ok(Lent2 {
-            vertices: self.vertices.bind(py).try_readonly()?,
-            sites: self.sites.bind(py).try_readonly()?,
-            ends: self.ends.bind(py).try_readonly()?,
-            rays: self.rays.bind(py).try_readonly()?,
-            beyond: self.beyond.bind(py).try_readonly()?,
-            site: self.site.bind(py).try_readonly()?,
-            starts: self.region_starts.bind(py).try_readonly()?,
-            entry_vertices: self.region_vertices.bind(py).try_readonly()?,
-            entry_ridges: self.region_ridges.bind(py).try_readonly()?,
-        })
-    }
-}
-
-/// The arrays of a diagram, borrowed from Python for one call.
-struct Lent2<'py> {
-    vertices: PyReadonlyArray2<'py, f64>,
-    sites: PyReadonlyArray2<'py, i32>,
-    ends: PyReadonlyArray2<'py, i32>,
-    rays: PyReadonlyArray2<'py, f64>,
-    beyond: PyReadonlyArray2<'py, f64>,
-    site: PyReadonlyArray1<'py, i32>,
-    starts: PyReadonlyArray1<'py, i32>,
-    entry_vertices: PyReadonlyArray1<'py, i32>,
-    entry_ridges: PyReadonlyArray1<'py, i32>,
 }
 
 impl Lent2<'_> {
@@ -131,9 +104,9 @@ impl Lent2<'_> {
             rays: rows(&self.rays, "rays")?,
             beyond: rows(&self.beyond, "beyond")?,
             site: flat(&self.site, "site")?,
-            starts: flat(&self.starts, "region_starts")?,
-            entry_vertices: flat(&self.entry_vertices, "region_vertices")?,
-            entry_ridges: flat(&self.entry_ridges, "region_ridges")?,
+            starts: flat(&self.region_starts, "region_starts")?,
+            entry_vertices: flat(&self.region_vertices, "region_vertices")?,
+            entry_ridges: flat(&self.region_ridges, "region_ridges")?,
         };
         let (vertices, ridges) = (cells.vertices.len(), cells.sites.len());
         in_range(cells.sites, 0, cells.points.len(), "sites")?;

@@ -3,7 +3,7 @@
 use delone_core::Point3;
 use delone_core::base::error::Result;
 use delone_core::voronoi::space::{self as dual, Cells, Clip, Measures};
-use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{
@@ -57,7 +57,7 @@ made_of_arrays!(Diagram3 {
     region_vertices: Column<i32>,
     region_ridge_starts: Column<i32>,
     region_ridges: Column<i32>,
-});
+} lent as Lent3);
 
 impl Diagram3 {
     fn check(&self, py: Python<'_>) -> Result<()> {
@@ -71,29 +71,6 @@ impl Diagram3 {
             (cells + 1, len_of(py, &self.region_ridge_starts)),
         ])
     }
-
-    fn lend<'py>(&self, py: Python<'py>) -> Outcome<Lent3<'py>> {
-        Ok(Lent3 {
-            vertices: self.vertices.bind(py).try_readonly()?,
-            sites: self.sites.bind(py).try_readonly()?,
-            starts: self.ridge_starts.bind(py).try_readonly()?,
-            entries: self.ridge_entries.bind(py).try_readonly()?,
-            site: self.site.bind(py).try_readonly()?,
-            region_ridge_starts: self.region_ridge_starts.bind(py).try_readonly()?,
-            region_ridges: self.region_ridges.bind(py).try_readonly()?,
-        })
-    }
-}
-
-/// The arrays of a diagram, borrowed from Python for one call.
-struct Lent3<'py> {
-    vertices: PyReadonlyArray2<'py, f64>,
-    sites: PyReadonlyArray2<'py, i32>,
-    starts: PyReadonlyArray1<'py, i32>,
-    entries: PyReadonlyArray1<'py, i32>,
-    site: PyReadonlyArray1<'py, i32>,
-    region_ridge_starts: PyReadonlyArray1<'py, i32>,
-    region_ridges: PyReadonlyArray1<'py, i32>,
 }
 
 impl Lent3<'_> {
@@ -104,8 +81,8 @@ impl Lent3<'_> {
             weights,
             vertices: rows(&self.vertices, "vertices")?,
             sites: rows(&self.sites, "sites")?,
-            starts: flat(&self.starts, "ridge_starts")?,
-            entries: flat(&self.entries, "ridge_entries")?,
+            starts: flat(&self.ridge_starts, "ridge_starts")?,
+            entries: flat(&self.ridge_entries, "ridge_entries")?,
             site: flat(&self.site, "site")?,
             ridge_starts: flat(&self.region_ridge_starts, "region_ridge_starts")?,
             ridges: flat(&self.region_ridges, "region_ridges")?,
