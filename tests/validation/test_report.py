@@ -71,3 +71,11 @@ def test_of_equal_points_the_first_is_the_vertex() -> None:
     assert report.repeats.tolist() == [3] and report.missing.size == 0
     with pytest.raises(AssertionError, match="an earlier row is equal"):
         assert_delaunay(points, [(3, 1, 2)])
+
+
+@pytest.mark.parametrize("d", [2, 3, 4])
+def test_points_that_are_no_vertices_are_ascending(d: int) -> None:
+    corners = np.vstack((np.zeros(d), 4 * np.eye(d)))
+    inside = np.random.default_rng(d).random((40, d))
+    report = validate(np.vstack((corners, inside)), [range(d + 1)])
+    assert report.missing.tolist() == list(range(d + 1, d + 41))

@@ -58,15 +58,21 @@ def test_arrays_of_other_shapes_are_refused(ndim: int) -> None:
         replaced(dual, site=dual.site[:-1])
 
 
-def test_numbers_out_of_range_are_refused_where_they_are_used() -> None:
-    flat = diagram(2)
-    wrong = replaced(flat._cells.dual, region_vertices=flat._cells.dual.region_vertices + 10**6)
-    with pytest.raises(ShapeError, match="region_vertices"):
-        _core.voronoi_clip2(flat.points, None, wrong, BOX, 1)
-    solid = diagram(3)
-    wrong = replaced(solid._cells.dual, region_ridges=solid._cells.dual.region_ridges + 10**6)
-    with pytest.raises(ShapeError, match="region_ridges"):
-        _core.measures3(solid.points, None, wrong, 1)
+@pytest.mark.parametrize(
+    ("ndim", "name"),
+    [
+        *((2, name) for name in ("sites", "region_vertices", "region_ridges")),
+        *((3, name) for name in ("sites", "site", "ridge_entries", "region_ridges")),
+    ],
+)
+def test_numbers_out_of_range_are_refused_where_they_are_used(ndim: int, name: str) -> None:
+    made = diagram(ndim)
+    wrong = replaced(made._cells.dual, **{name: getattr(made._cells.dual, name) + 10**6})
+    with pytest.raises(ShapeError, match=name):
+        if ndim == 2:
+            _core.voronoi_clip2(made.points, None, wrong, BOX, 1)
+        else:
+            _core.measures3(made.points, None, wrong, 1)
 
 
 def test_the_core_takes_no_dictionary() -> None:

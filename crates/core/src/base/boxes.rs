@@ -191,6 +191,17 @@ mod tests {
                 }
                 assert_eq!(next, count);
             }
+            let mut seen = Vec::new();
+            row.each(
+                &mut Vec::new(),
+                |_, _, _| true,
+                |i| {
+                    seen.push(i);
+                    true
+                },
+            );
+            seen.sort_unstable();
+            assert_eq!(seen, (0..count).collect::<Vec<_>>());
         }
     }
 

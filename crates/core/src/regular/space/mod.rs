@@ -113,7 +113,7 @@ mod tests {
             simplices: &one.tetrahedra.simplices,
             neighbors: &one.tetrahedra.neighbors,
         };
-        let (found, _) = validate(given, &weights, &IDLE).unwrap();
-        assert_eq!(found, Default::default());
+        let report = validate(given, &weights, &IDLE).unwrap();
+        assert_eq!(report.0, Default::default());
     }
 }
