@@ -166,30 +166,26 @@ impl Line {
     }
 }
 
-/// Triangles of a region that may overlap another one, relative to an origin, by their boxes.
+/// Triangles of a region that may overlap those of a group, by their boxes.
 #[derive(Default)]
 pub struct Candidates {
     boxes: Vec<Extent<2>>,
     corners: Vec<[Point2; 3]>,
     /// Room for the rows of those found.
     found: Vec<u32>,
+    /// Those found, relative to an origin.
+    near: Vec<[Point2; 3]>,
 }
 
 impl Candidates {
-    /// Takes the triangles of a region whose boxes in a tree are near those of a triangle.
-    pub fn gather(
-        &mut self,
-        region: Triangles,
-        boxes: &Boxes<2>,
-        corners: &[Point2; 3],
-        origin: Point2,
-    ) -> Result<()> {
+    /// Takes the triangles of a region whose boxes in a tree are near that of a group.
+    pub fn gather(&mut self, region: Triangles, boxes: &Boxes<2>, group: &Extent<2>) -> Result<()> {
         self.boxes.clear();
         self.corners.clear();
         let mut end = Ok(());
-        boxes.meeting(&Extent::of(*corners), |t| {
+        boxes.meeting(group, |t| {
             if end.is_ok() {
-                end = self.add(region.corners(t).map(|p| relative(p, origin)));
+                end = self.add(region.corners(t));
             }
         });
         end
@@ -204,14 +200,17 @@ impl Candidates {
         Ok(())
     }
 
-    /// The rows of those whose boxes have an area in common with another one, and the corners of
-    /// all.
-    #[inline]
+    /// Those whose boxes have an area in common with `extent`, that of a triangle relative to its first
+    /// corner; relative to that, too.
     pub fn meeting(
         &mut self,
+        triangle: &[Point2; 3],
         extent: &Extent<2>,
         watch: &Watch,
-    ) -> Result<(&[u32], &[[Point2; 3]])> {
+    ) -> Result<&[[Point2; 3]]> {
+        // Differences keep their order when they are rounded: what is apart here is so relative to an
+        // origin, and few are left.
+        let whole = Extent::of(*triangle);
         let mut count = 0;
         let mut row = 0;
         for lot in self.boxes.chunks(WATCH_EVERY) {
@@ -221,11 +220,18 @@ impl Candidates {
             // Without a branch: about one in four meets, in an unpredictable order.
             for other in lot {
                 self.found[count] = row;
-                count += usize::from(meet(other, extent));
+                count += usize::from(meet(other, &whole));
                 row += 1;
             }
         }
-        Ok((&self.found[..count], &self.corners))
+        self.near.clear();
+        for &row in &self.found[..count] {
+            let corners = self.corners[row as usize].map(|p| relative(p, triangle[0]));
+            if meet(&Extent::of(corners), extent) {
+                push(&mut self.near, corners)?;
+            }
+        }
+        Ok(&self.near)
     }
 }
 

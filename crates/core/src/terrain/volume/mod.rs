@@ -119,6 +119,11 @@ impl Work<'_> {
         let mut within = Candidates::default();
         for group in order.chunks(GROUP) {
             watch.check()?;
+            if let (Some(region), Some(boxes)) = (self.region, &self.within) {
+                let corners = |&t: &u32| self.surface.given.corners(t as usize);
+                let extent = Extent::of(group.iter().flat_map(corners));
+                within.gather(region, boxes, &extent)?;
+            }
             for &t in group {
                 let sums = self.row(t as usize, &mut within, walk.as_mut(), watch)?;
                 for (column, value) in self.found.iter().zip(sums.row()) {
@@ -144,11 +149,9 @@ impl Work<'_> {
         let mut sums = Sums::default();
         let mut space = [Polygon::EMPTY; 3];
         let mut parts: Vec<Polygon> = Vec::new();
-        if let (Some(region), Some(boxes)) = (self.region, &self.within) {
-            within.gather(region, boxes, &corners, origin)?;
-            let (rows, corners) = within.meeting(&whole.extent(), watch)?;
-            for &row in rows {
-                if let Some(part) = whole.clipped(&corners[row as usize], &mut space) {
+        if self.region.is_some() {
+            for near in within.meeting(&corners, &whole.extent(), watch)? {
+                if let Some(part) = whole.clipped(near, &mut space) {
                     push(&mut parts, *part)?;
                 }
             }
