@@ -14,8 +14,8 @@ pub(super) use crate::base::vector::{cross, minus};
 use crate::base::watch::Watch;
 use crate::base::wide::{determinant, lowest, ratio, root, scaled};
 
-/// Triangles that are measured together.
-const SHARE: usize = 1 << 12;
+/// Triangles, or ridges, that are measured together.
+const SHARE: usize = 1 << 10;
 /// A determinant of pairs is right to 2^-98 times the lengths of two differences; one that is not 2^50
 /// times as large is computed by integers.
 const UNSURE: f64 = 1.0 / (1_u64 << 48) as f64;
@@ -41,15 +41,15 @@ pub fn circumcenters(
     mapped(vectors, simplices, circumcenter, workers, watch)
 }
 
-/// The values of a function of the vectors of three corners and of their directions.
-fn mapped<T: Copy + Default + Send>(
+/// The values of a function of the vectors of a few corners and of their directions.
+pub(super) fn mapped<T: Copy + Default + Send, const N: usize>(
     vectors: &[Point3],
-    simplices: &[[i32; 3]],
-    measure: fn([Point3; 3], &[Unit; 3]) -> T,
+    simplices: &[[i32; N]],
+    measure: fn([Point3; N], &[Unit; N]) -> T,
     workers: usize,
     watch: &Watch,
 ) -> Result<Vec<T>> {
-    // Each direction is a corner of about six triangles.
+    // Each direction is a corner of about six triangles, or of twelve ridges with their sites.
     let (heads, tails) = units(vectors, workers, watch)?;
     let mut values = filled(simplices.len(), T::default())?;
     let tasks = simplices.chunks(SHARE).zip(values.chunks_mut(SHARE));

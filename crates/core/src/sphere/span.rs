@@ -18,16 +18,11 @@ use delone_predicates::arithmetic::Pair;
 use delone_predicates::sphere::{Unit, leveled};
 use num_bigint::BigInt;
 
-use super::directions::units;
-use super::measure::{cross, minus, pairs, size};
+use super::measure::{cross, mapped, minus, pairs, size};
 use crate::base::error::Result;
-use crate::base::memory::filled;
-use crate::base::parallel;
 use crate::base::watch::Watch;
 use crate::base::wide::{angle, determinant, lowest, ratio, root, scaled};
 
-/// Ridges that are measured together.
-const SHARE: usize = 1 << 10;
 /// A determinant of pairs is right to 2^-98 times products of lengths; one that is not 2^40 times as
 /// large is computed by integers.
 const UNSURE: f64 = 1.0 / (1_u64 << 58) as f64;
@@ -47,22 +42,7 @@ pub fn spans(
     workers: usize,
     watch: &Watch,
 ) -> Result<Vec<[f64; 2]>> {
-    // Each direction is a corner of about twelve.
-    let (heads, tails) = units(vectors, workers, watch)?;
-    let mut values = filled(around.len(), [0.0; 2])?;
-    let tasks = around.chunks(SHARE).zip(values.chunks_mut(SHARE));
-    parallel::map_watched(workers, tasks.collect(), watch, |(around, values)| {
-        for (value, corners) in values.iter_mut().zip(around) {
-            let rows = corners.map(|v| v as usize);
-            let directions = rows.map(|v| Unit {
-                hi: heads[v],
-                lo: tails[v],
-            });
-            *value = span(rows.map(|v| vectors[v]), &directions);
-        }
-        Ok(())
-    })?;
-    Ok(values)
+    mapped(vectors, around, span, workers, watch)
 }
 
 fn dot(p: &[Pair; 3], q: &[Pair; 3]) -> Pair {
