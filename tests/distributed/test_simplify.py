@@ -204,3 +204,18 @@ def test_lines_that_end_at_one_place_agree_on_its_height() -> None:
         [[5, 4, 3], [9, 4, 2]],
     ]
     assert found[0][1].all()
+
+
+def test_of_equal_points_the_first_counts(tmp_path: Path) -> None:
+    points = cliffs()
+    again = np.add(points[::7], (0, 0, 50))
+    dice = np.random.default_rng(2)
+    both = np.concatenate([points, again])[dice.permutation(len(points) + len(again))]
+    _, first = np.unique(both[:, :2], axis=0, return_index=True)
+    tiles = distributed.triangulate(both, tmp_path / "tin", tile_points=120)
+    tin = tiles.simplify(max_error=2)
+    found = judge(tin, both[np.sort(first)])
+    assert max(distance for distance in found if distance is not None) <= 2
+    assert None not in found
+    proven = simplifying.prove(tiles, tin, 2)
+    assert all(proven) and sum(len(each.distances) for each in proven) == len(points)

@@ -9,13 +9,13 @@ line, which leaves room for rounding; all others are within it as in one piece.
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from delone import _core
 from delone._base.counting import counted
+from delone._base.thinning import thinned
 from delone._tiling.plane import topology
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.distributed.read.folder import TileFolder
@@ -114,18 +114,22 @@ def _layout(tin: TileFolder) -> tuple[list[_Cut], Floats, list[list[int]]]:
 
 
 def _own(tin: TileFolder, number: int, value: str) -> Floats:
-    """The points of a tile, without those of others, (n, 3)."""
+    """The points of a tile, without those of others, (n, 3); of equal ones the first."""
     tile = tin.tile(number)
+    ids = tile.ids[tile.owned]
     # Negative zeros are zeros.
-    places: Floats = np.column_stack((tile.points, heights_of(tile, value)))[tile.owned] + 0.0
-    bad = np.flatnonzero(~np.isfinite(places[:, 2]))
+    points = np.column_stack((tile.points, heights_of(tile, value)))[tile.owned] + 0.0
+    order = np.lexsort((ids, points[:, 1], points[:, 0]))
+    same = (np.diff(points[order, :2], axis=0) == 0).all(axis=1)
+    order = np.sort(np.concatenate((order[:1], order[1:][~same])))
+    points = points[order]
+    bad = np.flatnonzero(~np.isfinite(points[:, 2]))
     if len(bad):
-        rows = tile.ids[tile.owned][bad]
         raise InputError(
             f"{value} is NaN or infinite at {counted(len(bad), 'point')} of tile {number}, first "
-            f"in row {rows[0]}: a simplified surface needs a value at each point"
+            f"in row {ids[order[bad[0]]]}: a simplified surface needs a value at each point"
         )
-    return places
+    return points
 
 
 def _on_cuts(path: str, value: str, number: int, cuts: list[_Cut]) -> Floats:
@@ -184,28 +188,9 @@ def _simplified_lines(
     for cut, (points, fixed) in zip(cuts, lines, strict=True):
         slack = 8 * _EPS * float(np.abs(points[:, 2]).max(initial=0.0))
         # If rounding could matter, all points stay.
-        kept = _kept(points[:, 1 - cut.axis], points[:, 2], fixed, error / 2)
+        kept = thinned(points[:, 1 - cut.axis], points[:, 2], fixed, error / 2)
         simple.append(points if error / 2 <= slack else points[kept])
     return simple
-
-
-def _kept(way: Floats, z: Floats, fixed: Bools, limit: float) -> Bools:
-    """Which points of a profile stay, by the greatest vertical distance (Douglas and Peucker)."""
-    kept = fixed.copy()
-    kept[:1] = kept[-1:] = True
-    marks = np.flatnonzero(kept).tolist()
-    spans = list(pairwise(marks))
-    while spans:  # each round with a split keeps one more point
-        a, b = spans.pop()
-        if b - a < 2:
-            continue
-        share = (way[a + 1 : b] - way[a]) / (way[b] - way[a])
-        away = np.abs(z[a + 1 : b] - (z[a] + share * (z[b] - z[a])))
-        k = int(away.argmax())
-        if not away[k] <= limit:
-            kept[a + 1 + k] = True
-            spans += [(a, a + 1 + k), (a + 1 + k, b)]
-    return kept
 
 
 def _simplified_tile(

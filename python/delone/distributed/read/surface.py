@@ -208,7 +208,8 @@ class TiledSurface(TileFolder):
         Along the cuts between tiles, the profile of the surface is simplified first, to half of the
         error. Both tiles beside a cut get the same line, so there are no cracks. Then each tile is
         simplified as by `delone.terrain.TIN.simplify`, with the lines around it as edges that stay.
-        The bound holds exactly, at all points, including those on cuts. Points of lines where a cut
+        The bound holds exactly, at all points, including those on cuts, and of points that
+        coincide at the first one. Points of lines where a cut
         crosses an edge of the surface are not points of the survey; their heights are rounded.
 
         Memory is that of one tile and of the result, which has more triangles than one that is made
