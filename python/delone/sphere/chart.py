@@ -16,6 +16,7 @@ from delone.areal.paired import row_sums
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.plot.axes import new_axes, thin
 from delone.sphere.coordinates import lonlat_of
+from delone.sphere.large import overlaps_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -81,7 +82,7 @@ def plot_grid(
 
 def _means(grid: Any, field: Floats, pixels: Any) -> Floats:
     """Return the mean over what each pixel shares with cells that have a value."""
-    found = pixels._made.overlaps(grid._made, as_workers(grid.workers))
+    found = overlaps_of(pixels._made, grid._made, as_workers(grid.workers))
     values = field[found.indices]
     there = np.isfinite(values)
     parts = np.where(there, found.areas, 0.0)
@@ -143,11 +144,19 @@ def _parallels(grid: Any) -> list[Floats]:
 
 
 def _arcs(grid: Any) -> list[Floats]:
-    """Return sides as chains of places, in groups of one length."""
-    vectors, rings, _ = grid.rings
+    """Return sides as chains of places, in groups of one length.
+
+    Those between two triangles of one cell are left out.
+    """
+    vectors, rings, cells = grid.rings
     following = np.arange(1, len(vectors) + 1)
     following[rings[1:][np.diff(rings) > 0] - 1] = rings[:-1][np.diff(rings) > 0]
     start, end = vectors, vectors[following]
+    outer = np.ones(len(vectors), dtype=bool)
+    for cell in grid.report.large.tolist():
+        own = slice(rings[cells[cell]], rings[cells[cell + 1]])
+        outer[own] = _once(start[own], end[own])
+    start, end = start[outer], end[outer]
     angle = 2 * np.arcsin(np.clip(np.linalg.norm(end - start, axis=1) / 2, 0, 1))
     parts = np.ceil(np.degrees(angle) / _STEP).astype(int)
     found = []
@@ -159,6 +168,14 @@ def _arcs(grid: Any) -> list[Floats]:
         places[..., 0] = np.unwrap(places[..., 0], period=360, axis=1)
         found.append(places)
     return found
+
+
+def _once(start: Floats, end: Floats) -> Any:
+    """Return which sides of a cell are not also there in the opposite direction."""
+    at = np.unique(np.concatenate((start, end)), axis=0, return_inverse=True)[1].ravel()
+    one, other = at[: len(start)], at[len(start) :]
+    count = len(start) + len(end)
+    return ~np.isin(one * count + other, other * count + one)
 
 
 def _draw(ax: Any, chains: list[Floats], left: float, right: float, **style: Any) -> None:

@@ -16,6 +16,7 @@ from delone.sphere.formats import Choices, read_cells
 from delone.sphere.gaussian import gaussian_bounds
 from delone.sphere.grid_cells import GridCells
 from delone.sphere.healpix import healpix_corners
+from delone.sphere.large import wound
 from delone.sphere.rings import as_bounds, as_corners, as_starts, merged_corners
 
 if TYPE_CHECKING:
@@ -71,10 +72,11 @@ class Grid(GridCells):
     Notes
     -----
     Polygons may be concave, have holes and several parts, repeat corners, have corners on the sides
-    of others, run clockwise, and lie at or around a pole. Each must be within a hemisphere. The
-    start, direction and repeated corners of a ring, and the order of bounds, do not change a single
-    bit of the results. Areas are accurate to a few units in their last place, even for cells of
-    centimeters.
+    of others, run clockwise, and lie at or around a pole. Each part must be within a hemisphere;
+    `from_mesh` and `from_polygons` also take larger ones, if `winding` says which side of their
+    corners is meant. The start, direction and repeated corners of a ring, and the order of bounds,
+    do not change a single bit of the results. Areas are accurate to a few units in their last
+    place, even for cells of centimeters.
 
     See Also
     --------
@@ -391,6 +393,7 @@ class Grid(GridCells):
         starts: ArrayLike | None = None,
         *,
         lonlat: ArrayLike | None = None,
+        winding: str | None = None,
         merge: float = 1e-12,
         degrees: bool = True,
         workers: int | None = None,
@@ -406,6 +409,11 @@ class Grid(GridCells):
             corners.
         lonlat : array_like, shape (k, 2) or (n, c, 2), optional
             Longitudes and latitudes instead of `xyz`.
+        winding : {"smaller", "ccw", "cw"}, optional
+            Which side of its corners is a cell: the smaller one; the left one, which counter-
+            clockwise corners surround; or the right one. By default the smaller one of corners that
+            are within a hemisphere, and others raise an error. Cells beyond a hemisphere become
+            triangles.
         merge, degrees, workers
             As for `from_curvilinear`.
 
@@ -418,8 +426,15 @@ class Grid(GridCells):
         ------
         DirectionError
             As for `from_curvilinear`, or a vector is zero.
+        InputError
+            `winding` is unknown, or makes more than 1,000 cells larger than a hemisphere.
         ShapeError, DtypeError, NonFiniteError
             Arrays have other shapes, or a corner is not a number.
+
+        Warns
+        -----
+        PolygonWarning
+            With `winding`, several cells are larger than a hemisphere, so they overlap.
 
         Examples
         --------
@@ -431,15 +446,24 @@ class Grid(GridCells):
         >>> grid = sphere.Grid.from_mesh(places[[(0, 1, 2), (1, 3, 2)]])
         >>> (grid.areas / np.pi).tolist()
         [0.5, 0.5]
+
+        Everything outside a cap around the north pole, clockwise around it:
+
+        >>> ring = [(0, 60), (270, 60), (180, 60), (90, 60)]
+        >>> grid = sphere.Grid.from_mesh(lonlat=[ring], winding="ccw")
+        >>> grid, round(float(grid.areas[0] / (4 * np.pi)), 3)
+        (<Grid of 1 cell, arcs of great circles>, 0.954)
         """
         vectors, where = as_starts(xyz, lonlat, starts, degrees=degrees, workers=workers)
-        return cls._polygons(vectors, where, (len(where) - 1,), merge, workers)
+        shape = (len(where) - 1,)
+        return cls._polygons(vectors, where, shape, merge, workers, winding=winding)
 
     @classmethod
     def from_polygons(
         cls,
         geometries: Any,
         *,
+        winding: str | None = None,
         merge: float = 1e-12,
         degrees: bool = True,
         workers: int | None = None,
@@ -451,6 +475,9 @@ class Grid(GridCells):
         geometries : geometry, iterable of geometries, GeoSeries or GeoDataFrame
             Shapely polygons and multipolygons, one cell each; None and empty geometries are empty
             cells. Geographic reference systems only.
+        winding : {"smaller", "ccw", "cw"}, optional
+            As for `from_mesh`, of outer rings: "ccw" for GeoJSON, "cw" for shapefiles. The majority
+            of their sides decides.
         merge, degrees, workers
             As for `from_curvilinear`.
 
@@ -463,11 +490,17 @@ class Grid(GridCells):
         Raises
         ------
         InputError
-            A geometry is not a polygon, or its reference system is projected.
+            A geometry is not a polygon, or its reference system is projected; `winding` is unknown,
+            or the outer rings of a geometry run in both directions.
         DirectionError
             As for `from_curvilinear`.
         MissingExtraError
             shapely is not installed.
+
+        Warns
+        -----
+        PolygonWarning
+            As for `from_mesh`.
 
         Notes
         -----
@@ -484,6 +517,8 @@ class Grid(GridCells):
         given = rings_of.geometries(geometries, degrees=degrees, workers=workers)
         vectors, merged = merged_corners(given.vectors, _as_merge(merge))
         arrays = (vectors, given.rings, given.cells, given.holes)
+        if winding is not None:
+            arrays = wound(arrays, winding, workers)
         return cls._of("arc", arrays, (len(given.cells) - 1,), merged, workers)
 
     @classmethod
@@ -630,10 +665,15 @@ class Grid(GridCells):
         shape: tuple[int, ...],
         merge: float,
         workers: int | None,
+        *,
+        winding: str | None = None,
     ) -> Self:
         """Return the grid of cells of one ring each."""
         vectors, merged = merged_corners(vectors, _as_merge(merge))
-        return cls._of("arc", _alone(vectors, starts), shape, merged, workers)
+        arrays = _alone(vectors, starts)
+        if winding is not None:
+            arrays = wound(arrays, winding, workers)
+        return cls._of("arc", arrays, shape, merged, workers)
 
 
 def _alone(vectors: Floats, starts: Rows) -> tuple[Any, ...]:

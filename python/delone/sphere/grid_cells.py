@@ -15,6 +15,7 @@ from delone.errors import DirectionError, ShapeError
 from delone.sphere import rings as rings_of
 from delone.sphere.coordinates import as_step, lonlat_of, units_of
 from delone.sphere.grid_report import GridFaults, GridReport
+from delone.sphere.large import LARGE, Parts, overlaps_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,7 +29,10 @@ __all__ = ["GridCells"]
 # What is wrong with a cell, in the order of the core's numbers, and the cure.
 _FAULTS = {
     2: ("a side that joins opposite directions", "add a corner between them"),
-    3: ("corners that no hemisphere contains", "split such cells"),
+    LARGE: (
+        "corners that no hemisphere contains",
+        "give winding= to Grid.from_mesh or Grid.from_polygons, or split such cells",
+    ),
     4: ("sides that cross or are repeated", "repair them, for example with shapely.make_valid"),
 }
 # Cells of one grid that share more of the smaller one than this overlap; less is a rounding.
@@ -42,13 +46,18 @@ _RINGS = "places", "rings", "cells", "holes"
 class GridCells(Stored):
     """Cells on the sphere, however they were made; see `Grid`."""
 
-    __slots__ = ("_arrays", "_bounds", "_centers", "_edges", "_made", "_mask", "_merged", "_shape")
+    __slots__ = (
+        "_arrays", "_bounds", "_centers", "_checked", "_edges", "_made", "_mask", "_merged",
+        "_shape",
+    )  # fmt: skip
 
     _arrays: tuple[Any, ...]
     _bounds: tuple[Floats, Floats] | None
     _centers: Floats | None
+    _checked: Any
     _edges: str
-    _made: _core.CellGrid
+    # The core's cells, or its parts of them.
+    _made: Any
     _mask: Bools | None
     _merged: int
     _shape: tuple[int, ...]
@@ -67,16 +76,22 @@ class GridCells(Stored):
         centers: Floats | None = None,
     ) -> Self:
         """Return a grid of arrays for the core; `centers` are those of fields, in degrees."""
-        as_workers(workers)
+        threads = as_workers(workers)
         made = cls.__new__(cls)
         arrays = tuple(sealed(a) if isinstance(a, np.ndarray) else a for a in arrays)
         build = _core.CellGrid.rows if edges == "parallel" else _core.CellGrid.polygons
+        cells: Any = build(*arrays)
+        checked: Any = cells.check(True, threads)
+        if (checked.faults == LARGE).any():
+            cells = Parts(arrays, checked.faults)
+            checked = cells.check(True, threads)
         made._hold(
             arrays=arrays,
+            checked=checked,
             bounds=None if bounds is None else (sealed(bounds[0]), sealed(bounds[1])),
             centers=None if centers is None else sealed(centers),
             edges=edges,
-            made=build(*arrays),
+            made=cells,
             mask=None if mask is None else sealed(mask),
             merged=merged,
             shape=shape,
@@ -159,11 +174,6 @@ class GridCells(Stored):
                 raise DirectionError(message, rows=rows[:10].tolist(), count=count)
 
     @property
-    @kept
-    def _checked(self) -> _core.CheckedCells:
-        return self._made.check(True, as_workers(self._workers))
-
-    @property
     def ncells(self) -> int:
         """Number of cells."""
         return int(np.prod(self._shape))
@@ -205,6 +215,7 @@ class GridCells(Stored):
             reversed=np.flatnonzero(known.turned),
             empty=np.flatnonzero(known.faults == 1),
             concave=np.flatnonzero(known.concave),
+            large=np.flatnonzero(self._made.large) if isinstance(self._made, Parts) else _NONE,
             masked=np.flatnonzero(~self._mask) if self._mask is not None else _NONE,
         )
 
@@ -213,7 +224,8 @@ class GridCells(Stored):
     def rings(self) -> tuple[Floats, Rows, Rows]:
         """The rings of all cells: unit vectors of corners, starts of rings, starts of cells.
 
-        Those of cells between meridians and parallels are their four corners.
+        Those of cells between meridians and parallels are their four corners, and those of cells on
+        the larger side of their rings the triangles that they consist of.
         """
         if self._edges == "arc":
             vectors, starts, cells, _ = self._arrays
@@ -265,7 +277,7 @@ class GridCells(Stored):
         >>> sphere.Grid.from_mesh(lonlat=[square, moved]).validate()
         <GridFaults: 1 pair of cells overlap, 0.483547 % of the sphere>
         """
-        found = self._made.overlaps(self._made, as_workers(self._workers))
+        found = overlaps_of(self._made, self._made, as_workers(self._workers))
         first = np.repeat(np.arange(self.ncells), np.diff(found.indptr))
         pairs = np.column_stack((first, found.indices.astype(np.int64)))
         small = self.areas[pairs].min(axis=1)

@@ -33,6 +33,9 @@ class GridReport(ReadOnly):
         Cells with fewer than three distinct corners, or without area; they share nothing.
     concave : ndarray of int64
         Cells that are concave or have several rings, or have more than 64 corners.
+    large : ndarray of int64
+        Cells that no hemisphere contains: those of several parts, or cut into triangles because of
+        `winding`.
     masked : ndarray of int64
         Cells that the dataset excludes.
 
@@ -49,15 +52,17 @@ class GridReport(ReadOnly):
     reversed: Rows
     empty: Rows
     concave: Rows
+    large: Rows
     masked: Rows
 
     def __repr__(self) -> str:
         parts = [f"{counted(self.merged, 'corner')} merged"] if self.merged else []
         if self.repeated:
             parts.append(f"{counted(self.repeated, 'repeated corner')} ignored")
-        for name in ("reversed", "empty", "concave", "masked"):
+        for name in ("reversed", "empty", "concave", "large", "masked"):
             if count := len(getattr(self, name)):
-                parts.append(f"{counted(count, 'cell')} {name}")
+                what = "beyond a hemisphere" if name == "large" else name
+                parts.append(f"{counted(count, 'cell')} {what}")
         return f"<GridReport: {', '.join(parts) or 'nothing special'}>"
 
 

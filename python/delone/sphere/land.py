@@ -46,6 +46,8 @@ def first_polygon(
     areas: Floats,
     component: Indices,
     rings: Rings,
+    *,
+    warn: bool = True,
 ) -> Indices:
     """Return the first geometry whose rings contain each component (even-odd rule), or -1.
 
@@ -76,7 +78,8 @@ def first_polygon(
         inside = _toggled(inside, turned, count)
     else:
         inside = _toggled(inside, _turned(inside, sides, outer, winding), count)
-        _warn_of_large(_areas(inside, size))
+        if warn:
+            _warn_of_large(_areas(inside, size))
     # If an index is repeated, the last value assigned remains.
     first = np.full(count + 1, -1, dtype=np.int32)
     order = np.argsort(-inside[:, 1], kind="stable")

@@ -10,6 +10,7 @@ from delone.areal.shared import OverlapReport, SharedAreas
 from delone.areal.weights import as_mask
 from delone.errors import DtypeError, InputError
 from delone.sphere.grid import Grid
+from delone.sphere.large import overlaps_of
 from delone.sphere.weights import Weights
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ class Overlaps(SharedAreas[Weights], Stored):
         for name, grid in (("source", source), ("target", target)):
             if not isinstance(grid, Grid):
                 raise DtypeError(f"{name} must be a sphere.Grid, got {type(grid).__name__}")
-        found = target._made.overlaps(source._made, as_workers(workers))
+        found = overlaps_of(target._made, source._made, as_workers(workers))
         self._fill(
             (found.indptr, found.indices, found.areas),
             (source.areas, target.areas, found.second, found.first),

@@ -1,0 +1,235 @@
+"""Cells that no hemisphere contains, as parts that the core can use.
+
+The core has cells within a hemisphere. A cell beyond one is the union of its parts: the outer rings
+of a multipolygon, each with its holes, or triangles between the corners of a cell whose rings alone
+do not tell which side is meant. No corner moves, so parts meet exactly.
+"""
+
+from __future__ import annotations
+
+import itertools
+import warnings
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone import _core
+from delone._base.arrays import as_choice, as_workers
+from delone._base.georeference import caller_level
+from delone.errors import CrossingSegmentsError, DirectionError, InputError
+from delone.sphere.constrained import WINDINGS, ConstrainedDelaunay, Given
+from delone.sphere.land import Rings, first_polygon
+from delone.sphere.sides import Origin, PolygonWarning
+
+if TYPE_CHECKING:
+    from delone._base.types import Bools, Floats, Rows
+
+    Arrays = tuple[Floats, Rows, Rows, Bools]
+
+__all__ = ["LARGE", "Parts", "overlaps_of", "wound"]
+
+# The core's numbers of what is wrong with a cell.
+_EMPTY, LARGE = 1, 3
+# Places between corners, so that no triangle is nearly as wide as a hemisphere.
+_BETWEEN = np.array([v for v in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(v)])
+# Each is triangulated alone.
+_MOST = 1000
+# Sums of areas, in steradians, are this far from half the sphere at most if they are half.
+_HALF = 1e-9
+
+
+class _Checked(NamedTuple):
+    """What the core's CheckedCells have, of cells in parts."""
+
+    areas: Floats
+    faults: Any
+    turned: Bools
+    concave: Bools
+    repeated: int
+
+
+class _Shared(NamedTuple):
+    """What the core's SharedCells have, of cells in parts."""
+
+    indptr: Rows
+    indices: Any
+    areas: Floats
+    first: Floats
+    second: Floats
+
+
+class _Part(NamedTuple):
+    """The triangles of a cell, (k, 3, 3), and their area."""
+
+    triangles: Floats
+    area: float
+
+
+class Parts:
+    """Cells of which those that no hemisphere contains are the unions of their parts."""
+
+    def __init__(self, arrays: Arrays, faults: Any) -> None:
+        vectors, rings, cells, holes = arrays
+        self.faults, self.large = faults, faults == LARGE
+        number = np.repeat(np.arange(len(cells) - 1), np.diff(cells))
+        begins = self.large[number] & ~holes
+        begins[cells[:-1][np.diff(cells) > 0]] = True
+        first = np.flatnonzero(begins)
+        # The cell of each part.
+        self.owner = number[first]
+        starts = np.append(first, len(holes)).astype(np.int64)
+        self.core = _core.CellGrid.polygons(vectors, rings, starts, holes)
+
+    def check(self, crossing: bool, workers: int) -> _Checked:
+        """Return what is known of each cell."""
+        found = self.core.check(crossing, workers)
+        count = len(self.faults)
+        faults = np.where(self.large, 0, self.faults)
+        wrong = np.flatnonzero(found.faults > _EMPTY)
+        np.maximum.at(faults, self.owner[wrong], found.faults[wrong])
+        areas = _sums(self.owner, found.areas, count)
+        faults[self.large & (areas == 0) & (faults == 0)] = _EMPTY
+        turned, concave = np.zeros(count, dtype=bool), self.large.copy()
+        turned[self.owner[found.turned]] = True
+        concave[self.owner[found.concave]] = True
+        return _Checked(areas, faults, turned, concave, found.repeated)
+
+
+def _sums(rows: Rows, values: Floats, count: int) -> Floats:
+    """Return the sum of the values of each row."""
+    return np.bincount(rows, values, count).astype(np.float64)
+
+
+def overlaps_of(one: Any, other: Any, workers: int) -> Any:
+    """Return what the cells of two grids share, in parts or not."""
+    parts = [each if isinstance(each, Parts) else None for each in (one, other)]
+    cores = [made.core if made else each for made, each in zip(parts, (one, other), strict=True)]
+    found = cores[0].overlaps(cores[1], workers)
+    if not any(parts):
+        return found
+    counts = len(found.first), len(found.second)
+    owners = [
+        part.owner if part else np.arange(count) for part, count in zip(parts, counts, strict=True)
+    ]
+    sizes = [len(part.faults) if part else count for part, count in zip(parts, counts, strict=True)]
+    row = owners[0][np.repeat(np.arange(counts[0]), np.diff(found.indptr))]
+    keys, at = np.unique(row * sizes[1] + owners[1][found.indices], return_inverse=True)
+    covered = [
+        _sums(owner, sums, size)
+        for owner, sums, size in zip(owners, (found.first, found.second), sizes, strict=True)
+    ]
+    per_row = np.bincount(keys // sizes[1], minlength=sizes[0])
+    return _Shared(
+        np.concatenate(([0], np.cumsum(per_row))).astype(found.indptr.dtype),
+        (keys % sizes[1]).astype(found.indices.dtype),
+        _sums(at, found.areas, len(keys)),
+        covered[0],
+        covered[1],
+    )
+
+
+def wound(arrays: Arrays, winding: str, workers: int | None) -> Arrays:
+    """Return cells on the side of their outer rings that `winding` says.
+
+    Those that no hemisphere contains become triangles.
+    """
+    as_choice(winding, WINDINGS, name="winding")
+    vectors, rings, cells, holes = arrays
+    threads = as_workers(workers)
+    large = _core.CellGrid.polygons(*arrays).check(False, threads).faults == LARGE
+    if winding != "smaller":
+        count = len(rings) - 1
+        alone = np.arange(count + 1, dtype=np.int64), np.zeros(count, dtype=np.bool_)
+        each = _core.CellGrid.polygons(vectors, rings, *alone).check(False, threads)
+        # Outer rings that have the larger part of the sphere on the side that is meant.
+        against = (each.turned == (winding == "ccw")) & (each.faults != _EMPTY) & ~holes
+        number = np.repeat(np.arange(len(cells) - 1), np.diff(cells))
+        large[number[against]] = True
+    rows = np.flatnonzero(large)
+    if len(rows) > _MOST:
+        raise InputError(
+            f"{len(rows)} cells are larger than a hemisphere with winding={winding!r:.20}, first cell "
+            f'{rows[0]}: do rings run the other way? winding="smaller" takes the smaller side'
+        )
+    parts = {row: _triangles(arrays, row, winding, workers) for row in rows.tolist()}
+    beyond = [row for row, part in parts.items() if part.area > 2 * np.pi + _HALF]
+    if len(beyond) > 1:
+        warnings.warn(
+            f"{len(beyond)} cells are larger than a hemisphere, so they overlap, first cells "
+            f"{beyond[0]} and {beyond[1]}: do their rings run the other way? "
+            'winding="smaller" takes the smaller side',
+            PolygonWarning,
+            stacklevel=caller_level(),
+        )
+    # Rings that cancel out have no triangles, and remain an error.
+    return _replaced(arrays, {row: p.triangles for row, p in parts.items() if len(p.triangles)})
+
+
+def _triangles(arrays: Arrays, row: int, winding: str, workers: int | None) -> _Part:
+    """Return the triangles of a cell."""
+    vectors, rings, cells, holes = arrays
+    own = range(int(cells[row]), int(cells[row + 1]))
+    ends, outer = [], []
+    corners = vectors[rings[own.start] : rings[own.stop]]
+    for ring in own:
+        at = np.arange(rings[ring], rings[ring + 1]) - rings[own.start]
+        ends.append(np.column_stack((at, np.roll(at, -1))))
+        outer.append(np.full(len(at), not holes[ring]))
+    segments = np.concatenate(ends)
+    sides = np.ones(len(segments), dtype=bool)
+    origin = Origin(np.zeros(len(segments), dtype=np.int32), sides, np.concatenate(outer))
+    places = np.concatenate((corners, _BETWEEN))
+    given = Given(segments.astype(np.int32), origin, winding, len(places))
+    try:
+        mesh = ConstrainedDelaunay._of_geometries(places, given, None, True, workers)
+        ordered = Rings(origin, mesh.duplicate_of[segments], winding)
+        inside = first_polygon(mesh._made, mesh.areas, mesh._component, ordered, warn=False)
+    except CrossingSegmentsError as error:
+        raise DirectionError(f"cell {row} has sides that cross: {error}", rows=[row]) from None
+    except InputError as error:
+        raise InputError(f"cell {row}: {error}") from None
+    at, times = np.unique(_passed(mesh, segments, len(corners)), return_counts=True)
+    if (times > 1).any():
+        x, y = mesh.lonlat[at[times > 1][0]].tolist()
+        raise DirectionError(f"cell {row} has sides that cross at ({x:g}, {y:g})", rows=[row])
+    chosen = inside[mesh._component] == 0
+    return _Part(mesh.vectors[mesh.simplices[chosen]], float(mesh.areas[chosen].sum()))
+
+
+def _passed(mesh: ConstrainedDelaunay, segments: Rows, count: int) -> Rows:
+    """Return the vertices after `count` that sides pass through, each for each of these sides."""
+    row, vertex = mesh._made.through[mesh._made.through[:, 1] >= count].T
+    # Equal sides are one.
+    ends = np.sort(segments[row], axis=1)
+    found: Rows = np.unique(np.column_stack((vertex, ends)), axis=0)[:, 0]
+    return found
+
+
+def _replaced(arrays: Arrays, given: dict[int, Floats]) -> Arrays:
+    """Return cells of which some have triangles instead of their rings."""
+    vectors, rings, cells, holes = arrays
+    if not given:
+        return arrays
+    places, sizes, counts, hollow = [], [], [], []
+    last = 0
+    # What lies between cells that are replaced stays as it is.
+    for row in [*given, len(cells) - 1]:
+        a, b = int(cells[last]), int(cells[row])
+        places.append(vectors[rings[a] : rings[b]])
+        sizes.append(np.diff(rings[a : b + 1]))
+        counts.append(np.diff(cells[last : row + 1]))
+        hollow.append(holes[a:b])
+        if row in given:
+            triangles = given[row]
+            places.append(triangles.reshape(-1, 3))
+            sizes.append(np.full(len(triangles), 3))
+            counts.append(np.array([len(triangles)]))
+            hollow.append(np.zeros(len(triangles), dtype=bool))
+        last = row + 1
+    lengths, numbers = np.concatenate(sizes), np.concatenate(counts)
+    return (
+        np.concatenate(places),
+        np.concatenate(([0], np.cumsum(lengths))).astype(np.int64),
+        np.concatenate(([0], np.cumsum(numbers))).astype(np.int64),
+        np.concatenate(hollow),
+    )
