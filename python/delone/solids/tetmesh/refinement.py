@@ -51,8 +51,8 @@ _BOUNDARIES = ("faces", "surface")
 _MOST_ROUNDS = 80
 # Moving vertices makes some tetrahedra too large again: these are refined again, this many times.
 _AGAIN = 2
-# Twice as many passes as without added points, which come in four levels of angles.
-_PASSES = 60
+# The limit on passes of an improvement.
+_PASSES = 30
 # Sizes are met up to the rounding of volumes and edges.
 _ROUNDING = 1e-9
 _SHOWN = 5
