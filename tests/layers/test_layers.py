@@ -57,13 +57,14 @@ ALONE = {"datasets", "reference", "testing"}
 GROUND_FLOOR = set[str]().union(*PYTHON[:3])
 
 # What each room of the core, and each file of its `base`, may use, of the core and of other crates.
-GROUND = {"arrays", "error", "memory", "sets", "vector", "watch"}
+GROUND = {"arrays", "error", "memory", "random", "sets", "vector", "watch"}
 BASE: dict[str, set[str]] = {
     "arrays": set(),
     "error": {"delone_predicates"},
     "memory": {"error", "libc"},
     "watch": {"error"},
     "sets": {"error", "memory"},
+    "random": set(),
     "vector": set(),
     "parallel": GROUND,
     "points": {"error", "memory", "delone_predicates"},

@@ -354,6 +354,7 @@ pub fn meets_triangle<const D: usize>(kind: Kind, [a, b, c]: [Site<D>; 3], q: Si
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::random::uniform;
 
     const PLAIN: Kind = Kind {
         weighted: false,
@@ -387,13 +388,7 @@ mod tests {
 
     #[test]
     fn the_stages_agree() {
-        let mut state = 5_u64;
-        let mut next = || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut next = uniform(5);
         let mut sure = 0;
         for i in 0..3000 {
             let thin = if i % 2 == 0 { 1.0 } else { 1e-5 };

@@ -9,6 +9,8 @@ pub mod memory;
 pub(crate) mod parallel;
 pub mod points;
 pub mod proof;
+#[cfg(test)]
+pub(crate) mod random;
 pub(crate) mod sets;
 pub(crate) mod vector;
 pub mod watch;

@@ -41,7 +41,8 @@ use crate::base::arrays::Arrays;
 use crate::base::error::{Densest, Error, Result};
 use crate::base::memory::{filled, push, with_room};
 use crate::base::watch::{Pace, Watch};
-use crate::delaunay::plane::{Built, Clock, Method, Stage, mesh};
+use crate::delaunay::plane::{Built, Method, mesh};
+use crate::delaunay::{Clock, Stage};
 use crate::mesh::plane::export;
 use crate::order;
 

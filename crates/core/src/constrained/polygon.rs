@@ -16,7 +16,8 @@ use crate::base::error::{Error, Result};
 use crate::base::memory::{filled, push, with_room};
 use crate::base::points::LIMIT2;
 use crate::base::watch::Watch;
-use crate::delaunay::plane::{Clock, Method};
+use crate::delaunay::Clock;
+use crate::delaunay::plane::Method;
 use crate::mesh::plane::{half_edges, next, prev, triangle};
 
 /// Which points are inside.

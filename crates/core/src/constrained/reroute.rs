@@ -307,7 +307,8 @@ mod tests {
     use super::super::split::Splitter;
     use super::*;
     use crate::constrained::inserted::insert_all;
-    use crate::delaunay::plane::{Clock, Method};
+    use crate::delaunay::Clock;
+    use crate::delaunay::plane::Method;
 
     type Bits = [u64; 2];
 

@@ -2,3 +2,7 @@
 
 pub mod plane;
 pub mod space;
+mod stages;
+
+pub(crate) use stages::Clock;
+pub use stages::{Stage, Triangulated};

@@ -105,6 +105,7 @@ pub fn within(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::random::uniform;
 
     #[test]
     fn triangles_within_a_box_are_distinguished() {
@@ -156,13 +157,7 @@ mod tests {
 
     #[test]
     fn corners_lie_in_the_disk() {
-        let mut state = 7u64;
-        let mut random = || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut random = uniform(7);
         for i in 0..10_000 {
             let flat = 10f64.powi(-(i % 14));
             let far = 10f64.powi(i % 7);

@@ -193,6 +193,7 @@ pub(crate) fn meeting(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::random::uniform;
     use delone_predicates::{Sign as Turn, orient2d};
 
     const NONE: [f64; 3] = [0.0; 3];
@@ -207,13 +208,7 @@ mod tests {
 
     #[test]
     fn the_stages_agree_as_far_as_they_promise() {
-        let mut state = 7_u64;
-        let mut next = || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut next = uniform(7);
         let mut plain = 0;
         for i in 0..4000 {
             let thin = if i % 2 == 0 { 1.0 } else { 1e-9 };

@@ -108,6 +108,7 @@ fn collect(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::random::uniform;
 
     fn ordered(points: &[Point2]) -> (Vec<Point2>, Vec<u32>, Vec<[u32; 2]>) {
         let mut to = points.to_vec();
@@ -131,13 +132,7 @@ mod tests {
 
     #[test]
     fn order_depends_on_coordinates_alone() {
-        let mut x = 7u64;
-        let mut next = || {
-            x = x
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (x >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut next = uniform(7);
         // Clusters at ten scales: deep cells are keyed again.
         let points: Vec<Point2> = (0..3000)
             .map(|i| {

@@ -106,6 +106,7 @@ fn collect(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::random::uniform;
 
     fn arranged(points: &[Point3]) -> Arranged3 {
         arrange(points, &Watch::idle()).unwrap()
@@ -129,13 +130,7 @@ mod tests {
 
     #[test]
     fn order_depends_on_coordinates_alone() {
-        let mut x = 7u64;
-        let mut next = || {
-            x = x
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (x >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut next = uniform(7);
         // Clusters at ten scales: deep cells are keyed again.
         let points: Vec<Point3> = (0..3000)
             .map(|i| [0; 3].map(|_| 1e-3f64.powi(i % 10) * next()))

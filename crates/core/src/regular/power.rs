@@ -127,6 +127,7 @@ pub(super) fn determinant([a, b, c]: &[[BigInt; 2]; 3], extra: [BigInt; 3]) -> S
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::random::uniform;
 
     #[test]
     fn a_heavier_site_sinks_below_the_plane() {
@@ -139,13 +140,7 @@ mod tests {
 
     #[test]
     fn the_filter_agrees_with_integers() {
-        let mut state = 3_u64;
-        let mut next = || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut next = uniform(3);
         let mut sure = 0;
         for _ in 0..2000 {
             let points = [(); 4].map(|()| [next(), next()]);

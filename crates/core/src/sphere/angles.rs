@@ -316,16 +316,11 @@ pub fn directions(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::random::uniform;
 
     /// Angles of a few turns: scattered, near whole and half degrees and right angles, and small.
     fn angles() -> impl Iterator<Item = f64> {
-        let mut x = 1_u64;
-        let mut next = move || {
-            x = x
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (x >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut next = uniform(1);
         (0..200_000).map(move |i| {
             let at = 1440.0 * next() - 720.0;
             match i % 4 {

@@ -112,16 +112,11 @@ pub(super) fn foot([(a, wa), (b, wb)]: [Weighted; 2]) -> Point2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::random::uniform;
 
     #[test]
     fn both_stages_agree_as_far_as_they_promise() {
-        let mut state = 5_u64;
-        let mut next = || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut next = uniform(5);
         for i in 0..4000 {
             let offset = [0.0, 1e6, -0.5][i % 3];
             let weight = [0.0, 1.0][i % 2];

@@ -256,6 +256,7 @@ impl<'a> Flips<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::random::uniform;
     use crate::delaunay::plane::{Method, triangulate};
 
     /// A convex polygon fanned from its vertex `hub`.
@@ -318,13 +319,7 @@ mod tests {
     #[test]
     fn a_stretched_triangulation_is_restored() {
         // A tiling of the hull stays one when the points are stretched.
-        let mut state = 1u64;
-        let mut random = || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut random = uniform(1);
         let points: Vec<Point2> = (0..500).map(|_| [random(), random()]).collect();
         let made = |points: &[Point2]| {
             let made = triangulate(points, Method::BowyerWatson, 1, &Watch::idle()).unwrap();

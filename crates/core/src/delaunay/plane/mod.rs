@@ -20,5 +20,5 @@ mod triangulate;
 pub mod validate;
 pub(crate) mod walk;
 
-pub(crate) use triangulate::{Built, Clock, mesh};
-pub use triangulate::{Method, Stage, Triangulation, triangulate};
+pub(crate) use triangulate::{Built, mesh};
+pub use triangulate::{Method, Triangulation, triangulate};

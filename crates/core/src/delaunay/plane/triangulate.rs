@@ -1,16 +1,15 @@
 //! Triangulates rows of coordinates: scan, sort, build in blocks, merge, export.
 
 use std::ops::Range;
-use std::time::{Duration, Instant};
 
 use delone_predicates::{Point2, incircle};
 
 use super::merge::merge;
 use super::{bowyer_watson, divide_conquer, incremental, lifting, sweep};
-use crate::base::arrays::Arrays;
 use crate::base::error::Result;
-use crate::base::watch::{Watch, now};
+use crate::base::watch::Watch;
 use crate::base::{parallel, points};
+use crate::delaunay::{Clock, Triangulated};
 use crate::mesh::plane::{Code, Mesh2, Patch, export};
 use crate::order::{Arranged, arrange};
 
@@ -62,19 +61,8 @@ impl Method {
 const TRIED: usize = 48;
 const MANY: usize = 6;
 
-/// The name of a stage and the time it took.
-pub type Stage = (&'static str, Duration);
-
 /// Triangles in the rows of the input.
-#[derive(Debug)]
-pub struct Triangulation {
-    /// Triangles and their neighbors.
-    pub arrays: Arrays<3>,
-    /// `[row, first row of the same point]`, ascending.
-    pub duplicates: Vec<[u32; 2]>,
-    /// The times of the stages.
-    pub stages: Vec<Stage>,
-}
+pub type Triangulation = Triangulated<3>;
 
 /// A triangulation as a mesh.
 #[derive(Debug)]
@@ -252,33 +240,6 @@ fn has_many_ties(own: &[Point2]) -> bool {
         .filter_map(|part| part.first_chunk())
         .filter(|&&[a, b, c, d]| incircle(a, b, c, d).is_zero());
     ties.count() >= MANY
-}
-
-/// Times the stages one after the other.
-#[derive(Debug)]
-pub struct Clock {
-    /// None where the platform has no clock.
-    last: Option<Instant>,
-    /// The stages so far.
-    pub stages: Vec<Stage>,
-}
-
-impl Clock {
-    /// A clock that starts now.
-    pub fn start() -> Self {
-        Self {
-            last: now(),
-            stages: Vec::with_capacity(4),
-        }
-    }
-
-    /// Ends the stage `name`.
-    pub fn lap(&mut self, name: &'static str) {
-        let now = now();
-        let before = std::mem::replace(&mut self.last, now);
-        let took = now.zip(before).map_or(Duration::ZERO, |(n, b)| n - b);
-        self.stages.push((name, took));
-    }
 }
 
 #[cfg(test)]

@@ -15,4 +15,4 @@ mod sphere;
 mod triangulate;
 pub mod validate;
 
-pub use triangulate::{Stage, Triangulation3, triangulate};
+pub use triangulate::{Triangulation3, triangulate};

@@ -3,8 +3,6 @@
 //! A large set is split into blocks, which threads triangulate in parallel and `seam` joins. The
 //! blocks depend on the points only, so the arrays are the same for any number of threads.
 
-use std::time::{Duration, Instant};
-
 use delone_predicates::Point3;
 
 use super::cavity::Room;
@@ -14,8 +12,9 @@ use super::seam::{Block, Seam, Surroundings, belonging, joints};
 use crate::base::arrays::Arrays;
 use crate::base::error::{Error, Result};
 use crate::base::memory::{is_plausible, with_room};
-use crate::base::watch::{Watch, now};
+use crate::base::watch::Watch;
 use crate::base::{parallel, points};
+use crate::delaunay::{Clock, Triangulated};
 use crate::mesh::space::{LIMIT, Mesh3, Records};
 use crate::order::space::{Arranged3, Extent3, Room3, arrange, arrange_rows};
 use crate::order::space_blocks::{Cuts3, split};
@@ -54,19 +53,8 @@ const SIZES: Sizes = Sizes {
     sparse: 64,
 };
 
-/// A part of the work and the time it took.
-pub type Stage = (&'static str, Duration);
-
 /// Tetrahedra in the rows of the input.
-#[derive(Debug)]
-pub struct Triangulation3 {
-    /// Tetrahedra and their neighbors.
-    pub arrays: Arrays<4>,
-    /// `[row, first row of the same point]`, ascending.
-    pub duplicates: Vec<[u32; 2]>,
-    /// The times of the stages.
-    pub stages: Vec<Stage>,
-}
+pub type Triangulation3 = Triangulated<4>;
 
 /// The canonical Delaunay triangulation of `input`; the same arrays for any number of workers.
 pub fn triangulate(input: &[Point3], workers: usize, watch: &Watch) -> Result<Triangulation3> {
@@ -338,35 +326,13 @@ fn check_memory(room: usize) -> Result<()> {
     }
 }
 
-/// Times the stages one after the other.
-struct Clock {
-    /// None where the platform has no clock.
-    last: Option<Instant>,
-    stages: Vec<Stage>,
-}
-
-impl Clock {
-    fn start() -> Self {
-        Self {
-            last: now(),
-            stages: Vec::with_capacity(8),
-        }
-    }
-
-    fn lap(&mut self, name: &'static str) {
-        let now = now();
-        let before = std::mem::replace(&mut self.last, now);
-        let took = now.zip(before).map_or(Duration::ZERO, |(n, b)| n - b);
-        self.stages.push((name, took));
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
     use crate::base::arrays::Given;
+    use crate::base::random::uniform;
     use crate::delaunay::space::validate::{Findings3, validate};
 
     /// The tetrahedra in blocks of several sizes, all valid and identical.
@@ -404,13 +370,7 @@ mod tests {
     }
 
     fn random(n: usize) -> Vec<Point3> {
-        let mut x = 7u64;
-        let mut next = || {
-            x = x
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (x >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut next = uniform(7);
         (0..n).map(|_| [next(), next(), next()]).collect()
     }
 

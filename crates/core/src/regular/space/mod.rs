@@ -90,17 +90,12 @@ fn spanning(points: &[Point3]) -> Option<[u32; 4]> {
 mod tests {
     use super::*;
     use crate::base::arrays::Given;
+    use crate::base::random::uniform;
     use crate::base::watch::IDLE;
 
     #[test]
     fn blocks_are_joined_alike_by_any_number_of_workers() {
-        let mut state = 5_u64;
-        let mut next = || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut next = uniform(5);
         let points: Vec<Point3> = (0..TWO + 500).map(|_| [(); 3].map(|()| next())).collect();
         let weights: Vec<f64> = points.iter().map(|_| 2e-4 * next()).collect();
         let one = regular(&points, &weights, 1, &IDLE).unwrap();
