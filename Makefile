@@ -51,7 +51,7 @@ VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1 | 
 NEEDS_build :=
 DEMO_EXTRAS := cli,las,mesh,plot
 NEEDS_demo := -E $(DEMO_EXTRAS)
-EXTRAS := cli,dxf,explore,fem,geo,graph,landxml,las,mesh,plot,pyvista,raster,xarray,dask,learn
+EXTRAS := cli,dxf,explore,fem,geo,globe,graph,landxml,las,mesh,plot,pyvista,raster,xarray,dask,learn
 NEEDS_test := -E $(EXTRAS) -G test
 NEEDS_docs := -E $(EXTRAS) -G test,docs
 NEEDS_bench := --release -E $(EXTRAS) -G bench

@@ -9,6 +9,7 @@ from delone.io.drawing import write_drawing
 from delone.io.geometryset import GeometrySet
 from delone.io.meshfile import MeshFile
 from delone.io.pointset import PointSet
+from delone.io.quantized_mesh import write_quantized_mesh
 from delone.io.raster import raster_suffixes, write_raster
 from delone.io.registry import (
     input_suffixes,
@@ -40,6 +41,7 @@ __all__ = [
     "read_surface",
     "write_drawing",
     "write_mesh",
+    "write_quantized_mesh",
     "write_raster",
     "write_tileset",
 ]

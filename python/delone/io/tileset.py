@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from delone._base.types import Floats
 
-__all__ = ["write_tileset"]
+__all__ = ["placed", "write_tileset"]
 
 # Levels that a tileset may have.
 _MOST = 32
@@ -93,7 +93,7 @@ def write_tileset(
     """
     wanted = _as_errors(errors)
     target = Path(folder)
-    degrees, space = _placed(tin)
+    degrees, space = placed(tin)
     frame = _Frame(degrees, space)
     exact = frame.local(space)
     target.mkdir(exist_ok=True)
@@ -102,7 +102,7 @@ def write_tileset(
     for number, error in enumerate(wanted.tolist()):
         surface = levels.surface(max_error=error)
         # Its points are among those of the survey, in another order.
-        own = frame.local(_placed(surface)[1]).astype(np.float32).astype(np.float64)
+        own = frame.local(placed(surface)[1]).astype(np.float32).astype(np.float64)
         found.append(_distance(tin, exact, surface, own))
         with replacing(target / f"level-{number}.glb") as temporary:
             write_local(temporary, own, surface.simplices)
@@ -131,7 +131,7 @@ def _heights(tin: Any) -> Floats:
     return found
 
 
-def _placed(tin: Any) -> tuple[Floats, Floats]:
+def placed(tin: Any) -> tuple[Floats, Floats]:
     """Return longitudes and latitudes, (n, 2), and positions around the center of the earth."""
     pyproj = require("pyproj", extra="geo", what="placing a surface on the globe")
     if tin.crs is None:
