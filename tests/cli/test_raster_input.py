@@ -93,3 +93,19 @@ def test_netcdf(ramp, command, tmp_path):
         assert json.loads(out)["cut"] == pytest.approx(81 * 4.5)
     code, out, _ = command("volume", path, path, "--json", "--step", "3")
     assert (code, json.loads(out)["points"]) == (0, 16)
+
+
+def test_windows_of_lidar(command, tmp_path):
+    laspy = pytest.importorskip("laspy")
+    pytest.importorskip("lazrs")
+    points = np.random.default_rng(3).integers(0, 1000, (500, 3)) / 10
+    file = laspy.LasData(laspy.LasHeader(version="1.4", point_format=6))
+    file.header.scales = np.full(3, 0.1)
+    file.x, file.y, file.z = points.T
+    file.write(tmp_path / "survey.laz")
+    call = "volume", tmp_path / "survey.laz", "0", "--duplicates", "min", "--json"
+    code, out, _ = command(*call, "--window", "20,30,70,80", "--planar")
+    x, y, _ = points.T
+    inside = (x >= 20) & (x <= 70) & (y >= 30) & (y <= 80)
+    assert code == 0
+    assert json.loads(out)["points"] == len(np.unique(points[inside, :2], axis=0))

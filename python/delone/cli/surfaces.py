@@ -112,7 +112,9 @@ Nodata = Annotated[
 ]
 Window = Annotated[
     str | None,
-    typer.Option(help="Rasters: read only cells inside left,bottom,right,top."),
+    typer.Option(
+        help="Rasters, LAS, LAZ: read only what is inside left,bottom,right,top; of COPC quickly."
+    ),
 ]
 EastingFirst = Annotated[
     bool, typer.Option("--easting-first", help="Take the first number of LandXML as the easting.")
@@ -224,13 +226,14 @@ def surface(
         raise Failure(
             "--chord is for DXF files and for alignments, and none is among the inputs", Exit.USAGE
         )
-    for option, given in (
-        ("--step", options.step != 1),
-        ("--nodata", options.nodata is not None),
-        ("--window", options.window is not None),
-    ):
+    for option, given in (("--step", options.step != 1), ("--nodata", options.nodata is not None)):
         if given and not any(map(is_raster, (source, *others))):
             raise Failure(f"{source}: {option} is for rasters: .tif .tiff .asc .nc", Exit.USAGE)
+    if options.window is not None and not any(map(_has_window, (source, *others))):
+        raise Failure(
+            f"{source}: --window is for rasters, LAS and LAZ: .tif .tiff .asc .nc .las .laz",
+            Exit.USAGE,
+        )
     if options.voids and options.max_edge is None:
         raise Failure("--voids needs --max-edge, the longest edge that spans nothing", Exit.USAGE)
     lined: dict[str, Any] = {"max_edge": options.max_edge, "voids": options.voids}
@@ -246,6 +249,7 @@ def surface(
                 columns=split(options.columns),
                 classes=class_numbers(options.classes),
                 layer=options.layer,
+                bounds=four_of(options.window) if options.window and _is_las(source) else None,
             )
         for name in ("breaklines", "soft_breaklines", "boundary", "level"):
             path = getattr(options, name)
@@ -268,10 +272,20 @@ def other_surface(
     """Read a surface that is compared with the first one; lines of other files are not for it."""
     own: dict[str, Any] = {"chord": options.chord if _is_drawing(file) else None}
     if not is_raster(file):
-        own |= {"step": 1, "nodata": None, "window": None}
+        own |= {"step": 1, "nodata": None}
+    if not _has_window(file):
+        own["window"] = None
     own |= dict.fromkeys(("breaklines", "soft_breaklines", "boundary", "level"))
     alone = replace(options, **own)
     return surface(file, alone, watch, say)
+
+
+def _is_las(file: Path) -> bool:
+    return file.suffix.lower() in (".las", ".laz")
+
+
+def _has_window(file: Path) -> bool:
+    return is_raster(file) or _is_las(file)
 
 
 def _read_raster(source: Path, options: SurfaceOptions) -> PointSet:

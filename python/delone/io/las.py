@@ -9,12 +9,14 @@ from __future__ import annotations
 import re
 import struct
 from contextlib import contextmanager
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from delone._base.extras import require
 from delone.errors import DeloneError, FileFormatError
+from delone.io.copc import is_copc, nodes_within
+from delone.io.dem import as_bounds
 from delone.io.pointset import PointSet
 from delone.io.systems import check_system
 
@@ -23,6 +25,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
+
+Box = tuple[float, float, float, float]
 
 __all__ = ["describe", "look", "read_points", "read_range"]
 
@@ -48,8 +52,10 @@ def read_points(
     attributes: Sequence[str],
     classes: Sequence[int] | None,
     everything: bool = False,
+    bounds: Sequence[float] | None = None,
 ) -> PointSet:
     """Read points from a LAS or LAZ file; see `delone.io.read_points`."""
+    box = as_bounds(bounds)
     if columns is not None:
         raise FileFormatError(
             f"{path}: LAS files always have the coordinates x, y and z; columns cannot be chosen"
@@ -62,8 +68,10 @@ def read_points(
             names = file.header.point_format.dimension_names
             attributes = [name for name in names if name not in ("X", "Y", "Z")]
         _check_names(path, file.header, attributes)
-        points, z, further = _read(file, classes, attributes)
+        points, z, further = _read(_source(path, file, box), classes, attributes, box)
         crs = _crs(path, file.header)
+    if not len(points) and box is not None:
+        raise FileFormatError(f"{path} contains no points inside of bounds={box}" + _of(classes))
     if not len(points) and classes is not None:
         wanted = ", ".join(map(str, classes))
         raise FileFormatError(
@@ -140,14 +148,12 @@ def _from_chunks(path: Path, header: Any, start: int, stop: int) -> Any:
     laspy = _laspy(path)
     lazrs = require("lazrs", extra="las", what="reading LAZ")
     record = _laz_record(header)
+    table = _chunk_table(path, header)
+    ends = np.cumsum(table, axis=0)
+    first, last = np.searchsorted(ends[:, 0], [start, stop - 1], side="right").tolist()
+    some = table[first : last + 1]
+    before, skipped = (ends[first] - table[first]).tolist()
     with path.open("rb") as file:
-        file.seek(int(header.offset_to_point_data))
-        table = np.array(lazrs.read_chunk_table(file, lazrs.LazVlr(record)), dtype=np.int64)
-        table = table[table[:, 0] > 0]
-        ends = np.cumsum(table, axis=0)
-        first, last = np.searchsorted(ends[:, 0], [start, stop - 1], side="right").tolist()
-        some = table[first : last + 1]
-        before, skipped = (ends[first] - table[first]).tolist()
         file.seek(int(header.offset_to_point_data) + 8 + skipped)
         data = file.read(int(some[:, 1].sum()))
     kind = header.point_format
@@ -157,6 +163,17 @@ def _from_chunks(path: Path, header: Any, start: int, stop: int) -> Any:
         start - before : stop - before
     ]
     return laspy.ScaleAwarePointRecord(records, kind, scales=header.scales, offsets=header.offsets)
+
+
+def _chunk_table(path: Path, header: Any) -> NDArray[np.int64]:
+    """Return the numbers of points and bytes of the chunks that have points, (k, 2)."""
+    lazrs = require("lazrs", extra="las", what="reading LAZ")
+    with path.open("rb") as file:
+        file.seek(int(header.offset_to_point_data))
+        vlr = lazrs.LazVlr(_laz_record(header))
+        table = np.array(lazrs.read_chunk_table(file, vlr), dtype=np.int64).reshape(-1, 2)
+    found: NDArray[np.int64] = table[table[:, 0] > 0]
+    return found
 
 
 def _laspy(path: Path) -> Any:
@@ -365,28 +382,60 @@ def _check_layers(file: IO[bytes], record: bytes, start: int, lengths: Sequence[
         start += length
 
 
+class _Source(NamedTuple):
+    """Records in blocks, and how many there are at most."""
+
+    most: int
+    blocks: Iterator[Any]
+
+
+def _of(classes: Sequence[int] | None) -> str:
+    return "" if classes is None else f" of class {', '.join(map(str, classes))}"
+
+
+def _source(path: Path, file: Any, box: Box | None) -> _Source:
+    """Return the records of a file; of a COPC file only those of nodes that meet a box."""
+    header = file.header
+    if box is None or not is_copc(header):
+        return _Source(int(header.point_count), file.chunk_iterator(_BLOCK))
+    table = _chunk_table(path, header)
+    ends = np.cumsum(table, axis=0)
+    starts = int(header.offset_to_point_data) + 8 + ends[:, 1] - table[:, 1]
+    some = np.flatnonzero(nodes_within(path, header, starts, box))
+    blocks = (_from_chunks(path, header, *(ends[k, 0] - (table[k, 0], 0)).tolist()) for k in some)
+    return _Source(int(table[some, 0].sum()), blocks)
+
+
 def _read(
-    file: Any, classes: Sequence[int] | None, attributes: Sequence[str]
+    source: _Source,
+    classes: Sequence[int] | None,
+    attributes: Sequence[str],
+    box: Box | None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], dict[str, NDArray[Any]]]:
     # Unwritten pages of these arrays cost nothing, so no second copy is needed.
-    count = int(file.header.point_count)
-    points, z = np.empty((count, 2)), np.empty(count)
+    points, z = np.empty((source.most, 2)), np.empty(source.most)
     further: dict[str, list[NDArray[Any]]] = {name: [] for name in attributes}
     end = 0
-    for block in file.chunk_iterator(_BLOCK):
+    for block in source.blocks:
+        x, y, heights = _scaled(block)
         keep: Any = slice(None)
         if classes is not None:
             keep = np.isin(np.asarray(block["classification"]), list(classes))
-        x, y, heights = (values[keep] for values in _scaled(block))
+        if box is not None:
+            left, bottom, right, top = box
+            inside = (x >= left) & (x <= right) & (y >= bottom) & (y <= top)
+            keep = inside if classes is None else keep & inside
+        x, y, heights = x[keep], y[keep], heights[keep]
         start, end = end, end + len(x)
         points[start:end, 0], points[start:end, 1], z[start:end] = x, y, heights
         for name, parts in further.items():
             parts.append(np.array(block[name])[keep])
-    if classes is None and end != count:
-        raise FileFormatError(f"the header declares {count} points, but there are {end}")
+    if classes is None and box is None and end != source.most:
+        raise FileFormatError(f"the header declares {source.most} points, but there are {end}")
     points.resize((end, 2), refcheck=False)
     z.resize(end, refcheck=False)
-    return points, z, {name: np.concatenate(parts) for name, parts in further.items()}
+    # A block without points tells the type.
+    return points, z, {name: np.concatenate(parts) for name, parts in further.items() if parts}
 
 
 def _crs(path: Path, header: Any) -> str | None:

@@ -176,6 +176,7 @@ def read_points(
     layer: str | None = None,
     attributes: Sequence[str] | str = (),
     chord: float | None = None,
+    bounds: Sequence[float] | None = None,
 ) -> PointSet:
     r"""Read points from a file; the suffix determines the format.
 
@@ -202,6 +203,8 @@ def read_points(
         have none.
     chord : float, optional
         The maximum distance of chords from the curves of a DXF file; see `read_surface`.
+    bounds : sequence of four float, optional
+        Left, bottom, right, top: only points inside or on the border (LAS and LAZ; COPC quickly).
 
     Returns
     -------
@@ -255,7 +258,9 @@ def read_points(
         raise FileFormatError(f"{file}: only LAS and LAZ files have classes")
     options = {"columns": columns} | _chord(file, chord) | _attributes(attributes, module)
     if module.__name__.endswith(".las"):
-        options["classes"] = classes
+        options |= {"classes": classes, "bounds": bounds}
+    elif bounds is not None:
+        raise FileFormatError(f"{file}: bounds are for LAS and LAZ files, and for read_raster")
     if module.__name__.endswith((".vector", ".arrays", ".landxml", ".dxf", ".dem")):
         options["layer"] = layer
     elif layer is not None:

@@ -133,6 +133,7 @@ class Sources(HullTiling):
         layer: str | None = None,
         order: str | None = None,
         chord: float | None = None,
+        bounds: Sequence[float] | None = None,
         **options: Any,
     ) -> Self:
         r"""Create a surface from a file: LandXML, DXF, or points in LAS, LAZ, CSV and others.
@@ -148,6 +149,8 @@ class Sources(HullTiling):
             first.
         chord : float, optional
             For curves in DXF, as for `delone.io.read_surface`.
+        bounds : sequence of four float, optional
+            The part of a LAS or LAZ file, as for `delone.io.read_points`.
         **options
             Options of `from_surface` for LandXML and DXF, else of `from_points`.
 
@@ -178,13 +181,15 @@ class Sources(HullTiling):
         if holds_surface(path):
             if columns is not None:
                 raise InputError(f"{path}: surfaces have x, y and z, and no columns")
+            if bounds is not None:
+                raise InputError(f"{path}: bounds are for LAS and LAZ files")
             found = io.read_surface(path, layer=layer, order=order, chord=chord)
             return cls.from_surface(found, **options)
         if chord is not None:
             raise InputError(f"{path}: chord is for DXF files, which have curves")
         if order is not None:
             raise InputError(f"{path}: order is for LandXML files; name the columns")
-        survey = io.read_points(path, columns=columns, layer=layer)
+        survey = io.read_points(path, columns=columns, layer=layer, bounds=bounds)
         return cls._of_points(survey, options.pop("crs", None), options)
 
     @classmethod
