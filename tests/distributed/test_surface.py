@@ -211,3 +211,24 @@ def test_contours_and_volumes_on_dask(both: Any) -> None:
         same(tiles.contours(interval=interval, executor=client), tin.contours(interval=interval))
         found = tiles.volume_to(1.0, executor=client)
     assert found.cut == pytest.approx(tin.volume_to(1.0).cut)
+
+
+def test_triangles_that_are_left_out_add_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each round leaves out more triangles; those of all rounds are left out in the next one."""
+    none = np.empty(0, dtype=np.int64)
+    empty = np.empty((0, 2)), np.zeros(1, dtype=np.int64), none
+    states: list[Any] = []
+    rounds = [([4, 7], [7]), ([4, 2], [2]), ([4], []), ([4], []), ([], [])]
+
+    def lines(levels: Any, wanted: Any, files: Any, state: Any) -> drawing._Part:
+        states.append(state)
+        tangled, outer = rounds[len(states) - 1]
+        return drawing._Part(*empty, np.array(tangled, np.int64), np.array(outer, np.int64))
+
+    monkeypatch.setattr(drawing, "_lines", lines)
+    parts, left_out = drawing._untangled(np.array([1.0]), [((0, 1), ["0-0.npz"])], "serial")
+    assert (len(parts), left_out) == (1, 2)
+    assert [state.dropped.tolist() for state in states] == [[], [7], [2, 7], [2, 7], [2, 7]]
+    # Then points that are far apart are united, and at last triangles are collapsed.
+    assert [state.far for state in states] == [False, False, False, True, True]
+    assert [state.collapsed.tolist() for state in states] == [[], [], [], [], [4]]
