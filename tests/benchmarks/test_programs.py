@@ -12,6 +12,7 @@ SMALL = {
     "hull.py": ["--n", "2000", "--runs", "1"],
     "improve.py": ["300"],
     "interpolate.py": ["--n", "50", "--queries", "100", "--runs", "1"],
+    "regrid.py": ["--nside", "4", "--sites", "50", "--largest", "8", "--runs", "1"],
     "sphere.py": ["--n", "300", "--many", "1000", "--runs", "1"],
     "voronoi3.py": ["--n", "200", "--queries", "100", "--runs", "1"],
 }

@@ -1,7 +1,8 @@
-"""Cells between meridians and parallels in one list, each with bounds of its own.
+"""Cells between meridians and parallels in one list, each with its own bounds.
 
-Such are reduced grids in files with CF conventions. Cells between the same parallels become one
-row for the core, from west to east; those that overlap others there become rows of their own.
+Reduced grids are stored this way in files with CF conventions. Cells between the same parallels
+become one row for the core, from west to east. A cell that overlaps another one in its row becomes
+a row of its own.
 """
 
 from __future__ import annotations
@@ -25,10 +26,10 @@ _TURN = 360.0
 
 
 def as_boxes(lon: Floats, lat: Floats, middle: Floats, names: tuple[str, str]) -> Floats:
-    """Return west, east, south and north of cells, (n, 4), of both bounds of each, in degrees.
+    """Return the west, east, south and north of cells, (n, 4), from their bounds in degrees.
 
-    Of the two intervals between meridians, a cell has the one that contains its `middle`. Latitudes
-    are within the poles.
+    Two meridians have two intervals between them; a cell is the one that contains its `middle`.
+    Latitudes must not be beyond the poles.
     """
     if not len(lon):
         raise InputError(f"{names[0]} and {names[1]} are empty: there are no cells")
@@ -53,7 +54,7 @@ class _Listed(NamedTuple):
 
     # West, east, south and north.
     boxes: Floats
-    # West from 0 to a turn, and east from there.
+    # West as 0 to 360 degrees, and east as what follows it.
     start: Floats
     end: Floats
     # Which row, and which cell of the input.
@@ -68,8 +69,8 @@ class _Listed(NamedTuple):
 def rows_of(boxes: Floats, merge: tuple[float, float]) -> tuple[tuple[Any, ...], int]:
     """Return the arrays of the core, and how many bounds moved to those of their neighbors.
 
-    Meridians and parallels that are nearer than `merge`, in degrees, are one, unless cells are as
-    small as that.
+    Meridians and parallels closer than `merge`, in degrees, become one, unless cells are that
+    small.
     """
     near, close = (
         min(limit, float((boxes[:, k + 1] - boxes[:, k]).min()) / 4)
@@ -87,7 +88,7 @@ def rows_of(boxes: Floats, merge: tuple[float, float]) -> tuple[tuple[Any, ...],
     joined = np.zeros(len(row), dtype=bool)
     joined[1:] = (row[1:] == row[:-1]) & (np.abs(start[1:] - end[:-1]) <= near)
     moved += int((joined[1:] & ((boxes[1:, 0] - boxes[:-1, 1]) % _TURN != 0)).sum())
-    # Rows that go all around end where they begin.
+    # Rows that go all the way around end where they begin.
     first = np.flatnonzero(np.append(True, row[1:] != row[:-1]))
     last = np.append(first[1:], len(row)) - 1
     around = np.abs(end[last] - start[first] - _TURN) <= near
@@ -97,7 +98,7 @@ def rows_of(boxes: Floats, merge: tuple[float, float]) -> tuple[tuple[Any, ...],
 
 
 def _merged(parallels: Floats, near: float) -> tuple[Floats, int]:
-    """Return latitudes in which those within `near` of the next smaller one are it, and a count."""
+    """Return latitudes moved to the next smaller one if it is within `near`, and how many moved."""
     values, at = np.unique(parallels, return_inverse=True)
     first = np.append(True, np.diff(values) > near)
     kept = values[first][np.cumsum(first) - 1]
@@ -112,7 +113,7 @@ def _row_numbers(cells: _Listed, near: float) -> Rows:
     fresh[1:] = (parallels[1:] != parallels[:-1]).any(axis=1)
     group = np.cumsum(fresh) - 1
     first = np.flatnonzero(fresh)
-    # The easternmost end of the cells before: groups are further apart than cells reach.
+    # How far east the earlier cells reach; the shift keeps groups apart.
     shift = 4 * _TURN * group
     reach = np.maximum.accumulate(end + shift)
     alone = end > start[first][group] + _TURN + near
@@ -125,8 +126,8 @@ def _row_numbers(cells: _Listed, near: float) -> Rows:
 def _arrays(cells: _Listed, first: Rows, joined: Bools) -> tuple[Any, ...]:
     """Return the arrays of the core; `joined` are cells that begin where the one before ends."""
     count = len(joined)
-    # In the west of each cell that is not joined, and in the east of each, a meridian with the
-    # number of the cell east of it, or none.
+    # Each cell has a meridian in the east, and in the west unless it is joined. Each meridian has
+    # the number of the cell east of it, if there is one.
     edges = np.column_stack((cells.start, cells.end)).ravel()
     numbers = np.column_stack((cells.number, np.full(count, -1))).ravel()
     numbers[1:-1:2] = np.where(joined[1:], cells.number[1:], -1)
@@ -140,7 +141,7 @@ def _arrays(cells: _Listed, first: Rows, joined: Bools) -> tuple[Any, ...]:
 
 
 def _cut(edges: Floats, angles: Floats, row: Rows) -> tuple[Floats, Rows]:
-    """Return directions of meridians, with more between distant ones, and their given ones."""
+    """Return directions of meridians, with more in wide gaps, and the given one of each."""
     width = np.append(np.diff(edges), 0.0)
     width[np.append(row[1:] != row[:-1], True)] = 0.0
     parts = np.maximum(np.ceil(width / WIDE), 1).astype(np.int64)

@@ -22,18 +22,18 @@ class Cells:
     """Vertices, ridges and cells; cells are in the order of the rows of their sites."""
 
     vertices: Floats
-    # The site to the left of each ridge, from its first vertex to its second, and to the right.
+    # The sites to the left and right of each ridge, seen from its first vertex to its second.
     sites: Indices
     ends: Indices
-    # The cell of each row that is not a duplicate; others have -1.
+    # The cell of each row; -1 for duplicates.
     cell: Indices
     starts: Indices
     entries: Indices
-    # The edges of ridges with the corners beside them, (r, 4); or, for lunes, lengths and areas.
+    # The edges that ridges cross, with the corners beside them, (r, 4); for lunes, measures.
     around: Indices | None
     measures: tuple[Floats, Floats] | None
     simplex_vertex: Indices
-    # Of lunes the middle of each ridge, (r, 3), a unit vector.
+    # For lunes, the middle of each ridge as a unit vector, (r, 3).
     middles: Floats | None = None
 
     def spans(self, vectors: Floats, workers: int) -> tuple[Floats, Floats]:
@@ -67,7 +67,7 @@ def _dual_cells(vectors: Floats, simplices: Indices, neighbors: Indices, workers
     corners = made.simplices[made.facet]
     return Cells(
         vertices=_core.sphere_circumcenters(vectors, corners, workers),
-        # Across its edge a ridge goes from left to right, with the head of the edge to its left.
+        # A ridge crosses its edge from left to right, with the head of the edge on its left.
         sites=np.ascontiguousarray(made.around[:, 1::-1]),
         ends=made.ends,
         cell=made.cell,
@@ -91,7 +91,7 @@ def lunes(chain: Indices, points: Floats, axis: Floats, simplices: int) -> Cells
     after = np.roll(chain, -1)
     middles = _middles(points[chain], points[after], axis)
     before = np.roll(middles, 1, axis=0)
-    # At the poles a lune has the angle between its bisectors.
+    # The angle of a lune at the poles is that between its bisectors.
     turns = np.arctan2(
         np.linalg.norm(np.cross(before, middles), axis=1), np.einsum("ij,ij->i", before, middles)
     )
@@ -118,8 +118,8 @@ def lunes(chain: Indices, points: Floats, axis: Floats, simplices: int) -> Cells
 def _middles(tails: Floats, heads: Floats, axis: Floats) -> Floats:
     """Return the unit vectors halfway from each site on a circle to the next one.
 
-    Of the plane through the axis that is perpendicular to the chord, which of close sites is taken
-    from their sum: their difference may be all rounding.
+    They lie in the plane through the axis that is perpendicular to the chord. For close sites, the
+    sum gives that plane, because their difference may be nothing but rounding errors.
     """
     chords = heads - tails
     # Seen along the axis, from the middle of the circle.
@@ -138,6 +138,6 @@ def _middles(tails: Floats, heads: Floats, axis: Floats) -> Floats:
 
 
 def _normal(vectors: Floats) -> Floats:
-    """Return vectors, none of which is zero, with length 1."""
+    """Return vectors scaled to length 1; none may be zero."""
     found: Floats = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
     return found

@@ -1,7 +1,7 @@
 """Pictures of grids on maps of longitudes and latitudes.
 
-Colors are means over pixels, by the areas that pixels share with cells, so that no cell is missed
-and none is drawn larger than it is.
+Each pixel shows a mean weighted by the areas that it shares with cells, so no cell is missed and
+none is drawn too large.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_grid"]
 
-# Pixels across a map, and degrees between two corners of a side.
+# The width of a map in pixels, and the degrees between points of a curved side.
 _PIXELS = 600
 _STEP = 2.0
 _MOST_SIDES = 5000
@@ -81,7 +81,7 @@ def plot_grid(
 
 
 def _means(grid: Any, field: Floats, pixels: Any) -> Floats:
-    """Return the mean over what each pixel shares with cells that have a value."""
+    """Return the mean of each pixel over the part where cells have values."""
     found = overlaps_of(pixels._made, grid._made, as_workers(grid.workers))
     values = field[found.indices]
     there = np.isfinite(values)
@@ -132,10 +132,10 @@ def _parallels(grid: Any) -> list[Floats]:
     """Return the four corners of each cell between meridians and parallels, and the first again."""
     places = lonlat_of(grid.rings[0]).reshape(-1, 4, 2)
     lon, lat = places[..., 0], places[..., 1]
-    # At a pole the longitudes are those at the other end of the cell.
+    # At a pole, use the longitudes of the other end of the cell.
     pole = np.abs(lat) == 90
     lon = np.where(pole, lon[:, [3, 2, 1, 0]], lon)
-    # A cell of a turn ends where it starts.
+    # A cell that goes all the way around ends where it starts.
     width = (lon[:, 1] - lon[:, 0]) % 360
     width = np.where(width > 0, width, 360.0)
     west = lon[:, :1]
@@ -179,7 +179,7 @@ def _once(start: Floats, end: Floats) -> Any:
 
 
 def _draw(ax: Any, chains: list[Floats], left: float, right: float, **style: Any) -> None:
-    """Draw chains wherever a turn of the globe shows them."""
+    """Draw chains at each multiple of 360 degrees where they are visible."""
     lines = require("matplotlib.collections", extra="plot", what="drawing")
     for chain in chains:
         for turn in (-360.0, 0.0, 360.0):
@@ -191,7 +191,7 @@ def _draw(ax: Any, chains: list[Floats], left: float, right: float, **style: Any
 
 
 def _coast(land: Any) -> Floats:
-    """Return the segments of the coast, (n, 2, 2), without the edges where maps are cut."""
+    """Return the segments of the coast, (n, 2, 2), without those along the edges of the map."""
     parts = [np.zeros((0, 2, 2))]
     for polygon in land["coordinates"]:
         for ring in polygon:

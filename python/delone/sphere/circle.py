@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 __all__ = ["cells_of_few", "first_rows", "nearest_of_few"]
 
-# Cosines of rounded unit vectors err by less: three products of numbers that err by 2**-54 each.
+# Bounds the error of cosines of rounded unit vectors: three products of numbers off by 2**-54.
 _DOUBT = 2.0**-48
-# Cosines that are computed at once.
+# Number of cosines computed at a time.
 _AT_ONCE = 1 << 20
 
 
@@ -31,7 +31,7 @@ def cells_of_few(chain: Indices, vectors: Floats, points: Floats) -> Cells:
         return lunes(chain, points, _around(chain, vectors, points), 0)
     if len(chain) == 2:
         return lunes(chain, points, _axis(*(whole(vectors[row].tolist()) for row in chain)), 0)
-    # One cell, which is the whole sphere.
+    # The only cell is the whole sphere.
     cell = np.full(len(points), -1, dtype=np.int32)
     cell[chain] = 0
     none = np.empty((0, 2), dtype=np.int32)
@@ -52,26 +52,26 @@ def _around(chain: Indices, vectors: Floats, points: Floats) -> Floats:
     """Return the unit normal of a great circle from which sites in order are counter-clockwise."""
     circle = points[chain]
     sines = np.linalg.norm(np.cross(circle[0], circle), axis=1)
-    # Integers, whichever site it is; the one with the largest sine has the smallest error below.
+    # Integers are exact for any site; the largest sine has the smallest rounding error.
     first, far = (whole(vectors[chain[k]].tolist()) for k in (0, int(sines.argmax())))
     normal = cross(first, far)
     if not any(normal):
-        # The others are so close to the first site, or opposite to it, that units are the same.
+        # The others are so close to the first site, or to its opposite, that unit vectors agree.
         others = (whole(vectors[row].tolist()) for row in chain[1:])
         normal = next(n for n in (cross(first, other) for other in others) if any(n))
     three = [whole(vectors[row].tolist()) for row in chain[:3]]
     turns = [dot(normal, cross(three[k - 1], three[k])) for k in range(3)]
-    # Of the three angles once around, one at most is half a turn or more.
+    # At most one of the three angles around the circle is half a turn or more.
     ahead = sum((turn > 0) - (turn < 0) for turn in turns) > 0
     x, y, z = normal
     return _rounded(normal if ahead else (-x, -y, -z))
 
 
 def _axis(a: Vector, b: Vector) -> Floats:
-    """Return a unit vector with the shorter way from one direction to another around it."""
+    """Return the unit axis of the shorter rotation from one direction to another."""
     normal = cross(a, b)
     if not any(normal):
-        # Opposite directions: any axis that is perpendicular to them.
+        # Opposite directions: any perpendicular axis will do.
         least = min(range(3), key=lambda k: abs(a[k]))
         unit = (int(least == 0), int(least == 1), int(least == 2))
         normal = cross(a, unit)
@@ -89,8 +89,8 @@ def _rounded(vector: Vector) -> Floats:
 def nearest_of_few(chain: Indices, vectors: Floats, points: Floats, queries: Floats) -> Indices:
     """Return the nearest of sites to queries, unit vectors, exactly; the smallest of several rows.
 
-    Queries that are NaN or of length zero get -1. Cosines of rounded unit vectors decide where they
-    differ by more than their errors, integers elsewhere.
+    Queries that are NaN or of length zero get -1. Cosines of rounded unit vectors decide if they
+    differ by more than their errors; otherwise integers do.
     """
     rows = np.sort(chain)
     found = np.full(len(queries), -1, dtype=np.int32)
@@ -121,13 +121,13 @@ def nearest_of_few(chain: Indices, vectors: Floats, points: Floats, queries: Flo
 
 def _is_closer(a: Vector, b: Vector, query: Vector) -> bool:
     """Whether the angle from a query to one direction is smaller than that to another."""
-    # The cosines are x / |a| and y / |b|, times one length: their squares with signs are compared.
+    # The cosines are x / |a| and y / |b| times a common length, so signed squares are compared.
     x, y = dot(a, query), dot(b, query)
     return x * abs(x) * dot(b, b) > y * abs(y) * dot(a, a)
 
 
 def first_rows(vectors: Floats, cell: Indices) -> Indices:
-    """Return the first row of the direction of each row; rows without a cell repeat another one."""
+    """Return the first row with the direction of each row; rows without a cell are duplicates."""
     found = np.arange(len(vectors), dtype=np.int32)
     if (cell >= 0).all():
         return found

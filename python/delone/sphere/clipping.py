@@ -1,9 +1,9 @@
 """Cells of directions clipped to a region of polygons with arcs of great circles as sides.
 
 The ridges of the diagram and the sides of the region are arcs of one constrained triangulation,
-whose crossings are split. Each part between arcs is in one cell, and inside the region or not; its
-triangles are the cell's. So cells may be in several parts and have holes, and their areas sum to
-that of the region, whatever is rounded.
+whose crossings are split. Each part between arcs belongs to one cell and is either inside or
+outside the region; its triangles belong to that cell. So cells may have several parts and holes,
+and their areas sum to that of the region despite rounding.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ __all__ = [
     "whole_rings",
 ]
 
-# Ridges may be half a great circle long; pieces up to this length have one shorter arc.
+# Ridges can be half a great circle long; for pieces up to this length, the shorter arc is unique.
 _LONGEST = np.pi / 2
-# Parts narrower than this come from rounded vertices and crossings, which are off by some 2e-16.
+# Narrower parts are artifacts of rounded vertices and crossings, which are off by about 2e-16.
 _WIDTH = 2.0**-49
 
 
 class Whole(NamedTuple):
-    """What is clipped: the cells, lengths of ridges and unit vectors of sites of a diagram."""
+    """A diagram to clip: cells, lengths of ridges and unit vectors of sites."""
 
     cells: Cells
     lengths: Floats
@@ -67,7 +67,7 @@ class Region(NamedTuple):
 def as_region(
     clip: Any, winding: str, sides: str | None, *, degrees: bool, workers: int | None
 ) -> Region | None:
-    """Return the region of the arguments of `Voronoi`; None without one, or if it is all."""
+    """Return the region that arguments of `Voronoi` describe; None for the whole sphere."""
     if clip is None or isinstance(clip, Region):
         return clip
     vectors, given, whole = read(
@@ -81,7 +81,7 @@ def as_region(
 
 
 def saved_region(region: Region | None) -> dict[str, NDArray[Any]]:
-    """Return a region as arrays of a file; without one they are empty."""
+    """Return a region as arrays for a file; empty arrays if there is no region."""
     if region is None:
         none = np.empty((0, 2), dtype=np.int32)
         region = Region(np.empty((0, 3)), Given(none, Origin.of_arrays(0), "ccw", 0))
@@ -96,7 +96,7 @@ def saved_region(region: Region | None) -> dict[str, NDArray[Any]]:
 
 
 def loaded_region(arrays: dict[str, NDArray[Any]]) -> Region | None:
-    """Return the region of the arrays that `saved_region` has returned."""
+    """Return the region that `saved_region` turned into arrays."""
     sides = arrays["sides"]
     if not len(sides):
         return None
@@ -122,7 +122,7 @@ class Clipped:
     def ridges(self) -> tuple[NDArray[np.int64], Floats]:
         """Return the pairs of cells that share a border, (r, 2), and its length on the unit sphere.
 
-        Borders as short as roundings are left out.
+        Borders no longer than rounding errors are left out.
         """
         mesh = self.mesh
         t, k = np.nonzero(self.border)
@@ -156,10 +156,10 @@ class Clipped:
         mesh, border = self.mesh, self.border.ravel()
         neighbors = mesh.neighbors
         edges = np.flatnonzero(border)
-        # From the head of each edge, past the triangles of the same cell, to the next edge.
+        # From each edge to the next one around its head, across triangles of the same cell.
         after = _next_in_triangle(edges)
         active = np.flatnonzero(~border[after])
-        # Terminates: the turn around a vertex comes back to the edge itself, which is a border.
+        # Terminates: a full turn around the vertex returns to the edge itself, which is a border.
         while len(active):
             t, k = np.divmod(after[active], 3)
             across = neighbors[t, k]
@@ -211,14 +211,14 @@ def clipped(whole: Whole, region: Region, workers: int | None) -> Clipped:
         region.given.winding,
         len(vectors) + len(region.vectors),
     )
-    # Without three sites all arcs may be on one great circle: points off it make a triangulation.
+    # With fewer than three sites, all arcs may be on one great circle, so points off it are added.
     few = np.eye(3) if len(whole.cells.ends) < 3 else np.empty((0, 3))
     every = np.concatenate((vectors, region.vectors, few, -few))
     mesh = ConstrainedDelaunay._of_geometries(
         every, given, most_added("split", None), True, workers
     )
     component = mesh._component
-    # A place in each part between arcs: in its largest triangle.
+    # A point in each part between arcs: in its largest triangle.
     order = np.lexsort((-mesh.areas, component))
     first = order[np.searchsorted(component[order], np.arange(component.max() + 1))]
     cell = whole.nearest(mesh.points[mesh.simplices[first]].sum(axis=1))
@@ -230,7 +230,7 @@ def clipped(whole: Whole, region: Region, workers: int | None) -> Clipped:
 
 
 def _without_slivers(mesh: ConstrainedDelaunay, component: Indices, cell: Indices) -> Indices:
-    """Give parts inside that are as narrow as roundings to the cells along their longest sides."""
+    """Give parts no wider than rounding errors to the cells along their longest sides."""
     count = len(cell)
     t, k = np.nonzero(mesh.constrained & (mesh.neighbors >= 0))
     tails, heads = (mesh.points[each] for each in half_edges(mesh.simplices, t, k))
@@ -243,7 +243,7 @@ def _without_slivers(mesh: ConstrainedDelaunay, component: Indices, cell: Indice
     of_thin = np.flatnonzero(thin[here])
     of_thin = of_thin[np.argsort(-length[of_thin], kind="stable")]
     found, open_ = cell.copy(), thin.copy()
-    # Each round settles the parts beside settled ones; enclosed ones stay as they are.
+    # Each round settles the parts next to settled ones; enclosed parts stay as they are.
     for _ in range(count):
         beside = of_thin[
             open_[here[of_thin]] & ~open_[there[of_thin]] & (found[there[of_thin]] >= 0)
@@ -269,7 +269,7 @@ def _pieces(cells: Cells, lengths: Floats, points: Floats) -> tuple[Floats, Indi
 
 
 def _middles(cells: Cells, lengths: Floats, points: Floats) -> tuple[Rows, Floats]:
-    """Return the ridges that may be half a great circle long, and their middles."""
+    """Return the ridges that may be half a great circle long, and their midpoints."""
     if cells.middles is not None:
         return np.arange(len(cells.ends)), cells.middles
     start = cells.ends[:, 0]
@@ -289,7 +289,7 @@ def whole_rings(
     Long ridges have their middles as corners.
     """
     long, middles = _middles(cells, lengths, points)
-    # By the site to the left of a ridge and its first vertex.
+    # Sorted by the site to the left of a ridge and by its first vertex.
     between: dict[tuple[int, int], Floats] = {}
     for ridge, middle in zip(long.tolist(), middles, strict=True):
         for site, start in zip(
@@ -308,7 +308,7 @@ def whole_rings(
 
 
 def sums(rows: NDArray[np.integer], shares: Floats, count: int) -> Floats:
-    """Return the sum of the shares of each row, (count,)."""
+    """Return the sum of the weights of each row, (count,)."""
     return np.bincount(rows, weights=shares, minlength=count).astype(np.float64)
 
 

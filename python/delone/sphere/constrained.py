@@ -367,9 +367,9 @@ def most_added(crossing: str, max_points: int | None) -> int | None:
 
 
 def _between_opposites(error: DirectionError, vectors: Floats, given: Given) -> DirectionError:
-    """Return the error of a side between opposite directions with its geometry and its ends.
+    """Return the error for a side between opposite directions, with its geometry and its ends.
 
-    The rows of segments that a caller gave are right as they are.
+    Errors about segments that the caller numbered stay unchanged.
     """
     row = int(error.rows[0])
     (a, b), geometry = given.segments[row], int(given.origin.geometries[row])
@@ -395,7 +395,7 @@ def _with_places(
     a, b, c, d = (units[rows[error.pairs[:, i]][:, j]] for i in (0, 1) for j in (0, 1))
     place = np.cross(np.cross(a, b), np.cross(c, d))
     place *= np.sign(np.einsum("kj,kj->k", place, a + b))[:, None]
-    # Arcs between almost equal directions may have no place after rounding.
+    # For arcs between almost equal directions, rounding may leave no intersection.
     lost = ~place.any(axis=1)
     place[lost] = (a + b)[lost]
     points = lonlat_of(place)

@@ -68,7 +68,7 @@ def directions_of(
     workers: int | None,
     any_turns: bool = False,
 ) -> Floats:
-    """Return the vectors of one of two kinds of input, (n, 3), which nobody else can change.
+    """Return one of two kinds of input as vectors, (n, 3), that nobody else can change.
 
     Longitudes of more than one turn cause a warning, unless `any_turns`, as corners of cells have.
     """
@@ -142,7 +142,7 @@ def units_of(vectors: Floats, workers: int | None) -> Floats:
 
 def lonlat_of(vectors: Floats) -> Floats:
     """Return the longitudes, -180 to 180, and latitudes of vectors in degrees, (n, 2)."""
-    # Lengths may be such that squares overflow.
+    # Squares of long vectors may overflow.
     x, y, z = (vectors / np.abs(vectors).max(axis=1, keepdims=True)).T
     radians = np.column_stack((np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))))
     degrees: Floats = np.degrees(radians)
@@ -150,7 +150,7 @@ def lonlat_of(vectors: Floats) -> Floats:
 
 
 def _quarters(angles: Floats, given: Any) -> Floats:
-    """Angles in radians, with those of shorter floats that mean quarter turns as such.
+    """Return angles in radians, with the float32 values of quarter turns replaced by doubles.
 
     The float32 nearest to pi / 2 is beyond the double nearest to it; both mean the pole.
     """

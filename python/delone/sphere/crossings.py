@@ -1,9 +1,9 @@
 """Arcs that cross, split: each crossing becomes a direction of its own.
 
-Where two arcs cross is computed in integers from the given vectors, and each coordinate rounded
-once, relative to the largest. The parts of the arcs pass through the rounded direction, so they
-bend by the rounding error, and may then cross others that were as near: these are split in the same
-way, round by round, until none cross.
+The crossing of two arcs is computed in integers from the given vectors, and each coordinate is
+rounded once, relative to the largest. The parts of the arcs pass through the rounded direction, so
+they bend by the rounding error and may then cross arcs that close to them. These are split in the
+same way, round by round, until no arcs cross.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Split", "split"]
 
-# Rounds in which parts of arcs cross again: each takes place within the rounding error.
+# Maximum number of rounds in which parts of arcs cross again, each within the rounding error.
 _ROUNDS = 40
 
 
@@ -77,10 +77,10 @@ def split(vectors: Floats, rows: Indices, max_points: int, workers: int) -> Spli
 
 
 def _parted(parts: _Parts, pairs: NDArray[np.integer]) -> _Parts:
-    """Split the parts that cross where they do; the others are not looked at."""
+    """Split the parts that cross at their crossings; other parts are not visited."""
     vectors, rows = parts.vectors, parts.rows
     places = _crossings(vectors, rows, pairs)
-    # Crossings of several pairs in one place are one vector; rows are by its first pair.
+    # Pairs that cross at the same place share one vector, ordered by the first such pair.
     number: dict[tuple[float, ...], int] = {}
     at = np.array([number.setdefault(x, len(number)) for x in places], dtype=np.int32)
     at += np.int32(len(vectors))
@@ -102,9 +102,9 @@ def _parted(parts: _Parts, pairs: NDArray[np.integer]) -> _Parts:
 def _crossings(
     vectors: Floats, rows: Indices, pairs: NDArray[np.integer]
 ) -> list[tuple[float, ...]]:
-    """Return the direction inside both parts of each pair: each coordinate by the largest, rounded.
+    """Return where the parts of each pair cross: coordinates over the largest one, rounded.
 
-    Computed in integers, of which each vector and each normal is made once.
+    All is computed in integers; each vector and each normal is converted once.
     """
     ends = {part: tuple(rows[part].tolist()) for part in np.unique(pairs).tolist()}
     used = sorted({v for pair in ends.values() for v in pair})
@@ -127,8 +127,8 @@ def _along(
 ) -> tuple[NDArray[np.integer], NDArray[np.integer]]:
     """Return parts and their stops, ascending by part, and along each in order.
 
-    Angles are rounded; the order of each two that follow each other is then checked, and where
-    they are not in order, the stops of the part are sorted exactly.
+    Stops are sorted by rounded angles. Then each pair of neighbors is checked, and if one is out of
+    order, the stops of the part are sorted exactly.
     """
     part, stop = stops.T
     a, b = (_scaled(vectors[rows[part, k]]) for k in (0, 1))
@@ -150,7 +150,7 @@ def _along(
 
 def _scaled(vectors: Floats) -> Floats:
     """Return vectors with a largest coordinate of 1, rounded."""
-    # By a power of two first: the quotient of two tiny numbers may be far from exact.
+    # Scale by a power of two first, because a quotient of tiny numbers may be far from exact.
     _, exponent = np.frexp(np.abs(vectors).max(axis=1, keepdims=True))
     near = np.ldexp(vectors, -exponent)
     scaled: Floats = near / np.abs(near).max(axis=1, keepdims=True)
@@ -186,7 +186,7 @@ def _ranks(groups: NDArray[np.integer]) -> NDArray[np.int64]:
 def _without_repeats(
     parts: _Parts, made: _core.ConstrainedTriangulation, count: int
 ) -> _Parts | None:
-    """Drop crossings that are the same direction as an earlier row; None if there are none."""
+    """Drop crossings with the direction of an earlier row; None if there are none."""
     later = made.duplicates[made.duplicates[:, 0] >= count]
     if not len(later):
         return None
@@ -196,7 +196,7 @@ def _without_repeats(
     stays[later[:, 0]] = False
     new = (np.cumsum(stays) - 1).astype(np.int32)[number]
     rows = new[parts.rows]
-    # Of a part without length nothing is left; those that were given so stay.
+    # A part without length disappears, unless it was given that way.
     kept = (rows[:, 0] != rows[:, 1]) | (parts.rows < count).all(axis=1)
     crossings = parts.crossings.copy()
     crossings[:, 2] = new[crossings[:, 2]]
@@ -209,7 +209,7 @@ def _of_rows(
     """Return the triangulation with the rows of arcs in place of those of their parts."""
     start, source = made.source_start, parts.owner[made.source]
     piece = np.repeat(np.arange(len(start) - 1), np.diff(start))
-    # A row that is bent may have a subsegment twice.
+    # A bent row may contain a subsegment twice.
     first = np.ones(len(source), dtype=bool)
     first[1:] = (piece[1:] != piece[:-1]) | (source[1:] != source[:-1])
     starts = np.concatenate(([0], np.cumsum(np.bincount(piece[first], minlength=len(start) - 1))))

@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 
 __all__ = ["Delaunay"]
 
-# Fewer points are never shared among threads.
+# Fewer points use a single thread.
 _FEW = 1000
 # The arrays of an object, by name.
 _ARRAYS = ("vectors", "simplices", "neighbors", "duplicates")
-# The classes that files are of; subclasses by others are stored as these.
+# The classes in files; subclasses by others are stored as these.
 _STORED = ("Delaunay", "ConstrainedDelaunay")
 
 
@@ -157,7 +157,7 @@ class Delaunay(OnGlobe):
         self._build(vectors, degrees, workers)
 
     def _build(self, vectors: Floats, degrees: bool, workers: int | None) -> None:
-        """Triangulate vectors, which nobody else can change."""
+        """Triangulate vectors that nobody else can change."""
         threads = 1 if workers is None and len(vectors) < _FEW else as_workers(workers)
         try:
             made = _core.sphere_delaunay(vectors, threads)
@@ -347,7 +347,7 @@ class Delaunay(OnGlobe):
         return flat.reshape(found.shape)
 
     def _nearby(self, queries: Floats, simplex: Indices, limit: float) -> tuple[Rows, Rows]:
-        """Return the queries outside that are near the boundary, and an edge of it for each."""
+        """Return the queries outside but near the boundary, and a boundary edge for each."""
         known = np.isfinite(queries).all(axis=1) & queries.any(axis=1)
         outside = np.flatnonzero((simplex < 0) & known)
         arc = nearby(

@@ -1,6 +1,6 @@
 """Exact signs of directions: rounded where an error bound allows it, by integers elsewhere.
 
-The core decides while it triangulates; these signs check what it returned, and arrays of files.
+The core decides while it triangulates. These signs check what it returned, and the arrays in files.
 """
 
 from __future__ import annotations
@@ -60,13 +60,13 @@ def turns(a: Floats, b: Floats, c: Floats) -> Signs:
 
 
 def turns_at(vectors: Floats, units: Floats, edges: Indices, place: Vector) -> Signs:
-    """Return on which side of each edge, (k, 2), the direction of integers lies: 1 on its left."""
+    """Return the side of each edge, (k, 2), on which a direction of integers lies: 1 is left."""
     size = max(map(abs, place))
     rounded = np.array([x / size for x in place])
     tail, head = units[edges[:, 0]], units[edges[:, 1]]
     value = np.cross(tail, head - tail) @ rounded
     signs: Signs = np.sign(value).astype(np.int8)
-    # Units are off by u / 2 in each coordinate; the sums of three coordinates are below 1.74.
+    # Unit vectors are off by u / 2 in each coordinate; their coordinates add up to less than 1.74.
     doubtful = np.flatnonzero(np.abs(value) <= 64 * _U)
     for row in doubtful.tolist():
         a, b = (whole(vectors[v].tolist()) for v in edges[row].tolist())
@@ -75,7 +75,7 @@ def turns_at(vectors: Floats, units: Floats, edges: Indices, place: Vector) -> S
 
 
 def circles(vectors: Floats, units: Floats, rows: Indices) -> tuple[Signs, Signs]:
-    """Return for four directions each, (k, 4), where the last is: 1 inside the circle, 0 on it.
+    """Return 1 if the last of four directions, (k, 4), is inside the circle of the others, 0 on it.
 
     The first three are counter-clockwise. The second array is the same with ties broken by the
     order of directions.
@@ -97,8 +97,8 @@ def circles(vectors: Floats, units: Floats, rows: Indices) -> tuple[Signs, Signs
 def _rounded(units: Floats, rows: Indices) -> tuple[Floats, Floats]:
     """Return determinants of the differences from the last of four units, and bounds of errors.
 
-    Coordinates of units are off by u / 2. As in the core, whose bounds are 3 u and 10 u, with room
-    for other ways to sum up.
+    Coordinates of units are off by u / 2. The bounds in the core are 3 u and 10 u; these leave room
+    for other orders of summation.
     """
     p, q, r = (units[rows[:, k]] - units[rows[:, 3]] for k in range(3))
     s, t, w = (np.abs(each).sum(axis=1) for each in (p, q, r))
@@ -120,9 +120,9 @@ def _circle(four: list[Vector]) -> int:
 def _sign_of_roots(squares: list[int], signs: list[int]) -> int:
     """Return the sign of a sum of four square roots of integers with signs.
 
-    With M the sum of the roots: the product of the sums with all choices of signs that are
-    conjugate is an integer. There are 16 at most, none above M; so a sum that is not zero is at
-    least 1 / M**15.
+    Let M be the sum of the roots. The product of all conjugate sums, with other signs, is an
+    integer. There are at most 16 of them, none above M in size, so a nonzero sum is at least 1 /
+    M**15.
     """
     size = max(n.bit_length() for n in squares) // 2 + 3
     for bits in (64, 15 * size + 4):

@@ -1,9 +1,9 @@
 """Polygons on the sphere as polygons of a map of longitudes and latitudes.
 
-Sides are arcs of great circles, which a map shows as chains of short lines. Whether an arc goes
-east or west, or through a pole, is an exact sign; so is on which side of the date line it ends. A
-ring that surrounds a pole is completed along the edge of the map, and what crosses the date line is
-cut there, so that each result is valid in the plane.
+Sides are arcs of great circles, which a map shows as chains of short lines. Exact signs decide
+whether an arc goes east or west or through a pole, and on which side of the date line it ends. A
+ring that surrounds a pole is completed along the edge of the map, and polygons that cross the date
+line are cut there, so each result is valid in the plane.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ __all__ = ["flat_polygon"]
 _CENTER = (0.0, 0.0)
 
 
-# Degrees: more than the rounding of a longitude that was some turns away.
+# In degrees: more than the rounding error of a longitude that was shifted by some turns.
 _SEAM = 1e-9
 
 
 def flat_polygon(rings: Sequence[Floats], step: float) -> Any:
-    """Return what is to the left of all rings of unit vectors, in degrees, as shapely polygons.
+    """Return the area to the left of all rings of unit vectors as shapely polygons in degrees.
 
     Pieces of arcs are at most `step` degrees long.
     """
@@ -41,7 +41,7 @@ def flat_polygon(rings: Sequence[Floats], step: float) -> Any:
     for ring in rings:
         path, turns = _unrolled(ring, np.radians(step))
         inside = _wrapped(shapely, _closed(path, turns))
-        # Without a turn around a pole, the left side is the inside of counter-clockwise paths.
+        # If no ring surrounds a pole, the left side is the inside of counter-clockwise paths.
         if turns == 0 and not shapely.is_ccw(shapely.linearrings(path)):
             inside = world.difference(inside)
         found = inside if found is world else found.intersection(inside)
@@ -49,9 +49,9 @@ def flat_polygon(rings: Sequence[Floats], step: float) -> Any:
 
 
 def _unrolled(ring: Floats, step: float) -> tuple[Floats, int]:
-    """Longitudes without jumps, and latitudes, of a closed ring; its turns around the axis.
+    """The continuous longitudes and the latitudes of a closed ring, and its turns around the axis.
 
-    The last place repeats the first, up to turns.
+    The last place repeats the first, except for whole turns.
     """
     # A pole has no longitude to start from.
     ring = np.roll(ring, -int(ring[:, :2].any(axis=1).argmax()), axis=0)
@@ -59,7 +59,7 @@ def _unrolled(ring: Floats, step: float) -> tuple[Floats, int]:
     lonlat = lonlat_of(ring)
     signs = orient2d(_CENTER, ring[:, :2], heads[:, :2]).tolist()
     path, at = [], float(lonlat[0, 0])
-    # Each side appends its tail and the places along it, and moves to the longitude of its head.
+    # Each side appends its tail and the points along it, then continues from its head.
     for tail, head, sign, (_, lat), (east, _) in zip(
         ring, heads, signs, lonlat.tolist(), np.roll(lonlat, -1, axis=0).tolist(), strict=True
     ):
@@ -74,7 +74,7 @@ def _unrolled(ring: Floats, step: float) -> tuple[Floats, int]:
         if pole is None:
             at += (east - at + 180.0) % 360.0 - 180.0
             continue
-        # Along the edge of the map, which the inside, to the left, touches: west at the north pole.
+        # Continue along the edge of the map, inside on the left: westward at the north pole.
         if tail[:2].any():
             path.append((at, pole))
         if head[:2].any():
@@ -86,9 +86,9 @@ def _unrolled(ring: Floats, step: float) -> tuple[Floats, int]:
 
 
 def _ahead(at: float, longitudes: Floats, sign: int) -> Floats:
-    """How far east longitudes are, less than half a turn in the direction of the sign."""
+    """The difference of longitudes, less than half a turn in the direction that the sign says."""
     found = (longitudes - at + 180.0) % 360.0 - 180.0
-    # Only next to half a turn can rounding have chosen the other way.
+    # Only near half a turn can rounding have chosen the wrong direction.
     return np.where(sign * found < -90.0, found + sign * 360.0, found)
 
 
@@ -119,7 +119,7 @@ def _closed(path: Floats, turns: int) -> Floats:
 
 
 def _moved(places: Floats, turn: int, seam: float) -> Floats:
-    """Places some turns further west; those where a path was opened are there to the last bit.
+    """Move points west by some turns, and those where a path was opened to exactly the same place.
 
     Otherwise a rounding would leave a gap that the union of parts does not close.
     """
@@ -130,7 +130,7 @@ def _moved(places: Floats, turn: int, seam: float) -> Floats:
 
 
 def _wrapped(shapely: Any, path: Floats) -> Any:
-    """The inside of a path, as polygons with longitudes from -180 to 180."""
+    """The inside of a path as polygons with longitudes from -180 to 180."""
     whole = shapely.make_valid(shapely.Polygon(path))
     low, high = (
         int(np.floor((bound + 180) / 360)) for bound in (path[:, 0].min(), path[:, 0].max())
@@ -140,6 +140,6 @@ def _wrapped(shapely: Any, path: Floats) -> Any:
         west = 360.0 * turn - 180.0
         part = shapely.intersection(whole, shapely.box(west, -90, west + 360, 90))
         parts.append(shapely.transform(part, lambda xy, turn=turn: _moved(xy, turn, path[0, 0])))
-    # Only areas: cuts may leave lines and points.
+    # Keep polygons only: cuts may leave lines and points.
     areas = [each for part in parts for each in shapely.get_parts(part) if each.area > 0]
     return shapely.union_all(areas) if len(areas) != 1 else areas[0]

@@ -30,7 +30,7 @@ def gaussian_bounds(n: int, points: str | Sequence[int] | None) -> tuple[Floats,
     for count in counts:
         if count not in made:
             edges = (np.arange(count + 1, dtype=np.float64) - 0.5) * (360.0 / count)
-            # A turn, exactly.
+            # Exactly one turn.
             edges[-1] = edges[0] + 360.0
             made[count] = edges
     return rows, [made[count] for count in counts]

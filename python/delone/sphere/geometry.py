@@ -131,7 +131,8 @@ def read(
 ) -> tuple[Floats, Given, int | None]:
     """Return the distinct coordinates of geometries as vectors, and their segments.
 
-    The third is the first geometry that is the whole sphere, as its sides cancel out; or None.
+    The third item is the first geometry that is the whole sphere because its sides cancel out, or
+    None.
     """
     as_choice(winding, WINDINGS, name="winding")
     if sides is not None:
@@ -171,11 +172,11 @@ def read(
 def _placed(
     error: DirectionError, parts: geodata.Parts, rows: NDArray[np.int64], name: str
 ) -> DirectionError:
-    """Return the error of coordinates with the geometry and the place of the first."""
+    """Return an error about coordinates with the first geometry and place instead of rows."""
     row = int(rows[int(error.rows[0])])
     part = int(np.searchsorted(parts.starts, row, side="right")) - 1
     x, y = parts.coordinates[row].tolist()
-    # What is wrong and what to do are the same; row numbers are those of an inner array.
+    # Only the row numbers change, because those of the error are of an internal array.
     _, _, what = str(error).partition(" a ")
     kind, _, hint = what.partition(", first row")
     _, _, hint = hint.partition(": ")

@@ -1,4 +1,4 @@
-"""The base of grids of cells on the sphere: what is known of the cells, files and pictures."""
+"""The base of grids of cells on the sphere: properties of cells, files and pictures."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["GridCells"]
 
-# What is wrong with a cell, in the order of the core's numbers, and the cure.
+# Faults of cells by the core's numbers, each with what to do.
 _FAULTS = {
     2: ("a side that joins opposite directions", "add a corner between them"),
     LARGE: (
@@ -35,7 +35,7 @@ _FAULTS = {
     ),
     4: ("sides that cross or are repeated", "repair them, for example with shapely.make_valid"),
 }
-# Cells of one grid that share more of the smaller one than this overlap; less is a rounding.
+# Cells overlap if they share more of the smaller one than this; less is a rounding error.
 _SHARED = 1e-12
 _NONE = np.zeros(0, dtype=np.int64)
 # Names of arrays in files: of rows of cells, and of polygons.
@@ -56,7 +56,7 @@ class GridCells(Stored):
     _centers: Floats | None
     _checked: Any
     _edges: str
-    # The core's cells, or its parts of them.
+    # The cells of the core, or `Parts` of them.
     _made: Any
     _mask: Bools | None
     _merged: int
@@ -75,7 +75,7 @@ class GridCells(Stored):
         mask: Bools | None = None,
         centers: Floats | None = None,
     ) -> Self:
-        """Return a grid of arrays for the core; `centers` are those of fields, in degrees."""
+        """Return a grid from arrays for the core; `centers` are where fields are, in degrees."""
         threads = as_workers(workers)
         made = cls.__new__(cls)
         arrays = tuple(sealed(a) if isinstance(a, np.ndarray) else a for a in arrays)

@@ -1,4 +1,4 @@
-"""What is told of the cells of a grid: what was done to corners, and which cells overlap."""
+"""Reports on the cells of a grid: how corners changed, and which cells overlap."""
 
 from __future__ import annotations
 

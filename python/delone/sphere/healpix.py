@@ -33,15 +33,18 @@ def healpix_corners(nside: int, *, nested: bool, workers: int) -> Floats:
     if nested and n & (n - 1):
         raise InputError(f"nside must be a power of two for nested pixels, got {n}")
     face, x, y = _nested(n) if nested else _ringed(n)
-    # In a base pixel x grows to the north-east and y to the north-west.
+    # In a base pixel, x increases to the northeast and y to the northwest.
     steps = ((0, 0), (1, 0), (1, 1), (0, 1))
-    return np.stack([_place(n, face, x + i, y + j, workers) for i, j in steps], axis=1)
+    found = np.empty((len(face), 4, 3))
+    for k, (i, j) in enumerate(steps):
+        found[:, k] = _place(n, face, x + i, y + j, workers)
+    return found
 
 
 def _place(n: int, face: Rows, x: Rows, y: Rows, workers: int) -> Floats:
     """Return vectors of corners: their ring from the north pole, and their place in it."""
     ring = _RING[face] * n - x - y
-    # Places in a quarter of the ring: as many as the ring is from its pole, at most nside.
+    # A quarter of a ring has as many corners as rings lie between it and its pole, at most nside.
     wide = np.minimum(np.minimum(ring, 4 * n - ring), n)
     at = (_EIGHTH[face] * wide + x - y) % np.maximum(8 * wide, 1)
     cap = wide < n
@@ -62,7 +65,7 @@ def _nested(n: int) -> tuple[Rows, Rows, Rows]:
 
 
 def _even_bits(value: Rows) -> Rows:
-    """Return the numbers of every other bit."""
+    """Return the numbers that every other bit forms."""
     found = np.zeros_like(value)
     for bit in range(14):
         found |= ((value >> (2 * bit)) & 1) << bit

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["Origin", "Rings", "first_polygon"]
 
 
-# Areas within this of half the sphere, in steradians, are half: they are sums of rounded ones.
+# Sums of rounded areas, in steradians, count as half of the sphere within this.
 _HALF = 1e-9
 
 
@@ -37,7 +37,7 @@ class Rings(NamedTuple):
     origin: Origin
     # (s, 2): the vertices of the rows of segments.
     ends: Indices
-    # The inside is left of outer rings ("ccw"), right of them ("cw"), or where it is "smaller".
+    # The inside is left ("ccw") or right ("cw") of outer rings, or the "smaller" side.
     winding: str
 
 
@@ -51,8 +51,8 @@ def first_polygon(
 ) -> Indices:
     """Return the first geometry whose rings contain each component (even-odd rule), or -1.
 
-    Takes linear time, plus for each component time in proportion to the polygons that overlap
-    there.
+    Takes linear time, plus time proportional to the number of overlapping polygons in each
+    component.
     """
     origin, ends, winding = rings
     count = int(component.max(initial=-1)) + 1
@@ -60,7 +60,7 @@ def first_polygon(
     if not closed.any():
         return np.full(count, -1, dtype=np.int32)
     sides = beside(made, component)
-    # The last component is what no triangle covers.
+    # The last component is the part that no triangle covers.
     inside = containing(
         made, np.where(closed, origin.geometries, -1), component, from_outside=False
     )
@@ -88,7 +88,7 @@ def first_polygon(
 
 
 def _toggled(inside: Indices, turned: Rows, count: int) -> Indices:
-    """Return the pairs in which some geometries contain what they did not contain, and only that.
+    """Return the pairs after swapping the inside and the outside of some geometries.
 
     For each geometry, components ascend.
     """
@@ -104,12 +104,12 @@ def _toggled(inside: Indices, turned: Rows, count: int) -> Indices:
 
 
 def _outer(made: ConstrainedTriangulation, origin: Origin, closed: Bools) -> Rows:
-    """Return the subsegments that an outer ring covers once, the geometry, and the direction."""
+    """Return subsegments that an outer ring covers once, with its geometry and direction."""
     count = np.diff(made.source_start)
     row = np.repeat(np.arange(len(count)), count)
     wanted = np.flatnonzero(closed[made.source] & origin.outer[made.source])
     geometry = origin.geometries[made.source[wanted]].astype(np.int64)
-    # A side that a geometry has twice, such as a cut along the date line, tells nothing.
+    # A side that occurs twice, such as a cut along the date line, does not tell.
     keys = row[wanted] * (int(geometry.max(initial=0)) + 1) + geometry
     _, first, times = np.unique(keys, return_index=True, return_counts=True)
     at = wanted[first[times == 1]]
@@ -117,9 +117,10 @@ def _outer(made: ConstrainedTriangulation, origin: Origin, closed: Bools) -> Row
 
 
 def _turned(inside: Indices, sides: Indices, outer: Rows, winding: str) -> Rows:
-    """Return the geometries whose inside is what `inside` takes for their outside, ascending.
+    """Return the geometries, ascending, whose outside is marked as their inside in `inside`.
 
-    Most sides decide: a border that crosses itself has loops that run the other way.
+    The majority of the sides decides, because a border that crosses itself has loops in the other
+    direction.
     """
     row, geometry, forward = outer.T
     within = np.where((forward != 0) == (winding == "ccw"), sides[row, 0], sides[row, 1])
@@ -140,20 +141,20 @@ def _turned(inside: Indices, sides: Indices, outer: Rows, winding: str) -> Rows:
 
 
 def _keys(inside: Indices, count: int) -> Rows:
-    """Return a number for each pair of a component and a geometry below `count`."""
+    """Return a unique number for each pair of a component and a geometry below `count`."""
     component, geometry = inside[inside[:, 1] < count].T.astype(np.int64)
     keys: Rows = component * count + geometry
     return keys
 
 
 def _areas(inside: Indices, size: Floats, count: int = 0) -> Floats:
-    """Return the area of each geometry, rounded; of at least so many."""
+    """Return the rounded area of each geometry, for at least `count` of them."""
     component, geometry = inside.T
     return np.bincount(geometry, weights=size[component], minlength=count).astype(np.float64)
 
 
 def _warn_of_large(area: Floats) -> None:
-    """Warn of geometries that cover more than half of the sphere, because of their winding."""
+    """Warn of geometries that their winding makes larger than half of the sphere."""
     large = np.flatnonzero(area > 2 * math.pi + _HALF).tolist()
     if large:
         share = area[large[0]] / (4 * math.pi)

@@ -1,8 +1,8 @@
 """Cells that no hemisphere contains, as parts that the core can use.
 
-The core has cells within a hemisphere. A cell beyond one is the union of its parts: the outer rings
-of a multipolygon, each with its holes, or triangles between the corners of a cell whose rings alone
-do not tell which side is meant. No corner moves, so parts meet exactly.
+Each cell of the core lies within a hemisphere. A larger one is the union of its parts: the outer
+rings of a multipolygon, each with its holes, or triangles between the corners of a cell whose rings
+alone do not tell which side is meant. No corner moves, so parts meet exactly.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ if TYPE_CHECKING:
 
 __all__ = ["LARGE", "Parts", "overlaps_of", "wound"]
 
-# The core's numbers of what is wrong with a cell.
+# The core's numbers for faults of cells.
 _EMPTY, LARGE = 1, 3
-# Places between corners, so that no triangle is nearly as wide as a hemisphere.
+# Points added to the corners, so that no triangle is nearly as wide as a hemisphere.
 _BETWEEN = np.array([v for v in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(v)])
 # Each is triangulated alone.
 _MOST = 1000
-# Sums of areas, in steradians, are this far from half the sphere at most if they are half.
+# Sums of rounded areas, in steradians, count as half of the sphere within this.
 _HALF = 1e-9
 
 
 class _Checked(NamedTuple):
-    """What the core's CheckedCells have, of cells in parts."""
+    """The same as the core's CheckedCells, for cells in parts."""
 
     areas: Floats
     faults: Any
@@ -49,7 +49,7 @@ class _Checked(NamedTuple):
 
 
 class _Shared(NamedTuple):
-    """What the core's SharedCells have, of cells in parts."""
+    """The same as the core's SharedCells, for cells in parts."""
 
     indptr: Rows
     indices: Any
@@ -101,7 +101,7 @@ def _sums(rows: Rows, values: Floats, count: int) -> Floats:
 
 
 def overlaps_of(one: Any, other: Any, workers: int) -> Any:
-    """Return what the cells of two grids share, in parts or not."""
+    """Return the areas that cells of two grids share, whether in parts or not."""
     parts = [each if isinstance(each, Parts) else None for each in (one, other)]
     cores = [made.core if made else each for made, each in zip(parts, (one, other), strict=True)]
     found = cores[0].overlaps(cores[1], workers)
@@ -141,15 +141,15 @@ def wound(arrays: Arrays, winding: str, workers: int | None) -> Arrays:
         count = len(rings) - 1
         alone = np.arange(count + 1, dtype=np.int64), np.zeros(count, dtype=np.bool_)
         each = _core.CellGrid.polygons(vectors, rings, *alone).check(False, threads)
-        # Outer rings that have the larger part of the sphere on the side that is meant.
+        # Outer rings with the larger part of the sphere on the chosen side.
         against = (each.turned == (winding == "ccw")) & (each.faults != _EMPTY) & ~holes
         number = np.repeat(np.arange(len(cells) - 1), np.diff(cells))
         large[number[against]] = True
     rows = np.flatnonzero(large)
     if len(rows) > _MOST:
         raise InputError(
-            f"{len(rows)} cells are larger than a hemisphere with winding={winding!r:.20}, first cell "
-            f'{rows[0]}: do rings run the other way? winding="smaller" takes the smaller side'
+            f"{len(rows)} cells are larger than a hemisphere with winding={winding!r:.20}, first "
+            f'cell {rows[0]}: do rings run the other way? winding="smaller" takes the smaller side'
         )
     parts = {row: _triangles(arrays, row, winding, workers) for row in rows.tolist()}
     beyond = [row for row, part in parts.items() if part.area > 2 * np.pi + _HALF]
@@ -197,7 +197,7 @@ def _triangles(arrays: Arrays, row: int, winding: str, workers: int | None) -> _
 
 
 def _passed(mesh: ConstrainedDelaunay, segments: Rows, count: int) -> Rows:
-    """Return the vertices after `count` that sides pass through, each for each of these sides."""
+    """Return the vertices from `count` on that sides pass through, once for each such side."""
     row, vertex = mesh._made.through[mesh._made.through[:, 1] >= count].T
     # Equal sides are one.
     ends = np.sort(segments[row], axis=1)
@@ -212,7 +212,7 @@ def _replaced(arrays: Arrays, given: dict[int, Floats]) -> Arrays:
         return arrays
     places, sizes, counts, hollow = [], [], [], []
     last = 0
-    # What lies between cells that are replaced stays as it is.
+    # The cells between those that are replaced stay as they are.
     for row in [*given, len(cells) - 1]:
         a, b = int(cells[last]), int(cells[row])
         places.append(vectors[rings[a] : rings[b]])

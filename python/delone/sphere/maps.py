@@ -40,14 +40,14 @@ _ESMF = {
 # Sums of weights that differ by less agree.
 _NEAR = 1e-9
 _ROW = {"esmf": "row", "scrip": "dst_address"}
-# What the sides of cells are, of files that have the grids.
+# The kind of sides, in files that contain the grids.
 _EDGES = ("delone_source_edges", "delone_target_edges")
 _SIDES = {"parallel": "meridians and parallels", "arc": "arcs of great circles"}
 _COLUMN = {"esmf": "col", "scrip": "src_address"}
 
 
 def _names(layout: str, side: int) -> dict[str, str]:
-    """Return the names of what is known of the cells of one grid."""
+    """Return the names of the variables that describe the cells of one grid."""
     if layout == "esmf":
         a = "ab"[side]
         names = {
@@ -113,7 +113,7 @@ def write_map(
 
 
 def _write_heads(file: Any, weights: Any, layout: str) -> None:
-    """Write the attributes by which readers know what a file is."""
+    """Write the attributes by which readers recognize a file."""
     esmf = layout == "esmf"
     # NCO looks for the name of ESMF's program in the title.
     file.title = (
@@ -138,11 +138,11 @@ def _write_heads(file: Any, weights: Any, layout: str) -> None:
 def _write_cells(
     file: Any, layout: str, side: int, known: tuple[Floats, Floats, tuple[int, ...]]
 ) -> None:
-    """Write what the weights know of the cells of one grid."""
+    """Write what the weights contain about the cells of one grid."""
     names, (areas, fractions, shape) = _names(layout, side), known
     file.createDimension(names["size"], len(areas))
     file.createDimension(names["rank"], len(shape))
-    # The fastest axis comes first.
+    # The axis that varies fastest comes first.
     file.createVariable(names["dims"], "i4", (names["rank"],))[:] = np.array(shape[::-1])
     area = file.createVariable(names["area"], "f8", (names["size"],))
     area.units = "square radians"
@@ -152,12 +152,12 @@ def _write_cells(
     share[:] = fractions
     mask = file.createVariable(names["mask"], "i4", (names["size"],))
     mask.units = "unitless"
-    # A cell without a covered part takes no part.
+    # Cells that are not covered are masked.
     mask[:] = (fractions > 0).astype(np.int32)
 
 
 def _write_places(file: Any, names: dict[str, str], grid: Grid) -> None:
-    """Write the centers and corners of cells; the last corner is repeated where one has fewer."""
+    """Write the centers and corners of cells; cells with fewer corners repeat the last one."""
     vectors, rings, cells = grid.rings
     # Files have one ring for each cell: the first.
     starts = rings[np.minimum(cells[:-1], len(rings) - 1)]
@@ -179,7 +179,7 @@ def _write_places(file: Any, names: dict[str, str], grid: Grid) -> None:
 
 
 def read_map(path: str | os.PathLike[str], grids: Grids) -> tuple[tuple[Any, ...], int]:
-    """Return the parts of the weights of a file, and their order; see `Weights.from_netcdf`."""
+    """Return the parts of the weights in a file, and their order; see `Weights.from_netcdf`."""
     netcdf = require("netCDF4", extra="xarray", what="reading NetCDF files")
     try:
         file = netcdf.Dataset(path)
@@ -229,7 +229,7 @@ def _parts(file: Any, path: str, grids: Grids) -> tuple[Any, ...]:
         method = "conservative"
         with np.errstate(divide="ignore", invalid="ignore"):
             values = np.where(areas[1][rows] > 0, values / areas[1][rows], 0.0)
-    # Entries of one pair are added.
+    # Entries for the same pair are added.
     entries = added(rows, columns, values, len(areas[1]))
     counts = np.diff(entries[0])
     method, covered = _consistent(method, entries, fractions[1], counts > 0)
@@ -240,10 +240,10 @@ def _parts(file: Any, path: str, grids: Grids) -> tuple[Any, ...]:
 def _consistent(
     method: str, entries: tuple[Any, ...], given: Floats | None, there: Bools
 ) -> tuple[str, Floats]:
-    """Return the method and the fractions of target cells that fit the weights themselves.
+    """Return the method and the fractions of target cells that agree with the weights.
 
-    Results are sums of weights times values, whatever else a file says: of "conservative", sums of
-    weights are the fractions, and of other means they are one.
+    Results are sums of weights times values, whatever else a file says: with "conservative",
+    weights add up to the fractions, and with other means to one.
     """
     sums = row_sums(entries[0], entries[2])
     if method == "conservative":
@@ -256,7 +256,7 @@ def _consistent(
 
 
 def _order(file: Any, values: Floats) -> int:
-    """Return 2 if weights have slopes: as a file says, or because some are negative."""
+    """Return 2 if weights have slopes, because the file says so or because some are negative."""
     own = getattr(file, "delone_order", None)
     said = str(getattr(file, "ESMF_regrid_method", "")) + str(getattr(file, "map_method", ""))
     if own is not None:
@@ -278,7 +278,7 @@ def _method(file: Any) -> str:
 
 
 def _numbers(file: Any, name: str, count: int, path: str) -> NDArray[np.int64]:
-    """Return numbers of cells from 0."""
+    """Return cell numbers that start at 0."""
     variable = file.variables[name]
     start = getattr(variable, "start_index", getattr(variable, "first_index", 1))
     numbers = np.asarray(variable[:]).astype(np.int64) - int(start)
@@ -323,10 +323,10 @@ def _read_cells(
 
 
 def _shape(file: Any, names: dict[str, str], count: int) -> tuple[int, ...]:
-    """Return the shape of fields: the dimensions, the fastest of which comes first in files.
+    """Return the shape of fields; files list the fastest dimension first.
 
-    Some programs write two of them in the other order. Their centers tell: in rows and columns,
-    latitudes do not change along one axis, and longitudes along the other.
+    Some programs write two dimensions in the opposite order. The centers tell them apart: in rows
+    and columns, latitudes are constant along one axis and longitudes along the other.
     """
     if names["dims"] not in file.variables:
         return (count,)

@@ -25,17 +25,17 @@ if TYPE_CHECKING:
 
 __all__ = ["moments_of_cells", "moments_of_parts"]
 
-# Pieces of cells that are cut together.
+# Number of pairs of cells that are cut at once.
 _LOT = 1 << 16
-# Steps to the place where an arc meets a parallel; each doubles the digits, or halves the interval.
+# Steps to find where an arc meets a parallel; each doubles the digits or halves the interval.
 _STEPS = 60
 _NODES, _GAUSS = np.polynomial.legendre.leggauss(8)
-# A height that no place exceeds.
+# A height above all points of the sphere.
 _ABOVE = 2.0
 
 
 class _Pieces(NamedTuple):
-    """Rings, one after the other: corners, and whether the side after each is on a parallel."""
+    """Consecutive rings: corners, and whether the side after each is on a parallel."""
 
     corners: Floats
     parallel: Bools
@@ -46,7 +46,7 @@ class _Pieces(NamedTuple):
 
 
 class _Planes(NamedTuple):
-    """Half-spaces, one after the other for each piece: inward normals, and a place on each."""
+    """The half-spaces of each piece in sequence: inward normals, and a point on each plane."""
 
     normals: Floats
     places: Floats
@@ -70,7 +70,7 @@ def moments_of_parts(
 
     `centers` are unit vectors near the pairs; the part along them is left out.
     """
-    # Cells between meridians and parallels cut, as a side of a polygon crosses them easily.
+    # Cells between meridians and parallels do the cutting, because cutting arcs is easier.
     turned = source.edges == "parallel" and target.edges != "parallel"
     cut, cutting = (target, source) if turned else (source, target)
     first, second = (targets, sources) if turned else (sources, targets)
@@ -195,7 +195,7 @@ def _planes(grid: Grid) -> _Planes:
         boxes = _boxes(grid._arrays)
         count = len(boxes.cells)
         normals, places = np.zeros((2, count, 4, 3))
-        # East of one meridian and west of the other, then between parallels.
+        # First east of one meridian and west of the other, then between parallels.
         for k, sign in ((0, 1.0), (1, -1.0)):
             normals[:, k, 0] = -sign * boxes.sides[:, k, 1]
             normals[:, k, 1] = sign * boxes.sides[:, k, 0]
@@ -258,7 +258,7 @@ def _following(starts: Rows) -> Rows:
 
 
 def _cut(pieces: _Pieces, planes: _Planes, chosen: Rows) -> _Pieces:
-    """Return what of each ring lies in its convex piece; rings of which nothing is left go."""
+    """Return the part of each ring inside its convex piece; rings without one are dropped."""
     number = planes.starts[chosen + 1] - planes.starts[chosen]
     split = False
     for k in range(int(number.max(initial=0))):
@@ -282,13 +282,13 @@ def _halved(pieces: _Pieces, away: Floats, level: Bools, heights: Floats) -> _Pi
     after = _following(pieces.starts)
     inside = away >= 0
     crossing = np.flatnonzero(inside != inside[after])
-    # Each corner that is inside, and after it where the side crosses.
+    # The corners inside, each followed by the crossing of its side, if there is one.
     number = np.repeat(np.arange(len(pieces.cells)), np.diff(pieces.starts))
     made = np.empty((len(inside), 2, 3))
     made[:, 0] = pieces.corners
     along = np.empty((len(inside), 2), dtype=bool)
     along[:, 0] = pieces.parallel
-    # From where a ring leaves, it follows the plane.
+    # Where a ring leaves the half-space, it continues along the plane.
     along[:, 1] = np.where(inside, level, pieces.parallel)
     a, b = pieces.corners[crossing], pieces.corners[after[crossing]]
     ends = away[crossing], away[after[crossing]]
@@ -313,7 +313,7 @@ def _meeting(
     chord = np.linalg.norm(b - a, axis=1) ** 2
     level = np.isfinite(heights)
     if level.any():
-        # The chord goes inside the sphere, so the place on it is found step by step.
+        # The chord is inside the sphere, so the point on the arc is found iteratively.
         rows = np.flatnonzero(level)
         x, y, z, c = a[rows, 2], b[rows, 2], heights[rows], chord[rows]
         lower, upper = np.zeros(len(rows)), np.ones(len(rows))
@@ -336,7 +336,7 @@ def _meeting(
         t[rows] = u
     found: Floats = a + t[:, None] * (b - a)
     found /= np.linalg.norm(found, axis=1, keepdims=True)
-    # Between places of a parallel, only the longitude is between theirs.
+    # Between two points of a parallel, only the longitude changes.
     radius = np.hypot(a[:, 0], a[:, 1])
     width = np.hypot(found[:, 0], found[:, 1])
     scale = np.divide(radius, width, out=np.ones(len(a)), where=width > 0)
@@ -349,7 +349,7 @@ def _with_tops(pieces: _Pieces) -> _Pieces:
     a = pieces.corners
     b = a[_following(pieces.starts)]
     normal = np.cross(a, b - a)
-    # Eastward and north of the normal's equator: the heights rise toward the top.
+    # The northernmost place on the circle of each arc.
     top = np.column_stack(
         (
             -normal[:, 0] * normal[:, 2],
@@ -359,6 +359,7 @@ def _with_tops(pieces: _Pieces) -> _Pieces:
     )
     size = np.linalg.norm(top, axis=1, keepdims=True)
     top = np.divide(top, size, out=np.zeros_like(top), where=size > 0)
+    # Whether heights rise at both ends: the top is between them if it differs.
     rise = (np.cross(normal, a)[:, 2], np.cross(normal, b)[:, 2])
     between = (rise[0] * rise[1] < 0) & ~pieces.parallel
     top = np.where((rise[0] < 0)[:, None], -top, top)
@@ -397,7 +398,7 @@ def _integrals(pieces: _Pieces, centers: Floats) -> Floats:
         total = np.zeros((len(rows), 3))
         for node, weight in zip(_NODES, _GAUSS, strict=True):
             w = turn * (1 + node) / 2
-            # The way from the first corner, by half angles, and its derivative.
+            # The path from the first corner, by half angles, and its derivative.
             cosine, sine = -2 * np.sin(w / 2) ** 2, np.sin(w)
             x = cosine * a[:, 0] - sine * a[:, 1]
             y = sine * a[:, 0] + cosine * a[:, 1]

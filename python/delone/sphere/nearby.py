@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 __all__ = ["nearby"]
 
-# More than the errors of rounded angles, in radians.
+# Larger than the errors of rounded angles, in radians.
 _DOUBT = 2.0**-44
 _PI = Fraction(3141592653589793238462643383279502884197169399375105820974944592307816406, 10**72)
-# Cosines beyond this are not told from those of round angles, such as 60 degrees.
+# Cosines that agree to this many digits with that of an angle such as 60 degrees are equal.
 _DIGITS = 10**60
 
 
@@ -62,7 +62,7 @@ def _square_of_cosine(angle: Fraction) -> Fraction:
     """Return the square of the cosine of an angle, with the sign of the cosine."""
     if angle >= _PI:
         return Fraction(-1)
-    # By its series, whose terms fall from the third one on; an angle has few of them.
+    # From the series of the cosine, whose terms decrease from the third one on.
     total, term, k = Fraction(0), Fraction(1), 0
     angle = Fraction(round(angle * _DIGITS**2), _DIGITS**2)
     square = angle * angle

@@ -1,4 +1,4 @@
-"""The points of the boundary of a hull on the sphere that are nearest to directions outside."""
+"""The nearest boundary points of a hull on the sphere, for directions outside of it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = ["arc_weights", "chords"]
 
-# Numbers in each temporary array.
+# Number of entries in each temporary array.
 _BLOCK = 1 << 20
 
 
@@ -50,7 +50,7 @@ def _squares(points: Floats, arcs: Indices, queries: Floats) -> Floats:
     a, b = points[arcs[:, 0]], points[arcs[:, 1]]
     normal = _normals(a, b)
     within = (queries @ np.cross(normal, a).T > 0) & (queries @ np.cross(b, normal).T > 0)
-    # Of the sine of the angle to the plane, which is accurate for small angles.
+    # From the sine of the angle to the plane, which is accurate for small angles.
     square = np.minimum((queries @ normal.T) ** 2, 1.0)
     interior = 2 * square / (1 + np.sqrt(1 - square))
     ends = 2 - 2 * np.maximum(queries @ a.T, queries @ b.T)
@@ -59,7 +59,7 @@ def _squares(points: Floats, arcs: Indices, queries: Floats) -> Floats:
 
 
 def _normals(a: Floats, b: Floats) -> Floats:
-    """The unit normals of the planes of arcs; from differences, for short ones."""
+    """The unit normals of the planes of arcs, from differences for the sake of short arcs."""
     normal = np.cross(a, b - a)
     length = np.sqrt(_dots(normal, normal))[:, None]
     found: Floats = normal / np.where(length > 0, length, 1.0)

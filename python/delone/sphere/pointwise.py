@@ -1,4 +1,4 @@
-"""Weights between the centers of cells: interpolation, where values are those of places."""
+"""Weights between the centers of cells: interpolation of values at points."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ POINTWISE = (
 )  # fmt: skip
 
 
-# Distances that differ by less, as a fraction, are equal.
+# Distances with a smaller relative difference are equal.
 _EQUAL = 1e-12
 
 
@@ -67,7 +67,7 @@ def pointwise(
     if method == "bilinear":
         found = _bilinear(pair, used[0])
     elif method in {"nearest", "inverse_distance"}:
-        # They have values everywhere.
+        # These methods give values everywhere.
         return _nearest(pair, None if method == "nearest" else power, neighbors)
     else:
         found = _triangles(pair, method)
@@ -111,8 +111,8 @@ def _nearest(pair: _Pair, power: float | None, most: int | None = None) -> Entri
     """Return the nearest centers; with a power, also others, weighted by distance.
 
     The others are the neighbors in the Delaunay triangulation, or the `most` nearest centers and
-    all that are as far as the last of them, so that no number of them cuts through equal distances.
-    A target at a center has its value.
+    all others at the same distance as the last of them, so that ties are treated alike. A target at
+    a center gets its value.
     """
     sites = pair.source.centers_lonlat[pair.sources]
     queries = pair.target.centers_lonlat[pair.targets]
@@ -139,11 +139,11 @@ def _nearest(pair: _Pair, power: float | None, most: int | None = None) -> Entri
 def _several(
     sites: Floats, graph: tuple[Any, Any], places: Floats, near: Any, most: int | None
 ) -> tuple[Rows, Rows, Floats]:
-    """Return for each place its nearest site and others: rows, sites and angles.
+    """Return the nearest site and others for each point: rows, sites and angles.
 
-    The site after the j nearest ones is a neighbor of one of them in the Delaunay triangulation:
-    so each step finds at least one more of the nearest, and after as many steps as are wanted,
-    nothing changes. This holds for places within 90 degrees of their sites.
+    The site after the j nearest ones is a neighbor of one of them in the Delaunay triangulation. So
+    each step finds at least one more, and as many steps as wanted sites find all. This holds for
+    points within 90 degrees of their sites.
     """
     starts, neighbors = graph
     count = len(sites)
@@ -156,7 +156,8 @@ def _several(
         found_row, found = np.divmod(np.unique(pairs), count)
         angles = _angles(sites[found], places[found_row])
         if most is not None:
-            # The nearest of each place, with those that are as far as the last but for rounding.
+            # The nearest sites of each point, with those as far as the last one up to rounding
+            # errors.
             order = np.lexsort((angles, found_row))
             found_row, found, angles = found_row[order], found[order], angles[order]
             first = np.searchsorted(found_row, np.arange(len(near)))
@@ -204,7 +205,7 @@ def _bilinear(pair: _Pair, used: Bools | None) -> Entries:
     if len(lat) > 1 and lat[0] > lat[-1]:
         lat, at = lat[::-1], at[::-1]
     if whole:
-        # The first column again, a turn further.
+        # Repeat the first column one turn further east.
         lon, at = np.append(lon, lon[0] + 360), np.column_stack((at, at[:, 0]))
     x, y = pair.target.centers_lonlat[pair.targets].T
     x = lon[0] + (x - lon[0]) % 360
@@ -231,9 +232,9 @@ def _bilinear(pair: _Pair, used: Bools | None) -> Entries:
 
 
 def _unmasked(entries: Entries, used: Bools | None) -> Entries:
-    """Return positive weights, without targets to which an unused cell contributes."""
+    """Return positive weights, without the targets that need an unused cell."""
     if used is not None:
-        # A target with a cell that is not used has no value.
+        # A target that needs an unused cell has no value.
         lost = np.unique(entries.rows[~used[entries.columns] & (entries.values > 0)])
         kept = ~np.isin(entries.rows, lost)
         entries = _kept(entries, kept)

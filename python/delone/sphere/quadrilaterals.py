@@ -26,14 +26,14 @@ if TYPE_CHECKING:
 
 __all__ = ["between_corners"]
 
-# Steps of Newton's method; quadratic convergence needs some five of them.
+# Maximum steps of Newton's method; quadratic convergence takes about five.
 _STEPS = 30
-# Steps below this end it: some units in the last place of 1.
+# Smaller steps end it: a few units in the last place of 1.
 _SMALL = 2.0**-48
-# A solution farther outside a quadrilateral that contains its query belongs to another branch.
+# A solution farther outside of the quadrilateral that contains the query is on a wrong branch.
 _OUTSIDE = 1e-6
-# Half the size of the triangles, in radians, by which pieces are looked up: their areas exceed what
-# the core tells from nothing.
+# Half the size of the triangles, in radians, by which pieces are looked up: their areas are large
+# enough for the core not to treat them as empty.
 _NEEDLE = 1e-8
 
 
@@ -68,7 +68,7 @@ def between_corners(
     vectors = directions_of(queries, None, degrees=True, workers=workers, any_turns=True)
     rows, at = _candidates(pieces, vectors, workers)
     found = _weighted(pieces, vectors, rows, at, workers)
-    # The value at a corner where many cells meet is their mean.
+    # The value at a corner where many cells meet is the mean of theirs.
     count = source.ncells
     cells = found.places < count
     many = found.places[~cells] - count
@@ -96,7 +96,7 @@ def _pieces(source: Grid, used: Bools | None, workers: int | None) -> _Pieces:
         chosen = starts[:-1][sizes == size]
         corners = members[chosen[:, None] + np.arange(size)]
         parts.append(np.pad(corners, ((0, 0), (0, 4 - size)), constant_values=-1))
-    # Around a corner of more cells, such as a pole, triangles with the corner itself.
+    # Around a corner with more cells, such as a pole, use triangles with the corner itself.
     many = np.flatnonzero(sizes > 4)
     count = sizes[many]
     within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
@@ -122,8 +122,8 @@ def _pieces(source: Grid, used: Bools | None, workers: int | None) -> _Pieces:
 def _around(source: Grid, used: Bools | None) -> tuple[Floats, Rows, Rows]:
     """Return the corners with cells on all sides, and these cells, counterclockwise.
 
-    Of cells with the same corners, as in the columns and rows that ocean grids repeat, one counts:
-    the first that is used.
+    Of cells with the same corners, as in the rows and columns that ocean grids repeat, only the
+    first used one counts.
     """
     cell, node, before, after, vectors = _corners(source, used)
     count = len(vectors)
@@ -133,7 +133,7 @@ def _around(source: Grid, used: Bools | None) -> tuple[Floats, Rows, Rows]:
     lined = outgoing[order]
     twice = np.flatnonzero(lined[1:] == lined[:-1])
     wrong = np.zeros(count, dtype=bool)
-    # Cells on the same side of a side overlap.
+    # Two cells on the same side of an edge overlap.
     wrong[lined[twice] // count] = True
     wrong[lined[twice] % count] = True
     sought = np.argsort(incoming, kind="stable")
@@ -152,7 +152,8 @@ def _around(source: Grid, used: Bools | None) -> tuple[Floats, Rows, Rows]:
     closed = np.ones(len(good), dtype=bool)
     for step in range(int(sizes.max(initial=0))):
         live = sizes > step
-        # One turn visits all cells of a corner; where it ends early, others only touch it.
+        # One turn visits all cells of a corner; if it ends early, other cells only touch the
+        # corner.
         closed &= ~live | (step == 0) | (at != first)
         members[starts[:-1][live] + step] = cell[at[live]]
         at = np.where(live, following[at], at)
@@ -167,7 +168,7 @@ def _corners(source: Grid, used: Bools | None) -> tuple[Rows, Rows, Rows, Rows, 
     vectors, rings, cells = source.rings
     lengths = np.diff(rings)
     one = np.diff(cells) == 1
-    # Equal bits, but for the sign of 0, are one corner.
+    # Corners with equal bits, except for the sign of 0, are the same.
     first, number = _distinct(vectors + 0.0)
     ring = np.flatnonzero(one)
     of = cells[:-1][ring]
@@ -215,7 +216,7 @@ def _shifted(cell: Rows, by: int) -> Rows:
 
 
 def _repeated(cell: Rows, node: Rows, count: int, used: Bools | None) -> Bools:
-    """Return which cells have the corners of another one that counts instead."""
+    """Return which cells have the same corners as another one that counts instead."""
     order = np.lexsort((node, cell))
     sizes = np.bincount(cell, minlength=count)
     most = int(sizes.max(initial=0))
@@ -284,12 +285,12 @@ def _weighted(
 
 
 def _signs(places: Floats, queries: Floats, a: Rows, b: Rows) -> Rows:
-    """Return on which side of arcs queries are: 1 on the left, exactly."""
+    """Return on which side of arcs queries are, exactly: 1 on the left."""
     return turns(places[a], places[b], queries).astype(np.int64)
 
 
 def _projected(places: Floats, queries: Floats, corners: Rows, workers: int | None) -> Floats:
-    """Return corners seen from above queries, which are at the origin, (k, c, 2)."""
+    """Return corners projected around queries, which are at the origin, (k, c, 2)."""
     units = units_of(queries, workers)
     u, v = _tangents(units)
     ends = units_of(places[corners.ravel()], workers).reshape(*corners.shape, 3) - units[:, None]
@@ -303,7 +304,7 @@ def _in_three(
     three = corners[:, :3]
     a, b, c = three.T
     turn = turns(places[a], places[b], places[c]).astype(np.int64)
-    # Opposite each corner; in a clockwise triangle, the other way around.
+    # The areas opposite each corner, with the opposite sign in clockwise triangles.
     signs = turn[:, None] * np.column_stack(
         [_signs(places, queries, *pair) for pair in ((b, c), (c, a), (a, b))]
     )
@@ -348,7 +349,7 @@ def _in_four(
 def _halves(
     places: Floats, queries: Floats, corners: Rows, other: Bools, workers: int | None
 ) -> tuple[Bools, Floats]:
-    """Return the same, linear in the triangles on both sides of a diagonal.
+    """Return the same, but linear in the triangles on both sides of a diagonal.
 
     It is that of corners 0 and 2, or the `other` one.
     """
@@ -368,8 +369,8 @@ def _halves(
 def _inverse(flat: Floats, sides: Rows) -> tuple[Floats, Floats, Bools]:
     """Return where the origin is in quadrilaterals, (k, 4, 2), and whether that was found.
 
-    Newton's method from the middle, for as many steps as `_STEPS` says. On a side, a coordinate is
-    0 or 1, as exact signs say.
+    Uses at most `_STEPS` steps of Newton's method from the middle. If exact signs put the query on
+    a side, a coordinate is exactly 0 or 1.
     """
     origin = flat[:, 0]
     e, f = flat[:, 1] - origin, flat[:, 3] - origin

@@ -1,4 +1,4 @@
-"""Rasters of longitudes and latitudes: which part of the sphere, and which nodes."""
+"""Rasters of longitudes and latitudes: the part of the sphere that they cover, and their nodes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["globe_nodes"]
 
 _POLES = ((0.0, 0.0, -1.0), (0.0, 0.0, 1.0))
-# Longitudes shifted by a turn, and radians as degrees, are not rounded to the degree they mean.
+# Longitudes shifted by a turn or converted from radians may miss whole degrees by this much.
 _DIGITS = 13
 
 
@@ -57,12 +57,12 @@ def globe_nodes(
 
 
 def _longitudes(longitudes: Floats, *, whole: bool) -> tuple[float, float]:
-    """The least interval of longitudes with all sites, from -180 on; the whole turn by its name."""
+    """The smallest interval of longitudes with all sites, or -180 to 180 for the whole turn."""
     if whole:
         west = -180.0 if (longitudes < 0).any() else 0.0
         return west, west + 360.0
     turned = np.unique(np.mod(longitudes + 180.0, 360.0) - 180.0)
-    # The sites are on one side of the widest gap, which is at least half a turn: no pole is inside.
+    # If the widest gap is at least half a turn, all sites are on one side, and no pole is inside.
     gaps = np.diff(turned, append=turned[0] + 360.0)
     last = int(gaps.argmax())
     if last == len(turned) - 1:
@@ -73,8 +73,8 @@ def _longitudes(longitudes: Floats, *, whole: bool) -> tuple[float, float]:
 def _aligned(low: float, high: float, side: float, *, whole: bool) -> Floats:
     """Centers of cells from `low` to `high` whose edges are multiples of their side.
 
-    As decimals: the center is the double nearest to the decimal. If `whole`, cells start at `low`,
-    and no center is at or beyond `high`.
+    They are decimal numbers: each center is the double nearest to its decimal. If `whole`, cells
+    start at `low`, and no center is at or beyond `high`.
     """
     step = Fraction(repr(side))
     first, last = (Fraction(f"{bound:.{_DIGITS}g}") for bound in (low, high))

@@ -262,7 +262,7 @@ class Regridder(Immutable):
         options = {"skipna": skipna, "min_fraction": min_fraction, "fill": fill}
         if isinstance(data, xarray.Dataset):
             if type(data) is not xarray.Dataset:
-                # One of uxarray has its own grid, which is not that of the result.
+                # An array of uxarray has a grid of its own, which is not that of the result.
                 parts = [
                     {name: data.variables[name] for name in names}
                     for names in (data.data_vars, data.coords)
@@ -347,7 +347,7 @@ class Regridder(Immutable):
             whole,
             output_sizes={f"o{k}": size for k, size in enumerate(shape)},
             output_dtypes=kind,
-            # One object of the graph, instead of one in each task.
+            # One object in the graph, instead of one in each task.
             weights=dask.delayed(self._weights, traverse=False),
             **options,
         )
@@ -367,7 +367,7 @@ class Regridder(Immutable):
                 fields.append(name)
             elif set(dims) & set(part.dims):
                 partial.append(name)
-        # Bounds of coordinates that go, go with them.
+        # Bounds are dropped with their coordinates.
         bounds = {data[name].attrs.get("bounds") for name in gone}
         partial = [name for name in partial if name not in bounds]
         if partial:
@@ -393,7 +393,7 @@ class Regridder(Immutable):
         return result.assign(others)
 
     def _dims_of_dataset(self, data: Any) -> tuple[Any, ...]:
-        """Return the dimensions at the end of a field that has the shape of the source."""
+        """Return the last dimensions of a field that together have the shape of the source."""
         shape = self.source.grid_shape
         found: set[tuple[Any, ...]] = {
             part.dims[len(part.dims) - len(shape) :]
@@ -438,7 +438,7 @@ def _last(
 
 
 def _require_fit(weights: Weights, grids: tuple[Grid, Grid]) -> None:
-    """Refuse weights of other grids."""
+    """Reject weights that belong to other grids."""
     if not isinstance(weights, Weights):
         raise DtypeError(f"weights must be sphere.Weights, got {type(weights).__name__}")
     counts = len(weights.source_fractions), len(weights.fractions)

@@ -37,14 +37,14 @@ __all__ = [
     "voronoi",
 ]
 
-# Latitudes beyond a pole by a rounding of float32 mean the pole.
+# Latitudes beyond a pole by a rounding error of float32 mean the pole.
 BEYOND = 1 + 2.0**-22
-# Columns that are wider are cut, because directions do not tell turns apart.
+# Wider columns are cut, because directions do not show whole turns.
 WIDE = 90.0
 
 
 class Rings(NamedTuple):
-    """Corners, starts of rings in corners, starts of cells in rings, and which rings are holes."""
+    """Corners, where rings start in them, where cells start in rings, and which rings are holes."""
 
     vectors: Floats
     rings: Rows
@@ -59,7 +59,7 @@ def as_bounds(values: ArrayLike, *, name: str, degrees: bool) -> Floats:
     require_finite(flat.reshape(-1, 1), name=name)
     if array.ndim == 2 and array.shape[1] == 2:
         first, second = flat.reshape(-1, 2).T
-        # Bounds may be ordered against their sequence.
+        # The bounds of each entry may be in the opposite order.
         orders = (first, second), (second, first)
         apart = [one[1:] != other[:-1] for one, other in orders]
         best = int(apart[1].sum() < apart[0].sum())
@@ -84,7 +84,7 @@ def as_bounds(values: ArrayLike, *, name: str, degrees: bool) -> Floats:
 
 
 def _on_earth(edges: Floats, name: str) -> Floats:
-    """Return edges with poles and whole turns as such, or refuse what is beyond."""
+    """Return edges with exact poles and whole turns, or reject those that are beyond them."""
     top = float(np.abs(edges).max())
     if name == "lat":
         if top > 90 * BEYOND:
@@ -109,7 +109,7 @@ def tangents_of(lat: Floats) -> Floats:
 
 
 def rows(lat: Floats, columns: list[Floats]) -> tuple[Any, ...]:
-    """Return the arrays of the core for rows of cells between meridians, numbered as given."""
+    """Return arrays for the core of rows of cells between meridians, numbered as given."""
     tangents = tangents_of(lat)
     both = np.sort(np.column_stack((tangents[:-1], tangents[1:])), axis=1)
     made: dict[int, tuple[Floats, NDArray[np.int32]]] = {}
@@ -147,7 +147,7 @@ def _meridians(edges: Floats) -> tuple[Floats, NDArray[np.int32]]:
 def as_corners(
     lon: ArrayLike, lat: ArrayLike, *, degrees: bool, workers: int | None
 ) -> tuple[Floats, Rows, tuple[int, ...]]:
-    """Return places of two-dimensional arrays, (m, 3), those of cells, (n, k), and the shape."""
+    """Return vectors of arrays of corners, (m, 3), the corners of cells, (n, k), and the shape."""
     x, y = np.asarray(lon), np.asarray(lat)
     if x.shape != y.shape or x.ndim not in {2, 3} or 0 in x.shape:
         raise ShapeError(
@@ -174,7 +174,7 @@ def as_starts(
     degrees: bool,
     workers: int | None,
 ) -> tuple[Floats, Rows]:
-    """Return corners, (k, 3), and where those of each cell start."""
+    """Return corners, (k, 3), and where the corners of each cell start."""
     given = xyz if xyz is not None else lonlat
     shape = np.shape(given) if given is not None else ()
     if given is not None and len(shape) == 3:
@@ -198,10 +198,10 @@ def as_starts(
 
 
 def merged_corners(vectors: Floats, merge: float) -> tuple[Floats, int]:
-    """Return vectors in which those nearer than `merge` are one, and how many that changes.
+    """Return vectors with those closer than `merge` merged, and how many changed.
 
-    Corners are compared along a line on which few of them coincide by chance; each takes the place
-    of the first one of those that chains of near corners lead to.
+    Corners are compared along a line on which few coincide by chance. Each takes the place of the
+    first corner to which a chain of close corners leads.
     """
     if not merge or len(vectors) < 2:
         return vectors, 0
@@ -213,7 +213,7 @@ def merged_corners(vectors: Floats, merge: float) -> tuple[Floats, int]:
     step, close = 1, np.arange(len(order) - 1)
     pairs = []
     while True:
-        # Corners that are far from one further along the line are far from all beyond it.
+        # A corner that is far from one further along the line is far from all those beyond.
         close = close[close + step < len(order)]
         close = close[sorted_at[close + step] - sorted_at[close] <= width]
         if not len(close):
@@ -222,7 +222,7 @@ def merged_corners(vectors: Floats, merge: float) -> tuple[Floats, int]:
         near = close[apart <= merge**2]
         pairs.append((order[near], order[near + step]))
         if step == 1:
-            # What is near a corner is near its copy beside it, which looks for the rest.
+            # The equal corner next to it finds the remaining close corners.
             close = close[apart > 0]
         step += 1
     if not pairs:
@@ -235,7 +235,7 @@ def merged_corners(vectors: Floats, merge: float) -> tuple[Floats, int]:
 
 
 def _first(count: int, one: Rows, other: Rows) -> Rows:
-    """Return the least number of those that pairs lead to from each, in steps that double."""
+    """Return the smallest number that pairs connect each number to, by doubling steps."""
     first = np.arange(count)
     while len(one):
         least = np.minimum(first[one], first[other])
@@ -244,7 +244,7 @@ def _first(count: int, one: Rows, other: Rows) -> Rows:
         first = first[first]
         apart = first[one] != first[other]
         one, other = one[apart], other[apart]
-    # Those that were reached early follow the others.
+    # Numbers that were reached early follow the others.
     while not np.array_equal(again := first[first], first):
         first = again
     return first
@@ -370,7 +370,7 @@ def shapes(arrays: tuple[Any, ...], areas: Floats, step: float) -> NDArray[np.ob
             if checked.faults[r] == 1:
                 continue
             ring = _distinct(units[starts[r] : starts[r + 1]])
-            # Outer rings have the cell to their left, and so have holes.
+            # Outer rings and holes both have the cell on their left.
             ring = ring[::-1] if bool(checked.turned[r]) != bool(holes[r]) else ring
             if holes[r] and parts:
                 parts[-1].append(ring)

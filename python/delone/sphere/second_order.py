@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 
 __all__ = ["SecondOrderWeights", "second_order"]
 
-# Cells that are covered except for rounding errors of corners count as whole.
+# Cells count as whole if only rounding errors of corners are not covered.
 _ROUNDING = 1e-9
-# Neighbors on one line give no slope across it.
+# Neighbors on a line determine no slope across it.
 _FLAT = 1e-9
 
 
 class _Slopes(NamedTuple):
-    """What is added to weights of first order."""
+    """What slopes add to weights of first order."""
 
     # For each first-order entry: the offset of its centroid from that of the cell, by weight.
     offsets: Floats
@@ -182,7 +182,7 @@ def second_order(
     lonlat = source.centers_lonlat[there]
     vectors = directions_of(lonlat, None, degrees=True, workers=workers, any_turns=True)
     centers[there] = units_of(vectors, workers)
-    # The areas of the parts, of weights.
+    # The areas of the parts, from the weights.
     over = target.areas[row]
     if first.method == "normalized":
         over = over * first.fractions[row]
@@ -191,7 +191,7 @@ def second_order(
     parts *= _within(parts, areas, source.areas[cell])[:, None]
     sums = np.stack([np.bincount(cell, parts[:, k], source.ncells) for k in range(3)], axis=1)
     covered = np.bincount(cell, areas, source.ncells)
-    # Of whole cells, the moments are those of their parts, so that no rounding is lost.
+    # The moments of whole cells are sums over their parts, so that they cancel exactly.
     whole = np.abs(covered - source.areas) <= _ROUNDING * source.areas
     means = np.where(whole[:, None], sums, moments_of_cells(source, centers))
     weight = np.where(whole, covered, source.areas)
@@ -205,9 +205,9 @@ def second_order(
 
 
 def _within(parts: Floats, areas: Floats, whole: Floats) -> Floats:
-    """Return factors that keep the centroids of slivers, which are roundings, near their cells."""
+    """Return factors that keep the rounded centroids of slivers near their cells."""
     size = np.linalg.norm(parts, axis=1)
-    # Slivers only: a part of a cell with less than a billionth of it does not count.
+    # Only slivers: parts with less than a billionth of a cell.
     small = areas < 1e-9 * whole
     most = areas * np.sqrt(whole)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -232,7 +232,7 @@ def _fitted(places: Floats, used: Rows, workers: int | None) -> tuple[Rows, Rows
     cell = np.repeat(used, np.diff(starts))
     neighbors = used[near]
     normal = places[cell] / np.linalg.norm(places[cell], axis=1, keepdims=True)
-    # Two directions along the sphere at each cell.
+    # Two tangent directions at each cell.
     helper = np.eye(3)[np.abs(normal).argmin(axis=1)]
     east = np.cross(helper, normal)
     east /= np.linalg.norm(east, axis=1, keepdims=True)
@@ -246,7 +246,7 @@ def _fitted(places: Floats, used: Rows, workers: int | None) -> tuple[Rows, Rows
     trace = xx + yy
     good = det > _FLAT * trace**2
     det = np.where(good, det, 1.0)
-    # Of neighbors in one line, the slope along it.
+    # If neighbors are on a line, only the slope along it.
     a = weight * np.where(good, (yy * x - xy * y) / det, (xx * x + xy * y) / trace**2)
     b = weight * np.where(good, (xx * y - xy * x) / det, (xy * x + yy * y) / trace**2)
     slopes = a[:, None] * east + b[:, None] * north

@@ -1,8 +1,8 @@
 """Sides of polygons in longitudes and latitudes: as arcs, or as straight lines of a map.
 
-Two places have one shorter arc, unless they are opposite. A map has more to say: a side from pole
-to pole runs along its meridian, one from -180 to 180 along its parallel, and a rectangle from -180
-to 180 and pole to pole is the whole sphere, although its sides cancel out.
+Two points have one shorter arc, unless they are opposite. On a map, more sides are defined: a side
+from pole to pole runs along its meridian, one from -180 to 180 along its parallel, and a rectangle
+from -180 to 180 and pole to pole is the whole sphere, although its sides cancel out.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ if TYPE_CHECKING:
 __all__ = ["SIDES", "Origin", "PolygonWarning", "divided", "whole_sphere"]
 
 SIDES = ("arc", "parallel")
-# Longer arcs leave the parallel of their ends by more than a degree, in middle latitudes.
+# At middle latitudes, longer arcs leave the parallel of their ends by more than a degree.
 _LONG = np.radians(30.0)
-# Pieces of a quarter: a degree.
+# Number of pieces of a quarter turn, of one degree each.
 _PIECES = 90
 
 
 class Origin(NamedTuple):
     """Where each input segment came from."""
 
-    # (s,): its geometry, -1 without one.
+    # (s,): its geometry, or -1 if it has none.
     geometries: Indices
     # (s,): whether it is the side of a ring.
     rings: Bools
@@ -70,7 +70,7 @@ class PolygonWarning(UserWarning):
 
 
 def divided(parts: Parts, sides: str | None, quarter: float, *, name: str) -> Parts:
-    """Return parts with places inserted into their sides, such that each piece has one arc.
+    """Return parts with points inserted into their sides so that each piece is a unique arc.
 
     `quarter` is 90 degrees in the unit of the coordinates.
     """
@@ -114,7 +114,7 @@ def _inserted(parts: Parts, ends: NDArray[np.int64], count: NDArray[np.int64]) -
 
 
 def _warn_of_long(tail: Floats, head: Floats, name: str) -> None:
-    """Warn of arcs that leave the straight line of a map by far; angles are radians."""
+    """Warn of arcs that are far from the straight line on a map; angles are in radians."""
     half = (head - tail) / 2
     chord = np.sin(half[:, 1]) ** 2 + np.cos(tail[:, 1]) * np.cos(head[:, 1]) * (
         np.sin(half[:, 0]) ** 2
@@ -135,11 +135,11 @@ def _warn_of_long(tail: Floats, head: Floats, name: str) -> None:
 
 def whole_sphere(parts: Parts, vectors: Floats, ends: Indices, origin: Origin) -> int | None:
     """Return the first geometry whose sides cancel out although it has an area on the map."""
-    # Degrees are reduced exactly: all names of a place on a map have equal vectors.
+    # Degrees are reduced exactly, so all coordinates of one point have equal vectors.
     sides = np.sort(first_rows(vectors)[ends], axis=1).astype(np.int32)
     rings = origin.rings & (sides[:, 0] != sides[:, 1])
     sides = sides[rings]
-    # The first row of the same side, for each geometry one number.
+    # The first row of the same side, combined with the geometry into one number.
     side = _core.facet_rows(sides, sides, len(vectors), True)
     keys = origin.geometries[rings].astype(np.int64) * max(len(side), 1) + side
     found, times = np.unique(keys, return_counts=True)

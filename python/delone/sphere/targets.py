@@ -27,16 +27,16 @@ _DIMS = {2: ("y", "x"), 3: ("face", "y", "x")}
 
 
 class Side(NamedTuple):
-    """A grid, and what of it belongs to fields."""
+    """A grid, and the dimensions and coordinates of fields on it."""
 
     grid: Grid
-    # The dimensions of fields; None if they follow from the sizes of each field.
+    # The dimensions of fields; None if the shape of each field determines them.
     dims: tuple[Any, ...] | None
     # Coordinates and other variables of results, and attributes of their fields.
     coords: dict[Any, Any]
     others: dict[Any, Any]
     attrs: dict[str, str]
-    # Variables that describe the grid, and are not in results of fields on it.
+    # Variables that describe the grid and are left out of results for fields on it.
     describing: frozenset[str]
 
 
@@ -64,7 +64,7 @@ def side_of(given: Any, choices: Choices, name: str) -> Side:
         for key, part in variables.items():
             if key not in own and key not in (cells.coords or ()):
                 continue
-            # Centers are coordinates, and what belongs to the grid is beside the fields.
+            # Centers are coordinates; other variables of the grid are next to the fields.
             place = coords if key in (cells.coords or ()) else others
             place[key] = (part.dims, part.values, dict(part.attrs))
         for dim in set(cells.dims) & set(variables) - set(coords):

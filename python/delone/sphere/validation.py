@@ -1,4 +1,4 @@
-"""Validation of triangulations of directions, with the numbers of the elements that are wrong.
+"""Validation of triangulations of directions, listing the elements that are wrong.
 
 Signs are exact. What they prove: triangles with positive determinants, and cones from the direction
 opposite a place to the boundary edges that have the place on their left, are a closed surface that
@@ -148,7 +148,7 @@ def validate_constrained(
 def _faults(
     vectors: Floats, units: Floats, arrays: tuple[Indices, Indices, Indices], exempt: Bools | None
 ) -> dict[str, Rows]:
-    """Return the fields of a report; pairs of triangles across exempt edges, (m, 3), may be any."""
+    """Return the fields of a report; edges marked as exempt, (m, 3), are not checked."""
     simplices, neighbors, duplicates = arrays
     faults = _faults_of_topology(simplices, neighbors, len(vectors), duplicates)
     corners = [vectors[simplices[:, k]] for k in range(3)]
@@ -204,7 +204,7 @@ def _middle(corners: Floats) -> tuple[int, int, int]:
 def _off_hull(
     vectors: Floats, units: Floats, boundary: Indices, middle: tuple[int, int, int]
 ) -> Indices:
-    """Return the edges with the middle on their right, or before a turn to the right."""
+    """Return boundary edges with the middle on their right, or followed by a right turn."""
     if not len(boundary):
         return boundary
     wrong = turns_at(vectors, units, boundary, middle) <= 0
@@ -229,7 +229,7 @@ def _overlaps(
 def _faults_of_circles(
     vectors: Floats, units: Floats, simplices: Indices, neighbors: Indices, exempt: Bools | None
 ) -> dict[str, Rows]:
-    """Return the pairs of triangles that are not locally Delaunay, and those of wrong ties."""
+    """Return the pairs of triangles that are not locally Delaunay, and those with wrong ties."""
     checked = neighbors > np.arange(len(neighbors))[:, None]
     if exempt is not None:
         checked &= ~exempt
@@ -243,7 +243,7 @@ def _faults_of_circles(
 
 
 def _is_off(vectors: Floats, first: Indices, last: Indices, vertex: Indices) -> Bools:
-    """Return whether directions are not on the shorter arcs between two others."""
+    """Return which directions are not on the shorter arc between two others."""
     off: Bools = turns(vectors[first], vectors[last], vectors[vertex]) != 0
     for row in np.flatnonzero(~off & (vertex != first) & (vertex != last)).tolist():
         a, b, x = (whole(vectors[each[row]].tolist()) for each in (first, last, vertex))

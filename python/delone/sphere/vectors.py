@@ -36,17 +36,17 @@ if TYPE_CHECKING:
 
 __all__ = ["VectorInterpolation", "Vectors", "polar_rows"]
 
-# Keeps a division by zero away.
+# Avoids a division by zero.
 _TINY = 2.0**-1022
 
 
 class Polar(NamedTuple):
-    """The caller's rows at the poles, whose longitudes say where their east is."""
+    """The caller's rows at the poles, whose longitudes define east."""
 
     rows: Rows
-    # Of the first row at the same pole, in radians: the meridian of all of them.
+    # The longitude of the first row at the same pole, in radians, used for all of them.
     longitudes: Floats
-    # Of the turns from the meridians of the rows to that one, (cosine, sine).
+    # (cosine, sine) of the rotations from the meridians of the rows to that one.
     turns: Floats
 
 
@@ -58,7 +58,7 @@ def polar_rows(lonlat: ArrayLike, vectors: Floats, degrees: bool) -> Polar | Non
     given = np.asarray(lonlat, dtype=np.float64)[rows, 0]
     up = vectors[rows, 2] > 0
     first = np.where(up, given[up.argmax()], given[up.argmin()])
-    # A turn at the South Pole is seen from the other side.
+    # At the South Pole, rotations are seen from the other side.
     apart = np.where(up, given - first, first - given)
     # The cosines and sines of the core are exact for quarter turns.
     circle = np.column_stack((apart, np.zeros(len(apart))))
@@ -84,9 +84,9 @@ class _Halves(NamedTuple):
     @classmethod
     def of(cls, vectors: Floats, longitudes: Floats) -> _Halves:
         """Those of directions; `longitudes` are those of directions at a pole."""
-        # Negative zeros would point to the west.
+        # Negative zeros would point west.
         x, y, z = vectors.T + 0.0
-        # Lengths may be such that squares overflow, and functions of NumPy have other last bits.
+        # Squares of long vectors may overflow, and NumPy's functions differ in their last bits.
         largest = np.abs(vectors).max(axis=1, initial=0.0)
         power = -np.frexp(largest)[1]
         turn = np.arctan2(np.ldexp(y, power), np.ldexp(x, power))
@@ -101,7 +101,7 @@ class _Halves(NamedTuple):
 
 
 def _turns(start: _Halves, end: _Halves) -> tuple[Floats, Floats]:
-    """Cosines and sines of the turns of components from places to others.
+    """Cosines and sines of the rotations of components from some points to others.
 
     By Napier's analogies, tan(turn / 2) = -tan(longitudes / 2) sin(mean latitude) / cos(half the
     difference of latitudes).
@@ -110,8 +110,8 @@ def _turns(start: _Halves, end: _Halves) -> tuple[Floats, Floats]:
     (cb, sb), (cv, sv) = end
     sine = (su * cv + cu * sv) * (sb * ca - cb * sa)
     cosine = (cu * cv + su * sv) * (cb * ca + sb * sa)
-    # The square of the middle of two unit vectors. It is 0 for opposite ones only, which have no
-    # great circle; the weights of such sites are 0, as all others are nearer.
+    # The square of the middle of two unit vectors. It is 0 only for opposite ones, which have no
+    # unique great circle; the weights of such sites are 0, because all others are nearer.
     square = np.maximum(cosine * cosine + sine * sine, _TINY)
     return (cosine * cosine - sine * sine) / square, -2.0 * cosine * sine / square
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from delone.sphere.clipping import Clipped, Region
     from delone.sphere.validation import SphereReport
 
-    # The radius, and where cells end.
+    # The radius, and the clip.
     Options = tuple[float, Region | None]
 
 __all__ = ["Voronoi"]

@@ -1,4 +1,4 @@
-"""The class Weights: what source cells contribute to target cells, applied to fields."""
+"""The class Weights: what source cells contribute to target cells, for use on fields."""
 
 from __future__ import annotations
 

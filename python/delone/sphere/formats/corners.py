@@ -65,7 +65,7 @@ def read_scrip(variables: Variables, choices: Choices) -> Cells:
     shape: tuple[int, ...] = (count,)
     dims = variables.get("grid_dims")
     if dims is not None:
-        # The fastest axis comes first.
+        # The axis that varies fastest comes first.
         sizes = tuple(int(size) for size in np.ravel(dims.values)[::-1])
         if min(sizes, default=0) > 0 and int(np.prod(sizes, dtype=np.int64)) == count:
             shape = sizes
@@ -88,7 +88,7 @@ def read_scrip(variables: Variables, choices: Choices) -> Cells:
 
 
 def _boxes(lon: NDArray[Any], lat: NDArray[Any], shape: tuple[int, ...]) -> dict[str, Any]:
-    """Return the edges between columns and rows of corners that lie on them."""
+    """Return the edges of columns and rows, on which all corners must lie."""
     refusal = InputError(
         'edges="parallel" needs cells between meridians and parallels, in rows and columns, and '
         "the corners of this SCRIP grid are others"
@@ -127,7 +127,7 @@ def read_oasis(variables: Variables, choices: Choices) -> Cells:
     centers = variables.get(f"{name}.lon")
     arrays = []
     for each in names:
-        # Corners are the axis that centers lack, or the first one.
+        # The axis of corners is the one that centers do not have, or else the first one.
         dims = variables[each].dims
         own = [k for k, dim in enumerate(dims) if centers is not None and dim not in centers.dims]
         array = numbers(variables[each], each)

@@ -1,4 +1,4 @@
-"""Which variables of a dataset describe its grid, and what of it belongs to results."""
+"""Which variables of a dataset describe its grid, and which of them belong to results."""
 
 from __future__ import annotations
 
@@ -62,14 +62,14 @@ def describing(variables: Variables, cells: Cells) -> set[str]:
 
 
 def kept_of_target(variables: Variables, cells: Cells) -> tuple[set[str], dict[str, str]]:
-    """Return the variables of a target that belong to results, and attributes of fields."""
+    """Return the variables of a target that belong in results, and attributes for fields."""
     if cells.format == "HEALPix":
         mapping = healpix_mapping(variables)
         return describing(variables, cells), {"grid_mapping": str(mapping)}
     if cells.format == "UGRID":
         names = describing(variables, cells)
         meshes = [n for n in sorted(names) if variables[n].attrs.get("cf_role") == "mesh_topology"]
-        # Of several meshes, the one whose faces are the cells.
+        # If there are several meshes, the one whose faces are the cells.
         for name in meshes:
             faces = str(variables[name].attrs.get("face_node_connectivity"))
             nodes = str(variables[name].attrs.get("node_coordinates")).split()

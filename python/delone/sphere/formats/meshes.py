@@ -40,7 +40,7 @@ __all__ = [
 def _nodes(
     variables: Variables, names: tuple[str, str], choices: Choices, *, fixed: bool | None = None
 ) -> Floats:
-    """Return the places of nodes by their longitudes and latitudes."""
+    """Return the vectors of nodes from their longitudes and latitudes."""
     for name in names:
         if name not in variables:
             raise InputError(f"the dataset has no variable {name!r:.60}")
@@ -55,7 +55,7 @@ def _nodes(
 def _cells(
     convention: str, dims: tuple[Any, ...], nodes: Floats, cells: tuple[Rows, Rows], **more: Any
 ) -> Cells:
-    """Return the cells of corners, as rows of nodes, and starts; fields have one axis."""
+    """Return cells from corners, as rows of nodes, and starts; fields have one axis."""
     corners, starts = cells
     shape = (len(starts) - 1,)
     return Cells(convention, dims, shape, nodes=nodes, corners=corners, starts=starts, **more)
@@ -96,7 +96,7 @@ def read_ugrid(variables: Variables, choices: Choices) -> Cells:
     for each in nodes:
         if each not in variables:
             raise InputError(f"{name}: the dataset has no variable {each!r:.60}, its coordinate")
-    # Usually the longitude comes first, but attributes decide.
+    # The longitude usually comes first, but attributes decide.
     if is_angle(variables[nodes[0]], 1) and is_angle(variables[nodes[1]], 0):
         nodes.reverse()
     elif not (is_angle(variables[nodes[0]], 0) and is_angle(variables[nodes[1]], 1)):
@@ -132,7 +132,7 @@ def _at_nodes(
     nodes: Floats,
     faces: tuple[Rows, Rows],
 ) -> Cells:
-    """Return faces of which the nodes have fields."""
+    """Return the faces of a mesh whose fields are at nodes."""
     dims = variables[names[0]].dims
     return Cells(
         convention,
@@ -152,7 +152,7 @@ def _present(variables: Variables, lon: str, lat: str) -> tuple[str, str] | None
 
 
 def _ordered(variables: Variables, names: list[str]) -> tuple[str, str] | None:
-    """Return the longitude and the latitude of two names, or None."""
+    """Return two names with the longitude first, or None."""
     if len(names) != 2 or not set(names) <= set(variables):
         return None
     for a, b in (names, names[::-1]):
@@ -211,7 +211,7 @@ def read_icon(variables: Variables, choices: Choices) -> Cells:
     along = None if centers is None or centers.ndim != 1 else centers.dims[0]
     if table.ndim != 2 or 3 not in table.shape:
         raise ShapeError(f"vertex_of_cell must have shape (3, cell), got {table.shape}")
-    # The axis of cells is that of their centers; without these, the file's order is (3, cell).
+    # The axis of cells is that of their centers; without centers, the order is (3, cell).
     transposed = table.dims[0] != along and table.shape[0] == 3
     cells = connected(table, "vertex_of_cell", len(vectors), start=1, transposed=transposed)
     dims = (table.dims[1 if transposed else 0],)
@@ -229,7 +229,7 @@ def read_fesom(variables: Variables, choices: Choices) -> Cells:
 
 
 def read_fesom_diagnostics(variables: Variables, choices: Choices) -> Cells:
-    """Read FESOM's mesh.diag.nc of before UGRID: nodes (2, n) in radians, elements (3, m)."""
+    """Read FESOM's older mesh.diag.nc, without UGRID: nodes (2, n) in radians, elements (3, m)."""
     given = variables["nodes"]
     both = numbers(given, "nodes")
     if both.ndim != 2 or both.shape[0] != 2:
@@ -246,7 +246,7 @@ def read_fesom_diagnostics(variables: Variables, choices: Choices) -> Cells:
 def _three(
     variables: Variables, name: str, nodes: int
 ) -> tuple[tuple[Rows, Rows], tuple[Any, ...]]:
-    """Return triangles in either order of axes, and their dimension."""
+    """Return triangles from either order of axes, and their dimension."""
     table = variables[name]
     transposed = table.ndim == 2 and table.shape[0] == 3 and table.shape[1] != 3
     cells = connected(table, name, nodes, start=1, transposed=transposed)
@@ -254,7 +254,7 @@ def _three(
 
 
 def read_exodus(variables: Variables, choices: Choices) -> Cells:
-    """Read the elements of all blocks of Exodus; numbers start at 1."""
+    """Read the elements of all blocks of an Exodus file; numbers start at 1."""
     vectors = _exodus_nodes(variables)
     blocks = sorted(
         (int(name[7:]), name)

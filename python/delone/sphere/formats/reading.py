@@ -23,7 +23,7 @@ __all__ = ["read_cells"]
 
 
 class _Format(NamedTuple):
-    """A convention: what it is known by, and what reads it."""
+    """A convention: how it is recognized, and the function that reads it."""
 
     name: str
     wanted: str
@@ -32,7 +32,7 @@ class _Format(NamedTuple):
 
 
 _TURN = 360.0
-# Conventions that fix the unit of centers: whether it is degrees.
+# Conventions that define the unit of centers: whether it is degrees.
 _UNITS = {"MPAS": False, "ICON": False, "FESOM": True, "OASIS": True, "GEOS-CS": True}
 
 
@@ -40,7 +40,7 @@ def _has(*names: str) -> Callable[[Variables], bool]:
     return lambda variables: set(names) <= set(variables)
 
 
-# The special ones first: many of them have longitudes and latitudes as well.
+# Specific conventions come first, because many of them also have longitudes and latitudes.
 _FORMATS = (
     _Format(
         "UGRID",
@@ -104,7 +104,7 @@ def read_cells(given: Any, choices: Choices) -> Cells:
 
 
 def _centers(variables: Variables, cells: Cells, choices: Choices) -> Floats | None:
-    """Return the centers that a dataset has, in degrees; None if it does not say their unit."""
+    """Return the centers in a dataset in degrees; None if it does not state their unit."""
     assert cells.coords is not None
     columns = []
     for axis, name in enumerate(cells.coords):
@@ -118,9 +118,9 @@ def _centers(variables: Variables, cells: Cells, choices: Choices) -> Floats | N
         degrees = in_degrees(part, axis, name, choices, fixed=_UNITS.get(cells.format))
         columns.append(values if degrees else np.degrees(values))
     if len(columns[0]) and np.ptp(columns[0]) > _TURN:
-        # As grids of oceans have them, which begin anywhere.
+        # As in ocean grids, which begin at any longitude.
         columns[0] = (columns[0] + _TURN / 2) % _TURN - _TURN / 2
-    # Latitudes beyond a pole by a rounding are the pole.
+    # Latitudes beyond a pole by a rounding error are the pole.
     lonlat = np.column_stack((columns[0], np.clip(columns[1], -90, 90)))
     return lonlat if np.isfinite(lonlat).all() else None
 
@@ -139,7 +139,7 @@ def _read(given: Any, choices: Choices) -> Cells:
     if {"verticesOnCell", "nEdgesOnCell"} <= set(variables):
         return meshes.read_mpas(variables, choices, dict(given.attrs))
     for each in _LAST:
-        # Bounds of cells around nodes are preferred to triangles between them.
+        # Bounds of cells around nodes take precedence over triangles between them.
         if each.known(variables) and (choices.cells or not _has_bounds(variables)):
             return each.read(variables, choices)
     if structured.centers(variables, choices) is not None:

@@ -31,7 +31,7 @@ __all__ = ["bounds_name", "centers", "healpix_mapping", "read_bounds", "read_hea
 
 _WORDS = ("longitude", "latitude")
 _NAMES = (("lon", "lat"), ("longitude", "latitude"))
-# Names of bounds, after the name of the coordinate, where no attribute names them.
+# Suffixes of the names of bounds, for coordinates without the attribute.
 _ENDINGS = ("_bnds", "_bounds", "_vertices", "_b", "_corners")
 _INFER = "give infer_bounds=True to place them halfway between centers"
 
@@ -57,7 +57,7 @@ def centers(variables: Variables, choices: Choices) -> Pair | None:
         usable = {n: p for n, p in usable.items() if p.ndim and set(p.dims) <= along}
     known = [[n for n, p in usable.items() if is_angle(p, axis)] for axis in (0, 1)]
     if max(map(len, known)) > 1:
-        # Of several, those that are coordinates of their own axes.
+        # If there are several, use those that are coordinates of their own axes.
         own = [[n for n in names if usable[n].dims == (n,)] for names in known]
         if not all(len(names) == 1 for names in own):
             found = ", ".join(name for names in known for name in names)
@@ -87,7 +87,7 @@ def read_bounds(variables: Variables, choices: Choices) -> Cells:
 
 
 def bounds_name(variables: Variables, name: str, *, required: bool = True) -> str | None:
-    """Return the name of the bounds of a coordinate; those that it names are `required`."""
+    """Return the name of the bounds of a coordinate; if `required`, those it names must exist."""
     said = attribute(variables[name], "bounds")
     if said is not None and said not in variables and required:
         raise InputError(
@@ -131,9 +131,9 @@ def _read_product(variables: Variables, names: Pair, choices: Choices) -> Cells:
 
 
 def _halfway(values: NDArray[Any], name: str, axis: int, degrees: bool) -> Floats:
-    """Return edges halfway between centers; the outer ones as far from theirs as the inner ones.
+    """Return edges halfway between centers; the outer ones are as far out as the inner ones.
 
-    A latitude beyond a pole is the pole.
+    Latitudes beyond a pole become the pole.
     """
     at = values.astype(np.float64)
     if len(at) < 2:
@@ -147,7 +147,7 @@ def _halfway(values: NDArray[Any], name: str, axis: int, degrees: bool) -> Float
 
 
 def _met(bounds: NDArray[Any], degrees: bool, choices: Choices) -> tuple[Floats, int]:
-    """Return bounds of which those that differ by a rounding meet, and how many moved."""
+    """Return bounds with those that differ by rounding errors made equal, and how many moved."""
     found = bounds.astype(np.float64)
     if bounds.ndim != 2 or bounds.shape[1] != 2 or len(bounds) < 2:
         return found, 0
@@ -228,7 +228,7 @@ def _read_listed(variables: Variables, names: Pair, choices: Choices) -> Cells:
         return Cells(**rest, nodes=nodes, starts=np.arange(len(found) + 1, dtype=np.int64) * 4)
     if flat[0].shape[1] < 3:
         raise ShapeError(f"{pair[0]} has {flat[0].shape[1]} corners for each cell, not 3 or more")
-    # Units of bounds are those of their coordinate, if they have none.
+    # Bounds without units have those of their coordinate.
     known = {
         bound: variables[bound if "units" in variables[bound].attrs else name]
         for name, bound in zip(names, pair, strict=True)
@@ -243,7 +243,7 @@ def _intervals(
     arrays: tuple[NDArray[Any], NDArray[Any]],
     choices: Choices,
 ) -> tuple[Floats, tuple[float, float]]:
-    """Return west, east, south and north of cells in degrees, and how near bounds are one."""
+    """Return west, east, south and north of cells in degrees, and distances to merge bounds."""
     near, found = [float(np.degrees(choices.merge))] * 2, []
     for axis, (name, bound, array) in enumerate(zip(names, bounds, arrays, strict=True)):
         values = array.astype(np.float64)
@@ -261,7 +261,7 @@ def _intervals(
 
 
 def _within_poles(lat: Floats, name: str) -> Floats:
-    """Return latitudes in degrees, of which those beyond a pole by a rounding are the pole."""
+    """Return latitudes in degrees with those beyond a pole by a rounding error set to the pole."""
     far = np.abs(lat) > 90 * BEYOND
     if far.any():
         row = int(np.flatnonzero(far.any(axis=1))[0])

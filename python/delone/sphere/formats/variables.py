@@ -1,4 +1,4 @@
-"""Variables of datasets: units, places of corners, and numbers of nodes."""
+"""Variables of datasets: units, coordinates of corners, and numbers of nodes."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def variables_of(given: Any) -> dict[str, Any]:
 
 
 def attribute(variable: Any, name: str) -> Any:
-    """Return an attribute, which xarray may have moved to the encoding; None without."""
+    """Return an attribute, which xarray may have moved to the encoding; None if there is none."""
     return variable.attrs.get(name, variable.encoding.get(name))
 
 
@@ -52,7 +52,7 @@ def in_degrees(
 ) -> bool:
     """Return whether a longitude (axis 0) or latitude (1) is in degrees rather than radians.
 
-    By its units; without, by what the caller says, or by what the convention fixes.
+    The units decide; if there are none, the caller's option, then the convention.
     """
     said = unit_of(variable, axis)
     if said in {"degrees", "radians"}:
@@ -113,7 +113,7 @@ def places(
 
 
 def _refuse(wrong: Bools, name: str, what: str, *, error: type[Any]) -> None:
-    """Raise an error for the rows of a variable, if there are any."""
+    """Raise an error that lists the wrong rows of a variable, if there are any."""
     rows = np.flatnonzero(wrong)
     if len(rows):
         count = len(rows)
@@ -124,7 +124,7 @@ def _refuse(wrong: Bools, name: str, what: str, *, error: type[Any]) -> None:
 
 
 def padded(lon: NDArray[Any], lat: NDArray[Any], names: tuple[str, str]) -> tuple[Bools, Rows]:
-    """Return which corners of (n, k) there are, and where those of each cell start.
+    """Return which of (n, k) corners exist, and where those of each cell start.
 
     NaN after the last corner of a cell is padding.
     """
@@ -135,7 +135,7 @@ def padded(lon: NDArray[Any], lat: NDArray[Any], names: tuple[str, str]) -> tupl
 
 
 def _trailing(absent: Bools, name: str) -> tuple[Bools, Rows]:
-    """Return what is there, and the starts of rows, of a table padded at the ends of rows."""
+    """Return which entries of a table with padded rows exist, and where rows start."""
     holes = (absent[:, :-1] & ~absent[:, 1:]).any(axis=1)
     if holes.any():
         row = int(np.flatnonzero(holes)[0])
@@ -156,7 +156,7 @@ def connected(
 ) -> tuple[Rows, Rows]:
     """Return the nodes of all cells in sequence, and where those of each cell start.
 
-    Rows are padded by the declared fill value, by NaN, or by numbers below 0; or the numbers of
+    Rows are padded with the declared fill value, NaN or negative numbers, unless the numbers of
     their corners are given.
     """
     table = numbers(variable, name)
@@ -205,7 +205,7 @@ def ragged(
 
 
 def _nodes(entries: NDArray[Any], name: str, nodes: int, start: int, starts: Rows) -> Rows:
-    """Return numbers from 0, or refuse one that is out of range by its cell."""
+    """Return numbers that start at 0, or raise an error that names a cell with one out of range."""
     with np.errstate(invalid="ignore"):
         found = np.asarray(entries).astype(np.int64)
         wrong = (found < start) | (found >= nodes + start) | (found != entries)

@@ -1,0 +1,194 @@
+"""Conservative weights on the sphere beside YAC; how they are applied, and memory; in turns.
+
+Both make their cells from the same arrays of corners in the timed call, and use one thread. YAC is
+left out where it is not installed; it needs an MPI library, such as the package ``openmpi``. Memory
+is what grids, overlaps and weights need beyond what the process held, in a process of its own.
+``python benchmarks/regrid.py --help`` has options.
+"""
+
+import argparse
+import contextlib
+import itertools
+import subprocess
+import sys
+import time
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import memory
+import numpy as np
+from sphere import Calls, directions, table
+
+from delone import sphere
+
+# The second grid of most rows, in degrees.
+LON, LAT = np.arange(361.0), np.arange(-90.0, 91.0)
+NAMES = map("grid {}".format, itertools.count())
+# Levels times months of a field.
+FIELDS = 47 * 12
+
+
+class Cells:
+    """Polygons by the places of their corners, as both programs take them."""
+
+    def __init__(self, vectors: Any, starts: Any) -> None:
+        # Corners that differ by rounding are one.
+        _, first, self.corners = np.unique(
+            vectors.round(12), axis=0, return_index=True, return_inverse=True
+        )
+        self.corners, self.starts = self.corners.ravel(), starts
+        self.places = vectors[first]
+        x, y, z = self.places.T
+        self.lonlat = np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))
+
+    def delone(self) -> sphere.Grid:
+        """A grid of delone."""
+        return sphere.Grid.from_mesh(self.places[self.corners], self.starts, merge=0.0, workers=1)
+
+    def yac(self, yac: Any) -> Any:
+        """A grid of YAC."""
+        counts = np.diff(self.starts).astype(np.int32)
+        corners = self.corners.astype(np.int32)
+        return yac.BasicGrid.unstruct_new(next(NAMES), counts, *self.lonlat, corners)
+
+
+class Degrees:
+    """Cells of one degree between meridians and parallels."""
+
+    def delone(self) -> sphere.Grid:
+        """A grid of delone."""
+        return sphere.Grid.from_lonlat(LON, LAT, workers=1)
+
+    def yac(self, yac: Any) -> Any:
+        """A grid of YAC."""
+        lon, lat = np.radians(LON), np.radians(LAT)
+        return yac.BasicGrid.reg_2d_new(next(NAMES), lon[:-1], lat, cyclic=[True, False])
+
+
+def healpix(nside: int) -> Cells:
+    """The pixels of HEALPix."""
+    corners = sphere.Grid.from_healpix(nside).rings[0]
+    return Cells(corners, np.arange(len(corners) // 4 + 1) * 4)
+
+
+def voronoi(count: int, seed: int) -> Cells:
+    """The Voronoi cells of directions."""
+    made = sphere.Grid.from_voronoi(sphere.Voronoi(xyz=directions(count, seed)))
+    return Cells(*made.rings[:2])
+
+
+def ours(source: Any, target: Any) -> Any:
+    """Weights of delone, from arrays."""
+    overlaps = sphere.Overlaps(source.delone(), target.delone(), workers=1)
+    return overlaps.to_weights("conservative")
+
+
+def theirs(yac: Any, source: Any, target: Any, sizes: tuple[int, int]) -> Any:
+    """Weights of YAC, from arrays; centers are not used, but must be there."""
+    place, fields = yac.yac_location.YAC_LOC_CELL, []
+    for cells, count in zip((source, target), sizes, strict=True):
+        grid = cells.yac(yac)
+        field = yac.InterpField(grid.add_coordinates(place, np.zeros(count), np.zeros(count)))
+        grid.set_global_index(place, np.arange(count))
+        fields.append((grid, field))
+    stack = yac.InterpolationStack()
+    stack.add_conservative(
+        order=1,
+        enforced_conserv=False,
+        partial_coverage=False,
+        normalisation=yac.yac_interp_method_conserv_normalisation.YAC_INTERP_CONSERV_DESTAREA,
+    )
+    return yac.compute_weights(stack, fields[0][1], fields[1][1])
+
+
+def beside_yac(cases: dict[str, tuple[Any, Any]], runs: int) -> None:
+    """Weights by both, and how far each is from constants."""
+    yac: Any = SimpleNamespace()
+    with contextlib.suppress(ImportError):
+        import yac.core as yac
+    for title, (source, target) in cases.items():
+        weights = ours(source, target)
+        sizes = len(weights.source_areas), len(weights.target_areas)
+        calls: Calls = {"delone": lambda s=source, t=target: ours(s, t)}
+        ones = np.ones(sizes[0])
+        off = abs(weights.apply(ones) - 1).max()
+        print(f"\n{title}: {len(weights.values):,} weights; constants differ by {off:.1e}", end="")
+        if hasattr(yac, "compute_weights"):
+            calls["YAC"] = lambda s=source, t=target, n=sizes: theirs(yac, s, t, n)
+            applied = calls["YAC"]().get_interpolation(collection_size=1)
+            off = abs(applied(ones[None]) - 1).max()
+            print(f", and by {off:.1e} of YAC", end="")
+        print()
+        table(title, calls, runs)
+
+
+def application(nside: int, runs: int) -> None:
+    """Fields of levels and months in float32, and those of which a part is missing."""
+    weights = ours(healpix(nside), Degrees())
+    shape = FIELDS, len(weights.source_areas)
+    fields = np.random.default_rng(0).random(shape, dtype=np.float32)
+    parts = np.where(fields < 0.1, np.float32(np.nan), fields)
+    calls: Calls = {
+        "all values": lambda: weights.apply(fields),
+        "a tenth missing": lambda: weights.apply(parts, skipna=True),
+    }
+    table(f"{FIELDS} fields of {shape[1]:,} cells to 1 degree", calls, runs)
+
+
+def held(nside: int, step: float) -> None:
+    """Print the seconds, the weights, and the bytes at the peak and of what is returned."""
+    lon, lat = np.arange(0, 360 + step / 2, step), np.arange(-90, 90 + step / 2, step)
+    begin, start = memory.start(), time.perf_counter()
+    source = sphere.Grid.from_healpix(nside, workers=1)
+    first = memory.peak() - begin
+    overlaps = sphere.Overlaps(source, sphere.Grid.from_lonlat(lon, lat), workers=1)
+    weights = overlaps.to_weights("conservative")
+    seconds = time.perf_counter() - start
+    size = weights.values.nbytes + weights.indices.nbytes + weights.indptr.nbytes
+    print(source.ncells, len(weights.values), seconds, first, memory.peak() - begin, size)
+
+
+def peaks(largest: int) -> None:
+    """Print the memory of HEALPix to 0.25 degrees, each in a process of its own."""
+    print(
+        "\n| nside | cells | weights | s | peak MB | of it the grid | bytes a cell | weights MB |"
+    )
+    print("|---|---|---|---|---|---|---|---|")
+    for nside in (largest // 4, largest // 2, largest):
+        command = [sys.executable, str(Path(__file__)), "--held", str(nside)]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        cells, count, seconds, first, peak, size = map(float, done.stdout.split())
+        print(
+            f"| {nside} | {cells:,.0f} | {count:,.0f} | {seconds:.3g} | {peak / 1e6:.0f} | "
+            f"{first / 1e6:.0f} | {peak / cells:.0f} | {size / 1e6:.0f} |",
+            flush=True,
+        )
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--nside", type=int, default=64, help="of HEALPix beside YAC")
+    parser.add_argument("--sites", type=int, default=100_000, help="of Voronoi cells")
+    parser.add_argument("--largest", type=int, default=256, help="of HEALPix to 0.25 degrees")
+    parser.add_argument("--runs", type=int, default=5, help="of each call")
+    parser.add_argument("--held", type=int, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.held:
+        held(options.held, 0.25)
+        return
+    cases = {
+        f"HEALPix {options.nside} to 1 degree": (healpix(options.nside), Degrees()),
+        f"Voronoi {options.sites:,} to {options.sites:,}": (
+            voronoi(options.sites, 1),
+            voronoi(options.sites, 2),
+        ),
+    }
+    beside_yac(cases, options.runs)
+    application(options.nside, options.runs)
+    peaks(options.largest)
+
+
+if __name__ == "__main__":
+    main()
