@@ -12,6 +12,7 @@ import numpy as np
 
 from delone import _core
 from delone._base.arrays import as_least
+from delone._base.blocks import blocks
 from delone.errors import InputError
 
 if TYPE_CHECKING:
@@ -36,8 +37,9 @@ def healpix_corners(nside: int, *, nested: bool, workers: int) -> Floats:
     # In a base pixel, x increases to the northeast and y to the northwest.
     steps = ((0, 0), (1, 0), (1, 1), (0, 1))
     found = np.empty((len(face), 4, 3))
-    for k, (i, j) in enumerate(steps):
-        found[:, k] = _place(n, face, x + i, y + j, workers)
+    for block in blocks(len(face)):
+        for k, (i, j) in enumerate(steps):
+            found[block, k] = _place(n, face[block], x[block] + i, y[block] + j, workers)
     return found
 
 

@@ -1,13 +1,13 @@
 //! Corners of the input where segments meet at a small angle, which no refinement can improve.
 //!
-//! They are marked so that refinement does not try to.
+//! They are marked so that refinement leaves them alone.
 
 use delone_predicates::Point2;
 
 use crate::base::error::Result;
 use crate::base::memory::filled;
 
-/// Angles below this between two segments make a sharp corner: there, splits of one segment may
+/// Two segments that meet at a smaller angle make a sharp corner, where splitting one segment may
 /// encroach upon the other.
 pub const SHARP: f64 = std::f64::consts::FRAC_PI_2;
 

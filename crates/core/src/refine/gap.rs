@@ -8,7 +8,7 @@ use super::shape::{cross, dot, minus};
 /// Lines face each other if they are no farther apart than this times the gap.
 const FACING: f64 = 2.0;
 
-/// Heights below this share of the coordinates are rounding errors.
+/// Heights below this fraction of the coordinates are rounding errors.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
 /// A line with an apex beside it.

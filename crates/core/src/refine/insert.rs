@@ -8,7 +8,7 @@ use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
 use crate::constrained::marked::Marked;
 use crate::mesh::plane::{Code, half_edge, half_edges, next, prev, triangle};
 
-/// Triangles that a walk may visit: new vertices are near.
+/// The most triangles that a walk visits, because new vertices are close.
 const WALK: usize = 4096;
 
 /// The end of a walk.
@@ -16,7 +16,7 @@ const WALK: usize = 4096;
 pub enum Walk {
     /// In the triangle that contains the point.
     Home(u32),
-    /// At a marked edge that hides the point, as a code on the side of the walk.
+    /// At a marked edge that hides the point; its code on the side of the walk.
     Blocked(Code),
     /// Undecided: the walk was too long, or the point is a vertex.
     Lost,
@@ -80,8 +80,9 @@ impl Cavity {
         self.stack.clear();
         self.stack
             .extend([half_edge(home, 2), half_edge(home, 1), half_edge(home, 0)]);
-        // Depth-first, right child first, the edges are found counterclockwise. A triangle is
-        // visited once: no vertex is inside the cavity, so its triangles form a tree.
+        // A depth-first search that visits the right child first finds the edges counterclockwise.
+        // Each triangle is visited once, because a cavity without vertices inside is a tree of
+        // triangles.
         while let Some(e) = self.stack.pop() {
             let [u, v] = [next(e), prev(e)].map(|c| mesh.vertex(c));
             let o = mesh.opposite(e);
@@ -101,7 +102,7 @@ impl Cavity {
 
     /// Fills the cavity with the star of a new vertex at `p`; there must be room for it. `caps` has
     /// the limit on twice the area of each triangle; a new triangle inherits that of the old one at
-    /// its boundary edge. The smallest of all would spread from cavity to cavity.
+    /// its boundary edge. Inheriting the smallest limit would spread it from cavity to cavity.
     pub fn fill(&mut self, marked: &mut Marked, p: Point2, caps: &mut Vec<f64>) -> u32 {
         let v = marked.count as u32;
         marked.points[v as usize] = p;

@@ -14,18 +14,18 @@ use crate::base::memory::{filled, push};
 use crate::constrained::marked::turn;
 use crate::mesh::plane::{Code, half_edge, half_edges, next, prev, triangle};
 
-/// The price from which a needle is postponed: less is done quickly.
+/// Needles of at least this price are postponed; cheaper ones take little time.
 const EXPENSIVE: f64 = 1000.0;
 
-/// All needles together may use one part in this many of the budget.
+/// The inverse of the fraction of the budget that all needles together may use.
 const SHARE: f64 = 64.0;
 
 /// Vertices that a gap needs per degree of the bound, over a length equal to its width: measured as
 /// 0.5 at 25 degrees.
 const RATE: f64 = 0.02;
 
-/// Steps of work in a needle whose sides were split alike at first, and may be again: this many,
-/// plus more for each of its triangles.
+/// Steps of work granted to a needle whose sides were split alike at first and may be again: this
+/// number, plus more for each of its triangles.
 const STEPS: u32 = 64;
 const MORE_STEPS: u32 = 4;
 
@@ -115,8 +115,9 @@ impl Work {
         Ok(())
     }
 
-    /// Decides which needles the budget allows to open: the cheapest ones, all of one price or
-    /// none. Those with triangles that were not opened in an earlier round stay closed.
+    /// Decides which needles the budget allows to be opened: the cheapest ones; needles of equal
+    /// price are opened together or not at all. Those with triangles that were not opened in an
+    /// earlier round stay closed.
     fn choose(
         &mut self,
         mut pairs: Vec<(u32, [i32; 2], f64)>,
@@ -223,7 +224,7 @@ impl Work {
         let [a, b] = self.base(e, line);
         let (step, edge) = (minus(b, a), self.base(e, FENCE));
         let edge = minus(edge[1], edge[0]);
-        // Lines on both sides of a corner face the base, and so may a few more.
+        // The lines on both sides of a corner face the base, and a few others may.
         let least = EXPENSIVE / (RATE * self.rules.min_angle) / 8.0;
         let (length, height) = (dot(step, step).sqrt(), area2 / dot(edge, edge).sqrt());
         height * least < length
@@ -294,8 +295,8 @@ impl Work {
         pairs
     }
 
-    /// Opens the needles that the budget allows, and lets those that needed no work at first be
-    /// refined again; returns whether there are any.
+    /// Opens the needles that the budget allows, and grants more work to those that needed none at
+    /// first; returns whether there are any.
     pub fn open_allowed(&mut self) -> Result<bool> {
         let allowed = self.needles.allowed.clone();
         let mut steps = filled(allowed.len(), STEPS)?;
@@ -324,7 +325,7 @@ impl Work {
         }
     }
 
-    /// For each needle, whether no work is left in it.
+    /// For each needle, whether all work in it is done.
     fn settled(&mut self) -> Result<Vec<bool>> {
         let mut settled = filled(self.needles.labels.len(), true)?;
         for t in 0..self.marked.triangles() {

@@ -11,8 +11,8 @@ use crate::base::watch::Watch;
 /// Triangles between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 16;
 
-/// If twice the area is a smaller share of the product of the two shorter edges, it has lost too
-/// many bits to rounding: an angle below 1.8 degrees, or above 178.2.
+/// If twice the area is a smaller fraction of the product of the two shorter edges, rounding has
+/// cost it too many bits: an angle is below 1.8 degrees or above 178.2.
 const THIN: f64 = 1.0 / 32.0;
 
 /// The result of judging.

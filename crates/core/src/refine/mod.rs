@@ -1,5 +1,5 @@
-//! Delaunay refinement: adds vertices until no angle is small and no triangle large, as far as the
-//! input allows.
+//! Delaunay refinement: adds vertices until no angle is small and no triangle is large, as far as
+//! the input allows.
 //!
 //! J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", Journal
 //! of Algorithms 18 (1995), with the diametral lenses of L. P. Chew, "Guaranteed-quality mesh
@@ -7,7 +7,7 @@
 //! of the input the rule of G. L. Miller, S. E. Pav and N. J. Walkington, "When and why Delaunay
 //! refinement algorithms work", International Journal of Computational Geometry & Applications 15
 //! (2005): a skinny triangle is accepted if its shortest edge joins two subsegments that meet in a
-//! corner, at points on one circle around it. This is done at corners of less than 60 degrees.
+//! corner, at points on one circle around it. The rule applies to corners of less than 60 degrees.
 //!
 //! The order of work depends on the mesh only, so the result is the same every time.
 
@@ -70,7 +70,7 @@ fn refine_scaled(task: Task, scale: f64, watch: &Watch, tell: Tell) -> Result<Re
     let scaled = |p: &Point2| p.map(|x| x * scale);
     let mut points = with_room(task.points.len())?;
     points.extend(task.points.iter().map(scaled));
-    // Multiplied twice, as the square of the scale may be out of range.
+    // Multiply twice, because the square of the scale may be out of range.
     let mut areas = with_room(task.areas.len())?;
     areas.extend(task.areas.iter().map(|a| a * scale * scale));
     let task = Task {

@@ -7,7 +7,7 @@
 //!
 //! Between two lines at distance `g`, edges are about as long as `g`: the number of vertices is
 //! proportional to the angle, and to the length over which the lines face each other, divided by
-//! `g`. A single vertex near a line is cheap, as edges grow with the distance from it; so is a
+//! `g`. A single vertex near a line is cheap, because edges grow with the distance from it; so is a
 //! corner whose sides are split at equal distances. Therefore a triangle is examined only if it is
 //! bad and would be refined: its small angle does not lie between two sides of a corner, or its
 //! apex is in the lens of one of its subsegments. The lines at its apex, and those opposite the
@@ -19,19 +19,19 @@
 //!
 //! Triangles that are expensive by this measure and are connected across edges that are not on a
 //! segment form a needle. Its price is the sum over its pairs of lines. Its edges that are not on a
-//! segment become temporary lines: they may be split from outside like those of the input, on
+//! segment become temporary lines: like those of the input, they may be split from outside, on
 //! circles around their ends if these are sharp corners. A fence can itself be one side of a gap,
-//! so the triangle beyond it is examined in the same way. A triangle, once in a needle, stays in it
-//! whatever the order, so the result is unique and independent of the order of the input.
+//! so the triangle beyond it is examined in the same way. Once a triangle is in a needle, it stays
+//! there, whatever the order of work, so the result does not depend on the order of the input.
 //!
-//! Inside a needle angles and encroachment do not count, only sizes. A line at its side may be
+//! Inside a needle, only sizes count, not angles or encroachment. A line at its side may be
 //! split from the other side; the vertices on it are then joined across the needle.
 //!
 //! # Termination and budget
 //!
-//! With the fences, the domain without the needles has no two lines that are as close to each other
-//! compared with the length over which they face each other. It is refined first, by the usual
-//! rules, which treat fences as lines of the input; so it terminates when those do.
+//! With the fences, the domain without the needles has no two lines that are so close compared with
+//! the length over which they face each other. It is refined first, by the usual rules, which treat
+//! fences as lines of the input; so it terminates when those do.
 //!
 //! Then needles are opened in ascending order of price, as long as the sum stays within a share of
 //! the budget, and work continues in them. Most corners with a very small angle cost nothing, since
@@ -41,8 +41,8 @@
 //! it has by then. If they suffice it counts as a corner.
 //!
 //! In further rounds (see `rounds`) the triangles of needles that were closed to the end belong to
-//! needles again, which stay closed. Their fences have vertices by then, which are on no line, so
-//! that a line may not see any more what faces it beyond them.
+//! needles again, which stay closed. By then their fences have vertices that are on no line, and
+//! these may hide what faces a line beyond them.
 //!
 //! All others stay as they are: a finite triangulation of the vertices that were placed on their
 //! sides from outside. So all needles together use about that share, as far as the prices are
@@ -68,17 +68,17 @@ pub struct Needles {
     pub first: u32,
     /// The original label of the triangles in each needle.
     pub labels: Vec<u32>,
-    /// Whether the budget allows to open it.
+    /// Whether the budget allows it to be opened.
     pub allowed: Vec<bool>,
     /// Whether it needed no work at first.
     pub settled: Vec<bool>,
-    /// The steps of work left for each needle without opening it.
+    /// The steps of work that each needle has left without being opened.
     pub steps: Vec<u32>,
     /// The fences of all needles, by their ends.
     pub fences: HashMap<[u32; 2], Fence>,
     /// For each triangle the needle in which it was left, or -1; empty if there are no needles.
     pub left: Vec<i32>,
-    /// The triangles of needles that were closed to the end of the round before.
+    /// The triangles of needles that stayed closed until the end of the previous round.
     pub kept: Vec<u32>,
 }
 

@@ -1,26 +1,26 @@
 //! Where to insert a vertex that improves a bad triangle, in plain floating point.
 //!
-//! Three rules keep the number of vertices small. For a small angle, the off-center is used: on the
-//! way from the shortest edge to the circumcenter, so far that the triangle of the two is just good
-//! enough (A. Üngör, "Off-centers", LATIN 2004). If a size is requested, the vertex is no farther
-//! from the edge than the size, so that a front advances of triangles that are almost equilateral
-//! and almost as large as allowed (S. Rebay, "Efficient unstructured mesh generation by means of
-//! Delaunay triangulation and Bowyer-Watson algorithm", Journal of Computational Physics 106,
-//! 1993). And if two neighbors are skinny because their short edges follow each other, one vertex
-//! that sees both edges at the bound improves both: edge lengths double from layer to layer.
+//! Three rules keep the number of vertices small. For a small angle, the off-center is used: the
+//! point on the way from the shortest edge to the circumcenter whose triangle with that edge is
+//! just good enough (A. Üngör, "Off-centers", LATIN 2004). If a size is requested, the vertex is no
+//! farther from the edge than the size, so that a front of triangles advances that are almost
+//! equilateral and almost as large as allowed (S. Rebay, "Efficient unstructured mesh generation by
+//! means of Delaunay triangulation and Bowyer-Watson algorithm", Journal of Computational Physics
+//! 106, 1993). And if two neighbors are skinny because their short edges follow each other, one
+//! vertex that sees both edges at the bound improves both: edge lengths double from layer to layer.
 
 use delone_predicates::Point2;
 
 use super::shape::{Seen, cross, dot, minus};
 
-/// The target is within the bounds by this factor, so that rounding does not make the triangle bad
-/// again, and that it may be slightly distorted. Nearer to 1 means fewer vertices, until refinement
-/// no longer terminates.
+/// Targets stay within the bounds by this factor, so that neither rounding nor a slight distortion
+/// makes the triangle bad again. Values closer to 1 give fewer vertices, until refinement no longer
+/// terminates.
 const OFF: f64 = 0.95;
 const PAIR: f64 = 0.97;
 
-/// The share of its area limit that a triangle of a front has. Triangles between fronts are larger;
-/// with a larger share they exceed the limit too often, and are split.
+/// The area of a triangle in a front, as a fraction of its limit. Triangles between fronts are
+/// larger, so with a larger fraction they would exceed the limit too often and be split.
 const SHARE: f64 = 0.9;
 
 /// The squared edge of an equilateral triangle, in units of twice its area.
@@ -51,12 +51,12 @@ impl Places {
     /// For the smallest angle `degrees`, below 60.
     pub fn new(degrees: f64) -> Self {
         let (sin, cos) = degrees.to_radians().sin_cos();
-        // The distance from which an edge of length 1 is seen at the bound.
+        // The distance from which an edge of length 1 appears at the angle of the bound.
         let off = 0.5 * (1.0 + cos) / sin * OFF;
         Self { sin, cos, off }
     }
 
-    /// The squared length of edges at which a front aims under an area limit.
+    /// The squared length of edges that a front aims for under an area limit.
     pub fn longest2(cap2: f64) -> f64 {
         EDGE2 * SHARE * cap2
     }
@@ -160,7 +160,7 @@ mod tests {
         assert!((x - 0.5).abs() < 1e-12 && (y - 0.75_f64.sqrt()).abs() < 1e-12);
         let [_, higher] = places.improve(large, &seen, 2.0);
         assert!(higher > y);
-        // Never so near that edges keep getting shorter.
+        // Never so close that edges keep getting shorter.
         let [_, least] = places.improve(large, &seen, 1e-9);
         assert!((least - 0.75_f64.sqrt()).abs() < 1e-12);
     }

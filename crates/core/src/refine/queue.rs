@@ -1,11 +1,11 @@
 //! The queue of bad triangles, those with the shortest edges first.
 //!
-//! A vertex inserted for them is near and saves larger ones (A. Üngör, "Off-centers: a new type of
-//! Steiner points for computing size-optimal quality-guaranteed Delaunay triangulations", LATIN
-//! 2004).
+//! A vertex inserted for them is close to them and often makes vertices for larger triangles
+//! unnecessary (A. Üngör, "Off-centers: a new type of Steiner points for computing size-optimal
+//! quality-guaranteed Delaunay triangulations", LATIN 2004).
 //!
-//! Lengths go to buckets that grow by a factor of 2^(1/4); within a bucket the queue is last in,
-//! first out, so that work stays local.
+//! Buckets of lengths grow by a factor of 2^(1/4). Within a bucket, the queue is last in, first
+//! out, so that work stays local.
 
 use crate::base::error::Result;
 use crate::base::memory::push;

@@ -1,24 +1,25 @@
 //! Refinement in rounds, for sizes that only the caller can evaluate: the mesh stays here, and the
 //! caller is asked about new triangles alone.
 //!
-//! In each round no triangle becomes smaller than a share of what it was, so that sizes that vary
-//! are seen before triangles are smaller than what they vary over. A triangle complies if it is no
-//! larger than the area wanted at its center and at the samples that it contains.
+//! In each round, no triangle becomes smaller than a fraction of what it was, so that variable
+//! sizes are sampled before triangles are smaller than the distance over which sizes change. A
+//! triangle complies if it is no larger than the area wanted at its center and at the samples that
+//! it contains.
 //!
 //! # The same triangles as from separate refinements
 //!
-//! A round gives what `refine` gives for the arrays of the round before. Both number vertices in
-//! the order in which they came, and both keep the order of the triangles, on which the order of
-//! work depends: an export leaves ghosts out, an import adds them at the end, and nothing is done
-//! for ghosts. What is known of vertices is derived again from the pieces of the segments, as an
-//! import does ([`Work::begin_again`]). Fences are not kept. They depend on the triangles at the
-//! beginning of a round, are all removed at its end, and finding them again takes less time than
-//! a look at each triangle.
+//! A round gives the same result as `refine` of the arrays of the previous round. Both number
+//! vertices in the order in which they came, and both keep the order of the triangles, on which the
+//! order of work depends: an export leaves ghosts out, an import adds them at the end, and nothing
+//! is done for ghosts. The data of vertices are derived again from the pieces of the segments, as
+//! an import does ([`Work::begin_again`]). Fences are not kept. They depend on the triangles at the
+//! beginning of a round and are all removed at its end, and finding them again takes less time than
+//! visiting each triangle.
 //!
-//! What is kept is what a triangle alone decides: its area, and the area wanted at its center. A
-//! record whose corners are the same as before is the same triangle. Samples are located again in
-//! each round, because one on an edge belongs to the first triangle there, which may be new while
-//! the other one is not.
+//! Only what depends on a triangle alone is kept: its area, and the area wanted at its center. A
+//! record with the same corners as before is the same triangle. Samples are located again in each
+//! round, because one on an edge belongs to the first triangle there, which may be new while the
+//! other one is not.
 
 use delone_predicates::{Point2, Sign, orient2d};
 
@@ -32,7 +33,7 @@ use crate::constrained::marked::turn;
 use crate::measure;
 use crate::mesh::plane::{half_edge, triangle};
 
-/// Samples, whose location may be a long walk, between two checks for interruption.
+/// Samples between two checks for interruption; locating one may be a long walk.
 const WATCH_EVERY: usize = 1 << 10;
 
 /// The largest factor by which a triangle is made smaller in one round.
@@ -50,7 +51,7 @@ pub struct Samples<'a> {
     pub areas: &'a [f64],
 }
 
-/// Triangles of the domain that are new since the round before.
+/// Triangles of the domain that are new since the previous round.
 #[derive(Debug)]
 pub struct Fresh {
     /// Their centers.
@@ -67,8 +68,8 @@ pub struct Rounds {
     rows: Vec<u32>,
     given: usize,
     samples: Vec<Sample>,
-    /// For each record the corners of the triangle that is known, its area, and the one wanted at
-    /// its center.
+    /// For each record, the corners of the triangle that was seen last, its area, and the area
+    /// wanted at its center.
     known: Vec<[u32; 3]>,
     areas: Vec<f64>,
     wanted: Vec<f64>,
@@ -86,8 +87,8 @@ struct Sample {
 }
 
 impl Rounds {
-    /// A refinement of which no round is done; the areas and the limit on vertices of the task do
-    /// not count.
+    /// A refinement before its first round; the areas and the limit on vertices of the task are
+    /// ignored.
     pub fn new(task: Task, samples: Samples, watch: &Watch) -> Result<Self> {
         let (work, rows) = begin(task, watch)?;
         let given = samples.positions.iter().zip(samples.areas);
@@ -197,7 +198,8 @@ impl Rounds {
                 watch.check()?;
             }
             let sample = self.samples[i];
-            // At first samples are in no triangle yet, but consecutive ones are close together.
+            // At first, the triangles of samples are not known, but consecutive samples are close
+            // together.
             near = if sample.near == 0 { near } else { sample.near };
             near = self.first_around(sample.position, near)?;
             self.samples[i].near = near;

@@ -8,11 +8,12 @@ use num_bigint::BigInt;
 pub use crate::base::vector::{cross2 as cross, dot, minus};
 use crate::base::wide::{lowest, scaled};
 
-/// Squared cosines with a smaller relative difference are compared exactly: four roundings each.
+/// Squared cosines with a smaller relative difference are compared exactly; each has four rounding
+/// errors.
 const UNSURE: f64 = 1e-14;
 
-/// And again in double-double arithmetic. Fronts of equilateral triangles meet at 30 degrees up to
-/// the last bit, so at this bound uncertainty is common.
+/// The same in double-double arithmetic. Fronts of equilateral triangles meet at 30 degrees up to
+/// the last bit, so cases close to this bound are common.
 ///
 /// In units of u^2 = 2^-106 (see `Pair`): a dot product errs by 13 of its terms, whose sum is at most
 /// 20 times the cosine, see `is_skinny`; so the square of the cosine errs by 2 * 260 + 9 of itself,
@@ -60,7 +61,8 @@ pub fn angle([a, b, c]: [Point2; 3]) -> f64 {
 
 impl Shape {
     /// Bounds for the smallest angle `degrees`, below 60; with `circles` lenses are diametral
-    /// circles. If no angle is too small, lenses are empty: rounding must not find a vertex in one.
+    /// circles. If no angle counts as too small, lenses are empty, and rounding must not put a
+    /// vertex into one.
     pub fn new(degrees: f64, circles: bool) -> Self {
         let angle = degrees.to_radians();
         // If the squared cosine is a simple fraction, use it exactly, not a neighboring double.
@@ -121,8 +123,8 @@ impl Shape {
         let between = |p: Point2| [0, 1].map(|k| Pair::difference(p[k], a[k]));
         let (u, v) = (between(b), between(c));
         let dot = |u: [Pair; 2], v: [Pair; 2]| u[0] * v[0] + u[1] * v[1];
-        // Terms of opposite signs cancel in the dot product, but not below a twentieth of them:
-        // then the angle is near a right angle and not tested.
+        // Terms of opposite signs cancel in the dot product, but never to less than a twentieth of
+        // their sum: angles that close to a right angle are not tested.
         let cosine = dot(u, v);
         let bound = dot(u, u) * dot(v, v) * Pair::difference(self.cos2, 0.0);
         let over = (cosine.square() - bound).hi;
@@ -184,7 +186,7 @@ mod tests {
         let lens = |y| shape.in_lens([-1.0, 0.0], [1.0, 0.0], [0.0, y]);
         assert!(lens(0.57) && !lens(0.58));
         assert!(!shape.in_lens([-1.0, 0.0], [1.0, 0.0], [3.0, 0.0]));
-        // A vertex so near the subsegment that rounding puts it on it.
+        // A vertex so close to the subsegment that rounding puts it there.
         let flat = Shape::new(0.0, false);
         assert!(!flat.in_lens([0.0, 0.0], [2.0, 0.0], [1.0, -1e-9]));
         let shape = Shape::new(30.0, true);

@@ -1,14 +1,15 @@
 //! Smoothing: free vertices move by Lloyd's method, its Delaunay dual, or to the mean of their
 //! neighbors.
 //!
-//! All free vertices move at once, if no triangle is turned over: then the triangles still tile the
-//! domain, and flips make them constrained Delaunay again. Vertices of triangles that are turned over,
-//! or that have become worse than the bound, move back, first by half of the step, finally all the way.
-//! Each such step shortens that of one vertex, so the round ends; in the end no vertex would move.
+//! All free vertices move at once, provided that no triangle is inverted: then the triangles still
+//! tile the domain, and flips make them constrained Delaunay again. Vertices of triangles that are
+//! inverted, or that have become worse than the bound, move back, first by half of the step,
+//! finally all the way. Each time, the step of some vertex becomes shorter, so the round ends, if
+//! need be without any movement.
 //!
-//! After the first attempt of a round only a few vertices change, so the triangles of the attempt before
-//! are kept: the changed ones are tested, and flips begin at them. If they are turned over there, the
-//! round continues with the triangles that it began with.
+//! After the first attempt of a round only a few vertices change, so the triangles of the previous
+//! attempt are kept: only changed ones are tested, and flips begin there. If one of them is
+//! inverted, the round starts again from the triangles that it began with.
 //!
 //! S. P. Lloyd (1982), "Least squares quantization in PCM"; L. Chen and M. Holst (2011), "Efficient mesh
 //! optimization schemes based on optimal Delaunay triangulations".
@@ -25,7 +26,7 @@ use crate::measure;
 /// Triangles, or flips, between two checks for interruption.
 const LOT: usize = 1 << 14;
 
-/// The smallest share of a step that a vertex takes: it was halved three times.
+/// The smallest fraction of a step that a vertex takes, after three halvings.
 const LEAST: f64 = 1.0 / 8.0;
 
 /// Where vertices move to.
@@ -72,10 +73,10 @@ pub struct Domain {
 /// What smoothing must keep, and how it is done.
 #[derive(Debug, Clone, Copy)]
 pub struct Rules<'a> {
-    /// Which vertices may move: none at an edge that stays, or at one without a neighbor.
+    /// The vertices that may move: none on a fixed edge, or on one without a neighbor.
     pub free: &'a [bool],
-    /// The squared cosine of the bound: vertices of triangles with a smaller angle stay, and there are
-    /// no new ones.
+    /// The squared cosine of the bound: vertices of triangles with a smaller angle stay, and no
+    /// such triangles are created.
     pub cos2: f64,
     /// Where vertices move to.
     pub target: Target,
@@ -99,8 +100,8 @@ pub fn smooth(mut mesh: Domain, rules: &Rules<'_>, watch: &Watch) -> Result<Doma
     Ok(mesh)
 }
 
-/// Refuses neighbors that do not name each other with the same edge and the same line, and free
-/// vertices at edges that stay.
+/// Rejects neighbors that do not name each other with the same edge and the same line, and free
+/// vertices on fixed edges.
 fn require_fit(mesh: &Domain, free: &[bool], pace: &mut Pace<'_>) -> Result<()> {
     for (t, sides) in mesh.neighbors.iter().enumerate() {
         pace.spend(1)?;
@@ -303,8 +304,8 @@ impl<'a> Round<'a> {
                     }
                 }
             } else {
-                // Begin again with the triangles before the round; those that are turned over now
-                // name the vertices that have moved too far.
+                // Start again from the triangles before the round; those that are inverted now show
+                // which vertices have moved too far.
                 self.begin_again()?;
                 worse.clear();
                 for t in 0..self.before.simplices.len() {
@@ -315,7 +316,8 @@ impl<'a> Round<'a> {
                         }
                     }
                 }
-                // Without any, only the flips were in the way: all is judged again.
+                // If there are none, only the flips caused the problem, so all triangles are judged
+                // again.
                 if !back.contains(&true) {
                     changed.fill(true);
                     continue;
@@ -351,7 +353,7 @@ impl<'a> Round<'a> {
         (0..rows.len()).any(|v| rows[v] && self.moves(v))
     }
 
-    /// Puts the triangles before the round in the place of those of the attempt.
+    /// Replaces the triangles of the attempt by those before the round.
     fn begin_again(&mut self) -> Result<()> {
         self.now.simplices = copied(&self.before.simplices)?;
         self.now.neighbors = copied(&self.before.neighbors)?;
@@ -360,7 +362,7 @@ impl<'a> Round<'a> {
         Ok(())
     }
 
-    /// Marks triangles with changed corners, and stacks their edges; false if one is turned over.
+    /// Marks triangles with changed corners and stacks their edges; false if one is inverted.
     fn is_valid(&mut self, changed: &[bool], pace: &mut Pace<'_>) -> Result<bool> {
         for t in 0..self.touched.len() {
             pace.spend(1)?;
@@ -401,7 +403,8 @@ impl<'a> Round<'a> {
             let Some((n, j)) = self.now.must_flip(t, k) else {
                 continue;
             };
-            // Edges that wait have other places after the flip; all of both triangles wait then.
+            // The flip moves waiting edges to other records, so all edges of both triangles wait
+            // afterwards.
             self.now.flip((t, k), (n, j));
             for t in [t, n] {
                 self.touched[t] = true;
@@ -434,7 +437,7 @@ fn targets(mesh: &Domain, rules: &Rules<'_>, watch: &Watch) -> Result<Vec<Point2
     if rules.target == Target::Laplace {
         for corners in simplices {
             pace.spend(1)?;
-            // Around a free vertex, each neighbor is once the next corner of a triangle.
+            // Around a free vertex, each neighbor is the next corner of exactly one triangle.
             for k in 0..3 {
                 add(corners[k], mesh.at(corners[(k + 1) % 3]), 1.0);
             }

@@ -15,7 +15,7 @@ pub struct Lines<'a> {
     pub on: &'a [i32],
 }
 
-/// Called at intervals with the number of vertices added and a function that returns the present
+/// Called at intervals with the number of added vertices and a function that returns the current
 /// smallest angle in degrees; an error ends the work.
 pub type Tell<'a> = &'a mut dyn FnMut(usize, &mut dyn FnMut() -> f64) -> Result<()>;
 
@@ -44,14 +44,14 @@ pub struct Task<'a> {
     /// Whether the diametral circles of subsegments must be empty, not only their lenses: then all
     /// triangles are Delaunay, even across segments.
     pub circles: bool,
-    /// Whether a triangle may stay too large if only a vertex next to a frozen line would make it
+    /// Whether a triangle may stay too large if only a vertex next to a fixed line would make it
     /// smaller; otherwise that vertex is inserted, however thin the triangles there become.
     pub sizes_yield: bool,
     /// The limit on added vertices.
     pub max_vertices: usize,
 }
 
-/// The options of a [`Task`] that its refinement needs to the end.
+/// The options of a [`Task`] that refinement needs until its end.
 #[derive(Debug)]
 pub struct Rules {
     /// For each line, whether splitting it is forbidden.

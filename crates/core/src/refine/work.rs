@@ -1,11 +1,12 @@
 //! The refinement loop: splits encroached subsegments first, then improves the bad triangle with
 //! the shortest edge.
 //!
-//! Words: a triangle is *bad* if its smallest angle is below the bound (it is *skinny*, for the reason
-//! `Angle`) or its area above its *cap* (`Size`). A point *encroaches* upon a subsegment if it lies in
-//! its *lens*, where it sees both ends at more than a fixed angle, or with `circles` in its diametral
-//! circle. A vertex is *free* if it is on no line. The *apex* of a triangle is the corner opposite its
-//! shortest edge. A triangle is *final* in a needle that rests until all else is done.
+//! Words: a triangle is *bad* if its smallest angle is below the bound (it is *skinny*, for the
+//! reason `Angle`) or its area above its *cap* (`Size`). A point *encroaches* upon a subsegment if
+//! it lies in its *lens*, where it sees both ends at more than a fixed angle, or with `circles` in
+//! its diametral circle. A vertex is *free* if it is on no line. The *apex* of a triangle is the
+//! corner opposite its shortest edge. A triangle is *final* in a needle that is postponed until
+//! everything else is done.
 //!
 //! A vertex for a bad triangle is not inserted if it lies beyond a subsegment or in the lens of
 //! one; the subsegment is split instead.
@@ -39,7 +40,7 @@ use crate::mesh::plane::{Code, half_edge, half_edges, next, prev, triangle};
 /// Vertices between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 12;
 
-/// Radii around a corner are equal if they differ by less than this share.
+/// Radii around a corner with a smaller relative difference are equal.
 const SAME_SHELL: f64 = 1e-3;
 
 /// A vertex that improves two triangles must be farther from all others than the square root of
@@ -71,7 +72,7 @@ enum Site {
 /// Where a vertex lies that splits a subsegment.
 #[derive(Debug, Clone, Copy)]
 enum Place {
-    /// On the edge, as far as its two triangles can distinguish.
+    /// On the edge, as far as its two triangles can tell.
     On,
     /// In the triangle on this side: it is rounded, and the one on the other side is too thin to
     /// contain it.
@@ -143,7 +144,7 @@ impl Work {
         })
     }
 
-    /// Begins again with the vertices that there are by now, as if all were given.
+    /// Starts again with all present vertices, as if all had been given.
     pub fn begin_again(&mut self, max_vertices: usize) -> Result<()> {
         self.own = self.marked.count;
         self.rules.max_vertices = max_vertices;

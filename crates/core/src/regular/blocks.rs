@@ -1,12 +1,13 @@
 //! Large sets in blocks, on several threads, in 2-D and 3-D.
 //!
-//! Each block is triangulated alone. A simplex of a block is *certain* if no site of another block
-//! is below its lifted plane, or on it: then it is in the triangulation of all sites. The other
-//! simplices are found again among the *open* sites, the corners of uncertain simplices and of the
-//! hulls of blocks. Any other corner is surrounded by certain simplices; and a site that is hidden
-//! in its block is hidden among all. So each simplex that is not certain has open corners only, and
-//! because it is above no site, it is in the triangulation of the open sites, too. There the two
-//! kinds meet at the same facets, and a flood from these finds the simplices between the blocks.
+//! Each block is triangulated separately. A simplex of a block is *certain* if no site of another
+//! block is below its lifted plane, or on it: then it is in the triangulation of all sites. The
+//! other simplices are found again among the *open* sites, the corners of uncertain simplices and
+//! of the hulls of blocks. Any other corner is surrounded by certain simplices; and a site that is
+//! hidden in its block is hidden among all. So each simplex that is not certain has open corners
+//! only, and because it is above no site, it is in the triangulation of the open sites, too. There
+//! the two kinds meet at the same facets, and a flood from these finds the simplices between the
+//! blocks.
 //!
 //! # The bound of the filter
 //!
@@ -41,7 +42,7 @@ struct Ground<const D: usize> {
     heaviest: f64,
 }
 
-/// What a block has found.
+/// The result of a block.
 struct Judged {
     /// For each simplex its number among the certain ones of the block, or -1.
     number: Vec<i32>,
@@ -109,7 +110,7 @@ pub fn in_blocks<const D: usize, const N: usize>(
 }
 
 /// Whether most simplices of blocks can be certain: where weights differ by more than the square of
-/// a block's size, a heavy site is felt far away.
+/// a block's size, a heavy site affects simplices far away.
 fn pay_off<const D: usize>(grounds: &[Ground<D>], weights: &[f64]) -> bool {
     let (least, most) = weights
         .iter()
@@ -513,7 +514,7 @@ mod tests {
             |side: usize| (0..side * side).map(move |i| [(i % side) as f64, (i / side) as f64]);
         let weights = vec![2.5; 1600];
         assert!(compare(grid(40).collect(), &weights, &[400, 801, 1199]) > 500);
-        // Columns alone are lines, without triangles.
+        // Single columns are lines, without triangles.
         compare(grid(12).collect(), &weights[..144], &[12, 24, 36, 48, 60]);
     }
 

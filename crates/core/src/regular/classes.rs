@@ -1,12 +1,12 @@
 //! Periodic triangulations: one triangle of each class of translates, and what lies across its edges.
 //!
-//! The points alone are triangulated first, without any copy. Their bounding box is at most one period
-//! wide, so all copies lie outside of the box that is one period wide from its largest coordinates back
-//! and from its smallest ones on. A triangle whose circle lies inside of this larger box is a triangle
-//! of the periodic set, too: call it final. If all triangles around a point are final, and it does not
-//! lie on the hull, no other triangle has it as a corner. So the triangles that are not final join only
-//! the remaining points, and those are triangulated with all their copies (see `periodic`): few, unless
-//! there are few points at all.
+//! First, the points are triangulated without their copies. Their bounding box is at most one
+//! period wide, so all copies lie outside of the box that is one period wide from its largest
+//! coordinates back and from its smallest ones on. A triangle whose circle lies inside this larger
+//! box is also a triangle of the periodic set: call it final. If all triangles around a point are
+//! final, and it does not lie on the hull, no other triangle has it as a corner. So the triangles
+//! that are not final join only the remaining points, and those are triangulated with all their
+//! copies (see `periodic`): few, unless there are few points at all.
 //!
 //! Both triangulations are canonical: ties are broken by an order of the points, so a triangle with an
 //! empty circle is also one of each set that is smaller and has its corners. Hence the edges around the
@@ -39,7 +39,7 @@ use crate::order::arrange;
 /// Sets with fewer points take all copies at once.
 const FEW: usize = 64;
 
-/// The corners from each one on, and the place of each corner in that order.
+/// The corners starting with each one, and the position of each corner in that order.
 const TURNED: [[usize; 3]; 3] = [[0, 1, 2], [1, 2, 0], [2, 0, 1]];
 const LESS: [[i32; 3]; 3] = [[0, 1, 2], [2, 0, 1], [1, 2, 0]];
 
@@ -102,7 +102,7 @@ pub fn periodic(
 struct Alone {
     /// The rows that represent distinct points, ascending.
     rows: Vec<u32>,
-    /// None if all are collinear, or few.
+    /// None if there are few, or if all are collinear.
     triangles: Arrays<3>,
 }
 
@@ -198,7 +198,7 @@ impl Inner {
                 if !self.is_final[t] {
                     open[corners[k] as usize] = true;
                 } else if given.neighbors[t][k] < 0 {
-                    // An edge of the hull: its ends have other triangles beyond it.
+                    // An edge of the hull, beyond which its ends have other triangles.
                     open[corners[(k + 1) % 3] as usize] = true;
                     open[corners[(k + 2) % 3] as usize] = true;
                 }
@@ -247,8 +247,9 @@ impl Circle {
         })
     }
 
-    /// Whether no copy can lie in the circle, or with weights, below the plane of the triangle, if the
-    /// heaviest point has `heavier` more weight than the first corner. False for anything not finite.
+    /// Whether no copy can lie in the circle, or with weights, below the plane of the triangle, if
+    /// the heaviest point has `heavier` more weight than the first corner. False if anything is not
+    /// finite.
     fn is_clear(&self, extent: &Extent, periods: Point2, heavier: f64) -> bool {
         let reach = (self.square + heavier).sqrt() + self.error;
         (0..2).filter(|&k| periods[k] > 0.0).all(|k| {
@@ -281,8 +282,8 @@ struct Classes {
 }
 
 impl Classes {
-    /// Keeps of each class the triangle whose smallest row is not moved and stands first; if a row
-    /// occurs more than once, the one that is moved least in lexicographic order.
+    /// Keeps the triangle of each class whose smallest row comes first and is not translated; if a
+    /// row occurs more than once, the one with the smallest translation in lexicographic order.
     fn of(made: Copies, pace: &mut Pace<'_>) -> Result<Self> {
         let Copies {
             triangles,

@@ -1,9 +1,10 @@
 //! Longitudes and latitudes as directions, by sines and cosines that are the same on each platform.
 //!
-//! The direction of longitude l and latitude b is that of (cos l, sin l, tan b): vectors of one longitude
-//! have equal x and y, so meridians and the poles are on great circles exactly, and parallels that mirror
-//! each other are. Each coordinate is within 0.5001 units in the last place of the true number (sines
-//! and cosines) or 1.01 (tangents), from additions, multiplications and divisions only.
+//! The direction of longitude l and latitude b is that of (cos l, sin l, tan b): vectors of one
+//! longitude have equal x and y, so meridians and the poles are exactly on great circles, and
+//! opposite latitudes are exact mirror images. Each coordinate is within 0.5001 units in the last
+//! place of the true number (sines and cosines) or 1.01 (tangents), from additions, multiplications
+//! and divisions only.
 //!
 //! # The reduction
 //!
@@ -58,10 +59,10 @@ const RIGHT: [f64; 3] = [
     6.123233995736766e-17,
     -1.4973849048591698e-33,
 ];
-/// Degrees so small that their sine is their product with a degree, to 400 bits; the products of
-/// smaller ones would underflow.
+/// For degrees this small, the sine is the angle in radians to 400 bits; the products of smaller
+/// ones would underflow.
 const TINY: f64 = f64::from_bits((1023 - 200) << 52);
-/// What tiny degrees are multiplied with, and the inverse.
+/// The factor for tiny degrees, and its inverse.
 const UP: [f64; 2] = [
     f64::from_bits((1023 + 600) << 52),
     f64::from_bits((1023 - 600) << 52),
@@ -70,7 +71,7 @@ const UP: [f64; 2] = [
 /// Bound of the error of `quick`, 2^-62.
 const QUICK: f64 = 1.0 / (1_u64 << 62) as f64;
 
-/// How much of a result is needed.
+/// The precision that a result needs.
 #[derive(Clone, Copy)]
 enum Care {
     /// To 2^-62, which nearly always determines the nearest double.
@@ -225,7 +226,7 @@ fn reduced(angle: f64, measure: Measure) -> Reduced {
                 double(angle - parts[0].hi) - double(parts[0].lo) - parts[1] - parts[2]
             };
             Reduced {
-                // Beyond a few turns nothing is guaranteed.
+                // Beyond a few turns, there is no guarantee.
                 quarters: (quarters % 4.0) as i32,
                 rest: Rest::Radians(rest),
             }

@@ -1,4 +1,4 @@
-//! The insertion order of directions: along a curve, and by the sides of a plane where they are many.
+//! The insertion order of directions: along a curve, and for large sets by the sides of a plane.
 
 use delone_predicates::Point3;
 
@@ -21,7 +21,7 @@ pub struct Arranged {
     pub rows: Vec<u32>,
     /// Rows that repeat the vector of a direction, with its number.
     pub repeats: Vec<[u32; 2]>,
-    /// If they are arranged by the sides of a plane: their triangulations may then be joined.
+    /// The plane, if they are arranged by its sides so that two triangulations can be joined.
     pub halves: Option<Halves>,
 }
 
@@ -34,12 +34,12 @@ pub struct Halves {
     pub first: u32,
 }
 
-/// Directions that are worth two triangulations; few if a fuzzer is to try them.
+/// The number of directions that is worth two triangulations; small for fuzzers.
 #[allow(unexpected_cfgs)] // Set by fuzz/run.sh and by cargo fuzz.
 const MANY: usize = if cfg!(fuzzing) { 8 } else { 1 << 14 };
-/// Each octant must have this share of the directions, or some are too empty for a join.
+/// Each octant must have this fraction of the directions, or some are too empty for a join.
 const OCTANT: usize = 64;
-/// Each side of the plane must have this share, or two workers gain too little.
+/// Each side of the plane must have this fraction, or two workers gain too little.
 const SIDE: usize = 4;
 
 /// The coordinate whose sign divides the directions best; `None` if they are few, or not all octants have

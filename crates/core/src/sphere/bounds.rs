@@ -1,11 +1,11 @@
 //! The bounds of the filters against integers: none is exceeded, and none has much more room than that.
 //!
-//! Wrong signs need a near tie whose rounding errors all point one way: random ties come nowhere near the
-//! bounds, and a bound that is too small would show by luck only. So errors are measured here, not
-//! signs. Directions are the computed ones, and the true ones are as far from them as the bound of their
-//! error allows, each coordinate on the side where the determinant changes most. Each test states
-//! which share of its bound the largest error reaches, so a bound that is smaller by the inverse of
-//! that fails.
+//! A wrong sign takes a near tie whose rounding errors all have the same sign. Random ties come
+//! nowhere near the bounds, so only luck would reveal a bound that is too small. So errors are
+//! measured here, not signs. Directions are the computed ones, and the true ones are as far from
+//! them as the bound of their error allows, each coordinate on the side where the determinant
+//! changes most. Each test states which share of its bound the largest error reaches, so a bound
+//! that is smaller by the inverse of that fails.
 
 use delone_predicates::Point3;
 use delone_predicates::sphere::{Unit, stages};
@@ -19,7 +19,7 @@ const LOW: i64 = -1100;
 /// Half the distance from 1.0 to the next double.
 const U: f64 = f64::EPSILON / 2.0;
 
-/// Heads nearer than this prove nothing: their determinant is below its bound.
+/// Closer heads prove nothing, because their determinant is below its bound.
 const LEAST: f64 = 3.0 * U;
 
 struct Random(u64);
@@ -89,7 +89,7 @@ fn circle_slopes([a, b, c, d]: [Point3; 4]) -> [Point3; 4] {
     [rows[0], rows[1], rows[2], all]
 }
 
-/// The share of `bound` that the error of `found` is, for three factors.
+/// The error of `found` as a fraction of `bound`, for three factors.
 fn share(found: &BigInt, exact: &BigInt, bound: f64, factors: i64) -> f64 {
     let error = (found << ((factors - 1) * -LOW) as u64) - exact;
     let bound = scaled(bound, LOW) << ((factors - 1) * -LOW) as u64;

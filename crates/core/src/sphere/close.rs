@@ -33,7 +33,7 @@ impl Kernel<'_> {
         }
         let mut ends: Vec<(u32, u32)> = Vec::new();
         for (&t, &across) in cavity.iter().zip(&rim) {
-            // Seen from p the edge runs the other way than in the triangle beyond.
+            // Seen from p, the edge has the opposite direction of that in the triangle beyond.
             let (from, to) = (
                 self.mesh.vertex(prev(across)),
                 self.mesh.vertex(next(across)),

@@ -152,7 +152,7 @@ fn places(built: &Built, duplicates: &[[u32; 2]], n: usize) -> Result<Vec<u32>> 
 }
 
 /// The pairs of arcs that cross, ascending; at most [`MOST`]. `waiting` are the arcs that were not
-/// inserted as a whole.
+/// inserted completely.
 ///
 /// Of two arcs that cross, one was inserted there and is met by the other as a marked edge; or both
 /// wait, and where they cross they pass through one triangle, its boundary included.
@@ -228,7 +228,7 @@ fn crossings(
 /// Whether two arcs cross in the interior of both.
 fn crosses(directions: &Directions, [a, b]: [u32; 2], [c, d]: [u32; 2]) -> bool {
     let side = |p: u32, q: u32, r: u32| directions.orient([p, q, r]);
-    // From the one side to the other; the last one rules out arcs whose opposites cross.
+    // From one side to the other; the last test rules out arcs whose antipodes cross.
     let first = side(a, b, c);
     first != Sign::Zero
         && side(a, b, d) == -first

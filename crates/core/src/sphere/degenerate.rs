@@ -1,4 +1,4 @@
-//! What exists where directions span no triangle: few of them, or the order along a great circle.
+//! What is left if directions span no triangle: a few of them, or their order on a great circle.
 
 use std::cmp::Ordering;
 

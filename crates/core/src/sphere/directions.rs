@@ -18,7 +18,7 @@ const SHARE: usize = 1 << 14;
 pub struct Directions {
     /// The directions, rounded.
     pub heads: Vec<Point3>,
-    /// What is left of them.
+    /// Their tails: what rounding left out.
     pub tails: Vec<Point3>,
     /// The vectors, exact.
     pub vectors: Vec<Point3>,

@@ -78,7 +78,7 @@ pub fn dual(
 }
 
 impl Facets<'_> {
-    /// The corner of `other` that is opposite the edge it shares with `t`.
+    /// The corner of `other` opposite the edge that it shares with `t`.
     fn back(&self, t: usize, other: usize) -> Result<usize> {
         self.neighbors[other]
             .iter()

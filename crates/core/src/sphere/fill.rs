@@ -1,8 +1,8 @@
 //! Inserts the directions of a block, one after the other.
 //!
-//! The order is that of `delaunay::plane::bowyer_watson`. Here no other method takes over where
-//! cavities are large: the build terminates for any input, as each insertion does, but takes
-//! quadratic time for some.
+//! The order is that of `delaunay::plane::bowyer_watson`. Here, no other method replaces it if
+//! cavities are large. Each insertion terminates, so the build does for any input, but it may take
+//! quadratic time.
 
 use std::ops::Range;
 

@@ -1,12 +1,13 @@
 //! Joins two triangulations, of the directions on both sides of a plane, to one of the whole sphere.
 //!
-//! Each is convex on the sphere, with a ring of ghosts. Between the rings is a ring of triangles: each
-//! has an edge of one of them and its apex on the other, as an arc between two vertices of one ring would
-//! pass through its own inside. A bridge from ring to ring goes once around, by the next vertex of one
-//! or the other: of two that are possible the one that is not in the circle with the other. Then flips
-//! make all edges Delaunay (C. L. Lawson, 1977): an edge that is not can be flipped, as the fourth vertex is
-//! inside a circle smaller than a hemisphere, and each flip raises the surface of flat triangles, so
-//! that they end. With ties broken by the perturbation the result is the canonical triangulation.
+//! Each is convex on the sphere, with a ring of ghosts. Between the rings is a ring of triangles:
+//! each has an edge of one ring and its apex on the other, because an arc between two vertices of
+//! one ring would pass through the inside of that ring. A bridge from ring to ring goes once
+//! around, by the next vertex of one or the other: of two that are possible the one that is not in
+//! the circle with the other. Then flips make all edges Delaunay (C. L. Lawson, 1977): an edge that
+//! is not can be flipped, as the fourth vertex is inside a circle smaller than a hemisphere, and
+//! each flip raises the surface of flat triangles, so that they end. With ties broken by the
+//! perturbation the result is the canonical triangulation.
 //!
 //! Every triangle has a positive determinant, so the closed surface covers each direction equally
 //! often: once, as the axis lies inside the first half and in no triangle of the ring. If one of

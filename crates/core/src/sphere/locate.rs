@@ -25,9 +25,9 @@ use crate::order::{order_of, sort_by};
 
 /// Work between two checks for interruption; a step of a walk is one.
 const WATCH_EVERY: usize = 1 << 12;
-/// Steps of a walk before edges are tried in random order.
+/// The number of steps of a walk after which edges are tried in random order.
 const TURNS: usize = 1 << 10;
-/// More than two rounded products of rounded directions are off by together: each by 5 units of
+/// More than the errors of two rounded products of rounded directions together, each 5 units of
 /// rounding.
 const MARGIN: f64 = 1e-14;
 
@@ -335,7 +335,7 @@ impl Index {
         Ok(best)
     }
 
-    /// Goes to better neighbors while there are any; each is nearer than the one before.
+    /// Goes to better neighbors while there are any; each is closer than the previous one.
     fn climb(&self, q: (Point3, Unit), from: At, pace: &mut Pace) -> Result<At> {
         let mut best = from;
         loop {

@@ -80,10 +80,10 @@ pub(super) fn size(p: [Pair; 3]) -> f64 {
     p.iter().map(|x| x.hi.abs()).sum()
 }
 
-/// A. Van Oosterom and J. Strackee, "The solid angle of a plane triangle" (1983): the tangent of half
-/// of it is [a, b, c] / (1 + a b + b c + c a). The determinant is right to nearly all bits, so slivers
-/// are, too. The sum has no need to be, as long as one of the two is large: its error counts by the
-/// share of the determinant in both. Both are small if two corners are nearly opposite.
+/// A. Van Oosterom and J. Strackee, "The solid angle of a plane triangle" (1983): the tangent of
+/// half of it is [a, b, c] / (1 + a b + b c + c a). The determinant is correct to nearly all bits,
+/// and so are slivers. The sum need not be, as long as one of the two is large, because its error
+/// is weighted by the share of the determinant. Both are small if two corners are nearly opposite.
 fn area(corners: [Point3; 3], directions: &[Unit; 3]) -> f64 {
     let units = directions.each_ref().map(pairs);
     let [a, b, c] = units;

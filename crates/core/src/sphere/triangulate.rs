@@ -58,7 +58,7 @@ pub(super) fn build(vectors: &[Point3], workers: usize, watch: &Watch) -> Result
     let arranged = arrange(vectors, workers, watch)?;
     let n = arranged.directions.count();
     let mut mesh = Mesh2::with_vertices(n as usize)?;
-    // The same for any number of workers, so that the records are.
+    // Its records are the same for any number of workers.
     let joined = match arranged.halves {
         Some(halves) => in_halves(&mut mesh, &arranged.directions, halves, workers, watch)?,
         None => None,
@@ -79,7 +79,7 @@ pub(super) fn build(vectors: &[Point3], workers: usize, watch: &Watch) -> Result
     })
 }
 
-/// All rows of directions that occur before, with the first row of the same direction, which becomes
+/// All rows that repeat an earlier direction, with the first row of that direction, which becomes
 /// the row of the vertex.
 pub(super) fn join(
     arranged: &mut Arranged,

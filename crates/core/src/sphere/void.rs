@@ -1,11 +1,12 @@
 //! The facets of the convex hull that the center does not see from inside: those across the void of a
 //! hull on the sphere.
 //!
-//! Their vertices are those of the boundary: at a facet with outer normal n all directions x have
-//! n x <= h <= 0, and a direction inside of the hull is a positive combination of others with a sum
-//! above 1, so that its product is below h. The boundary is a convex polygon, which random insertion
-//! triangulates in expected linear time (L. P. Chew, "Building Voronoi diagrams for convex polygons in
-//! linear expected time", 1990): vertices are taken away in random order, and put back in reverse.
+//! Their vertices are those of the boundary: at a facet with outer normal n all directions x have n
+//! x <= h <= 0, and a direction inside of the hull is a positive combination of others with a sum
+//! above 1, so that its product is below h. The boundary is a convex polygon, which random
+//! insertion triangulates in expected linear time (L. P. Chew, "Building Voronoi diagrams for
+//! convex polygons in linear expected time", 1990): vertices are removed in random order and
+//! inserted again in reverse order.
 //!
 //! In-circle tests of directions hold for facets on either side of the center. If four directions are
 //! on one great circle, no perturbation along the rays separates them; then the smallest is cut off,
@@ -154,7 +155,7 @@ impl<'a> Polygon<'a> {
         }
         let (mut stack, mut free) = (Vec::new(), Vec::new());
         for &v in &order[3..] {
-            // Its neighbors on the polygon when it was taken away.
+            // Its neighbors on the polygon when it was removed.
             let (u, w) = (before[v as usize], after[v as usize]);
             self.insert(v, [u, w], &mut stack, &mut free)?;
         }

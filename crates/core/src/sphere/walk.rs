@@ -1,10 +1,11 @@
 //! Visibility walk to the triangle that contains a direction, by exact signs.
 //!
-//! From triangle to triangle, across great circles that have the direction on their other side. Let n be
-//! the normal of a triangle and h > 0 its distance from the center; the ray of p meets the plane of
-//! the triangle at h / (n p) times p. In a Delaunay triangulation planes that the ray meets from
-//! inside are met later and later: n p / h rises at each step (the planes of the two triangles
-//! meet in their edge, and p is beyond it), with ties as in the mesh. So the walk terminates.
+//! The walk goes from triangle to triangle across great circles with the direction on their other
+//! side. Let n be the normal of a triangle and h > 0 its distance from the center; the ray of p
+//! meets the plane of the triangle at h / (n p) times p. In a Delaunay triangulation, the ray
+//! leaves the half-spaces of the planes sooner and sooner: n p / h rises at each step (the planes
+//! of the two triangles meet in their edge, and p is beyond it), with ties as in the mesh. So the
+//! walk terminates.
 
 use delone_predicates::Sign;
 

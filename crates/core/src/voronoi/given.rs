@@ -29,7 +29,7 @@ impl<const D: usize, const N: usize> Given<'_, D, N> {
     #[inline]
     pub(crate) fn back(&self, t: usize, other: usize) -> Result<usize> {
         let row = self.neighbors[other];
-        // Arithmetic instead of a search, whose branches would be unpredictable.
+        // Arithmetic instead of a search, because branches would be unpredictable.
         let back = (1..N).map(|k| k * usize::from(row[k] == t as i32)).sum();
         if back < N && row[back] == t as i32 {
             return Ok(back);

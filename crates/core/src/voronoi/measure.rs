@@ -84,8 +84,8 @@ fn measure(corners: &[Point2]) -> (f64, Point2, f64) {
     )
 }
 
-/// Two more than the exponent of the largest coordinate on an axis, clamped so that it and its
-/// negative are exponents of doubles.
+/// The exponent of the largest coordinate on an axis plus two, clamped so that it and its negative
+/// are exponents of doubles.
 fn exponent(corners: &[Point2], axis: usize) -> i32 {
     let largest = corners.iter().fold(0.0_f64, |m, p| m.max(p[axis].abs()));
     ((largest.to_bits() >> 52) as i32 - 1021).clamp(-1022, 1022)
@@ -175,7 +175,8 @@ mod tests {
             (0.0, [5e-201, 5e-201])
         );
         assert_eq!(found.perimeters, [4e-200]);
-        // As long as the range, and as thin: areas, centroids and perimeters are still doubles.
+        // As long and as thin as the range allows: areas, centroids and perimeters are still
+        // doubles.
         for (w, h) in [
             (1.0, huge),
             (1.0, huge / 2.0),

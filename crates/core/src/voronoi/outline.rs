@@ -1,4 +1,4 @@
-//! Classifies cells against an outline: touched by it, or in groups certainly on one side.
+//! Classifies cells against an outline: touched by it, or in groups that are certainly on one side.
 //!
 //! Segments of the outline go into a grid; a cell is *touched* if the line of a segment crosses its
 //! box, or is too close to tell. Cells that are not touched and share an edge lie on the same side,
@@ -13,7 +13,8 @@ use crate::base::sets::Sets;
 
 /// The most columns and rows of the grid.
 const MOST: f64 = 1024.0;
-/// Cells count as touched within this share of the extent; it covers all rounding here.
+/// Cells count as touched within this fraction of the extent, which covers all rounding errors
+/// here.
 const CLOSE: f64 = 1e-9;
 
 pub(super) struct Grid {

@@ -62,11 +62,11 @@ impl Outline<'_> {
 /// What is left of a cell after clipping.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Left {
-    /// Exact predicates do not decide.
+    /// Exact predicates leave this undecided.
     Doubtful = -1,
-    /// No point of it.
+    /// Nothing.
     Nothing = 0,
-    /// All of it.
+    /// The whole cell.
     Whole = 1,
     /// The parts in the arrays.
     Parts = 2,
