@@ -1,1 +1,1 @@
-"""What all parts stand on: arrays, checks of arguments, errors of files, units, immutability."""
+"""Shared by all modules: arrays, checks of arguments, errors of files, units, immutability."""

@@ -1,4 +1,4 @@
-"""Errors of old names: they say the new one, until 0.1.0.
+"""Errors for old names, which give the new name until 0.1.0.
 
 A class with the decorator `renamed` does not have its old names, also for ``hasattr``; reading one
 raises AttributeError with the name to use.

@@ -1,4 +1,4 @@
-//! What all rooms stand on: errors, arrays, points, boxes, refused memory, interruption and workers.
+//! The foundation of all rooms: errors, arrays, points, boxes, refused memory, interruption and workers.
 
 pub mod arrays;
 pub(crate) mod boxes;

@@ -1,4 +1,4 @@
-//! What exact validators share: the kinds of faults, verdicts on adjacent simplices, which rows must be
+//! Shared by exact validators: the kinds of faults, checks of adjacent simplices, which rows must be
 //! vertices, and the steps that are the same in 2-D and 3-D.
 
 use crate::base::arrays::Given;

@@ -1,4 +1,4 @@
-//! The first of the simplices around a facet or a face of fewer dimensions, in three dimensions or more.
+//! The first of the simplices around a facet or a face of lower dimension, in 3-D and higher.
 
 use std::collections::HashSet;
 

@@ -1,4 +1,4 @@
-//! By how much one distance exceeds another, although both may round to the same double.
+//! How much one distance exceeds another, even if both round to the same double.
 //!
 //! Let r be the point of a box around all facets that is nearest to the query q, which takes only
 //! comparisons to find. The squared distance of a point p exceeds that of r by the sum, over the

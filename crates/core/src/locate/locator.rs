@@ -1,5 +1,5 @@
-//! What point location in 2-D and 3-D shares: the cache of a triangulation, and how a point is
-//! located by a walk or, where walks may miss simplices, among bounding boxes.
+//! Shared by point location in 2-D and 3-D: the cache of a triangulation, and location by a walk
+//! or, if walks may miss simplices, by bounding boxes.
 
 use std::sync::OnceLock;
 

@@ -1,4 +1,4 @@
-//! Output arrays that many threads write, each to its own rows.
+//! Output arrays that several threads fill, each its own rows.
 
 use std::sync::atomic::{AtomicI32, AtomicU64, Ordering};
 

@@ -1,4 +1,4 @@
-//! What 2-D location has of its own.
+//! The parts of point location that are specific to 2-D.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 

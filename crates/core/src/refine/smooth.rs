@@ -403,8 +403,8 @@ impl<'a> Round<'a> {
             let Some((n, j)) = self.now.must_flip(t, k) else {
                 continue;
             };
-            // The flip moves waiting edges to other records, so all edges of both triangles wait
-            // afterwards.
+            // The flip moves waiting edges to other records, so all edges of both triangles are
+            // enqueued again.
             self.now.flip((t, k), (n, j));
             for t in [t, n] {
                 self.touched[t] = true;

@@ -1,4 +1,4 @@
-//! Threads for one call: started for it and joined at its end, so that a fork never sees any.
+//! Threads for one call, which are joined at its end, so that a fork never inherits any.
 
 use std::sync::Mutex;
 use std::thread::Builder;

@@ -1,6 +1,6 @@
-//! All or nothing among segments, where the inverse of an edit may be large: what an edit replaces is
-//! recorded, and an error puts it back (see `journal`). Where all is triangulated again, the mesh
-//! before is kept instead.
+//! Edits among segments take effect completely or not at all: what an edit replaces is recorded,
+//! and restored after an error (see `journal`), because inverse edits may be large. Where all is
+//! triangulated again, the mesh before is kept instead.
 
 use super::Plane;
 use super::mesh::Mesh;

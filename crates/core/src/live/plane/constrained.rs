@@ -1,4 +1,4 @@
-//! Edits of a triangulation with segments: points and segments come, go and move.
+//! Edits of a triangulation with segments: points and segments are added, removed and moved.
 //!
 //! # Why every order of edits ends in the same triangles
 //!

@@ -1,4 +1,4 @@
-//! The hole that a vertex leaves among segments: any triangles first, then flips.
+//! Fills the hole that a vertex leaves among segments: first with any triangles, then by flips.
 //!
 //! Segments may hide corners of the hole from its edges, so the perturbed circles of all corners do not
 //! decide (compare `remove`). The hole is filled with triangles that are cut off at its corners, which

@@ -1,4 +1,4 @@
-//! What a live triangulation does in 2-D only.
+//! The operations of a live triangulation that are specific to 2-D.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! What comes as near to a segment as its rounding (compare `constrained::reroute`).
+//! Finds what is as close to a segment as its rounding error (compare `constrained::reroute`).
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! Segments are put back into the mesh, and split where they cross.
+//! Puts segments back into the mesh, and splits them where they cross.
 //!
 //! First, all segments that the detached ones cross are taken out as well, and those that these cross (see
 //! `detach`), so that nothing in the mesh crosses one of them. Then their crossings become vertices, and

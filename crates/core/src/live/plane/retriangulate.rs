@@ -1,4 +1,4 @@
-//! The triangulation of all points and segments again, where segments cross.
+//! Triangulates all points and segments again if segments cross.
 //!
 //! Crossings are rounded, and what that leads to is decided by `constrained` (see its `split`).
 //! Here its pieces become marked edges, its added vertices get rows, and the segments that are no

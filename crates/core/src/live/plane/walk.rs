@@ -1,4 +1,4 @@
-//! Where a point is: a start that is near, and a visibility walk (see `delaunay::plane::walk`).
+//! Locates a point: a start nearby, then a visibility walk (see `delaunay::plane::walk`).
 
 use delone_predicates::{Point2, Sign, orient2d};
 

@@ -1,4 +1,4 @@
-//! What 3-D location has of its own.
+//! The parts of point location that are specific to 3-D.
 
 use delone_predicates::{Point3, Sign, orient3d};
 
