@@ -182,3 +182,34 @@ def test_a_large_survey_keeps_most_points():
     tin = TIN.from_points(points, snap=0.5)
     assert tin.npoints == 100_000 - tin.adjustments.points_moved
     assert 2000 < tin.adjustments.points_moved < 10_000
+
+
+@pytest.mark.parametrize("y", [5.02, 5.0, 4.98])
+def test_ends_meet_the_sides_of_other_lines(y):
+    """An end that nearly reaches a line, or is a little beyond it, is on it."""
+    lines = [[(2, 5, 0), (8, 5, 6)], [(5, y, 3), (5, 9, 3)]]
+    tin = TIN.from_points(SQUARE, breaklines=lines, snap=0.05)
+    assert tin.npoints == 8 and tin.heights((5, 5)) == 3
+    assert tin.adjustments.line_points_moved == (y != 5)
+    assert tin.adjustments.largest_move == pytest.approx(abs(y - 5))
+    sides = {frozenset(map(tuple, tin.points[row].tolist())) for row in tin.breaklines}
+    assert sides == {
+        frozenset({(5.0, 5.0), other}) for other in ((2.0, 5.0), (8.0, 5.0), (5.0, 9.0))
+    }
+
+
+def test_ends_that_are_too_high_or_far():
+    high = [[(2, 5, 0), (8, 5, 6)], [(5, 5.02, 4), (5, 9, 3)]]
+    with pytest.raises(ConflictingValuesError, match="lines have different heights"):
+        TIN.from_points(SQUARE, breaklines=high, snap=0.05)
+    tin = TIN.from_points(SQUARE, breaklines=high, snap=0.05, tolerance=2)
+    assert tin.heights((5, 5)) == 4
+    tin = TIN.from_points(SQUARE, breaklines=high, snap=0.01)
+    assert tin.adjustments.line_points_moved == 0 and tin.npoints == 8
+    # Lines without heights take those of the others.
+    bare = [[(2, 5, 0), (8, 5, 6)], [(5, 5.02), (5, 9)]]
+    tin = TIN.from_points(SQUARE, breaklines=bare, snap=0.05)
+    assert tin.heights((5, 5)) == pytest.approx(3) and tin.npoints == 8
+    # Rings have no ends, and corners of lines are not ends.
+    bend = [[(2, 5, 0), (8, 5, 0)], [(3, 8, 0), (5, 5.02, 0), (7, 8, 0)]]
+    assert TIN.from_points(SQUARE, breaklines=bend, snap=0.05).adjustments.line_points_moved == 0

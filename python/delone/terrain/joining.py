@@ -47,6 +47,9 @@ def joined(points: Floats, lines: Lines, limit: float, policy: str, tolerance: f
         points=np.column_stack((first.places, lines.points[:, 2])),
         segments=_from_smaller(first.places, lines.segments),
     )
+    lines, closed = _with_ends(lines, fixed, limit, tolerance)
+    moves.append(closed)
+    first = first._replace(places=np.ascontiguousarray(lines.points[:, :2]))
     used = lines.segments[lines.kinds != HULL]
     # Points of lines, then their sides, then other points.
     vertices = first.places[np.unique(used)]
@@ -78,7 +81,7 @@ def joined(points: Floats, lines: Lines, limit: float, policy: str, tolerance: f
         lines,
         int(leveled.sum()),
         int((away > 0).sum()) + len(row) + int(third.moved.sum()),
-        int(first.moved.sum()),
+        int(first.moved.sum()) + int((closed > 0).sum()),
         max(float(each.max(initial=0.0)) for each in moves),
     )
 
@@ -126,9 +129,45 @@ def _threaded(  # noqa: PLR0917
     resolved = {"min": both.min(axis=0), "max": both.max(axis=0)}.get(policy, both.mean(axis=0))
     foot[:, 2] = np.where(without, z, resolved)
     added = np.flatnonzero(without | differs)
-    if not len(added):
+    return _through(lines, foot[added], without[added], segment[added], share[added])
+
+
+def _with_ends(lines: Lines, fixed: Bools, limit: float, tolerance: float) -> tuple[Lines, Floats]:
+    """Move ends of lines onto the sides of others that they nearly reach, and return how far.
+
+    The other line gets a point there. If heights agree, it has that of the end; else they are
+    compared as where lines cross.
+    """
+    own = np.flatnonzero(lines.kinds != HULL)
+    places, number = np.unique(lines.points[:, :2], axis=0, return_inverse=True)
+    number = number.reshape(-1)
+    count = np.bincount(number[lines.segments[own]].ravel(), minlength=len(places))
+    used = np.unique(lines.segments[own])
+    ends = used[(count[number[used]] == 1) & ~fixed[used]]
+    row, segment, share, distance = near_segments(
+        lines.points[ends, :2], lines.points[lines.segments[own]][..., :2], limit
+    )
+    if not len(row):
+        return lines, distance
+    end, segment = ends[row], own[segment]
+    a, b = lines.segments[segment].T
+    foot = lines.points[a] + share[:, None] * (lines.points[b] - lines.points[a])
+    without = lines.draped[a] & lines.draped[b]
+    z = lines.points[end, 2]
+    slack = tolerance + 8 * np.spacing(np.abs(z))
+    same = ~without & ~lines.draped[end] & (np.abs(z - foot[:, 2]) <= slack)
+    foot[same, 2] = z[same]
+    points = lines.points.copy()
+    points[end, :2] = foot[:, :2]
+    moved = lines._replace(points=points)
+    return _through(moved, foot, without, segment, share), distance
+
+
+def _through(lines: Lines, foot: Floats, without: Bools, segment: Rows, share: Floats) -> Lines:
+    """Let segments pass through points at shares of them."""
+    if not len(foot):
         return lines
-    added = added[np.lexsort((z[added], share[added], segment[added]))]
+    added = np.lexsort((foot[:, 2], share, segment))
     number = len(lines.points) + np.arange(len(added))
     # Each further point comes after the start of its segment, in the order along it.
     count = np.bincount(segment[added], minlength=len(lines.segments)) + 1

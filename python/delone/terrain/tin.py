@@ -152,11 +152,11 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
             the most accurate is used, and of several such heights, the lowest.
         snap : float, optional
             Points that are nearer than this to each other or to a line are merged. Points of lines
-            are merged first, then other points move to points of lines, or become part of a line;
-            of the remaining points, the first in the order of x and y stays. Heights that meet at a
-            place are treated as duplicates: see `duplicates`, `crossing` and `tolerance`. Boundary,
-            holes and islands do not move. `adjustments` contains the number of moved points and the
-            largest move.
+            are merged first, and their ends move onto lines that they nearly reach. Then other
+            points move to points of lines, or become part of a line; of the rest, the first in the
+            order of x and y stays. Heights that meet at a place are treated as duplicates: see
+            `duplicates`, `crossing` and `tolerance`. Boundary, holes and islands do not move.
+            `adjustments` contains the number of moved points and the largest move.
         level : optional
             Polygons or rings, such as lakes, in which the surface is level. Each feature, or each
             ring given as an array, gets the common height of its points or, without heights, the
