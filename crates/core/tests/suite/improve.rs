@@ -318,6 +318,41 @@ fn a_sliver_with_vertices_on_the_boundary_gets_a_vertex() {
 }
 
 #[test]
+fn a_fixed_vertex_is_not_lost_to_a_better_place() {
+    // The star of a vertex close to a face of an octahedron: with a vertex in the middle instead,
+    // all tetrahedra would be good.
+    let mut points: Vec<Point3> = Vec::new();
+    for axis in 0..3 {
+        for side in [-1.0, 1.0] {
+            let mut corner = [0.0; 3];
+            corner[axis] = side;
+            points.push(corner);
+        }
+    }
+    points.push([0.3, 0.32, 0.34]);
+    let mut simplices = Vec::new();
+    for (x, y, z) in (0..8).map(|k| (k & 1, 2 + (k >> 1 & 1), 4 + (k >> 2))) {
+        let [a, b, c, d] = [x, y, z, 6].map(|v| points[v]);
+        let positive = orient3d(a, b, c, d) == Sign::Positive;
+        let [y, z] = if positive { [y, z] } else { [z, y] };
+        simplices.push([x as i32, y as i32, z as i32, 6]);
+    }
+    let fixed = [false, false, false, false, false, false, true];
+    let made = run(Task {
+        fixed: &fixed,
+        flips: false,
+        most: 5,
+        ..task(&points, &simplices)
+    });
+    let made = made.unwrap();
+    assert!(made.simplices.iter().flatten().any(|&v| v == 6));
+    assert_eq!(
+        total(&points, &simplices),
+        total(&made.points, &made.simplices)
+    );
+}
+
+#[test]
 fn faces_of_the_boundary_turn_in_their_plane() {
     // Two tetrahedra over a flat kite: the long diagonal is the worse one.
     let points = [
