@@ -63,7 +63,8 @@ class TetMesh(Triangulation):
     holes : ndarray of float64, shape (h, 3)
         A point in each region that these faces enclose and that is empty.
     nadded : int
-        The number of points that `tetrahedralize` and `refine` added; they are the last rows.
+        The number of points that `tetrahedralize`, `refine` and `improve` added; they are the last
+        rows.
     report : RecoveryReport, ImproveReport or RefinementReport
         What `tetrahedralize` added, or what `improve` or `refine` changed.
 
@@ -245,7 +246,8 @@ class TetMesh(Triangulation):
             triangulation with a length for each of its points, linear in between.
         min_angle : float, optional
             The goal for the smallest dihedral angle in degrees, by default 20: at the end, slivers
-            are removed as by `delone.improve`. 0 for no such step.
+            are removed as by `delone.improve`, with added points where no other change helps. 0 for
+            no such step.
         boundary : {"faces", "surface"}, optional
             What is kept: all `input_faces` and faces between regions, bit for bit; or the surface,
             on which points may be added: planar parts are triangulated again, and edges between
