@@ -155,9 +155,21 @@ def test_the_limit_on_passes_is_reported(tmp_path, command, figures):
     assert (found["passes"], found["exhausted"]) == (1, True)
     assert found["below"]["budget"] > 0
     out = command("triangulate", source, "--improve", "--max-iter", "1")[1]
-    assert "--max-iter 1: more passes may improve further" in out
+    assert "the limit on passes, 1: more may improve further" in out
     code, _, err = command("triangulate", source, "--max-iter", "1")
     assert (code, "--improve" in err) == (2, True)
+
+
+def test_points_are_added_on_request(tmp_path, command, figures):
+    points = cloud(300)
+    source, target = ply(tmp_path / "cloud.ply", points), tmp_path / "mesh.vtu"
+    found = figures("triangulate", source, "--improve", "--max-points", "7", "-o", target)
+    better = improve(Delaunay(points), max_points=7)
+    assert 0 < found["improvement"]["points_added"] == better.nadded <= 7
+    assert (read_mesh(target).points == better.points).all()
+    assert figures("triangulate", source, "--improve")["improvement"]["points_added"] == 0
+    assert "vertices added" in command("triangulate", source, "--improve")[1]
+    assert command("triangulate", source, "--max-points", "7")[0] == 2
 
 
 def test_only_tetrahedra_are_improved(tmp_path, command):

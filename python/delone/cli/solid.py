@@ -80,6 +80,7 @@ def improved(
     *,
     min_angle: float | None,
     passes: int | None,
+    most_points: int | None,
 ) -> TetMesh:
     """Improve tetrahedra until dihedral angles reach `min_angle`, in degrees.
 
@@ -95,7 +96,7 @@ def improved(
         say(f"improving: {counted(below, 'tetrahedron')} below the goal after pass {number}")
 
     goal = _GOAL if min_angle is None else min_angle
-    return improve(mesh, min_angle=goal, max_iter=most, progress=told)
+    return improve(mesh, min_angle=goal, max_points=most_points or 0, max_iter=most, progress=told)
 
 
 def improvement_figures(report: Any) -> dict[str, Any]:
@@ -109,6 +110,7 @@ def improvement_figures(report: Any) -> dict[str, Any]:
         "edge_removals": report.edge_removals,
         "face_removals": report.face_removals,
         "moves": report.moves,
+        "points_added": report.points_added,
         "passes": report.passes,
         "exhausted": report.exhausted,
     }
@@ -125,6 +127,7 @@ def improvement_rows(figures: dict[str, Any]) -> list[Row]:
         ("edges removed", f"{figures['edge_removals']:,}"),
         ("faces removed", f"{figures['face_removals']:,}"),
         ("vertices moved", f"{figures['moves']:,} times in {counted(figures['passes'], 'pass')}"),
+        ("vertices added", f"{figures['points_added']:,}"),
         *_ended(figures),
     ]
 
@@ -133,7 +136,7 @@ def _ended(figures: dict[str, Any]) -> list[Row]:
     """Return a note if the limit on passes stopped an improvement that was still progressing."""
     if not figures["exhausted"]:
         return []
-    return [("stopped by", f"--max-iter {figures['passes']}: more passes may improve further")]
+    return [("stopped by", f"the limit on passes, {figures['passes']}: more may improve further")]
 
 
 def space_summary(mesh: Delaunay) -> dict[str, Any]:

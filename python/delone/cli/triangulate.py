@@ -80,7 +80,11 @@ def triangulate(
         typer.Option("--conforming", help="Add vertices until all segments are Delaunay edges."),
     ] = False,
     max_points: Annotated[
-        int | None, typer.Option(help="Maximum number of vertices added to lines and polygons.")
+        int | None,
+        typer.Option(
+            help="Maximum number of vertices added to lines and polygons, or by --improve, where "
+            "it is 0 by default."
+        ),
     ] = None,
     in_space: Solid = False,
     in_plane: Flat = False,
@@ -137,7 +141,7 @@ def triangulate(
             survey, crs, planar=planar, quiet=quiet, outputs=writers, known=WITH_CRS
         )
         say(f"triangulating {len(survey):,} {_what(survey)}")
-        constraints = Constraints(crossing, outline, conforming, max_points)
+        constraints = Constraints(crossing, outline, conforming, None if better else max_points)
         solid = is_space(source, space, survey)
         if solid and isinstance(survey, PointSet):
             constraints.require_none(survey.source)
@@ -159,7 +163,14 @@ def triangulate(
             if not (solid and isinstance(mesh, Delaunay)):
                 raise Failure("--improve is for tetrahedra: give --3d", Exit.USAGE)
             with watch.stage("improve"):
-                tetrahedra = improved(mesh, writers, say, min_angle=min_angle, passes=max_iter)
+                tetrahedra = improved(
+                    mesh,
+                    writers,
+                    say,
+                    min_angle=min_angle,
+                    passes=max_iter,
+                    most_points=max_points,
+                )
             written, gained = tetrahedra, {"improvement": improvement_figures(tetrahedra.report)}
         write_all(writers, written, watch, say, z=z, crs=survey.crs, edges=edges)
         say("measuring")
