@@ -156,6 +156,12 @@ impl<'a> Work<'a> {
         self.store.is_there(t) && self.store.quality[t as usize] < level
     }
 
+    /// Whether no corner of a tetrahedron has changed since an attempt, which would fail again.
+    fn would_fail(&self, t: u32, tried: u64) -> bool {
+        let corners = self.store.corners[t as usize];
+        corners.iter().all(|&v| self.touched[v as usize] < tried)
+    }
+
     fn changes(&self) -> usize {
         self.counts.edges + self.counts.faces + self.counts.moves + self.counts.added
     }
@@ -195,11 +201,8 @@ impl<'a> Work<'a> {
                 continue;
             }
             self.clock += 1;
-            // Unless a corner has changed since the last try, it would fail again.
-            let corners = self.store.corners[t as usize];
-            let changed = corners.map(|v| self.touched[v as usize]).into_iter().max();
             let tried = std::mem::replace(&mut self.tried[t as usize], self.clock);
-            if changed < Some(tried) {
+            if self.would_fail(t, tried) {
                 continue;
             }
             // Its replacements may be below the bound, too.
@@ -331,11 +334,8 @@ impl<'a> Work<'a> {
                 continue;
             }
             self.clock += 1;
-            // Unless a corner has changed since the last try, it would fail again.
-            let corners = self.store.corners[t as usize];
-            let changed = corners.map(|v| self.touched[v as usize]).into_iter().max();
             let tried = std::mem::replace(&mut self.entered[t as usize], self.clock);
-            if changed < Some(tried) {
+            if self.would_fail(t, tried) {
                 continue;
             }
             let own = self.store.quality[t as usize];
