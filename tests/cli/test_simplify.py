@@ -78,4 +78,4 @@ def test_tiles_take_the_place_of_a_file(hill, command, figures):
     assert figures("simplify", folder, "--max-error", 0.5)["error"] is None
     for options in (["--max-triangles", 9], ["--max-error", 1, "--keep", "hard"]):
         code, _, err = command("simplify", folder, *options)
-        assert code == 2 and "folders of tiles have --max-error alone" in err
+        assert code == 2 and "folders of tiles take only --max-error" in err

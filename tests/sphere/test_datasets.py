@@ -604,7 +604,7 @@ def test_healpix() -> None:
         (
             lambda: xarray.Dataset(coords={"lon": ("c", [1.0], EAST), "lat": ("c", [1.0], NORTH)}),
             delone.InputError,
-            "cells of the places nearest to each center",
+            "to use the places nearest to each center as its cell",
         ),
     ],
 )

@@ -37,7 +37,7 @@ def hides(value: Any) -> bool:
 
 
 def refuse_hidden(values: Any, name: str) -> None:
-    """Reject values that are masked, which may be missing as NaN."""
+    """Reject masked values, and suggest NaN for missing ones."""
     if hides(values):
         raise DtypeError(f"{name} is a masked array; fill it: {name}.filled(numpy.nan)")
 

@@ -75,7 +75,7 @@ def simplify(
         else:
             if max_error is None or keep != _KEEP:
                 raise Failure(
-                    "folders of tiles have --max-error alone, without --max-triangles and --keep",
+                    "folders of tiles take only --max-error, not --max-triangles or --keep",
                     Exit.USAGE,
                 )
             small, error = _tiles(tin, max_error, watch, say, prove=prove)
@@ -117,7 +117,7 @@ def _tiles(
     *,
     prove: bool,
 ) -> tuple[TIN, float | None]:
-    """Return the simplified surface of tiles; its error is known if it is proven."""
+    """Return the simplified surface of tiles, and its error if it is proven."""
     with watch.stage("simplify"):
         small = tin.simplify(max_error=max_error)
     if not prove:

@@ -113,7 +113,7 @@ Nodata = Annotated[
 Window = Annotated[
     str | None,
     typer.Option(
-        help="Rasters, LAS, LAZ: read only what is inside left,bottom,right,top; of COPC quickly."
+        help="Rasters, LAS, LAZ: read only what is inside left,bottom,right,top; quick for COPC."
     ),
 ]
 EastingFirst = Annotated[

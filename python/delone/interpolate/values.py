@@ -185,12 +185,12 @@ def as_field(values: ArrayLike, count: int, *, name: str = "values") -> Field:
 
 
 def no_values() -> InputError:
-    """Return the error of an interpolator that is asked for values and has none."""
+    """Return the error for an interpolator without values."""
     return InputError("no values: pass them to the constructor or to the call")
 
 
 def differing(groups: int) -> InputError:
-    """Return the error of what depends on the sites, if groups of fields have different ones."""
+    """Return the error for groups of fields that have different sites."""
     return InputError(
         f"nan='drop' removes different sites from {groups} groups of fields, which have no sites "
         "or weights in common: give the fields of one group"
@@ -199,7 +199,7 @@ def differing(groups: int) -> InputError:
 
 @contextmanager
 def of_field(number: int) -> Iterator[None]:
-    """Say in errors of the input which of several fields they are about."""
+    """Add to input errors which of several fields they concern."""
     try:
         yield
     except InputError as error:

@@ -1,7 +1,7 @@
-"""The octree of COPC files: which chunks of points may have points inside of a box.
+"""The octree of COPC files: which chunks may have points inside a box.
 
-A node is a chunk, and its points are in a cube (specification 1.0). All pages of the hierarchy are
-read, 32 bytes for each node, and compared with the chunks that the file has: each is one node.
+Each node is a chunk, and its points are in a cube (specification 1.0). All pages of the hierarchy
+are read, 32 bytes for each node, and compared with the chunks of the file: each must be one node.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ _DEEPEST = 50
 
 
 def is_copc(header: Any) -> bool:
-    """Return whether a file has an octree: the description of it is its first record."""
+    """Return whether a file has an octree: if so, its first record describes it."""
     return bool(header.vlrs) and type(header.vlrs[0]).__name__ == "CopcInfoVlr"
 
 
 def nodes_within(
     path: Path, header: Any, starts: Rows, box: tuple[float, float, float, float]
 ) -> Bools:
-    """Return which chunks, by the bytes at which they start, may have points inside of a box."""
+    """Return which chunks, by the bytes at which they start, may have points inside a box."""
     nodes = _nodes(path, header.vlrs[0])
     order = np.argsort(nodes["offset"])
     nodes = nodes[order]
     if not np.array_equal(nodes["offset"].astype(np.int64), starts):
         raise FileFormatError(
-            f"{path} is corrupt: its octree has {len(nodes)} nodes with points, and these are not "
-            f"the {len(starts)} chunks of points that the file has"
+            f"{path} is corrupt: the {len(nodes)} nodes of its octree that have points are not the "
+            f"{len(starts)} chunks of the file"
         )
     level = nodes["key"][:, 0]
     if len(level) and not 0 <= level.min() <= level.max() <= _DEEPEST:

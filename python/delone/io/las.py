@@ -434,7 +434,7 @@ def _read(
         raise FileFormatError(f"the header declares {source.most} points, but there are {end}")
     points.resize((end, 2), refcheck=False)
     z.resize(end, refcheck=False)
-    # A block without points tells the type.
+    # Blocks without points still have the right type.
     return points, z, {name: np.concatenate(parts) for name, parts in further.items() if parts}
 
 

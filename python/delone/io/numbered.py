@@ -37,7 +37,7 @@ _LARGEST = 1 << 31
 
 
 def truncated(path: Path) -> FileFormatError:
-    """Return the error of a file that ends too early."""
+    """Return the error for a file that ends too early."""
     return FileFormatError(f"{path} is truncated: it declares more than it contains")
 
 

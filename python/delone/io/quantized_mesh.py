@@ -1,10 +1,10 @@
 """Quantized mesh: terrain tiles for globes, in levels of the tiles of EPSG:4326.
 
-A tile has integers from 0 to 32767 across, along and upward. So points are moved onto this grid
-first, tiles are simplified on it, and the error of a level is measured against the points where
-they are: rounding is part of it. A level is within the error that Cesium expects of it, which
-halves with each level. Heights of all tiles of a level are multiples of one step, and sides of
-tiles are simplified alone, so tiles beside each other have the same points between them.
+Coordinates in a tile are integers from 0 to 32767, horizontally and vertically. So points are first
+moved onto this grid, and tiles are simplified on it. The error of a level is measured from the
+original points, so rounding is part of it. A level is within the error that Cesium expects, which
+halves with each level. Heights in all tiles of a level are multiples of one step, and sides of
+tiles are simplified separately, so adjacent tiles have the same points on the side between them.
 
 The format is quantized-mesh-1.0 (https://github.com/CesiumGS/quantized-mesh) with layer.json.
 """
@@ -38,17 +38,17 @@ __all__ = ["write_quantized_mesh"]
 
 # Steps across a tile.
 _STEPS = 32767
-# The error in meters that Cesium expects of level 0: that of 65 heights across a quarter of the
-# equator (CesiumTerrainProvider).
+# The error in meters that Cesium expects of level 0: a quarter of the distance between heights, if
+# each of two tiles around the equator has 65 of them (CesiumTerrainProvider).
 _ERROR = 6378137 * 2 * math.pi * 0.25 / (65 * 2)
-# At this level, a step is half a micrometer, and no error is promised beyond it.
+# At this level, a step across is 0.04 mm, and no error is promised beyond it.
 _DEEPEST = 24
 _MOST_TILES = 200_000
-# Places along a side of a tile that has no points.
+# Number of evenly spaced places along each side of a tile.
 _SAMPLES = 65
 # The corner of the first tile, in degrees.
 _CORNER = np.array([-180.0, -90.0])
-# Attempts to be within the error of a level, each with less left to simplification.
+# Attempts to stay within the error of a level; each leaves less of it to simplification.
 _ATTEMPTS = 6
 
 
@@ -63,14 +63,14 @@ def write_quantized_mesh(
         The folder of ``layer.json`` and ``z/x/y.terrain``. It is created if it does not exist;
         files with the same names are replaced.
     tin : TIN
-        The surface, with a known reference system. Heights are in its `units`, or in meters where
-        these are unknown, and are taken as heights above the ellipsoid: nothing is shifted by a
+        The surface, with a known reference system. Heights are in its `units`, or in meters if
+        these are unknown. They are taken as heights above the ellipsoid: nothing is shifted by a
         geoid.
     max_error : float
         The largest vertical distance in meters of a point from the finest level. It determines the
-        number of levels: the error of level z is at most 77067 / 2^z meters, as Cesium expects.
+        number of levels: as Cesium expects, the error of level z is at most 77067 / 2^z meters.
     outside : float, optional
-        The height in meters at corners and sides of tiles that are outside of the surface.
+        The height in meters at corners and sides of tiles where there is no surface.
 
     Returns
     -------
@@ -81,11 +81,11 @@ def write_quantized_mesh(
     Raises
     ------
     InputError
-        The reference system is unknown, or has no transformation to WGS 84 everywhere; the surface
-        crosses the 180th meridian; `max_error` is not above 0, or so small that no level has it,
-        or the surface is so steep that the rounding of coordinates alone exceeds it.
+        The reference system is unknown, or a point has no transformation to WGS 84; the surface
+        crosses the 180th meridian; `max_error` is not above 0, or is too small for the finest
+        level; or the surface is so steep that rounding of coordinates alone exceeds the error.
     BudgetExceededError
-        There would be more than 200,000 tiles.
+        A level would have more than 200,000 tiles.
     MissingExtraError
         pyproj or quantized-mesh-encoder is not installed.
     OutputError
@@ -97,10 +97,10 @@ def write_quantized_mesh(
 
     Notes
     -----
-    Each tile is a new triangulation of points of the surface: edges of breaklines and outlines are
-    not kept, and places without a surface inside of the hull, such as holes, are filled. Between
-    the outline and the sides of a tile, triangles lead to the height `outside`. Tiles beside each
-    other have the same points on the side between them, at exactly the same heights.
+    Each tile is a new triangulation of points of the surface. Breaklines and outlines are not kept
+    as edges, and gaps inside the hull, such as holes, are filled. Between the outline and the sides
+    of a tile, triangles lead to the height `outside`. Adjacent tiles have the same points on the
+    side between them, at exactly the same heights.
     ``layer.json`` is written last.
 
     Examples
@@ -151,7 +151,7 @@ def _levels(max_error: Any) -> int:
     deepest = max(0, math.ceil(math.log2(_ERROR / error)))
     if deepest > _DEEPEST:
         raise InputError(
-            f"max_error={error:g} needs level {deepest}, and the finest is {_DEEPEST}: give at "
+            f"max_error={error:g} needs level {deepest}, but the finest is {_DEEPEST}: give at "
             f"least {_ERROR / 2**_DEEPEST:.2g}"
         )
     return deepest
@@ -169,7 +169,10 @@ class _Ground:
         self.corners = every[tin.simplices]
         self.low, self.high = self.degrees.min(axis=0), self.degrees.max(axis=0)
         if self.high[0] - self.low[0] > 180:
-            raise InputError("the surface crosses the 180th meridian: write both sides of it alone")
+            raise InputError(
+                "the surface crosses the 180th meridian: split it there, and write each part to a "
+                "folder of its own"
+            )
         self.back = pyproj.Transformer.from_crs("EPSG:4326", tin.crs, always_xy=True)
 
     def heights(self, degrees: Floats) -> Floats:
@@ -214,9 +217,9 @@ class _Tile(NamedTuple):
 
 
 def _keep_in_sight(header: dict[str, Any]) -> None:
-    """Let a tile that is never below the horizon, such as those of level 0, have a point above it.
+    """Give a tile that is always visible, such as those of level 0, a point far above the horizon.
 
-    The point is in radii of the earth.
+    Its coordinates are multiples of the radii of the earth.
     """
     names = [f"horizonOcclusionPoint{axis}" for axis in "XYZ"]
     if not np.isfinite([header[name] for name in names]).all():
@@ -248,7 +251,7 @@ class _Level:
         return np.clip(found, 0, self.size - 1)
 
     def _tiles(self) -> list[tuple[int, int]]:
-        """Return the tiles that boxes around triangles meet, and both of level 0."""
+        """Return the tiles that the boxes of triangles meet; at level 0, both tiles."""
         corners = self.ground.corners
         low, high = self.tile_of(corners.min(axis=1)), self.tile_of(corners.max(axis=1))
         boxes = np.unique(np.column_stack((low, high)), axis=0)
@@ -259,14 +262,14 @@ class _Level:
         place = np.arange(len(box)) - np.repeat(np.cumsum(count) - count, count)
         rows = (boxes[:, 3] - boxes[:, 1] + 1)[box]
         x, y = boxes[box, 0] + place // rows, boxes[box, 1] + place % rows
-        # Both of level 0, and each of the others once.
+        # At level 0, both; at other levels, each tile once.
         keys = np.unique(x << 32 | y) if self.zoom else np.array([0, 1 << 32])
         return list(zip((keys >> 32).tolist(), (keys & 0xFFFFFFFF).tolist(), strict=True))
 
     def _refuse(self, found: int) -> None:
         raise BudgetExceededError(
             f"level {self.zoom} would have {grouped(found)} tiles, more than "
-            f"{grouped(_MOST_TILES)}: give a larger max_error, or parts of the surface",
+            f"{grouped(_MOST_TILES)}: give a larger max_error, or write parts of the surface",
             limit=_MOST_TILES,
             found=found,
         )
@@ -313,7 +316,7 @@ def _within_error(level: _Level) -> tuple[float, dict[tuple[int, int], _Tile]]:
         f"at level {level.zoom}, points are up to {worst:.3g} m from their tile, and "
         f"{level.error:.3g} m is allowed: the surface is so steep that rounding of x and y to "
         f"{level.width / _STEPS * 111_000:.2g} m changes heights by more than that; give a larger "
-        "max_error, or simplify walls"
+        "max_error, or make walls less steep"
     )
 
 
@@ -339,7 +342,7 @@ class _Sides:
                     self.lines[axis, column, row] = self._line(axis, column, row)
 
     def _line(self, axis: int, column: int, row: int) -> _Points:
-        """Return the points of a side: those of the surface, and places at regular distances."""
+        """Return the points of a side: those of the surface, and evenly spaced places."""
         start = np.array([column, row]) * _STEPS
         way = np.zeros((_SAMPLES, 2), dtype=np.int64)
         way[:, 1 - axis] = np.rint(np.linspace(0, _STEPS, _SAMPLES))
@@ -353,17 +356,17 @@ class _Sides:
         return _Points(places, np.concatenate((self.on.z[own], z))[first])
 
     def step(self) -> float:
-        """Return a step of heights, a power of two, with which the range of each tile has room."""
+        """Return the step of heights: a power of two, large enough for the range of each tile."""
         widest = highest = 0.0
         for x, y in self.level.tiles:
             z = np.concatenate([each.z for each in (*self.around(x, y), self.own(x, y))])
             widest = max(widest, float(z.max() - z.min()))
             highest = max(highest, float(np.abs(z).max()))
-        # Two steps are for rounding; multiples of a step have 24 bits, as the header has.
+        # Two steps are left for rounding. Multiples of a step have 24 bits, as in the header.
         return 2.0 ** math.ceil(math.log2(max(widest / (_STEPS - 2), highest / 2**23, 2.0**-40)))
 
     def own(self, x: int, y: int) -> _Points:
-        """Return the points inside of a tile, without those on its sides."""
+        """Return the points inside a tile, without those on its sides."""
         nothing = _Points(np.empty((0, 2), dtype=np.int64), np.empty(0))
         found = self.inside.get((x, y), nothing)
         within = found.grid - (x * _STEPS, y * _STEPS)
@@ -402,7 +405,7 @@ def _thinned(line: _Points, axis: int, error: float, step: float) -> Floats:
 
 
 def _measured(level: _Level, tiles: dict[tuple[int, int], _Tile]) -> float:
-    """Return the largest vertical distance of points from the tiles as they are written."""
+    """Return the largest vertical distance of points from the tiles as written."""
     ground = level.ground
     home = level.tile_of(ground.degrees)
     order = np.lexsort((home[:, 1], home[:, 0]))

@@ -204,7 +204,7 @@ def read_points(
     chord : float, optional
         The maximum distance of chords from the curves of a DXF file; see `read_surface`.
     bounds : sequence of four float, optional
-        Left, bottom, right, top: only points inside or on the border (LAS and LAZ; COPC quickly).
+        Left, bottom, right, top: only points inside or on the border (LAS and LAZ; quick for COPC).
 
     Returns
     -------

@@ -73,7 +73,7 @@ class Grid(GridCells):
     -----
     Polygons may be concave, have holes and several parts, repeat corners, have corners on the sides
     of others, run clockwise, and lie at or around a pole. Each part must be within a hemisphere;
-    `from_mesh` and `from_polygons` also take larger ones, if `winding` says which side of their
+    `from_mesh` and `from_polygons` also accept larger ones if `winding` says which side of their
     corners is meant. The start, direction and repeated corners of a ring, and the order of bounds,
     do not change a single bit of the results. Areas are accurate to a few units in their last
     place, even for cells of centimeters.
@@ -410,10 +410,10 @@ class Grid(GridCells):
         lonlat : array_like, shape (k, 2) or (n, c, 2), optional
             Longitudes and latitudes instead of `xyz`.
         winding : {"smaller", "ccw", "cw"}, optional
-            Which side of its corners is a cell: the smaller one; the left one, which counter-
-            clockwise corners surround; or the right one. By default the smaller one of corners that
-            are within a hemisphere, and others raise an error. Cells beyond a hemisphere become
-            triangles.
+            Which side of its corners a cell is on: the smaller side; the left, which is inside
+            counterclockwise corners; or the right. By default, it is the smaller side, and corners
+            that are not within a hemisphere raise an error. Cells beyond a hemisphere are divided
+            into triangles.
         merge, degrees, workers
             As for `from_curvilinear`.
 
@@ -476,8 +476,8 @@ class Grid(GridCells):
             Shapely polygons and multipolygons, one cell each; None and empty geometries are empty
             cells. Geographic reference systems only.
         winding : {"smaller", "ccw", "cw"}, optional
-            As for `from_mesh`, of outer rings: "ccw" for GeoJSON, "cw" for shapefiles. The majority
-            of their sides decides.
+            As for `from_mesh`, but for outer rings: "ccw" for GeoJSON, "cw" for Shapefiles. The
+            majority of their sides decides.
         merge, degrees, workers
             As for `from_curvilinear`.
 

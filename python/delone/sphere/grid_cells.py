@@ -224,8 +224,8 @@ class GridCells(Stored):
     def rings(self) -> tuple[Floats, Rows, Rows]:
         """The rings of all cells: unit vectors of corners, starts of rings, starts of cells.
 
-        Those of cells between meridians and parallels are their four corners, and those of cells on
-        the larger side of their rings the triangles that they consist of.
+        Cells between meridians and parallels have their four corners. Cells on the larger side of
+        their rings have the corners of the triangles that they are divided into.
         """
         if self._edges == "arc":
             vectors, starts, cells, _ = self._arrays

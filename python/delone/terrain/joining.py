@@ -31,7 +31,7 @@ class Joined(NamedTuple):
 def joined(points: Floats, lines: Lines, limit: float, policy: str, tolerance: float) -> Joined:
     """Merge points of lines, then points with lines, then points with each other.
 
-    Points that are merged with a shore of a level polygon are left out: it has one height.
+    Points merged with the shore of a level polygon are left out, because the shore has one height.
     """
     places = lines.points[:, :2]
     fixed = np.zeros(len(places), dtype=bool)
@@ -135,8 +135,8 @@ def _threaded(  # noqa: PLR0917
 def _with_ends(lines: Lines, fixed: Bools, limit: float, tolerance: float) -> tuple[Lines, Floats]:
     """Move ends of lines onto the sides of others that they nearly reach, and return how far.
 
-    The other line gets a point there. If heights agree, it has that of the end; else they are
-    compared as where lines cross.
+    The other line gets a point there. If heights agree, the point has that of the end; otherwise,
+    they are compared as where lines cross.
     """
     own = np.flatnonzero(lines.kinds != HULL)
     places, number = np.unique(lines.points[:, :2], axis=0, return_inverse=True)

@@ -6,7 +6,7 @@ others move to the nearest that is kept. So no point moves farther than the dist
 points that are kept are nearer to each other. Places move, heights do not: those that meet at a
 place are compared as heights of duplicates are.
 
-Lines come before points: their points are merged first, and ends move onto sides of other lines.
+Lines come before points: their points are merged first, and their ends move onto other lines.
 Then points move to those of lines, and points that are near a line but not near a point of it
 become part of it. Points of rings stay.
 """

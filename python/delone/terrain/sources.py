@@ -150,7 +150,7 @@ class Sources(HullTiling):
         chord : float, optional
             For curves in DXF, as for `delone.io.read_surface`.
         bounds : sequence of four float, optional
-            The part of a LAS or LAZ file, as for `delone.io.read_points`.
+            The part of a LAS or LAZ file to read, as for `delone.io.read_points`.
         **options
             Options of `from_surface` for LandXML and DXF, else of `from_points`.
 

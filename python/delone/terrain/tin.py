@@ -152,7 +152,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
             the most accurate is used, and of several such heights, the lowest.
         snap : float, optional
             Points that are nearer than this to each other or to a line are merged. Points of lines
-            are merged first, and their ends move onto lines that they nearly reach. Then other
+            are merged first, and ends of lines move onto lines that they nearly reach. Then other
             points move to points of lines, or become part of a line; of the rest, the first in the
             order of x and y stays. Heights that meet at a place are treated as duplicates: see
             `duplicates`, `crossing` and `tolerance`. Boundary, holes and islands do not move.

@@ -1,10 +1,11 @@
-"""Simplification of a tiled triangulation: each tile alone, and no cracks between them.
+"""Simplification of a tiled triangulation: each tile on its own, without cracks between them.
 
-Tiles meet along the cuts of their tree, which are parallel to an axis. The profile of the surface
-along a cut is simplified first, from the triangles along it alone: where a cut ends at another one,
-and at the hull, it has fixed points. Then each tile inserts points between the lines around it,
-which stay, so both sides of a cut have the same edges. Points on a cut are within the error of its
-line, which leaves room for rounding; all others are within it as in one piece.
+Tiles meet along the cuts of their tree, which are parallel to an axis. First, the profile of the
+surface along each cut is simplified, using only the triangles along it. Its points are fixed where
+a cut ends at another one, and at the hull. Then each tile inserts points between the lines around
+it. These lines stay, so both sides of a cut have the same edges. Points on a cut are within half of
+the error of its line, which leaves room for rounding; all others are within the error, as in one
+piece.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ _EPS = float(np.finfo(np.float64).eps)
 
 
 class _Cut(NamedTuple):
-    """A cut of the tree: the axis that it is perpendicular to, its place, and where it ends."""
+    """A cut of the tree: the axis perpendicular to it, its place, and where it ends."""
 
     axis: int
     place: float
@@ -114,7 +115,7 @@ def _layout(tin: TileFolder) -> tuple[list[_Cut], Floats, list[list[int]]]:
 
 
 def _own(tin: TileFolder, number: int, value: str) -> Floats:
-    """The points of a tile, without those of others, (n, 3); of equal ones the first."""
+    """The points that a tile owns, (n, 3); of those that coincide, the first."""
     tile = tin.tile(number)
     ids = tile.ids[tile.owned]
     # Negative zeros are zeros.
@@ -199,7 +200,7 @@ def _simplified_tile(
     """Simplify a tile between the lines around it."""
     tin = TileFolder._at(path)
     border, segments = _edges(lines)
-    # Points on a cut are within the error of its line, so they are never inserted.
+    # Points on a cut are within half of the error of its line, so they are never inserted.
     every = np.concatenate((border, _own(tin, number, value)))
     nothing = _Piece(np.empty((0, 3)), np.empty((0, 3), dtype=np.int32))
     flat = np.ascontiguousarray(every[:, :2])
@@ -208,7 +209,7 @@ def _simplified_tile(
     try:
         corners, _ = _core.hull2(flat)
     except DegenerateInputError:
-        return nothing  # a cell that has no area in common with the hull
+        return nothing  # the cell and the hull share no area
     fixed = np.arange(len(flat)) < len(border)
     fixed[corners] = True
     ground = Ground(
@@ -269,6 +270,6 @@ def _together(pieces: list[_Piece], crs: str | None) -> TIN:
 
 
 def _border(piece: _Piece) -> Indices:
-    """The edges of a piece that have one triangle."""
+    """The edges of a piece that belong to one triangle only."""
     beside = topology.neighbors(piece.simplices, len(piece.points))
     return topology.boundary_edges(piece.simplices, beside)

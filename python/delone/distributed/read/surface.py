@@ -1,4 +1,4 @@
-"""A tiled triangulation as a surface: what is computed from heights beyond memory."""
+"""A tiled triangulation as a surface that need not fit into memory."""
 
 from __future__ import annotations
 
@@ -196,24 +196,25 @@ class TiledSurface(TileFolder):
         Raises
         ------
         InputError
-            `max_error` is negative or infinite, there is no such attribute, one of its values is
-            NaN, or `executor` is neither.
+            `max_error` is negative or not finite, there is no such attribute, one of its values is
+            NaN or infinite, or `executor` is neither.
 
         See Also
         --------
-        delone.terrain.TIN.simplify : The same of a surface in memory, without cuts.
+        delone.terrain.TIN.simplify : The same for a surface in memory, without cuts.
 
         Notes
         -----
         Along the cuts between tiles, the profile of the surface is simplified first, to half of the
         error. Both tiles beside a cut get the same line, so there are no cracks. Then each tile is
         simplified as by `delone.terrain.TIN.simplify`, with the lines around it as edges that stay.
-        The bound holds exactly, at all points, including those on cuts, and of points that
-        coincide at the first one. Points of lines where a cut
-        crosses an edge of the surface are not points of the survey; their heights are rounded.
+        The bound holds exactly at all points, including those on cuts; where points coincide, at
+        the first of them. Where a cut crosses an edge of the surface, its line may have a point
+        that is not a point of the survey; the height of such a point is rounded.
 
-        Memory is that of one tile and of the result, which has more triangles than one that is made
-        in one piece, by what the lines add. The result depends on the tiles, not on the executor.
+        Memory is that of one tile and of the result. Because of the lines, the result has more
+        triangles than a surface that is simplified in one piece. It depends on the tiles, but not
+        on the executor.
 
         Examples
         --------

@@ -82,7 +82,7 @@ def improve(
         Points that must not move: a mask, or rows.
     max_points : int, optional
         Maximum number of added points, by default 0. Points are added inside regions, near
-        tetrahedra below the goal, where the other changes do not improve them.
+        tetrahedra below the goal that the other changes do not improve enough.
     max_iter : int, optional
         Maximum number of passes over the tetrahedra below the goal.
     progress : callable, optional
@@ -91,7 +91,7 @@ def improve(
     Returns
     -------
     TetMesh
-        The improved mesh, immutable: the same rows of points, some of them moved, then rows of
+        The improved mesh, immutable: the same rows of points, some of them moved, followed by
         added points, which `nadded` counts; and different tetrahedra that fill the same space. Its
         ``report`` has the angles before and after, the changes by kind, and the remaining
         tetrahedra below the goal, with causes.

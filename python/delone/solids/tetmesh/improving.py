@@ -46,8 +46,8 @@ def improved(
     """Improve ``(points, simplices, labels)``; return the mesh, its report and its measures.
 
     `held` are points that must not move, or empty; `kinds` are (flips, smooth, exude), and `limits`
-    whether coplanar faces of the boundary may be flipped, the number of passes, and that of added
-    points.
+    whether coplanar faces of the boundary may be flipped, the maximum number of passes, and that of
+    added points.
     """
     points, simplices, labels = mesh
     try:

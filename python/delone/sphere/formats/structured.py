@@ -192,7 +192,7 @@ def _read_listed(variables: Variables, names: Pair, choices: Choices) -> Cells:
             return Cells(**rest, **inferred(variables, names, choices))
         lacking = names[0] if bounds[0] is None else names[1]
         cure = _INFER if own.ndim == 2 else (
-            "give infer_bounds=True for cells of the places nearest to each center"
+            "give infer_bounds=True to use the places nearest to each center as its cell"
         )  # fmt: skip
         raise InputError(
             f"{lacking} has no bounds: no attribute names them, and there is no variable "
@@ -282,13 +282,13 @@ def _nearest(variables: Variables, names: Pair, choices: Choices) -> dict[str, A
     if len(again):
         first, second = diagram.duplicate_of[again[0]], again[0]
         raise InputError(
-            f"{names[0]}, {names[1]}: centers {first} and {second} are the same place, so no cells "
-            "follow: leave one out"
+            f"{names[0]}, {names[1]}: centers {first} and {second} are the same place, and have "
+            "no cells of their own: leave one out"
         )
     if diagram.triangulation is None or not diagram.triangulation.covers_sphere:
         raise InputError(
-            f"{names[0]}, {names[1]}: all centers are within a hemisphere, so the outer cells have "
-            "no end there: clip them, Grid.from_polygons(sphere.Voronoi(lonlat=..., "
+            f"{names[0]}, {names[1]}: all centers are within a hemisphere, so the outer cells are "
+            "unbounded: clip them, Grid.from_polygons(sphere.Voronoi(lonlat=..., "
             "clip=region).to_geopandas())"
         )
     nodes, starts = voronoi(diagram)
