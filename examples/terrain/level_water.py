@@ -1,9 +1,9 @@
 """
-A canal that is level
-=====================
+A level canal
+=============
 
-Water gives few lidar returns, and triangles that span it are inclined from bank to bank. ``level`` makes the canal flat,
-and ``snap`` merges lidar points with the surveyed line of the quay.
+Water returns few lidar pulses, and triangles that span it slope from bank to bank. ``level`` makes the canal flat, and
+``snap`` merges lidar points with a surveyed line along the quay.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -19,8 +19,8 @@ ground = survey.attributes["classification"] == 2
 points = np.column_stack((survey.points - survey.points.min(axis=0), survey.z))[ground]
 
 # %%
-# The canal as a polygon, and a line that was surveyed along the foot of the eastern quay. The polygon has no heights, so
-# the water has the lowest height along its shore. Points inside or on the shore are left out and counted.
+# The canal is a polygon, and the line was surveyed along the foot of the eastern quay. The polygon has no heights, so
+# the water gets the lowest height along its shore. Points in the polygon or on its shore are left out and counted.
 
 canal = np.array([(7, 100), (9.5, 60), (12.5, 8), (19.5, 8), (20.5, 30), (18, 75), (17, 100)])
 axis = np.array([(22.5, 98), (23.2, 80), (24.4, 60), (25.6, 40), (26.4, 25)])
@@ -32,9 +32,9 @@ print(level, level.adjustments)
 print(f"water at {level.heights((15, 40)):.2f} m; without level {rough.heights((15, 40)):.2f} m")
 
 # %%
-# Points a few centimeters from the line give thin triangles beside it. With ``snap=0.1``, points that are nearer than 10 cm
-# to the line become points of it, and points nearer than 10 cm to each other become one. The longest move is at most that,
-# and only x and y change.
+# Points a few centimeters from the line form thin triangles next to it. With ``snap=0.1``, points nearer than 10 cm to
+# the line become points of the line, and points nearer than 10 cm to each other become one. No point moves farther than
+# that, and only x and y change.
 
 snapped = TIN.from_points(
     points[box], duplicates="mean", level=[canal], breaklines=[axis], snap=0.1
@@ -45,8 +45,8 @@ for name, tin in {"without": level, "with": snapped}.items():
     print(f"{name} snap: {np.count_nonzero(angles < 5)} triangles with an angle below 5 degrees")
 
 # %%
-# Heights on the map, and the triangles along two meters of the line. A common mistake is to give water the mean height of
-# its banks: it would be above them in places.
+# The maps show heights, and the triangles along two meters of the line. A common mistake is to give water the mean
+# height of its banks: in places, it would then be above them.
 
 figure, axes = plt.subplots(1, 4, figsize=(11, 5.6), layout="constrained")
 for ax, tin, title in zip(axes, (rough, level), ("Points only", "Level canal"), strict=False):

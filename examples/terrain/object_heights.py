@@ -2,7 +2,7 @@
 Heights of buildings above the ground
 =====================================
 
-The difference of two elevation models of one lidar tile: with all points, and with the ground points only.
+The difference between two surfaces of one lidar tile: one of all points, and one of the ground points only.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -19,9 +19,9 @@ points = np.column_stack((survey.points - survey.points.min(axis=0), survey.z))
 ground = survey.attributes["classification"] == 2
 
 # %%
-# Walls have points at different heights in nearly the same place. Where points coincide, the highest one counts for
-# the surface of all points, and the lowest one for the ground. ``max_edge`` with ``voids=True`` leaves the canal, which has
-# no returns, without heights.
+# Walls have points at different heights in nearly the same place. Where points coincide, the surface of all points has
+# the highest one, and the ground has the lowest one. ``max_edge`` with ``voids=True`` leaves the canal, which has no
+# returns, without heights.
 
 top = TIN.from_points(points, duplicates="max", max_edge=6, voids=True)
 bare = TIN.from_points(points[ground], duplicates="min")
@@ -30,7 +30,7 @@ print(top)
 print(bare)
 
 # %%
-# A raster minus a surface: the surface is evaluated at the centers of the cells, so its raster is not needed.
+# Subtract a surface from a raster: the surface is evaluated at the centers of cells, so it need not be a raster.
 # ``missing`` counts the cells of the canal.
 
 heights = difference(model, bare, units="m")
@@ -38,8 +38,8 @@ print(heights)
 print(f"{heights.missing} of {heights.values.size} cells without a height")
 
 # %%
-# Cells more than 2 m above the ground are buildings here, since this tile has no points of trees. ``fill`` and ``cut``
-# are sums over cells: what the raster has above and below the other surface.
+# Cells more than 2 m above the ground are buildings here, since this tile has no points of trees. ``cut`` and ``fill``
+# are sums over cells: the volumes of the raster above and below the other surface.
 
 built = heights.values > 2
 cell = 0.5**2
@@ -47,8 +47,8 @@ print(f"built-up area {built.sum() * cell:.0f} square meters, median height", en
 print(f"{np.median(heights.values[built]):.1f} m, volume {heights.cut:.0f} cubic meters")
 
 # %%
-# A common mistake is to subtract rasters whose cells are not the same: by row and column, the numbers are of different
-# places. The error says what to do.
+# A common mistake is to subtract rasters with different cells: numbers in the same row and column then belong to
+# different places. The error says what to do.
 
 try:
     difference(model, bare.raster(resolution=1.0))
@@ -56,7 +56,7 @@ except delone.InputError as error:
     print(error)
 
 # %%
-# The differences on the map, white at 0.
+# On the map of differences, 0 is white.
 
 figure, axes = plt.subplots(1, 2, figsize=(11, 5), layout="constrained")
 extent = (0, 100, 0, 100)

@@ -1,9 +1,9 @@
 """
-A raster as few triangles
-=========================
+A raster as a few hundred triangles
+===================================
 
-An elevation model of 40,000 cells becomes a surface of some hundred triangles. A breakline stays, and the difference from
-the raster is nowhere larger than promised.
+An elevation model of 40,000 cells becomes a surface of a few hundred triangles. A breakline stays, and at no cell does the
+surface differ from the raster by more than the bound.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -26,7 +26,7 @@ model = Grid(np.maximum(hills, dike), x, y)
 crest = [(0.5, 100.05, 9), (199.5, 119.95, 9)]
 
 # %%
-# The bound of ``simplify`` holds at every point of the surface that it is called on, here at each center of a cell.
+# The bound of ``simplify`` holds at every point of the original surface, which are the centers of cells here.
 # Breaklines stay, so the crest of the dike remains sharp.
 
 tin = TIN.from_raster(model, breaklines=[crest])
@@ -35,7 +35,8 @@ print(tin)
 print(coarse, f"{coarse.nsimplex / tin.nsimplex:.2%} of the triangles")
 
 # %%
-# A given number of triangles instead: the smallest error that they allow. With ``keep="boundary"``, lines inside may go.
+# ``max_triangles`` gives the number of triangles instead of the error. With ``keep="boundary"``, lines inside need
+# not stay. Here, the surface then needs more triangles.
 
 few = tin.simplify(max_triangles=300)
 loose = tin.simplify(max_error=0.25, keep="boundary")
@@ -43,9 +44,9 @@ print(few)
 print(loose)
 
 # %%
-# The difference from the raster, at each cell: a check with another method. Without a raster to compare with, use
-# ``tin.simplification(max_error=0.25).validate(max_error=0.25)``. A common mistake is to take every tenth cell instead: the
-# dike has holes then.
+# The difference from the raster at each cell is an independent check. Without a raster to compare with, use
+# ``tin.simplification(max_error=0.25).validate(max_error=0.25)``. A common mistake is to use every tenth cell instead:
+# the dike then has gaps.
 
 found = difference(model, coarse, units="m")
 print(found)

@@ -26,7 +26,7 @@ ground = survey.attributes["classification"] == 2
 corner = survey.points.min(axis=0)
 
 # %%
-# The survey and the axis of a road as files. Both declare their reference system, so nothing has to be assumed.
+# Write the survey and the axis of a road to files. Both declare their reference system, so none has to be assumed.
 
 folder = Path(tempfile.mkdtemp())
 xyz = np.column_stack((survey.points, survey.z))[ground][::4]
@@ -36,7 +36,7 @@ road = shapely.LineString(corner + np.array([(75, 5), (77, 50), (70, 95)]))
 geopandas.GeoDataFrame(geometry=[road], crs=survey.crs).to_file(folder / "road.gpkg")
 
 # %%
-# The command. In a terminal::
+# Run the command. In a terminal::
 #
 #   delone terrain survey.parquet --max-edge 6 --contours 0.25 --smooth 2 --min-length 8 \
 #       --dem 0.5 --hillshade --slope --profile road.gpkg --volume 1.5 --units m -o site
@@ -50,10 +50,10 @@ for path in sorted((folder / "site").iterdir()):
     print(f"{path.name:20s} {path.stat().st_size / 1024:7.0f} KiB")
 
 # %%
-# ``index.html`` contains the pictures and numbers in one file, which can be sent by mail. A common mistake is to run one
-# command for each product with slightly different options: then contours and raster are of different surfaces.
+# ``index.html`` contains the pictures and numbers in one file, which can be sent by e-mail. A common mistake is to run a
+# separate command for each product with slightly different options: contours and rasters then show different surfaces.
 #
-# The files, drawn by other libraries.
+# Other libraries can draw the files.
 
 figure, axes = plt.subplots(1, 2, figsize=(11, 4.8), layout="constrained")
 with rasterio.open(folder / "site" / "hillshade.tif") as file:
