@@ -114,7 +114,7 @@ def test_an_octree_that_is_wrong_is_an_error(survey: Path) -> None:
         (INFO + 48, struct.pack("<Q", length - 1), "octree is not in the file"),
         (INFO + 48, struct.pack("<Q", length - 32), "are not the 5 chunks"),
         (start + 16, struct.pack("<Q", 12345), "are not the 5 chunks"),
-        (start + 28, struct.pack("<i", 0), "has 4 nodes with points"),
+        (start + 28, struct.pack("<i", 0), "the 4 nodes of its octree with points"),
         (start, struct.pack("<i", 99), "at level 99"),
         (INFO + 24, struct.pack("<d", np.nan), "no center, or no size"),
         (start + 16, struct.pack("<Q2i", start, length, -1), "contains a page twice"),

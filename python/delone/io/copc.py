@@ -40,8 +40,8 @@ def nodes_within(
     nodes = nodes[order]
     if not np.array_equal(nodes["offset"].astype(np.int64), starts):
         raise FileFormatError(
-            f"{path} is corrupt: the {len(nodes)} nodes of its octree that have points are not the "
-            f"{len(starts)} chunks of the file"
+            f"{path} is corrupt: the {len(nodes)} nodes of its octree with points "
+            f"are not the {len(starts)} chunks of the file"
         )
     level = nodes["key"][:, 0]
     if len(level) and not 0 <= level.min() <= level.max() <= _DEEPEST:

@@ -219,7 +219,7 @@ def read_points(
         There is no such file.
     FileFormatError
         Unknown suffix; the file is empty, truncated or not what its suffix or header says; a column
-        or layer is missing.
+        or layer is missing; `classes` or `bounds` leave no point, or do not apply to the format.
     MissingExtraError
         The library for this format is not installed.
     MemoryError

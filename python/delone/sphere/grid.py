@@ -134,7 +134,7 @@ class Grid(GridCells):
             Whether angles without an attribute ``units`` are in degrees. By default they raise an
             error, unless the convention fixes their unit.
         infer_bounds : bool, optional
-            Whether to infer missing bounds, halfway between centers; see Notes.
+            Whether to infer missing bounds from centers; see Notes.
         cells : {"nodes", "faces"}, optional
             For meshes of UGRID and FESOM: where fields are. Around nodes, a cell has its corners in
             the middle of faces and edges: the median dual. By default the nodes of FESOM, and
@@ -162,15 +162,15 @@ class Grid(GridCells):
         Node numbers start where the dataset or its convention says. Padding after the corners of a
         cell is ignored; cells without corners are empty.
 
-        Cells in one list, such as those of a reduced grid, have the corners of their bounds, or lie
-        between meridians and parallels if bounds have two entries. Of the two intervals between
-        meridians, the one that contains the center is meant.
+        Cells in one list, such as those of a reduced grid, have the corners in their bounds. If
+        bounds have two entries, cells lie between meridians and parallels. Two meridians have two
+        intervals between them; the cell is in the one that contains its center.
 
         Bounds are inferred as follows. In rows and columns, they are halfway between neighbors, and
         the outer bounds are as far from their center as the inner ones; latitudes beyond a pole
         become the pole. In two dimensions, corners are in the middle of four centers, and the outer
-        ones are mirrored. Of centers in one list, the cells are those of the Voronoi diagram, which
-        cover the whole sphere.
+        ones are mirrored. For centers in one list, the cells are those of the Voronoi diagram,
+        which cover the whole sphere.
 
         Bounds of neighboring columns or rows that differ by rounding in their dtype are merged.
 

@@ -34,8 +34,8 @@ class GridReport(ReadOnly):
     concave : ndarray of int64
         Cells that are concave or have several rings, or have more than 64 corners.
     large : ndarray of int64
-        Cells that no hemisphere contains: those of several parts, or cut into triangles because of
-        `winding`.
+        Cells that no hemisphere contains: those that have several parts, and those that are divided
+        into triangles, with `winding`.
     masked : ndarray of int64
         Cells that the dataset excludes.
 
