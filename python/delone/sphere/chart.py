@@ -171,7 +171,7 @@ def _arcs(grid: Any) -> list[Floats]:
 
 
 def _once(start: Floats, end: Floats) -> Any:
-    """Return which sides of a cell are not also there in the opposite direction."""
+    """Return which sides of a cell do not also occur in the opposite direction."""
     at = np.unique(np.concatenate((start, end)), axis=0, return_inverse=True)[1].ravel()
     one, other = at[: len(start)], at[len(start) :]
     count = len(start) + len(end)
