@@ -476,7 +476,7 @@ class Grid(GridCells):
             Shapely polygons and multipolygons, one cell each; None and empty geometries are empty
             cells. Geographic reference systems only.
         winding : {"smaller", "ccw", "cw"}, optional
-            As for `from_mesh`, but for outer rings: "ccw" for GeoJSON, "cw" for Shapefiles. The
+            As for `from_mesh`, but for outer rings: "ccw" for GeoJSON, "cw" for shapefiles. The
             majority of their sides decides.
         merge, degrees, workers
             As for `from_curvilinear`.
