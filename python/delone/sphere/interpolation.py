@@ -1,8 +1,8 @@
 """Interpolation on the sphere: linear, by natural neighbors, and by the nearest site.
 
-The base class `_Interpolator` has the policies and the fields, which are those of
-`delone.interpolate`; a subclass has the sites of each query and their weights. The module `vectors`
-turns these weights into those of vectors.
+The base class `_Interpolator` handles policies and fields, as in `delone.interpolate`; a subclass
+finds the sites of each query and their weights. The module `vectors` converts these weights to
+those of vectors.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ class _Interpolator(VectorInterpolation):
         self._mesh = self._all
         self._kept: Rows | None = None
         self._field: tuple[Field, _Interpolator, Floats] | None = None
-        # Interpolators without other rows, by these rows; those of the last call.
+        # Interpolators of the last call that leave rows out, by the rows that they keep.
         self._others: dict[bytes, _Interpolator] = {}
         self._parts: Parts | None = None
         if values is not None:
@@ -93,7 +93,7 @@ class _Interpolator(VectorInterpolation):
 
     @property
     def npoints(self) -> int:
-        """Number of sites given, including duplicates and dropped ones."""
+        """Number of given sites, including duplicates and dropped ones."""
         return self._all.npoints
 
     @property
@@ -128,8 +128,8 @@ class _Interpolator(VectorInterpolation):
         values : array_like, shape (n,) or (n, ...), optional
             Another field on the same sites; by default the values given to the constructor.
         max_distance : float, optional
-            Queries at a larger angle from the nearest site get NaN; in the unit of `distance`. By
-            default there is no limit.
+            Queries farther than this angle from the nearest site get NaN; in the unit of
+            `distance`. By default, there is no limit.
 
         Returns
         -------
@@ -249,7 +249,7 @@ class _Interpolator(VectorInterpolation):
 
     @property
     def _policies(self) -> Policies:
-        """What becomes of values, and which of the caller's rows are those of a table."""
+        """How values are treated, and which of the caller's rows a table refers to."""
         mesh = self._mesh
         return Policies(
             npoints=self.npoints,
@@ -262,14 +262,14 @@ class _Interpolator(VectorInterpolation):
         )
 
     def _settled(self, field: Field) -> Floats:
-        """Values for the vertices, after the policies."""
+        """Return values of the vertices, after applying the policies."""
         return self._policies._settled(field)
 
     def _gradients(self, columns: Floats) -> None:
-        """None: no method here needs those at the sites."""
+        """Return None: no method here needs gradients at the sites."""
 
     def _with(self, values: ArrayLike | None) -> tuple[Field, _Interpolator, Floats]:
-        """The field, the interpolator for its sites, and its values after the policies."""
+        """Return the field, the interpolator of its sites, and its values after the policies."""
         if values is not None:
             field = as_field(values, self.npoints)
             owner = self._for(field)
@@ -303,14 +303,14 @@ class _Interpolator(VectorInterpolation):
         return self._nan == "drop" and len(field.patterns()) > 1
 
     def _several(self, values: ArrayLike | None) -> Parts | None:
-        """Parts of a field whose sites differ by ``nan="drop"``; None if all have the same."""
+        """Return parts of a field that drop different sites for NaN; None if all drop the same."""
         if values is None or self._nan != "drop":
             return self._parts if values is None else None
         field = as_field(values, self.npoints)
         return self._narrowed(field) if self._differ(field) else None
 
     def _narrowed(self, field: Field) -> Parts:
-        """An interpolator for each pattern of missing values, with its part of the values."""
+        """Return, for each pattern of missing values, an interpolator with its values."""
         found: list[tuple[Rows, Any]] = []
         used: dict[bytes, _Interpolator] = {}
         for which in field.patterns():
@@ -328,12 +328,12 @@ class _Interpolator(VectorInterpolation):
         return field, found
 
     def _require_one(self) -> None:
-        """Refuse what depends on the sites if fields have different ones."""
+        """Raise if fields have different sites: the result depends on the sites."""
         if self._parts is not None:
             raise differing(len(self._parts[1]))
 
     def _queries(self, xi: ArrayLike) -> tuple[Floats, Rows, tuple[int, ...]]:
-        """Vectors of queries, (k, 3), which of them have a direction, and their leading axes."""
+        """Return vectors of queries, (k, 3), the rows with a direction, and the leading shape."""
         queries = queries_of(xi, degrees=self._degrees, workers=self._workers)
         flat = queries.reshape(-1, 3)
         known = np.flatnonzero(np.isfinite(flat).all(axis=1) & flat.any(axis=1))
@@ -348,16 +348,16 @@ class _Interpolator(VectorInterpolation):
         return Weights(np.cumsum(counts), rows, weights, None, shape, self)
 
     def _weighted(self, queries: Floats, names: Rows, count: int) -> Table:
-        """Rows of the mesh and weights for directions; no entries for no result.
+        """Return rows of the mesh and weights for directions; none where there is no result.
 
-        Errors use `names`, the numbers of the queries among `count`.
+        Errors use `names`, the numbers of these queries among all `count`.
         """
         raise NotImplementedError
 
     def _inside(self, queries: Floats, names: Rows, count: int) -> tuple[Indices, Bools]:
-        """The triangle of each query, -1 outside, and which of these the tolerance includes.
+        """Return the triangle of each query, -1 outside, and which of those the tolerance includes.
 
-        Raises if there are others, and that is the policy.
+        Raise if others are outside and the policy is to raise.
         """
         simplex, near = self._mesh.find_simplex(queries), np.zeros(len(queries), dtype=bool)
         if self._tolerance and not self._mesh.covers_sphere:
@@ -383,7 +383,7 @@ class _Interpolator(VectorInterpolation):
 
 
 class _Continuous(_Interpolator):
-    """Interpolants whose weights the core has, with their derivatives."""
+    """Interpolants whose weights, and their derivatives, the core computes."""
 
     _kind: str
 
@@ -400,13 +400,13 @@ class _Continuous(_Interpolator):
             Another field on the same sites.
         radius : float, optional
             Radius of the sphere. By default 1: derivatives are per radian, whatever the unit of
-            longitudes and latitudes. With 6371008.8, those on the Earth are per meter.
+            longitudes and latitudes. With 6371008.8, they are per meter on the Earth.
 
         Returns
         -------
         ndarray of float64 or complex128
             The shape of the queries, without their last axis, then that of one value, then 2: the
-            derivatives to the east and north. NaN outside a hull. At a pole, directions are
+            derivatives to the east and north. NaN outside a hull. At a pole, east and north are
             those of the meridian of longitude 0.
 
         Raises
@@ -418,9 +418,9 @@ class _Continuous(_Interpolator):
 
         Notes
         -----
-        The derivatives of the weights, by automatic differentiation. On the edges of a triangle,
-        where a linear interpolant has several gradients, that of the triangle with the smallest
-        number; at a site natural neighbor interpolants have none, and give NaN.
+        The derivatives are those of the weights, by automatic differentiation. On an edge, where a
+        linear interpolant has several gradients, the result is that of the triangle with the
+        smallest number. At a site, natural neighbor interpolants have no gradient: it is NaN.
 
         Examples
         --------
@@ -464,7 +464,7 @@ class _Continuous(_Interpolator):
         return joined(inner, empty, self._completed(queries[empty], simplex[empty]))
 
     def _completed(self, queries: Floats, simplex: Indices) -> Terms:
-        """The weights of queries outside, and of those whose corners are one point when rounded."""
+        """Return weights of queries outside, and of those whose corners coincide when rounded."""
         rows = np.zeros((len(queries), 2), dtype=np.int32)
         weights = np.zeros(rows.shape)
         lost = simplex >= 0
@@ -489,24 +489,25 @@ class Linear(_Continuous):
     extrapolate : {"nan", "nearest", "raise"}, optional
         Behavior outside a hull: NaN; the value at the nearest point of the hull; an error.
     tolerance : float, optional
-        Queries outside a hull, at most this angle from its boundary, get the value at the
-        nearest point of it; in the unit of `degrees`, decided exactly. Gradients there are NaN.
+        Queries outside a hull, at most this angle from its boundary, get the value at its nearest
+        point; in degrees or radians, as `degrees` says, and decided exactly. Gradients there are
+        NaN.
     duplicates : {"raise", "mean", "first", "last", "min", "max"}, optional
         The value of sites that have the same direction but different values.
     nan : {"raise", "drop", "propagate"}, optional
         How to treat sites whose value is NaN or infinite: raise an error that names them; remove
-        them from the triangulation; keep them, so that the triangles at them have no value.
+        them from the triangulation; or keep them, so that the triangles at them give NaN.
     degrees : bool, optional
-        Whether longitudes and latitudes, of sites and queries, are in degrees (the default) or in
-        radians; that of the triangulation, if one is given.
+        Whether longitudes and latitudes of sites and queries are in degrees (the default) or in
+        radians. If a triangulation is given, its unit is used instead.
     workers : int, optional
         Maximum number of threads; by default one per core. The result does not depend on it.
 
     Raises
     ------
     InputError
-        An argument is not one of the allowed choices; values differ at a direction with
-        ``duplicates="raise"`` (`ConflictingValuesError`).
+        An argument is not one of the allowed choices; sites with the same direction have different
+        values and ``duplicates="raise"`` (`ConflictingValuesError`).
     NonFiniteError
         A coordinate, or with ``nan="raise"`` a value, is NaN or infinite.
     DegenerateInputError
@@ -525,8 +526,9 @@ class Linear(_Continuous):
     with an error proportional to the square of the edge length.
 
     Triangles are found exactly. Weights are rounded, from rounded unit vectors: across a triangle
-    whose height is below about 1e-15 they are arbitrary, but not negative. Each query costs its
-    point location; outside a hull, ``extrapolate="nearest"`` compares all edges of the boundary.
+    whose height is below about 1e-15 they are arbitrary, but not negative. The cost of a
+    query is that of locating it; outside a hull, ``extrapolate="nearest"`` compares all edges of
+    the boundary.
 
     See Also
     --------
@@ -570,13 +572,13 @@ class NaturalNeighbor(_Continuous):
     -----
     The neighbors are the corners of all triangles whose circle contains the query, exactly. Their
     weights are those of the plane after projection from the center to the tangent plane at the
-    query, where great circles are lines. They depend on the area or the wall that the Voronoi cell
-    of the query takes from that of the neighbor. They are nonnegative and sum to 1, and the
-    weighted mean of the sites has the direction of the query, as with `Linear`; on the
-    boundary of a hull, the interpolant is linear. So the date line and the poles are not special,
-    and you need not choose a projection. Values at sites are reproduced exactly. Where rounding
-    loses more than nine digits,
-    as between sites that almost coincide, the weights are those of `Linear`.
+    query, where great circles are lines. They depend on the area that the Voronoi cell of the
+    query takes from that of the neighbor, or on the length of their common side. They are
+    nonnegative and sum to 1, and the weighted mean of the sites has the direction of the query, as
+    with `Linear`; on the boundary of a hull, the interpolant is linear. So the date line and the
+    poles are not special, and you need not choose a projection. Values at sites are reproduced
+    exactly. Where rounding loses more than nine digits, as between sites that almost coincide, the
+    weights are those of `Linear`.
 
     Each query takes time linear in the number of its neighbors, about six.
 
@@ -625,7 +627,7 @@ class NaturalNeighbor(_Continuous):
 
 
 class Nearest(_Interpolator):
-    """The value of the site at the smallest angle.
+    """Interpolation by the value of the nearest site, at the smallest angle.
 
     Parameters
     ----------
@@ -645,8 +647,8 @@ class Nearest(_Interpolator):
 
     Notes
     -----
-    The nearest site is exact, square roots included; of equally near sites the one with the
-    smallest row is used.
+    The nearest site is found exactly, square roots included; of equally near sites, the one with
+    the smallest row is used.
 
     See Also
     --------
@@ -697,7 +699,7 @@ class Nearest(_Interpolator):
 def _triangulated(
     points: Any, degrees: bool, workers: int | None
 ) -> tuple[Delaunay, ArrayLike | None]:
-    """The triangulation of sites, and their longitudes and latitudes if they are not vectors."""
+    """Return the triangulation of sites, and their longitudes and latitudes unless vectors."""
     if hasattr(points, "points"):
         raise DtypeError(f"{type(points).__name__} is not a sphere.Delaunay; pass its points")
     points = numbers_of(points, "points")
