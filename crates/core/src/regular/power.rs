@@ -12,15 +12,15 @@
 //! differences, 2 products, 3 sums (the third with the difference of weights), the product, and one
 //! of the last two sums: 11 roundings; 14 u P leaves room, as in the in-circle test without
 //! weights. The filter is used only if all magnitudes are between 2^-200 and 2^200 or zero, so that
-//! nothing overflows or underflows. What it cannot decide, arbitrary-precision integers do.
+//! nothing overflows or underflows. Arbitrary-precision integers decide what it cannot.
 //!
 //! # Ties
 //!
 //! As without weights, the height of each site is lowered by an infinitesimal, infinitely larger
 //! for a lexicographically smaller site. With weights, three of four coplanar lifted sites may be
 //! collinear, so the smallest site need not decide: the first site decides whose cofactor, the
-//! orientation of the other three, is not zero. In a vertical plane over a line, the middle one of
-//! three sites is above the other two on a tie.
+//! orientation of the other three, is not zero. If three sites are on one line in the plane and
+//! their lifts are collinear, the middle one counts as above the other two.
 
 use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 use num_bigint::BigInt;

@@ -9,8 +9,8 @@ pub const GHOST: u32 = u32::MAX;
 /// No simplex.
 pub const NONE: u32 = u32::MAX;
 
-/// The simplices that a site removes, and the sides of their cavity: a removed simplex and the
-/// corner opposite the side.
+/// The simplices that a site removes, and the sides of their cavity: each as a removed simplex and
+/// the corner opposite the side.
 pub type Hole = (Vec<u32>, Vec<(u32, usize)>);
 
 /// Simplices with `N` corners. All corners of free records are ghosts.
@@ -22,7 +22,7 @@ pub struct Records<const N: usize> {
     /// Where the next walk starts.
     pub last: u32,
     free: Vec<u32>,
-    /// The insertion in which a simplex was last tested, and whether it is in conflict.
+    /// The insertion in which a simplex was last tested, and whether it was in conflict.
     seen: Vec<(u32, bool)>,
     stamp: u32,
 }
@@ -104,7 +104,7 @@ impl<const N: usize> Records<N> {
         self.seen[start as usize] = (self.stamp, true);
         let mut stack = vec![start];
         let (mut hole, mut rim) = (Vec::new(), Vec::new());
-        // Each simplex is tested once per insertion, and pushed at most then.
+        // Each simplex is tested once per insertion, so it is pushed at most once.
         while let Some(t) = stack.pop() {
             hole.push(t);
             for k in 0..N {

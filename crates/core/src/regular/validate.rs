@@ -1,14 +1,14 @@
 //! Exact validation of a 2-D regular triangulation: lists the simplices and points that are wrong.
 //!
 //! Why these checks suffice: triangles that tile the convex hull of their vertices, and are locally
-//! regular at each inner edge, are the lower hull of the lifted vertices (see `delaunay::plane::validate`).
-//! With ties broken the lower hull is strictly convex, so that no vertex should be hidden. A point that
-//! is not a vertex changes nothing exactly if its lift does not lie below the triangle that contains it,
-//! with ties broken in the same way.
+//! regular at each inner edge, are the lower hull of the lifted vertices (see
+//! `delaunay::plane::validate`). With ties broken, the lower hull is strictly convex, so no vertex
+//! should be hidden. A point that is not a vertex is rightly left out if and only if its lift is
+//! not below the triangle that contains it, with ties broken in the same way.
 //!
 //! Points are located by walks that cross an edge with the point strictly beyond it. In a regular
-//! triangulation no such walk returns to a triangle (H. Edelsbrunner, "An acyclicity theorem for cell
-//! complexes in d dimensions", 1990). So hidden points are judged only if everything else is right.
+//! triangulation no such walk returns to a triangle (H. Edelsbrunner, "An acyclicity theorem for
+//! cell complexes in d dimensions", 1990). So hidden points are judged only if all else is right.
 
 use delone_predicates::Sign;
 
@@ -25,12 +25,12 @@ use crate::order::arrange;
 /// Steps of walks between two checks for interruption.
 const STEPS: usize = 1 << 14;
 
-/// The faults of a triangulation with weights, and for each row the row that represents it: the heaviest
-/// with its coordinates, the first of these.
+/// The faults of a triangulation with weights, and for each row the row that represents it: the
+/// first of the heaviest rows with its coordinates.
 pub type Checked<const D: usize> = (Findings<D>, Vec<i32>);
 
-/// Checks everything that makes `given` the canonical regular triangulation of its points with
-/// finite weights, as many.
+/// Checks everything that makes `given` the canonical regular triangulation of its points, with one
+/// finite weight for each.
 pub fn validate(given: Triangles, weights: &[f64], watch: &Watch) -> Result<Checked<2>> {
     points::scan(given.points)?;
     let arranged = arrange(given.points, 1, watch)?;
@@ -51,9 +51,9 @@ pub fn validate(given: Triangles, weights: &[f64], watch: &Watch) -> Result<Chec
     checked(given, own, judge, (beyond, below), watch)
 }
 
-/// The checks of both dimensions, by the heaviest rows. Of the last two functions the first tells
-/// whether a row is strictly beyond the facet opposite a corner, the other whether its lift is below a
-/// simplex, ties broken.
+/// The checks for both dimensions, given the heaviest rows. `beyond` tells whether a row is
+/// strictly beyond the facet opposite a corner, `below` whether its lift is below a simplex, with
+/// ties broken.
 pub fn checked<'a, const D: usize, const N: usize>(
     given: Given<'a, D, N>,
     own: Heaviest,
@@ -87,8 +87,8 @@ pub fn others(stands_for: &[i32]) -> Vec<[u32; 2]> {
         .collect()
 }
 
-/// Parts rows that no simplex uses: first those below the simplices that hold them, then those outside
-/// all simplices, both ascending; `beyond` and `below` are those of [`checked`].
+/// Of the rows that no simplex uses, those below the simplices that contain them, and those outside
+/// all simplices, both ascending; `beyond` and `below` are as in [`checked`].
 pub fn unused<const D: usize, const N: usize>(
     given: Given<D, N>,
     rows: &[u32],
@@ -115,7 +115,7 @@ pub fn unused<const D: usize, const N: usize>(
     Ok((hidden, outside))
 }
 
-/// The simplex that holds a place, by a walk from simplex `from`; none outside.
+/// The simplex that contains a place, by a walk from simplex `from`; `None` outside.
 fn holder<const D: usize, const N: usize>(
     given: Given<D, N>,
     from: usize,

@@ -1,13 +1,13 @@
-//! Exact validation of a periodic Delaunay (with weights, regular) triangulation.
+//! Exact validation of a periodic triangulation: Delaunay or, with weights, regular.
 //!
-//! Why these checks suffice: triangles that are glued at their edges form a surface, which maps to the
-//! torus (with one period, to a strip closed to a cylinder). If all triangles are counterclockwise and the
-//! boundary of the surface maps to that of the strip, the map covers each place equally often. With two
-//! periods this number is the sum of the areas over that of the cell; with one it is the length of the
-//! lower boundary over the period. Both are whole numbers, so rounded sums determine them: a term has an
-//! error below 2^-40, and there are fewer than 2^30. If the number is one, the triangles tile, and those
-//! that are locally regular at each edge are regular. Points that are not vertices are judged as in
-//! `validate`.
+//! Why these checks suffice: triangles that are glued at their edges form a surface, which maps to
+//! the torus (with one period, to a strip closed to a cylinder). If all triangles are
+//! counterclockwise and the boundary of the surface maps to that of the strip, the map covers each
+//! place equally often. With two periods, this number is the sum of the areas divided by that of
+//! the cell; with one, it is the length of the lower boundary divided by the period. Both are whole
+//! numbers, so rounded sums determine them: a term has an error below 2^-40, and there are fewer
+//! than 2^30 terms. If the number is one, the triangles tile, and a tiling that is locally regular
+//! at each edge is regular. Points that are not vertices are judged as in `validate`.
 
 use delone_predicates::{Point2, Sign};
 
@@ -25,8 +25,8 @@ use crate::order::arrange;
 /// Triangles, or steps of walks, between two checks for interruption.
 const STEPS: usize = 1 << 14;
 
-/// A periodic triangulation that is given. Vertices must be rows of `points`, neighbors triangles or -1,
-/// partners edges or -1; points must lie within one period.
+/// A periodic triangulation that is given. Vertices must be rows of `points`, neighbors triangles
+/// or -1, partners edges or -1; points must lie within one period.
 #[derive(Debug, Clone, Copy)]
 pub struct Wrapped<'a> {
     /// Coordinates, finite.
@@ -37,23 +37,24 @@ pub struct Wrapped<'a> {
     pub periods: Point2,
     /// The vertices of each triangle.
     pub simplices: &'a [[i32; 3]],
-    /// By how many periods each corner is moved, x and y by turns.
+    /// By how many periods each corner is moved: x and y of the first, then of the others.
     pub offsets: &'a [[i32; 6]],
     /// The triangle opposite each corner, -1 outside.
     pub neighbors: &'a [[i32; 3]],
-    /// 3 t + k where that is opposite corner k of triangle t, -1 outside.
+    /// 3 u + l for each corner, if the edge opposite it is also opposite corner l of triangle u; -1
+    /// outside.
     pub partners: &'a [[i32; 3]],
 }
 
 /// Faults by kind; all are empty if the triangulation is right.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct PeriodicFindings {
-    /// Triangles whose first corner is moved, or any other by more than one period, or in a direction
-    /// without a period. If there are any, nothing else is checked.
+    /// Triangles whose first corner is moved, or with another corner that is moved by more than one
+    /// period or in a direction without one. If there are any, nothing else is checked.
     pub offsets: Vec<u32>,
     /// Faults as without periods: `neighbors` has triangles whose neighbors or partners are wrong,
-    /// `hull` edges without a partner that are not on the boundary of the strip, and `count` expects
-    /// 2 n - h triangles.
+    /// `hull` edges without a partner that are not on the boundary of the strip, and `count`
+    /// expects 2 n - h triangles.
     pub faults: Findings<2>,
     /// How often the triangles cover the plane, if not once.
     pub layers: Vec<u32>,
@@ -75,8 +76,8 @@ impl Wrapped<'_> {
         [0, 1, 2].map(|k| self.corner(t, k))
     }
 
-    /// What is opposite corner k of t: an edge as 3 t + k, and by how much its triangle must be moved
-    /// to meet t there. None where the arrays contradict each other.
+    /// What is opposite corner k of t: an edge, coded as in `partners`, and by how much its
+    /// triangle must be moved to meet t there. `None` where the arrays contradict each other.
     fn across(&self, t: usize, k: usize) -> Option<(usize, [i32; 2])> {
         let code = usize::try_from(self.partners[t][k]).ok()?;
         let (s, j) = (code / 3, code % 3);
@@ -113,7 +114,7 @@ fn plus(a: [i32; 2], b: [i32; 2]) -> [i32; 2] {
     [a[0] + b[0], a[1] + b[1]]
 }
 
-/// The work of a validation: four sites at a time, and what is found.
+/// The state of a validation: four sites at a time, and what has been found.
 struct Check<'a> {
     given: Wrapped<'a>,
     sites: Images<'a>,
@@ -197,7 +198,8 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// The edge opposite corner k of the triangle that is placed; whether its arrays fit.
+    /// Checks the edge opposite corner k of t, whose corners are in `sites`; false if its arrays
+    /// contradict each other.
     fn edge(&mut self, t: usize, k: usize) -> bool {
         if self.given.partners[t][k] < 0 {
             self.boundary.push((t, k));
@@ -220,7 +222,7 @@ impl Check<'_> {
         true
     }
 
-    /// Whether the triangles cover the plane once, and as many as they should.
+    /// Checks that the triangles cover the plane once, and how many there are.
     fn tiling(&mut self, vertices: usize, pace: &mut Pace) -> Result<()> {
         let found = self.given.simplices.len();
         let expected = (2 * vertices).saturating_sub(self.boundary.len());
@@ -264,8 +266,8 @@ impl Check<'_> {
         (b[0] * c[1] - b[1] * c[0]) / 2.0
     }
 
-    /// Checks that edges without a partner lie on the boundary of the strip, which is straight; gives
-    /// the length of its lower side in periods.
+    /// Checks that edges without a partner lie on the boundary of the strip, which is straight;
+    /// returns the length of its lower side in periods.
     fn lower_boundary(&mut self) -> f64 {
         let axis = self.given.open_axis();
         let heights = self.given.points.iter().map(|p| axis.map_or(0.0, |k| p[k]));
@@ -308,8 +310,9 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// The triangle that holds a point, and by how much it is moved, by a walk from another one. It
-    /// and the point are left in `sites`. Since all points lie in the strip, walks do not leave it.
+    /// The triangle that contains a point, and by how much it is moved, by a walk from another one.
+    /// Its corners and the point are left in `sites`. All points lie in the strip, so walks do not
+    /// leave it.
     fn holder(
         &mut self,
         p: u32,

@@ -8,7 +8,7 @@
 //! one hyperplane: the tetrahedra to be removed are connected, their cavity is star-shaped, and the
 //! result is independent of the order of insertion.
 //!
-//! Outside the hull ghosts take the place of tetrahedra: one for each face of the hull, with GHOST
+//! Outside the hull, ghosts take the place of tetrahedra: one for each face of the hull, with GHOST
 //! as its fourth corner. A site in the plane of such a face is below the lifted plane of the three
 //! exactly if it is below that of the tetrahedron behind them, ties included.
 

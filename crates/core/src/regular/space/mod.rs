@@ -26,15 +26,15 @@ pub struct Regular {
     pub stands_for: Vec<i32>,
 }
 
-/// From this many points on there are two blocks: of fewer, a large part would be at their border,
-/// and triangulated twice.
+/// From this many points on, there are at least two blocks. With fewer points, many would be near
+/// the borders of blocks, and triangulated twice.
 const TWO: usize = 1 << 16;
 
 /// The most points that a block should hold.
 const BLOCK: usize = 1 << 18;
 
-/// Triangulates finite points with finite weights, one for each, that are not all coplanar; the same
-/// for any number of workers.
+/// Triangulates finite points with finite weights, one for each, that are not all coplanar; the
+/// same for any number of workers.
 pub fn regular(
     points: &[Point3],
     weights: &[f64],

@@ -7,16 +7,16 @@
 //!
 //! # The bound of the filter
 //!
-//! Let u = 2^-53 and P the sum of the magnitudes of the monomials. As in the in-sphere test each
-//! goes through 15 roundings, and because of the sum with the difference of weights one more: 18 u
-//! P leaves room. The filter is used only if all magnitudes are between 2^-200 and 2^200 or zero,
-//! so that nothing overflows or underflows. What it cannot decide, arbitrary-precision integers do.
+//! Let u = 2^-53 and P the sum of the magnitudes of the monomials. Each goes through 15 roundings,
+//! as in the in-sphere test, and one more for the sum with the difference of weights: 18 u P leaves
+//! room. The filter is used only if all magnitudes are between 2^-200 and 2^200 or zero,
+//! so that nothing overflows or underflows. Arbitrary-precision integers decide what it cannot.
 //!
 //! # Ties
 //!
-//! The height of each site is lowered by an infinitesimal, infinitely larger for a lexicographically
-//! smaller site: the sign of a tie is that of the first site, in this order, whose cofactor, the
-//! orientation of the other four, is not zero.
+//! The height of each site is lowered by an infinitesimal, infinitely larger for a
+//! lexicographically smaller site: the sign of a tie is that of the first site, in this order,
+//! whose cofactor, the orientation of the other four, is not zero.
 
 use delone_predicates::{Point3, Sign, lexicographic, orient3d};
 use num_bigint::BigInt;

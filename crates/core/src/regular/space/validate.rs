@@ -1,5 +1,5 @@
-//! Is this the 3-D regular triangulation of weighted points? See `regular::validate`, which explains
-//! why the checks suffice.
+//! Is this the 3-D regular triangulation of weighted points? See `regular::validate`, which
+//! explains why the checks suffice.
 
 use delone_predicates::{Sign, orient3d};
 
@@ -12,8 +12,8 @@ use crate::base::watch::Watch;
 use crate::order::space::arrange;
 use crate::regular::{Checked, checked, heaviest};
 
-/// Checks everything that makes `given` the canonical regular triangulation of its points with
-/// finite weights, as many.
+/// Checks everything that makes `given` the canonical regular triangulation of its points, with one
+/// finite weight for each.
 pub fn validate(given: Tetrahedra, weights: &[f64], watch: &Watch) -> Result<Checked<3>> {
     points::scan(given.points)?;
     let arranged = arrange(given.points, watch)?;
