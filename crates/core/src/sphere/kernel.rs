@@ -1,27 +1,31 @@
 //! Insertion of a direction: its cavity is emptied and filled with a star, as in 2-D.
 //!
 //! A. Bowyer, "Computing Dirichlet tessellations", and D. F. Watson, "Computing the n-dimensional
-//! Delaunay tessellation", both The Computer Journal 24 (1981). The structure, and why the triangles of
-//! a cavity form a tree, are those of `delaunay::plane::cavity`; `close` has the one insertion where they do not.
+//! Delaunay tessellation", both The Computer Journal 24 (1981). The structure, and why the
+//! triangles of a cavity form a tree, are those of `delaunay::plane::cavity`; `close` has the one
+//! insertion where they do not.
 //!
 //! # Bounds of the filters
 //!
-//! They use the rounded directions alone. Let u = 2^-53, P = a - p for the new direction p, computed
-//! from the heads, and s its 1-norm, at most 2 sqrt 3; Q with t and R with w likewise. A tail is at most
-//! u / 2, so an entry errs by u of itself and 1.01 u. In the determinant [P, Q, R] a monomial passes three
-//! differences, two products, a difference and two sums: 9 u of the permanent with room, and that is at
-//! most s t w. An error 1.01 u in one entry meets a minor of the other rows, all together
-//! 1.01 u (s t + t w + w s). Two of them are at most 2.1 u^2 (s + t + w), three 6.2 u^3. If the
-//! determinant exceeds 3 u (s t + t w + w s), then s t w does, so that each of s, t, w is above 3 u: then
-//! two errors are below 0.7 u and three below 0.3 u times that sum. In all these are 2.1 u of it, where
-//! [`CIRCLE_BOUND`] takes 3 u, and 10 u s t w beside it.
+//! They use the rounded directions alone. Let u = 2^-53, P = a - p for the new direction p,
+//! computed from the heads, and s its 1-norm, at most 2 sqrt 3; likewise Q with t and R with w. A
+//! tail is at most u / 2, so an entry errs by u of itself and 1.01 u. In the determinant [P, Q, R],
+//! a monomial goes through three differences, two products, a difference and two sums: 9 u of the
+//! permanent, with room, and the permanent is at most s t w. An error of 1.01 u in one entry is
+//! multiplied by a minor of the other rows, which gives 1.01 u (s t + t w + w s) in total. Products
+//! of two such errors are at most 2.1 u^2 (s + t + w), of three 6.2 u^3. If the determinant exceeds
+//! 3 u (s t + t w + w s), then so does s t w, and each of s, t, w is above 3 u. Then products of
+//! two errors are below 0.7 u and those of three below 0.3 u times that sum. In total, these are
+//! 2.1 u times the sum, for which [`CIRCLE_BOUND`] takes 3 u, in addition to 10 u s t w.
 //!
-//! The determinant [P, Q, p] errs by 8 u of its permanent, at most s t, by 0.5 u s t for the tail of p,
-//! and by 1.01 u 1.74 (s + t) for the other tails. Two of these are at most 3.6 u^2, and if the
-//! determinant exceeds 3 u (s + t) then s and t are above 3 u, so that this is 0.6 u (s + t). In all these
-//! are 2.4 u (s + t), where [`TURN_BOUND`] takes 3 u, and 10 u s t beside it.
+//! The determinant [P, Q, p] errs by 8 u of its permanent, at most s t, by 0.5 u s t for the tail
+//! of p, and by 1.01 u 1.74 (s + t) for the other tails. Products of two of these are at most 3.6
+//! u^2. If the determinant exceeds 3 u (s + t), then s and t are above 3 u, so this is at most 0.6
+//! u (s + t). In total, these are 2.4 u (s + t), for which [`TURN_BOUND`] takes 3 u, in addition to
+//! 10 u s t.
 //!
-//! The infinite vertex is NaN: nothing is certain with it, and exact tests handle ghosts.
+//! The coordinates of the infinite vertex are NaN: no filter is certain there, so exact tests
+//! handle ghosts.
 
 use std::ops::Range;
 
@@ -41,12 +45,12 @@ const U: f64 = f64::EPSILON / 2.0;
 const CIRCLE_BOUND: f64 = 3.0 * U;
 /// Bound of the determinant of two differences and a direction, for tails.
 const TURN_BOUND: f64 = 3.0 * U;
-/// Bound of both for the arithmetic.
+/// Bound of both determinants, for the arithmetic.
 const ROUNDING: f64 = 10.0 * U;
 
-/// Units of work between two checks for interruption: a triangle is one.
+/// Units of work between two checks for interruption; a triangle counts as one.
 const WATCH_EVERY: usize = 1 << 14;
-/// The work of an exact test, which takes 10 ns to 300 us.
+/// The units of work of an exact test, which takes 10 ns to 300 us.
 const EXACT: usize = 256;
 
 /// A vertex as seen from the new direction.
@@ -98,12 +102,12 @@ pub struct Kernel<'a> {
     pace: Pace<'a>,
     rim: Vec<Rim>,
     free: Vec<u32>,
-    /// Directions that are the same as a vertex, with that vertex.
+    /// Directions that are the same as that of a vertex, with that vertex.
     pub repeats: Vec<[u32; 2]>,
 }
 
 impl<'a> Kernel<'a> {
-    /// A kernel on an empty `mesh`, which starts from the counterclockwise triangle `first`.
+    /// A kernel on an empty `mesh` that starts from the counterclockwise triangle `first`.
     pub fn start(
         directions: &'a Directions,
         mut mesh: Patch<'a>,
@@ -128,7 +132,7 @@ impl<'a> Kernel<'a> {
         (!self.is_closed).then(|| self.infinite_corner(self.ghost))
     }
 
-    /// The records taken.
+    /// The number of records in use.
     pub fn taken(&self) -> Range<u32> {
         self.mesh.taken()
     }
@@ -243,8 +247,9 @@ impl<'a> Kernel<'a> {
         Ok(if hint == u32::MAX { last } else { hint })
     }
 
-    /// Where to insert `p`: walks from `near` across edges that have p on their other side. While there
-    /// are ghosts the walk goes on to the triangle that contains p, which tells whether p is outside.
+    /// Where to insert `p`: walks from `near` across edges that have p on their other side. While
+    /// there are ghosts, the walk ends only at the triangle that contains p, to tell whether p is
+    /// outside.
     #[inline]
     fn seed(&mut self, p: u32, near: u32) -> Result<Found> {
         let origin = self.directions.heads[p as usize];
@@ -288,7 +293,7 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// The same, by a walk with exact predicates to the triangle that contains p.
+    /// The same as `seed`, by a walk with exact predicates to the triangle that contains p.
     #[cold]
     #[inline(never)]
     fn seed_exactly(&mut self, p: u32, near: u32) -> Result<Found> {
@@ -323,7 +328,7 @@ impl<'a> Kernel<'a> {
         t
     }
 
-    /// Whether triangle `t` is in conflict with `p`; exact, for ghosts, too.
+    /// Whether triangle `t`, possibly a ghost, is in conflict with `p`; exact.
     #[cold]
     #[inline(never)]
     pub(super) fn conflicts(&mut self, t: u32, p: u32) -> Result<bool> {
@@ -352,7 +357,7 @@ impl<'a> Kernel<'a> {
 enum Found {
     /// A triangle in conflict with it.
     Conflict(Seed),
-    /// A triangle with a corner that is the same.
+    /// A triangle with a corner in the same direction.
     Vertex(u32),
     /// A ghost; all ghosts are in conflict.
     Closes(u32),

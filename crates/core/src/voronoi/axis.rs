@@ -1,7 +1,7 @@
 //! Points on the radical axis of two weighted sites (the bisector, if weights are equal), rounded.
 //!
-//! All z with equal power from a and b satisfy 2 d.z = |b|^2 - |a|^2 + w(a) - w(b), d = b - a. In doubles,
-//! with m = (a + b) / 2, this is d.(z - m) = (w(a) - w(b)) / 2.
+//! All z with equal power from a and b satisfy 2 d.z = |b|^2 - |a|^2 + w(a) - w(b), d = b - a. In
+//! doubles, with m = (a + b) / 2, this is d.(z - m) = (w(a) - w(b)) / 2.
 //!
 //! # The bound of the plain stage
 //!
@@ -10,8 +10,8 @@
 //! |d[k]| (3 u |t| + u |m[k]|), w by u |w|, s by u |s| more, and the quotient by 3 u of itself.
 //! Hence z[l] errs by 5 u (|d[k]| (|t| + |m[k]|) + |w|) / |d[l]| + u |m[l]| and the last rounding,
 //! with room for terms of second order. Underflow is negligible while all nonzero values are larger
-//! than 2^-400. What is not within 4 units in the last place is computed in arbitrary-precision
-//! integers, correctly rounded.
+//! than 2^-400. If the bound does not guarantee 4 units in the last place, the coordinate is
+//! computed in arbitrary-precision integers and correctly rounded.
 
 use delone_predicates::Point2;
 use num_bigint::BigInt;
@@ -29,7 +29,7 @@ const RANGE: (f64, f64) = (
 /// A site and its weight.
 pub(super) type Weighted = (Point2, f64);
 
-/// Whether a magnitude is zero, or far from both ends of the range.
+/// Whether a number is zero, or its magnitude is within the range.
 fn safe(x: f64) -> bool {
     x == 0.0 || (x.abs() > RANGE.0 && x.abs() < RANGE.1)
 }

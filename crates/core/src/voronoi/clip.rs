@@ -2,10 +2,10 @@
 //!
 //! Each cell is convex and is clipped by the four half-planes of the box one after the other (I. E.
 //! Sutherland and G. W. Hodgman, "Reentrant polygon clipping", 1974). An unbounded cell has corners
-//! at infinity, each given by its direction, and edges at infinity, which turn by less than a
-//! quadrant; so no artificial far corner is needed, and half-planes, strips and the whole plane are
-//! clipped like any other cell. A vertex out of range has infinite coordinates, which compare as
-//! they should, and is on no side of the box.
+//! at infinity, each given by its direction, and edges at infinity, which turn by at most a
+//! quadrant. So no artificial far corner is needed, and half-planes, strips and the whole plane are
+//! clipped like any other cell. A vertex out of range has infinite coordinates, which compare
+//! correctly and are never on a side of the box.
 //!
 //! Where a ridge crosses a side of the box is computed from the bisector of its two sites, not from
 //! its ends, which may be far away; the result is clamped to the interval between the ends. It
@@ -48,7 +48,7 @@ pub struct Cells<'a> {
     pub site: &'a [i32],
     /// Where the entries of each cell begin, plus the end.
     pub starts: &'a [i32],
-    /// Entry: a vertex, or -1 for an end that is a ray.
+    /// Entry: a vertex, or -1 for a ray at that end.
     pub entry_vertices: &'a [i32],
     /// Entry: the ridge that follows the vertex.
     pub entry_ridges: &'a [i32],
@@ -155,7 +155,7 @@ fn part(cells: Cells, min: Point2, max: Point2, rows: &[usize]) -> Result<Polygo
     Ok(out)
 }
 
-/// Adds the clipped cell, without repeated corners; nothing if it has no area.
+/// Adds the clipped cell without repeated corners, or nothing if it has no area.
 fn add_clipped(corners: &mut Vec<Corner>, out: &mut Polygons) -> Result<()> {
     // The point that represented a whole line is not a corner.
     let mut before = corners.last().map(|c| c.1);
@@ -242,8 +242,8 @@ impl Cells<'_> {
             corners.extend(between.map(|axis| (End::Toward(axis), Edge::Infinity)));
             corners.push((End::Toward(back), Edge::Ridge(ridge)));
             if self.is_line(ridge) {
-                // A whole line. One of its points tells on which side of a parallel it runs; if
-                // that is out of range, it does so only for lines along an axis.
+                // A whole line. One of its points tells on which side of a parallel line it
+                // runs; if that point is out of range, only for lines along an axis.
                 let (at, along) = (self.foot(ridge), back.contains(&0.0));
                 if along || at.iter().all(|x| x.is_finite()) {
                     corners.push((End::At(at), Edge::Ridge(ridge)));
@@ -336,7 +336,8 @@ impl Cells<'_> {
         }
     }
 
-    /// The other coordinate where the bisector of a ridge meets the line of a half-plane.
+    /// The other coordinate of the point where the bisector of a ridge meets the line of a
+    /// half-plane.
     fn bisector(&self, ridge: i32, half: Half) -> f64 {
         let sites = self.sites[ridge as usize].map(|v| self.weighted(v));
         crossing(sites, half.axis, half.value)
@@ -361,8 +362,8 @@ impl Half {
         End::At(p)
     }
 
-    /// The direction of the line that a counterclockwise turn passes when it leaves the half-plane,
-    /// or when it enters it again.
+    /// The direction, along the line, at which a counterclockwise turn leaves the half-plane or
+    /// enters it again.
     fn along(&self, leaves: bool) -> Point2 {
         // A quarter turn from the inner normal, in either direction.
         let inward = if self.most { -1.0 } else { 1.0 };
@@ -375,7 +376,7 @@ impl Half {
     }
 }
 
-/// The bound on a coordinate of an edge at its end `end`.
+/// The bound on coordinate `k` of an edge at its end `end`.
 fn bound(end: End, beyond: End, k: usize) -> f64 {
     match (end, beyond) {
         (End::At(p), _) => p[k],
@@ -387,7 +388,7 @@ fn bound(end: End, beyond: End, k: usize) -> f64 {
     }
 }
 
-/// The axes strictly between two directions, counterclockwise; these are at most half a turn apart.
+/// The axes strictly between two directions, counterclockwise, that are at most half a turn apart.
 fn axes_between(from: Point2, to: Point2) -> impl Iterator<Item = Point2> {
     // Sector i is from axis i, included, to the next.
     let sector = |d: Point2| match d {

@@ -3,15 +3,16 @@
 //!
 //! As in B. M. Klingner and J. R. Shewchuk, "Aggressive tetrahedral mesh improvement", 16th
 //! International Meshing Roundtable (2007), but with another search: the cavity grows across the
-//! boundary face whose new tetrahedron is worst, and the vertex climbs again after each step. So
-//! position and cavity are found together.
+//! boundary face whose new tetrahedron is worst, and after each growth the vertex moves uphill
+//! again. So position and cavity are found together.
 //!
 //! # Why a cavity with positive tetrahedra is covered once
 //!
 //! The new tetrahedra, as a chain, have the boundary of the cavity as their boundary, since the
-//! faces at the new vertex cancel in pairs. Two chains in space with the same boundary are equal,
-//! so every point of the cavity is covered once more by positive than by negative tetrahedra: once,
-//! if all are positive. Nothing else is required of the shape of the cavity.
+//! faces at the new vertex cancel in pairs. Two chains of tetrahedra in space with the same
+//! boundary are equal, so the number of positive tetrahedra that cover a point of the cavity is one
+//! more than that of negative ones: it is one if all are positive. Nothing else is required of the
+//! shape of the cavity.
 
 use delone_predicates::Point3;
 
@@ -23,10 +24,10 @@ use crate::base::memory::push;
 
 /// The most tetrahedra in a cavity; most successful ones have fewer than 20.
 const LARGEST: usize = 40;
-/// The steps of an ascent after each growth of a cavity; more take longer and do not lead to a better
-/// mesh.
+/// The steps of an ascent after each growth of a cavity; more steps take longer and do not lead to
+/// a better mesh.
 const STEPS: usize = 2;
-/// This many steps without a better result end the growth of a cavity.
+/// A cavity stops growing after this many steps without a better result.
 const PATIENCE: usize = 8;
 
 /// Buffers of the search, reused between calls.
@@ -45,10 +46,11 @@ pub struct Insertion {
 }
 
 impl Search {
-    /// The best insertion of a vertex at a tetrahedron, if it is better than `above`; the first one
-    /// that is at least `enough` ends the search.
+    /// The best insertion of a vertex at a tetrahedron, if its quality is above `above`. A start
+    /// that reaches `enough` is the last one.
     ///
-    /// The search starts in the middle of the tetrahedron, and of each of its edges inside the mesh.
+    /// The search starts in the middle of the tetrahedron, then of each of its edges inside the
+    /// mesh.
     pub fn best(
         &mut self,
         store: &Store,
@@ -75,7 +77,8 @@ impl Search {
         Ok(best)
     }
 
-    /// Starts a cavity with the tetrahedra around an edge; false if the edge is on a wall.
+    /// Starts a cavity with the tetrahedra around an edge; false if the edge is on a wall, or if
+    /// there are too many.
     fn surround(&mut self, store: &Store, t: u32, edge: [u32; 2]) -> Result<bool> {
         self.cavity.clear();
         push(&mut self.cavity, t)?;
@@ -149,7 +152,8 @@ impl Search {
         Ok(())
     }
 
-    /// The tetrahedron behind the face whose new tetrahedron is worst, of faces that are not walls.
+    /// The tetrahedron behind the face, of those that are not walls, whose new tetrahedron is
+    /// worst.
     fn bottleneck(&self, store: &Store, place: Point3) -> Option<u32> {
         let mut found = None;
         let mut least = f64::INFINITY;
@@ -166,7 +170,7 @@ impl Search {
         found
     }
 
-    /// Whether each vertex of the cavity is on its boundary, so that none is lost.
+    /// Whether every vertex of the cavity is on its boundary, so that none is lost.
     fn keeps_all(&mut self, store: &Store) -> Result<bool> {
         self.vertices.clear();
         for &(t, k) in &self.faces {

@@ -16,7 +16,7 @@
 //! 30 u^2 times as much, 2^-98 L^3. A sine errs by the relative error of D, twice that of the
 //! smallest N, 14 u L^2 / |N|, and some ten further roundings: [`SLACK`] (1 + L^2 / |N|) with 64 u
 //! leaves room for terms of second order. If D is lost in its error, the angle is at most what the
-//! largest possible D would give, which is known as long as the vectors N are.
+//! largest possible D would give, and that is known as long as the vectors N are known.
 
 use delone_predicates::arithmetic::{Pair, is_safe};
 use delone_predicates::{Point3, Sign, orient3d};

@@ -1,15 +1,16 @@
 //! Improves tetrahedral meshes: edge and face removal, smoothing and vertex insertion, while the
 //! worst tetrahedron gets better.
 //!
-//! L. A. Freitag and C. Ollivier-Gooch, "Tetrahedral mesh improvement using swapping and smoothing",
-//! International Journal for Numerical Methods in Engineering 40 (1997); J. R. Shewchuk, "Two
-//! discrete optimization algorithms for the topological improvement of tetrahedral meshes" (2002);
-//! B. M. Klingner and J. R. Shewchuk, "Aggressive tetrahedral mesh improvement", 16th International
-//! Meshing Roundtable (2007).
+//! L. A. Freitag and C. Ollivier-Gooch, "Tetrahedral mesh improvement using swapping and
+//! smoothing", International Journal for Numerical Methods in Engineering 40 (1997); J. R.
+//! Shewchuk, "Two discrete optimization algorithms for the topological improvement of tetrahedral
+//! meshes" (2002); B. M. Klingner and J. R. Shewchuk, "Aggressive tetrahedral mesh improvement",
+//! 16th International Meshing Roundtable (2007).
 //!
 //! # Invariants
 //!
-//! Tetrahedra are positively oriented, exactly; walls do not change. A change is made only if the
+//! Tetrahedra are positively oriented, exactly. Walls do not change, except that two coplanar ones
+//! may be flipped if the task permits it. A change is made only if the
 //! bounds of `measure` prove, rounding included, that the worst quality of the new tetrahedra is
 //! above that of the old ones, and that their smallest dihedral angle is not smaller. So the
 //! smallest angle of the mesh never decreases. Since old and new tetrahedra fill the same region
@@ -19,8 +20,8 @@
 //!
 //! Each change makes the ascending list of all qualities lexicographically larger, where the end of
 //! a list counts as infinite, so no mesh repeats. The number of added vertices is limited, so there
-//! are finitely many meshes on doubles. The number of passes is also limited,
-//! and a pass that gains nothing is the last one.
+//! are finitely many meshes on doubles. The number of passes is also limited, and a pass that
+//! changes nothing is the last one.
 //!
 //! # Determinism
 //!

@@ -22,7 +22,7 @@ const HALVINGS: usize = 5;
 const GAIN: f64 = 1e-3;
 /// Functions within this share of the smallest count as smallest.
 const ACTIVE: f64 = 0.03;
-/// Functions this many times as large as the smallest are ignored in a step.
+/// Functions more than this many times as large as the smallest are ignored in a step.
 const FAR: f64 = 4.0;
 /// Iterations of the search for the shortest vector, far more than it needs.
 const TURNS: usize = 24;

@@ -1,5 +1,5 @@
-//! The passes: removals for each tetrahedron below the bound, worst first; then moves of its
-//! vertices; and, where these gain little, new vertices.
+//! The passes: removals for each tetrahedron below the bound, worst first; then moves of vertices;
+//! and, when these gain little, new vertices.
 
 use super::edge::{self, Plan, Ring};
 use super::insert::{Insertion, Search};
@@ -18,24 +18,23 @@ const WATCH_EVERY: usize = 1 << 10;
 const GAIN: f64 = 1.0 + 1e-9;
 /// A pass that removes a smaller share of the total shortfall from the bound counts as stalled. For
 /// flat point sets, such as terrain surveys, half of the tetrahedra stay below the bound, and every
-/// pass takes as long as the one before: with a hundredth here, half of the time went into the last
+/// pass takes as long as the one before: with a value of 0.01, half of the time went into the last
 /// twentieth of the gain.
 const STALLED: f64 = 3e-2;
-/// This many stalled passes end the work; with new vertices, one.
+/// This many stalled passes in a row end the work; with new vertices, a single one.
 const PATIENCE: usize = 2;
-/// The bounds below which vertices are inserted, one after the other, as shares of the bound. With
-/// the bound alone, on 12 public surfaces of parts, most vertices improved tetrahedra just below
-/// it, and the median of the smallest angles was 3.9 degrees instead of 6.4.
+/// The levels below which vertices are inserted, one after the other, as fractions of the bound.
+/// With the bound as the only level, on 12 public surfaces of machine parts, most vertices improved
+/// tetrahedra just below it, and the median of the smallest angles was 3.9 degrees instead of 6.4.
 const LEVELS: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
-/// Places for vertices are searched for at most this share of the number of tetrahedra, or this many
-/// times in small meshes. Thin parts have no end of bad tetrahedra: without a limit, surfaces of
-/// parts with 3,000 to 9,000 triangles took minutes, for angles two degrees larger.
+/// There is at most one search for the place of a vertex per this many tetrahedra, but in small
+/// meshes up to [`FEWEST`]. Thin parts have no end of bad tetrahedra: without a limit, surfaces of
+/// machine parts with 3,000 to 9,000 triangles took minutes, for angles two degrees larger.
 const SHARE: usize = 16;
 const FEWEST: usize = 1000;
-/// A new vertex must gain this factor, or reach the level: it stays in the mesh.
+/// A new vertex must gain this factor, or reach the level, because it stays in the mesh for good.
 const WORTH: f64 = 1.3;
-/// The first insertion that reaches this multiple of the level is taken without a search for a
-/// better one.
+/// If an insertion reaches this multiple of the level, the search for a better one ends.
 const ENOUGH: f64 = 1.2;
 /// The edges of a tetrahedron.
 const EDGES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
@@ -56,7 +55,7 @@ pub struct Work<'a> {
     searches: usize,
     made: Vec<u32>,
     around: Vec<u32>,
-    /// The number of the next attempt: what has not changed since its last attempt is not tried
+    /// The number of the latest attempt: what has not changed since its last attempt is not tried
     /// again.
     clock: u64,
     /// For each vertex, when a tetrahedron at it last changed, and when a move was last tried.
@@ -103,8 +102,8 @@ impl<'a> Work<'a> {
         if self.task.exude {
             self.weigh_all(watch)?;
         }
-        // Without new vertices, as long as that gains; then with vertices at the worst tetrahedra,
-        // and at better ones when these gain nothing more.
+        // First without new vertices, as long as that gains; then with vertices at the worst
+        // tetrahedra, and at less bad ones when those gain nothing more.
         let mut ended = self.run_passes(None, watch, tell)?;
         for level in LEVELS {
             if ended && self.counts.added < self.task.most {
@@ -281,12 +280,12 @@ impl<'a> Work<'a> {
         Ok(true)
     }
 
-    /// Assigns weights to free vertices of tetrahedra below the bound, each at most once.
+    /// Assigns weights to free vertices of tetrahedra below the bound, at most once to each.
     fn weigh_all(&mut self, watch: &Watch) -> Result<()> {
         let mut met = filled(self.store.points.len(), false)?;
         let mut steps = 0;
         for t in self.below(self.bound)? {
-            // A slot that was reused has other corners now.
+            // A slot that was reused now has other corners.
             if !self.is_below(t, self.bound) {
                 continue;
             }
