@@ -1,4 +1,5 @@
-//! Longitudes and latitudes as directions, by sines and cosines that are the same on each platform.
+//! Longitudes and latitudes as directions, by sines and cosines that are the same on every
+//! platform.
 //!
 //! The direction of longitude l and latitude b is that of (cos l, sin l, tan b): vectors of one
 //! longitude have equal x and y, so meridians and the poles are exactly on great circles, and
@@ -8,33 +9,34 @@
 //!
 //! # The reduction
 //!
-//! Degrees: `x % 360` is exact, and so is the difference from the nearest multiple of 90. Radians: less a
-//! multiple of pi / 2 that is known to 159 bits, which leaves 2^-150 for a few turns; the doubles that
-//! are nearest to multiples of pi / 2 count as these. Then r is at most 45 degrees, and signs and the
-//! exchange of sine and cosine by quadrants are exact.
+//! For degrees, `x % 360` is exact, and so is the difference from the nearest multiple of 90. From
+//! radians, a multiple of pi / 2 is subtracted, with pi / 2 known to 159 bits, which leaves an
+//! error of 2^-150 for a few turns; doubles that are nearest to multiples of pi / 2 count as these.
+//! Then r is at most 45 degrees, and the quadrant determines signs and the exchange of sine and
+//! cosine exactly.
 //!
 //! # The bound
 //!
-//! Let u = 2^-53, and r = k + f with a whole degree k and |f| <= 1/2. Sine and cosine of k are known
-//! to u^2 of themselves. With t = f in radians, q = t^2 < 7.7e-5, the series of sin t / t and cos t - 1 end
-//! before q^6 / 12!, below 2^-110. Their terms from q^3 on are computed in plain floating point: they are
-//! below 2^-53 and 2^-50, so that four roundings of each are below 2^-101 together; the others in pairs,
-//! with 9 u^2 for a product and 4 u^2 for a sum: sin t errs by 12 u^2, and the rest of cos t - 1, below q / 2,
-//! by 2^-112. In
-//! sin k + (sin k (cos t - 1) + cos k sin t) the last term is at most half of sin k, or k = 0 and it is all
-//! there is: the sum errs by less than 64 u^2 = 2^-100 of itself, cosines even less. For radians t itself is
-//! off by 2^-103 more, which is 2^-96 of the sine. The head of the pair is the sum rounded: half a unit
-//! in the last place and less than 2^-42 more. A quotient of two pairs, corrected once, has a relative
-//! error of 2^-95 before it is rounded twice.
+//! Let u = 2^-53, and r = k + f with a whole degree k and |f| <= 1/2. Sine and cosine of k are
+//! known to u^2 of themselves. With t = f in radians, q = t^2 < 7.7e-5, the series of sin t / t and
+//! cos t - 1 end before q^6 / 12!, below 2^-110. Their terms from q^3 on are computed in plain
+//! floating point: they are below 2^-53 and 2^-50, so that four roundings of each are below 2^-101
+//! together. The others are computed in pairs, with errors of 9 u^2 for a product and 4 u^2 for a
+//! sum: sin t errs by 12 u^2, and the rest of cos t - 1, below q / 2, by 2^-112. In
+//! sin k + (sin k (cos t - 1) + cos k sin t) the last term is at most half of sin k, or k = 0 and
+//! it is the only one: the sum errs by less than 64 u^2 = 2^-100 of itself, cosines even less. For
+//! radians t itself is off by 2^-103 more, which is 2^-96 of the sine. The head of the pair is the
+//! sum rounded: it errs by half a unit in the last place and less than 2^-42 of a unit more. A
+//! quotient of two pairs, corrected once, has a relative error of 2^-95 before it is rounded twice.
 //!
 //! # The quick way
 //!
-//! The same sums in doubles, but for the first two terms, sin k and the exact product cos k t. The others are
-//! below 2^-14.6 of the result, and 2^-13 in sum: each passes ten roundings at most, with what t^2
-//! leaves out of t counted as two, and all err by 2^-13 10 u < 2^-62 of the result. (For k = 0 the sine
-//! has the terms of sin t alone, which are smaller.) The quotient errs by twice that and 2^-100. If
-//! such an error cannot change the nearest double, that is the result of the long way, too, whose error is
-//! far smaller: the quick way only saves time.
+//! The same sums in doubles, except for the first two terms, sin k and the exact product cos k t.
+//! The others are below 2^-14.6 of the result, and 2^-13 in sum: each goes through at most ten
+//! roundings, where ignoring the tail of t counts as two, and all err by 2^-13 10 u < 2^-62 of the
+//! result. (For k = 0 the sine has the terms of sin t alone, which are smaller.) The quotient errs
+//! by twice that and 2^-100. If such an error cannot change the nearest double, that is the result
+//! of the long way, too, whose error is far smaller: the quick way only saves time.
 
 use delone_predicates::Point3;
 use delone_predicates::arithmetic::Pair;
@@ -83,9 +85,9 @@ enum Care {
 /// How angles are measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
-    /// 360 for a turn.
+    /// 360 to a turn.
     Degrees,
-    /// 2 pi for a turn.
+    /// 2 pi to a turn.
     Radians,
 }
 
@@ -174,7 +176,7 @@ fn first_octant(rest: &Rest, care: Care) -> [Pair; 2] {
     }
 }
 
-/// Sine and cosine of k + t, from those of k, to 2^-62 of themselves: see the head of the file.
+/// Sine and cosine of k + t, from those of k, to 2^-62 of themselves: see the top of the file.
 fn quick(s: Pair, c: Pair, t: Pair) -> [Pair; 2] {
     let q = t.hi * t.hi;
     let sine = t.lo + t.hi * q * (q * (1.0 / 120.0 - q * (1.0 / 5040.0)) - 1.0 / 6.0);
@@ -194,7 +196,7 @@ fn quick(s: Pair, c: Pair, t: Pair) -> [Pair; 2] {
     ]
 }
 
-/// The pair rounded to a double, if an error of `bound` times it would not change that.
+/// The pair rounded to a double, if an error of `bound` times the pair would not change the result.
 fn certain(x: Pair, bound: f64) -> Option<f64> {
     let error = x.hi.abs() * bound;
     (x.hi + (x.lo + error) == x.hi && x.hi + (x.lo - error) == x.hi).then_some(x.hi)
@@ -283,7 +285,8 @@ pub fn tangent(angle: f64, measure: Measure) -> f64 {
     q + rest.hi / c.hi + 0.0
 }
 
-/// The vector of a longitude and a latitude, of any length; latitudes from the poles on are the poles.
+/// The vector, of any length, of a longitude and a latitude; latitudes at or beyond a pole are the
+/// pole.
 pub fn direction([longitude, latitude]: [f64; 2], measure: Measure) -> Point3 {
     let pole = match measure {
         Measure::Degrees => 90.0,

@@ -9,7 +9,7 @@ use crate::base::parallel;
 use crate::base::watch::Watch;
 use crate::order::order_of;
 
-/// Vectors that one task takes at a time.
+/// The number of vectors that one task takes at a time.
 const SHARE: usize = 1 << 14;
 
 /// Directions and their rows.
@@ -30,20 +30,20 @@ pub struct Arranged {
 pub struct Halves {
     /// The axis at a right angle to it; the first side is that of positive coordinates.
     pub axis: usize,
-    /// How many directions are on the first side; the others are on the plane or beyond.
+    /// How many directions are on the first side; the others are on the plane or beyond it.
     pub first: u32,
 }
 
-/// The number of directions that is worth two triangulations; small for fuzzers.
+/// The number of directions from which on two triangulations pay off; small for fuzzers.
 #[allow(unexpected_cfgs)] // Set by fuzz/run.sh and by cargo fuzz.
 const MANY: usize = if cfg!(fuzzing) { 8 } else { 1 << 14 };
-/// Each octant must have this fraction of the directions, or some are too empty for a join.
+/// Each octant must have one in this many directions, or some are too empty for a join.
 const OCTANT: usize = 64;
-/// Each side of the plane must have this fraction, or two workers gain too little.
+/// Each side of the plane must have one in this many, or two workers gain too little.
 const SIDE: usize = 4;
 
-/// The coordinate whose sign divides the directions best; `None` if they are few, or not all octants have
-/// their share.
+/// The coordinate whose sign divides the directions best; `None` if they are few, or not all
+/// octants have their share.
 fn axis(vectors: &[Point3], many: usize, workers: usize, watch: &Watch) -> Result<Option<usize>> {
     let n = vectors.len();
     if n < many {
@@ -80,7 +80,7 @@ pub fn arrange(vectors: &[Point3], workers: usize, watch: &Watch) -> Result<Arra
     arrange_from(vectors, MANY, workers, watch)
 }
 
-/// The same; they are arranged by sides if there are so `many`.
+/// The same, but arranged by sides from `many` vectors on.
 pub fn arrange_from(
     vectors: &[Point3],
     many: usize,
@@ -187,8 +187,8 @@ fn gathered(
     Ok((own, repeated.contains(&true)))
 }
 
-/// Leaves the first of equal neighbors, and lists the rows of the others with its number. Returns how many
-/// of the first `side` vectors are left out.
+/// Keeps the first of equal neighbors, and lists the rows of the others with its number. Returns
+/// how many of the first `side` vectors are left out.
 fn close_up(
     own: &mut Vec<Point3>,
     rows: &mut Vec<u32>,
@@ -227,7 +227,7 @@ fn places(vectors: &[Point3], workers: usize, watch: &Watch) -> Result<Vec<Point
     Ok(places)
 }
 
-/// The direction, roughly: its place on the curve depends on it, and no triangle.
+/// The approximate direction: its place on the curve depends on it, but no triangle does.
 fn rough(v: Point3) -> Point3 {
     let top = v.iter().fold(0.0, |top: f64, x| top.max(x.abs()));
     let w = v.map(|x| x / top);

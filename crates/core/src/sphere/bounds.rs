@@ -1,11 +1,12 @@
-//! The bounds of the filters against integers: none is exceeded, and none has much more room than that.
+//! The bounds of the filters against integers: none is exceeded, and none has much more room than
+//! that.
 //!
-//! A wrong sign takes a near tie whose rounding errors all have the same sign. Random ties come
-//! nowhere near the bounds, so only luck would reveal a bound that is too small. So errors are
-//! measured here, not signs. Directions are the computed ones, and the true ones are as far from
-//! them as the bound of their error allows, each coordinate on the side where the determinant
-//! changes most. Each test states which share of its bound the largest error reaches, so a bound
-//! that is smaller by the inverse of that fails.
+//! A wrong sign requires a near tie whose rounding errors all have the same sign. Random ties come
+//! nowhere near the bounds, so only luck would reveal a bound that is too small. Therefore these
+//! tests measure errors, not signs. Directions are the computed ones, and the true ones are as far
+//! from them as the bound of their error allows, each coordinate on the side where the determinant
+//! changes most. Each test states what share of its bound the largest error reaches, so a bound
+//! reduced to less than that share fails.
 
 use delone_predicates::Point3;
 use delone_predicates::sphere::{Unit, stages};
@@ -63,8 +64,8 @@ fn determinant(rows: &[[BigInt; 3]; 3]) -> BigInt {
 
 /// Where true directions may be, as far from the computed ones as `radius` allows.
 ///
-/// `heads` are the directions without their tails, in which the signs of minors are computed, and `known`
-/// what is known of them.
+/// `heads` are the directions without their tails, in which the signs of minors are computed, and
+/// `known` what is known of them.
 fn pushed<const N: usize>(
     heads: [Point3; N],
     known: [[BigInt; 3]; N],

@@ -1,22 +1,23 @@
-//! Constrained triangulations of directions: each arc is a chain of edges, and the others are Delaunay as
-//! far as arcs permit.
+//! Constrained triangulations of directions: each arc is a chain of edges, and the others are
+//! Delaunay as far as arcs permit.
 //!
-//! An arc is the shorter one of the great circle through two directions. They are inserted into the
-//! Delaunay triangulation by the code for segments in the plane (`constrained::segment`); see
-//! `constrained::sites` for why that holds.
+//! An arc is the shorter of the two arcs of the great circle through two directions. Arcs are
+//! inserted into the Delaunay triangulation by the code for segments in the plane
+//! (`constrained::segment`); `constrained::sites` explains why that is correct.
 //!
 //! # One result
 //!
-//! A triangle t with normal n, at distance h from the center, has the direction p inside its circle if
-//! f_t(p) = n p / h > 1. Let p be visible from a point of t: their short arc, which stays inside the
-//! circle if p is there, meets no other vertex and crosses no constrained edge. From triangle
-//! to triangle along it the edge crossed is locally Delaunay, so that f(p) rises or stays (see `walk`),
-//! up to 1 in the last triangle, whose corner p is. So f_t(p) <= 1: if all edges but the constrained ones
-//! are locally Delaunay, then no circle contains a direction that is visible from its triangle. With ties
-//! broken by the perturbation of `delone_predicates::sphere`, f differs for all vertices, and two such
-//! triangulations are the same: where triangles of both overlapped, one would have a visible corner
-//! of the other inside. So neither the order of the rows nor that of the insertions matters; flips
-//! end, as each raises the surface of flat triangles along rays.
+//! A triangle t with normal n, at distance h from the center, has the direction p inside its circle
+//! if f_t(p) = n p / h > 1. Let p be visible from a point of t: their short arc, which stays inside
+//! the circle if p is there, meets no other vertex and crosses no constrained edge. Each edge that
+//! the arc crosses is locally Delaunay, so from triangle to triangle f(p) rises or stays (see
+//! `walk`), up to 1 in the last triangle, of which p is a corner. So f_t(p) <= 1: if all edges but
+//! the constrained ones are locally Delaunay, then no circle contains a direction that is visible
+//! from its triangle. With ties broken by the perturbation of `delone_predicates::sphere`, f
+//! differs for all vertices, and two such triangulations are the same: where triangles of both
+//! overlapped, one would have a visible corner of the other inside. So neither the order of the
+//! rows nor that of the insertions matters. Flips end, as each raises the surface of flat triangles
+//! along rays.
 
 use delone_predicates::sphere::same;
 use delone_predicates::{Point3, Sign};
@@ -37,7 +38,7 @@ use crate::order::sort;
 
 /// The most pairs of crossing arcs that are listed.
 const MOST: usize = 1 << 20;
-/// Work between two checks for interruption: a candidate pair is one.
+/// Units of work between two checks for interruption; a candidate pair counts as one.
 const WATCH_EVERY: usize = 1 << 12;
 
 /// A constrained Delaunay triangulation in the rows of the input.
@@ -45,7 +46,7 @@ const WATCH_EVERY: usize = 1 << 12;
 pub struct Constrained {
     /// Triangles, counterclockwise seen from outside, and their neighbors; -1 beyond the hull.
     pub arrays: Arrays<3>,
-    /// For each triangle and corner, whether the edge opposite is part of an arc.
+    /// For each triangle and corner, whether the opposite edge is part of an arc.
     pub constrained: Vec<[bool; 3]>,
     /// `[row, first row of the same direction]`, ascending.
     pub duplicates: Vec<[u32; 2]>,
@@ -57,8 +58,8 @@ pub struct Constrained {
     pub through: Vec<[u32; 2]>,
 }
 
-/// The constrained Delaunay triangulation of the directions of `vectors`, with the arcs between pairs of
-/// their rows, `segments`. Arcs that cross are an error.
+/// The constrained Delaunay triangulation of the directions of `vectors`, with the arcs between
+/// pairs of their rows, `segments`. Arcs that cross are an error.
 pub fn constrain(
     vectors: &[Point3],
     segments: &[[u32; 2]],
@@ -154,7 +155,7 @@ fn places(built: &Built, duplicates: &[[u32; 2]], n: usize) -> Result<Vec<u32>> 
 /// The pairs of arcs that cross, ascending; at most [`MOST`]. `waiting` are the arcs that were not
 /// inserted completely.
 ///
-/// Of two arcs that cross, one was inserted there and is met by the other as a marked edge; or both
+/// Of two arcs that cross, one was inserted there, and the other meets it as a marked edge; or both
 /// wait, and where they cross they pass through one triangle, its boundary included.
 fn crossings(
     marked: &mut Marked<Directions>,

@@ -1,4 +1,4 @@
-//! What is left if directions span no triangle: a few of them, or their order on a great circle.
+//! The result if directions span no triangle: a few of them, or their order on a great circle.
 
 use std::cmp::Ordering;
 
@@ -12,8 +12,9 @@ use crate::base::memory::with_room;
 use crate::base::watch::Watch;
 use crate::order::sort_by;
 
-/// The error of directions that all lie on one great circle, with the first rows of the distinct ones in
-/// order around it, from the smallest one counterclockwise seen from the side of the larger normal.
+/// The error of directions that all lie on one great circle, with the first rows of the distinct
+/// ones in order around it, from the smallest one counterclockwise seen from the side of the larger
+/// normal.
 pub fn degenerate(arranged: &Arranged, watch: &Watch) -> Result<Error> {
     let directions = &arranged.directions;
     let mut found: Vec<(Point3, u32)> = with_room(arranged.rows.len())?;

@@ -18,7 +18,7 @@ const SHARE: usize = 1 << 14;
 pub struct Directions {
     /// The directions, rounded.
     pub heads: Vec<Point3>,
-    /// Their tails: what rounding left out.
+    /// Their tails: what rounding removed.
     pub tails: Vec<Point3>,
     /// The vectors, exact.
     pub vectors: Vec<Point3>,
@@ -82,15 +82,15 @@ impl Directions {
         }
     }
 
-    /// The sign of the determinant of three.
+    /// The sign of the determinant of three directions.
     #[inline]
     pub fn orient(&self, numbers: [u32; 3]) -> Sign {
         let units = numbers.map(|i| self.unit(i));
         orient_of(numbers.map(|i| self.vector(i)), units.each_ref())
     }
 
-    /// Whether the last of four distinct directions is inside the circle of the first three; ties are
-    /// broken canonically.
+    /// Whether the last of four distinct directions is inside the circle of the first three; ties
+    /// are broken canonically.
     #[inline]
     pub fn in_circle(&self, numbers: [u32; 4]) -> bool {
         let vectors = numbers.map(|i| self.vector(i));
@@ -102,18 +102,18 @@ impl Directions {
         sign == Sign::Positive
     }
 
-    /// Whether two are the same.
+    /// Whether two directions are the same.
     pub fn same(&self, a: u32, b: u32) -> bool {
         same(self.vector(a), self.vector(b))
     }
 
-    /// Whether two are the same or opposite.
+    /// Whether two directions are the same or opposite.
     pub fn parallel(&self, a: u32, b: u32) -> bool {
         self.same(a, b) || same(self.vector(a).map(|x| -x), self.vector(b))
     }
 
-    /// Whether `p`, on the great circle through `a` and `b`, is strictly inside the short arc between
-    /// them.
+    /// Whether `p`, on the great circle through `a` and `b`, is strictly inside the short arc
+    /// between them.
     pub fn between(&self, a: u32, p: u32, b: u32) -> bool {
         let [a, p, b] = [a, p, b].map(|i| self.vector(i));
         // The cross products of two of them are multiples of that of a and b.
@@ -144,8 +144,8 @@ impl Sites for Directions {
     }
 }
 
-/// The sign of one coordinate of the cross product of two vectors, by the other two axes: that of their
-/// determinant with this axis.
+/// The sign of one coordinate of the cross product of two vectors, by the other two axes: that of
+/// their determinant with this axis.
 pub fn turn(a: Point3, b: Point3, [i, j]: [usize; 2]) -> Sign {
     orient2d([a[i], a[j]], [b[i], b[j]], [0.0; 2])
 }

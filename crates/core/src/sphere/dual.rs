@@ -1,7 +1,7 @@
 //! The Voronoi diagram of directions as the dual of all facets of their convex hull.
 //!
-//! Facets of one circle share a vertex: exact in-circle tests say across which edges, and a ridge is
-//! dual to each of the others, so that no ridge has length zero.
+//! Facets of one circle share a vertex: exact in-circle tests decide across which edges. A ridge is
+//! dual to each other edge, so no ridge has length zero.
 
 use delone_predicates::sphere::{Unit, incircle_of};
 use delone_predicates::{Point3, Sign};
@@ -13,7 +13,7 @@ use crate::base::parallel;
 use crate::base::sets::Sets;
 use crate::base::watch::{Pace, Watch};
 
-/// Facets that are compared together.
+/// The number of facets that are compared together.
 const SHARE: usize = 1 << 12;
 /// Units of work between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 16;
@@ -27,7 +27,8 @@ pub struct Dual {
     pub vertex: Vec<i32>,
     /// The first facet of each vertex.
     pub facet: Vec<i32>,
-    /// The directions of the edge of each ridge, and those opposite in the facets to its left and right.
+    /// The directions of the edge of each ridge, and those opposite in the facets to its left and
+    /// right.
     pub around: Vec<[i32; 4]>,
     /// The vertices of each ridge: of the facets to the left and to the right of its edge.
     pub ends: Vec<[i32; 2]>,
@@ -47,7 +48,8 @@ struct Facets<'a> {
     neighbors: &'a [[i32; 3]],
 }
 
-/// The dual of facets of at least four directions. Unless `merged`, each facet has a vertex of its own.
+/// The dual of facets of at least four directions. Unless `merged`, each facet has a vertex of its
+/// own.
 pub fn dual(
     vectors: &[Point3],
     simplices: &[[i32; 3]],
@@ -94,8 +96,7 @@ impl Facets<'_> {
         Ok([corners[(k + 1) % 3], corners[(k + 2) % 3], corners[k], apex])
     }
 
-    /// For each facet a mask of the edges, among those to facets of larger numbers, across which its
-    /// circle goes on.
+    /// For each facet, a mask of its edges to facets of larger numbers that are on the same circle.
     fn tied(&self, vectors: &[Point3], workers: usize, watch: &Watch) -> Result<Vec<u8>> {
         let (heads, tails) = units(vectors, workers, watch)?;
         let mut masks = filled(self.simplices.len(), 0_u8)?;

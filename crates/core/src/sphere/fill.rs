@@ -1,8 +1,8 @@
 //! Inserts the directions of a block, one after the other.
 //!
-//! The order is that of `delaunay::plane::bowyer_watson`. Here, no other method replaces it if
-//! cavities are large. Each insertion terminates, so the build does for any input, but it may take
-//! quadratic time.
+//! The order is that of `delaunay::plane::bowyer_watson`. Here, no other method takes over if
+//! cavities are large. Each insertion terminates, so the build terminates for any input, but it may
+//! take quadratic time.
 
 use std::ops::Range;
 
@@ -24,7 +24,7 @@ const LOT: u32 = 1 << 12;
 pub struct Filled {
     /// The infinite corner of a ghost; `None` if the sphere is covered.
     pub ghost: Option<Code>,
-    /// The records taken.
+    /// The number of records in use.
     pub taken: Range<u32>,
     /// Directions that are the same as a vertex, with that vertex.
     pub repeats: Vec<[u32; 2]>,
@@ -61,7 +61,8 @@ fn rounds(block: &Range<u32>) -> impl Iterator<Item = u32> + use<> {
     Rounds::over(block.len() as u32, STRIDES).map(move |i| start + i)
 }
 
-/// Three directions of a block that are not on one great circle, counterclockwise; `None` if all are on one.
+/// Three directions of a block that are not on one great circle, counterclockwise; `None` if all
+/// are on one.
 fn first_triangle(
     directions: &Directions,
     block: &Range<u32>,

@@ -1,21 +1,22 @@
-//! Joins two triangulations, of the directions on both sides of a plane, to one of the whole sphere.
+//! Joins two triangulations, of the directions on both sides of a plane, to one of the whole
+//! sphere.
 //!
 //! Each is convex on the sphere, with a ring of ghosts. Between the rings is a ring of triangles:
 //! each has an edge of one ring and its apex on the other, because an arc between two vertices of
-//! one ring would pass through the inside of that ring. A bridge from ring to ring goes once
-//! around, by the next vertex of one or the other: of two that are possible the one that is not in
-//! the circle with the other. Then flips make all edges Delaunay (C. L. Lawson, 1977): an edge that
-//! is not can be flipped, as the fourth vertex is inside a circle smaller than a hemisphere, and
-//! each flip raises the surface of flat triangles, so that they end. With ties broken by the
-//! perturbation the result is the canonical triangulation.
+//! one ring would pass through the inside of that ring. A bridge from ring to ring goes around
+//! once, each time to the next vertex of one ring or the other. If both triangles are possible, it
+//! is the one whose circle does not contain the other apex. Then flips make all edges Delaunay (C.
+//! L. Lawson, 1977): an edge that is not Delaunay can be flipped, as the fourth vertex is inside a
+//! circle smaller than a hemisphere, and each flip raises the surface of flat triangles, so that
+//! the flips end. With ties broken by the perturbation the result is the canonical triangulation.
 //!
 //! Every triangle has a positive determinant, so the closed surface covers each direction equally
 //! often: once, as the axis lies inside the first half and in no triangle of the ring. If one of
-//! these does not hold, or if there are so many flips that insertion is faster, there is no answer,
-//! and the caller starts again with all directions.
+//! these conditions does not hold, or if there are so many flips that insertion is faster, there is
+//! no answer, and the caller starts again with all directions.
 //!
-//! Each loop has a bound that does not depend on the geometry: a ring has no more sides than there are
-//! records, the bridge makes one step for each side, and flips have a budget.
+//! Each loop has a bound that does not depend on the geometry: a ring has no more sides than there
+//! are records, the bridge makes one step for each side, and flips have a budget.
 
 use delone_predicates::Sign;
 
@@ -30,9 +31,9 @@ use crate::mesh::plane::{Code, Mesh2, Patch, half_edge, next, prev, triangle};
 
 /// Flips between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 12;
-/// Vertices of the first ring from which a bridge is tried.
+/// The number of vertices of the first ring from which a bridge is tried.
 const TRIES: usize = 64;
-/// Flips per triangle before the halves are given up; few triangles beside the seam need any.
+/// Flips per triangle before the join is given up; few triangles next to the seam need any.
 const FLIPS: usize = 16;
 
 /// An edge of a ring, from `tail` to the next one.
@@ -46,8 +47,8 @@ struct Side {
     ghost: u32,
 }
 
-/// The triangulations of both sides of a plane, joined to one of the whole sphere; `None` if that is not
-/// possible.
+/// The triangulations of both sides of a plane, joined to one of the whole sphere; `None` if that
+/// is not possible.
 pub fn in_halves(
     mesh: &mut Mesh2,
     directions: &Directions,
@@ -68,8 +69,8 @@ pub fn in_halves(
     }
 }
 
-/// The mesh of both halves, of which the first is above a plane at a right angle to `axis`, in the first
-/// records; `None` if the rings cannot be joined.
+/// The mesh of both halves, of which the first is above a plane at a right angle to `axis`, in the
+/// first records; `None` if the rings cannot be joined.
 fn join_halves(
     mesh: &mut Mesh2,
     directions: &Directions,
@@ -135,7 +136,8 @@ impl Around<'_> {
         turn(a, b, [(self.axis + 1) % 3, (self.axis + 2) % 3])
     }
 
-    /// Whether the counterclockwise triangle `a b c` does not contain the axis, nor has it on its edges.
+    /// Whether the counterclockwise triangle `a b c` does not contain the axis, nor has it on its
+    /// edges.
     fn is_clear(&self, [a, b, c]: [u32; 3]) -> bool {
         [(a, b), (b, c), (c, a)]
             .iter()
@@ -143,8 +145,9 @@ impl Around<'_> {
     }
 }
 
-/// The sides of a ring, each beginning where the one before ends in the direction of `step`; an error if
-/// there are more than `most`, the records of its half, as then the steps never come back to the start.
+/// The sides of a ring, each beginning where the one before ends in the direction of `step`; an
+/// error if there are more than `most`, the records of its half, as then the steps never come back
+/// to the start.
 fn ring(
     patch: &Patch,
     start: Code,
@@ -171,8 +174,8 @@ fn ring(
     Err(Error::Internal("a ring of ghosts does not close".into()))
 }
 
-/// A side of each ring, where the arc between the first ends of both is outside of the rings: it leaves
-/// both at once, and they are convex.
+/// A side of each ring, where the arc between the first ends of both is outside of the rings: it
+/// leaves both at once, and they are convex.
 fn bridge(directions: &Directions, [above, below]: &[Vec<Side>; 2]) -> Option<[usize; 2]> {
     let right = |a: u32, b: u32, p: u32| directions.orient([a, b, p]) == Sign::Negative;
     let step = (above.len() / TRIES).max(1);
@@ -189,15 +192,15 @@ fn bridge(directions: &Directions, [above, below]: &[Vec<Side>; 2]) -> Option<[u
             (0..below.len()).max_by(|&i, &j| product(&below[i]).total_cmp(&product(&below[j])))?;
         let (after, b) = (below[j], below[j].head);
         let last = below[(j + below.len() - 1) % below.len()];
-        // Outside of a convex ring is what lies right of one of the two sides at the vertex.
+        // What lies right of one of the two sides at the vertex is outside the convex ring.
         let leaves = right(before.tail, a, b) || right(a, above[i].head, b);
         let meets = right(after.tail, b, a) || right(b, last.head, a);
         (leaves && meets).then_some([i, j])
     })
 }
 
-/// Fills what is between the rings, in place of their ghosts. Returns the edges to be checked; `None` if
-/// somewhere no triangle is possible that is clear of the axis.
+/// Fills the gap between the rings, in place of their ghosts. Returns the edges to be checked;
+/// `None` if somewhere no triangle is possible that is clear of the axis.
 fn zip(
     patch: &mut Patch,
     around: &Around,
@@ -237,11 +240,13 @@ fn zip(
             return Ok(None);
         }
         let t = side.ghost;
-        // The edge to the ring is opposite the corner on the other one, the bridge opposite the apex.
+        // The edge to the ring is opposite the corner on the other one, the bridge opposite the
+        // apex.
         let (on_ring, leaving) = if above_next { (1, 0) } else { (0, 1) };
         patch.set(t, [a, b, apex]);
         patch.link(half_edge(t, on_ring), side.inner);
-        // The triangle takes the record of the ghost, and joins the one before it across the bridge.
+        // The triangle takes the record of the ghost, and joins the one before it across the
+        // bridge.
         match last {
             Some(code) => patch.link(code, half_edge(t, 2)),
             None => first = half_edge(t, 2),
@@ -265,8 +270,8 @@ fn zip(
     Ok(Some(stack))
 }
 
-/// Flips edges until all those of the `stack` and all beside a flip are Delaunay; false if that takes
-/// more than `most` flips.
+/// Flips edges until all those of the `stack` and all beside a flip are Delaunay; false if that
+/// takes more than `most` flips.
 fn flip(
     patch: &mut Patch,
     directions: &Directions,
@@ -322,8 +327,8 @@ mod tests {
             .collect()
     }
 
-    /// The triangles of a mesh that covers the sphere, from their smallest corners, sorted. Where two
-    /// numbers are the same direction, its first one represents both.
+    /// The triangles of a mesh that covers the sphere, from their smallest corners, sorted. Where
+    /// two numbers are the same direction, its first one represents both.
     fn triangles(mesh: &mut Mesh2, arranged: &Arranged, filled: &Filled) -> Vec<[u32; 3]> {
         let directions = &arranged.directions;
         let count = directions.count() as usize - filled.repeats.len();
@@ -392,7 +397,8 @@ mod tests {
     fn rings_far_from_the_plane_and_on_it() {
         let mut next = random(5);
         for [above, below] in [[1e-9, 0.0], [1e-9, 1e-9], [0.5, 0.0], [4.0, 4.0]] {
-            // Half of them around each pole, and a few so near to it that all octants have their share.
+            // Half of them around each pole, and a few so near to it that all octants have their
+            // share.
             let mut vectors = Vec::new();
             for i in 0..4000 {
                 let [x, y] = [0; 2].map(|_| next(1 << 20) - (1 << 19) as f64);

@@ -197,7 +197,7 @@ impl<'a> Kernel<'a> {
         let mut side = dot(a.d, aim);
         let (mut first, mut last, mut hint) = (u32::MAX, u32::MAX, u32::MAX);
         loop {
-            //        w            Seen from p the edge runs from u to v. If the triangle
+            //        w            Seen from p, the edge runs from u to v. If the triangle
             //      /   \          beyond it is in conflict, its edges u w and w v replace
             //     v ---- u        u v.
             //         p

@@ -1,15 +1,17 @@
-//! Location on a triangulation in arrays: the triangle that contains a direction, and the nearest vertex.
+//! Location on a triangulation in arrays: the triangle that contains a direction, and the nearest
+//! vertex.
 //!
-//! Both are exact and independent of the other queries; the answer is -1 where a query has no direction. A
-//! walk by exact signs (see `walk`) leads from query to query along a curve. On the boundary of triangles the one with the smallest number counts.
+//! Both are exact and independent of the other queries; the answer is -1 where a query has no
+//! direction. A walk by exact signs (see `walk`) leads from query to query along a curve. On the
+//! boundary of triangles the one with the smallest number counts.
 //!
-//! The nearest vertex maximizes a linear function over the directions. From a vertex, the walk goes to the
-//! best of its neighbors as long as that is better, as the simplex method does, and ends at the
-//! maximum over their convex hull with the center added: from a point of a hull that leaves out the
-//! center, the center may be what is better, and then the vertices of the boundary are compared, too. If
-//! the maximum with the center is zero, some vertex of the boundary is the nearest: were it another one,
-//! all facets at it would be triangles, whose normals have positive products with it; so would a
-//! combination of these, such as the query.
+//! The nearest vertex maximizes a linear function over the directions. From a vertex, the walk goes
+//! to the best of its neighbors as long as that is better, as the simplex method does. It ends at
+//! the maximum over the convex hull of the directions and the center. If the hull of the directions
+//! alone does not contain the center, the center may be the maximum, and then the vertices of the
+//! boundary are compared, too. If the maximum with the center is zero, some vertex of the boundary
+//! is the nearest: were it another one, all facets at it would be triangles, whose normals have
+//! positive products with it; so would a combination of these, such as the query.
 
 use delone_predicates::sphere::{Unit, nearer_of, orient_of};
 use delone_predicates::{Point3, Sign};
@@ -23,11 +25,11 @@ use crate::base::parallel;
 use crate::base::watch::{Pace, Watch};
 use crate::order::{order_of, sort_by};
 
-/// Work between two checks for interruption; a step of a walk is one.
+/// Units of work between two checks for interruption; a step of a walk counts as one.
 const WATCH_EVERY: usize = 1 << 12;
 /// The number of steps of a walk after which edges are tried in random order.
 const TURNS: usize = 1 << 10;
-/// More than the errors of two rounded products of rounded directions together, each 5 units of
+/// A bound on the total error of two rounded products of rounded directions, each of 5 units of
 /// rounding.
 const MARGIN: f64 = 1e-14;
 
@@ -132,7 +134,8 @@ impl Index {
         })
     }
 
-    /// Answers queries along a curve; each answer comes with the triangle to start from for the next.
+    /// Answers queries along a curve; each answer comes with the triangle to start from for the
+    /// next.
     fn each(
         &self,
         queries: Vec<Point3>,
@@ -186,7 +189,8 @@ impl Index {
         orient_of([a.0, b.0, *q], [&a.1, &b.1, unit])
     }
 
-    /// The same for all three edges, where the rounded directions prove it; see `kernel` for the bound.
+    /// The same for all three edges, where the rounded directions prove it; see `kernel` for the
+    /// bound.
     #[inline]
     fn sides(&self, query: &Unit, t: usize) -> [Option<Sign>; 3] {
         let q = query.hi;
@@ -201,11 +205,12 @@ impl Index {
         })
     }
 
-    /// The triangle that contains a query, or the one at whose boundary edge the walk left the hull.
+    /// The triangle that contains a query, or the one from which the walk left the hull.
     ///
-    /// In a Delaunay triangulation no triangle is met twice. Around constrained edges a walk may cycle: a
-    /// long one tries edges in random order, which ends (O. Devillers, S. Pion and M. Teillaud, "Walking in
-    /// a triangulation", 2002), and one that is much too long gives way to a search.
+    /// In a Delaunay triangulation no triangle is met twice. Around constrained edges a walk may
+    /// cycle: a long one tries edges in random order, which ends (O. Devillers, S. Pion and M.
+    /// Teillaud, "Walking in a triangulation", 2002), and one that is much too long gives way to a
+    /// search.
     fn walk(&self, q: (Point3, Unit), from: usize, pace: &mut Pace) -> Result<(usize, bool)> {
         let (mut t, mut dice) = (from, 1_u32);
         let count = self.arrays.simplices.len();
@@ -269,8 +274,8 @@ impl Index {
         }
     }
 
-    /// Visits the triangles at a vertex, each with the next vertex counterclockwise, and at the boundary
-    /// the last vertex as well.
+    /// Visits the triangles at a vertex, each with the next vertex counterclockwise, and at the
+    /// boundary the last vertex as well.
     fn around(&self, at: At, pace: &mut Pace, mut visit: impl FnMut(usize, u32)) -> Result<()> {
         let place = |t: usize| {
             let corners = self.arrays.simplices[t];
@@ -351,8 +356,8 @@ impl Index {
         }
     }
 
-    /// The smallest of the vertices that are as near as the nearest one: these are connected, as they
-    /// are the corners of a facet.
+    /// The smallest of the vertices that are as near as the nearest one: these are connected, as
+    /// they are the corners of a facet.
     fn smallest(&self, q: (Point3, Unit), best: At, pace: &mut Pace) -> Result<u32> {
         let mut equal: Vec<At> = vec![best];
         let mut next = 0;

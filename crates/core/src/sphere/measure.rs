@@ -16,8 +16,8 @@ use crate::base::wide::{determinant, lowest, ratio, root, scaled};
 
 /// Triangles, or ridges, that are measured together.
 const SHARE: usize = 1 << 10;
-/// A determinant of pairs is right to 2^-98 times the lengths of two differences; one that is not 2^50
-/// times as large is computed by integers.
+/// A determinant of pairs has an error of at most 2^-98 times the lengths of two differences; one
+/// that is not 2^50 times as large as that is computed by integers.
 const UNSURE: f64 = 1.0 / (1_u64 << 48) as f64;
 
 /// The solid angles of triangles: 4 pi for the whole sphere.
@@ -30,8 +30,8 @@ pub fn areas(
     mapped(vectors, simplices, area, workers, watch)
 }
 
-/// The unit vectors, rounded, that are equally far from the corners of triangles, on their side of the
-/// sphere.
+/// The circumcenters of triangles: unit vectors, rounded, equally far from the corners and on their
+/// side of the sphere.
 pub fn circumcenters(
     vectors: &[Point3],
     simplices: &[[i32; 3]],
@@ -82,8 +82,8 @@ pub(super) fn size(p: [Pair; 3]) -> f64 {
 
 /// A. Van Oosterom and J. Strackee, "The solid angle of a plane triangle" (1983): the tangent of
 /// half of it is [a, b, c] / (1 + a b + b c + c a). The determinant is correct to nearly all bits,
-/// and so are slivers. The sum need not be, as long as one of the two is large, because its error
-/// is weighted by the share of the determinant. Both are small if two corners are nearly opposite.
+/// even for slivers. The sum need not be, as long as one of the two is large, because its error
+/// counts in proportion to the determinant. Both are small if two corners are nearly opposite.
 fn area(corners: [Point3; 3], directions: &[Unit; 3]) -> f64 {
     let units = directions.each_ref().map(pairs);
     let [a, b, c] = units;
@@ -98,7 +98,7 @@ fn area(corners: [Point3; 3], directions: &[Unit; 3]) -> f64 {
     };
     let [a, b, c] = directions.each_ref().map(|unit| unit.hi);
     let sum = 1.0 + dot(a, b) + dot(b, c) + dot(c, a);
-    // An error of 2^-50 in the sum is one of less than 2^-47 in the angle if the sum is above 1/8.
+    // An error of 2^-50 in the sum causes less than 2^-47 in the angle if the sum is above 1/8.
     if sum.abs() > 0.125 {
         return 2.0 * det.atan2(sum);
     }
@@ -130,7 +130,7 @@ fn exact_area(corners: [Point3; 3]) -> f64 {
     let whole: BigInt = (&k * &l * &m) >> (2 * BITS);
     let sum = whole + product(&a, &b) * &m + product(&b, &c) * &k + product(&c, &a) * &l;
     let det = determinant([&a, &b, &c]) << BITS;
-    // Both over the larger one: neither quotient is out of range.
+    // Both are divided by the larger one, so neither quotient is out of range.
     let most = det.magnitude().max(sum.magnitude()).clone().into();
     let share = |x: &BigInt| ratio(x, &most, 0).unwrap_or_default();
     2.0 * share(&det).atan2(share(&sum))

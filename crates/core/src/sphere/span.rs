@@ -1,17 +1,17 @@
 //! Lengths of ridges on the sphere, and the areas between them and their sites.
 //!
 //! Let a b be the edge of a ridge, c and d the corners to its left and right, p = b - a, q = c - a,
-//! r = d - a, n = p x q and m = r x p the outward normals of the two facets, and D = -[p, q, r] >= 0.
-//! As n x m = D p, the ridge has the length atan2(D |p|, n m). The triangle from a to the ends n / |n|
-//! and m / |m| has the determinant D |p|^2 / (2 |n| |m|), as a p = -|p|^2 / 2; with the formula of
-//! Van Oosterom and Strackee (1983) the tangent of half of its area is
+//! r = d - a, n = p x q and m = r x p the outward normals of the two facets, and D = -[p, q, r] >=
+//! 0. As n x m = D p, the ridge has the length atan2(D |p|, n m). The triangle from a to the ends n
+//! / |n| and m / |m| has the determinant D |p|^2 / (2 |n| |m|), as a p = -|p|^2 / 2; with the
+//! formula of Van Oosterom and Strackee (1983) the tangent of half of its area is
 //!
 //! D |p|^2 / 2 : |n| |m| + (a n) |m| + (a m) |n| + n m.
 //!
-//! Each factor comes from differences of directions, and none cancels, so that slivers and cells beyond
-//! a hemisphere keep nearly all bits. Only the denominator does where n and m are nearly opposite, as
-//! those of the cells around sites that are close to each other: it is computed by integers there. The
-//! triangle from b is its mirror image.
+//! Each factor comes from differences of directions, and none cancels, so that slivers and cells
+//! beyond a hemisphere keep nearly all bits. Only the denominator does where n and m are nearly
+//! opposite, as those of the cells around sites that are close to each other; there it is computed
+//! by integers. The triangle from b is its mirror image.
 
 use delone_predicates::Point3;
 use delone_predicates::arithmetic::Pair;
@@ -23,19 +23,19 @@ use crate::base::error::Result;
 use crate::base::watch::Watch;
 use crate::base::wide::{angle, determinant, lowest, ratio, root, scaled};
 
-/// A determinant of pairs is right to 2^-98 times products of lengths; one that is not 2^40 times as
-/// large is computed by integers.
+/// A determinant of pairs has an error of at most 2^-98 times products of lengths; one that is not
+/// 2^40 times as large as that is computed by integers.
 const UNSURE: f64 = 1.0 / (1_u64 << 58) as f64;
 /// Digits of square roots in integers.
 const DIGITS: u32 = 512;
-/// A denominator with this part of its terms has lost too much.
+/// A denominator below this fraction of its terms has lost too many digits.
 const LOST: f64 = 1.0 / (1_u64 << 40) as f64;
-/// Digits after the point of directions in integers. They differ by 2^-107 or more, as pairs of doubles
-/// do, and what is left of the denominator is the sixth power of that.
+/// Digits after the point of directions in integers. They differ by 2^-107 or more, as pairs of
+/// doubles do, and what is left of the denominator is the sixth power of that.
 const PLACES: u32 = 1792;
 
-/// For each ridge, by its edge and the corners to its left and right: its length, and the area of the
-/// triangle between it and either of its sites.
+/// For each ridge, by its edge and the corners to its left and right: its length, and the area of
+/// the triangle between it and either of its sites.
 pub fn spans(
     vectors: &[Point3],
     around: &[[i32; 4]],
@@ -93,8 +93,8 @@ fn span(corners: [Point3; 4], directions: &[Unit; 4]) -> [f64; 2] {
     [(det * across.sqrt()).atan2(both.hi), 2.0 * half]
 }
 
-/// The determinant of the differences of the last three of four directions from the first, by integers
-/// and roots.
+/// The determinant of the differences of the last three of four directions from the first, by
+/// integers and roots.
 #[cold]
 fn exact_determinant(corners: [Point3; 4]) -> f64 {
     let rows = corners.map(|v| {

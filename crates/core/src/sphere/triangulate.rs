@@ -28,7 +28,7 @@ pub(super) struct Built {
     pub mesh: Mesh2,
     /// The infinite corner of a ghost; `None` if the sphere is covered.
     pub ghost: Option<Code>,
-    /// The records taken.
+    /// The number of records in use.
     pub taken: usize,
     /// The directions; after `join` the row of each vertex is the first of its direction.
     pub arranged: Arranged,
@@ -36,8 +36,8 @@ pub(super) struct Built {
     pub repeats: Vec<[u32; 2]>,
 }
 
-/// The canonical Delaunay triangulation of the directions of `vectors`; the same arrays for any number of
-/// workers.
+/// The canonical Delaunay triangulation of the directions of `vectors`; the same arrays for any
+/// number of workers.
 pub fn triangulate(vectors: &[Point3], workers: usize, watch: &Watch) -> Result<Triangulation> {
     let mut built = build(vectors, workers, watch)?;
     let duplicates = join(&mut built.arranged, &built.repeats, watch)?;

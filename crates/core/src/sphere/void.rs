@@ -1,16 +1,16 @@
-//! The facets of the convex hull that the center does not see from inside: those across the void of a
-//! hull on the sphere.
+//! The facets of the convex hull that the center does not see from inside: those across the void of
+//! a hull on the sphere.
 //!
 //! Their vertices are those of the boundary: at a facet with outer normal n all directions x have n
-//! x <= h <= 0, and a direction inside of the hull is a positive combination of others with a sum
-//! above 1, so that its product is below h. The boundary is a convex polygon, which random
-//! insertion triangulates in expected linear time (L. P. Chew, "Building Voronoi diagrams for
-//! convex polygons in linear expected time", 1990): vertices are removed in random order and
-//! inserted again in reverse order.
+//! x <= h <= 0, and a direction inside the hull is a positive combination of others whose
+//! coefficients have a sum above 1, so that its product is below h. The boundary is a convex
+//! polygon, which random insertion triangulates in expected linear time (L. P. Chew, "Building
+//! Voronoi diagrams for convex polygons in linear expected time", 1990): vertices are removed in
+//! random order and inserted again in reverse order.
 //!
-//! In-circle tests of directions hold for facets on either side of the center. If four directions are
-//! on one great circle, no perturbation along the rays separates them; then the smallest is cut off,
-//! as from circles slightly beyond.
+//! In-circle tests of directions hold for facets on either side of the center. If four directions
+//! are on one great circle, no perturbation along the rays separates them; then the smallest is cut
+//! off, as from circles slightly beyond.
 
 use delone_predicates::sphere::{Unit, compare, incircle_of, tie};
 use delone_predicates::{Point3, Sign};
@@ -23,7 +23,7 @@ use crate::base::watch::{Pace, Watch};
 
 /// No half-edge.
 const NONE: u32 = u32::MAX;
-/// Units of work between two checks for interruption: an in-circle test is 16.
+/// Units of work between two checks for interruption; an in-circle test counts as 16.
 const WATCH_EVERY: usize = 1 << 12;
 const TEST: usize = 16;
 
@@ -73,8 +73,8 @@ pub fn complete(
     Ok(arrays)
 }
 
-/// The rows of the boundary, counterclockwise around the void, and the half-edge 4 t + k of the hull
-/// between each and the next.
+/// The rows of the boundary, counterclockwise around the void, and the half-edge 4 t + k of the
+/// hull between each and the next.
 fn cycle(
     count: usize,
     simplices: &[[i32; 3]],

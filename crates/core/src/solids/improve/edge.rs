@@ -11,12 +11,12 @@
 //! The best triangulation of the ring is found by dynamic programming: G. T. Klincsek, "Minimal
 //! triangulations of polygonal domains", Annals of Discrete Mathematics 9 (1980), as in J. R.
 //! Shewchuk, "Two discrete optimization algorithms for the topological improvement of tetrahedral
-//! meshes" (2002). O(m^3) measures for a ring of m vertices.
+//! meshes" (2002). It takes O(m^3) measurements for a ring of m vertices.
 
 use super::measure::quality;
 use super::store::{Corners, NONE, Store};
 
-/// The longest ring that is tried: the chance of success falls quickly beyond 7.
+/// The longest ring that is tried; the chance of success falls quickly beyond 7 vertices.
 const LONGEST: usize = 10;
 
 /// A replacement for some tetrahedra.
@@ -39,7 +39,7 @@ pub struct Ring {
     vertices: Vec<u32>,
     /// The tetrahedra between them.
     tetrahedra: Vec<u32>,
-    /// Whether it closes up.
+    /// Whether the ring is closed.
     closed: bool,
 }
 

@@ -8,8 +8,8 @@
 //! weight below a quarter of the squared distance to the nearest vertex hides no vertex; the
 //! largest weight here is a fifth of it.
 //!
-//! Powers are rounded. They only decide which changes are tried in which order: each change must
-//! pass the same proof as every other change.
+//! Powers are rounded. They only decide which changes are tried and in which order: each change
+//! must pass the same proof as any other.
 
 use std::collections::BTreeSet;
 
@@ -47,7 +47,7 @@ pub fn pump(
         }
         cavity.push(next);
         before = before.min(store.quality[next as usize]);
-        // While others join at the same weight, there is no triangulation in between.
+        // If others join at the same weight, there is no triangulation in between.
         let until = first(store, weights, v, &cavity).map_or(f64::INFINITY, |(power, _)| power);
         let weight = 0.5 * (power.max(weights[v as usize]) + until.min(MOST * nearest));
         if !(weight > power && weight < until) {
