@@ -33,7 +33,7 @@ class Cells:
     around: Indices | None
     measures: tuple[Floats, Floats] | None
     simplex_vertex: Indices
-    # For lunes, the middle of each ridge as a unit vector, (r, 3).
+    # For lunes, the midpoint of each ridge as a unit vector, (r, 3).
     middles: Floats | None = None
 
     def spans(self, vectors: Floats, workers: int) -> tuple[Floats, Floats]:

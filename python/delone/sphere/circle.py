@@ -56,7 +56,7 @@ def _around(chain: Indices, vectors: Floats, points: Floats) -> Floats:
     first, far = (whole(vectors[chain[k]].tolist()) for k in (0, int(sines.argmax())))
     normal = cross(first, far)
     if not any(normal):
-        # The others are so close to the first site, or to its opposite, that unit vectors agree.
+        # The other sites are so close to the first one, or its opposite, that unit vectors agree.
         others = (whole(vectors[row].tolist()) for row in chain[1:])
         normal = next(n for n in (cross(first, other) for other in others) if any(n))
     three = [whole(vectors[row].tolist()) for row in chain[:3]]

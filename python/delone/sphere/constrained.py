@@ -30,7 +30,7 @@ __all__ = ["WINDINGS", "ConstrainedDelaunay", "Given", "most_added"]
 
 _CROSSINGS = ("raise", "split")
 WINDINGS = ("ccw", "cw", "smaller")
-# How many vertices a call may add by default.
+# The number of vertices that a call may add by default.
 _MOST_ADDED = 1_000_000
 
 

@@ -140,7 +140,7 @@ def _along(
     part, stop, normal, p = part[order], stop[order], normal[order], p[order]
     second = np.flatnonzero(part[1:] == part[:-1]) + 1
     value = np.einsum("ij,ij->i", normal[second], np.cross(p[second - 1], p[second]))
-    # Coordinates are 1 at most, so their products are off by less than 132 units of 2^-53.
+    # Coordinates are at most 1, so their products are off by less than 132 units of 2^-53.
     unsure = np.unique(part[second[~(value > 2.0**-44)]])
     for each in unsure.tolist():
         low, high = np.searchsorted(part, (each, each + 1))
@@ -175,7 +175,7 @@ def _in_order(vectors: Floats, ends: list[int], stops: list[int]) -> list[int]:
 
 
 def _ranks(groups: NDArray[np.integer]) -> NDArray[np.int64]:
-    """Return for each entry of an ascending array how many equal ones are before it."""
+    """Return, for each entry of an ascending array, how many equal ones precede it."""
     first = np.flatnonzero(np.diff(groups, prepend=-1))
     ranks: NDArray[np.int64] = np.arange(len(groups)) - np.repeat(
         first, np.diff(np.append(first, len(groups)))

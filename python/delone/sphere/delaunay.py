@@ -32,7 +32,7 @@ __all__ = ["Delaunay"]
 _FEW = 1000
 # The arrays of an object, by name.
 _ARRAYS = ("vectors", "simplices", "neighbors", "duplicates")
-# The classes in files; subclasses by others are stored as these.
+# The classes in files; subclasses defined elsewhere are stored as these.
 _STORED = ("Delaunay", "ConstrainedDelaunay")
 
 

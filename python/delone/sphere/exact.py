@@ -127,7 +127,7 @@ def _sign_of_roots(squares: list[int], signs: list[int]) -> int:
     size = max(n.bit_length() for n in squares) // 2 + 3
     for bits in (64, 15 * size + 4):
         total = sum(s * math.isqrt(n << 2 * bits) for n, s in zip(squares, signs, strict=True))
-        # Each root is less than one too small.
+        # Each root is too small by less than one.
         if abs(total) >= 4:
             return _sign(total)
     return 0
@@ -142,7 +142,7 @@ def _tie(four: list[Vector]) -> int:
 
 
 def _order(vector: Vector) -> tuple[int, list[Fraction]]:
-    """Return a key of the order of directions: the plane that a ray meets, and its place there."""
+    """Return a key that orders directions: the plane that a ray meets, and its place there."""
     k = next(k for k in range(3) if vector[k])
     return (k if vector[k] < 0 else 5 - k), [Fraction(x, abs(vector[k])) for x in vector]
 

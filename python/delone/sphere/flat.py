@@ -49,7 +49,7 @@ def flat_polygon(rings: Sequence[Floats], step: float) -> Any:
 
 
 def _unrolled(ring: Floats, step: float) -> tuple[Floats, int]:
-    """The continuous longitudes and the latitudes of a closed ring, and its turns around the axis.
+    """Return continuous longitudes and latitudes of a closed ring, and its turns around the axis.
 
     The last place repeats the first, except for whole turns.
     """
@@ -88,7 +88,7 @@ def _unrolled(ring: Floats, step: float) -> tuple[Floats, int]:
 def _ahead(at: float, longitudes: Floats, sign: int) -> Floats:
     """The difference of longitudes, less than half a turn in the direction that the sign says."""
     found = (longitudes - at + 180.0) % 360.0 - 180.0
-    # Only near half a turn can rounding have chosen the wrong direction.
+    # Rounding can have chosen the wrong direction only near half a turn.
     return np.where(sign * found < -90.0, found + sign * 360.0, found)
 
 

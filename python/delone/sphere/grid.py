@@ -197,7 +197,7 @@ class Grid(GridCells):
 
     @classmethod
     def _of_cells(cls, cells: Cells, merge: float, workers: int | None) -> Self:
-        """Return the grid of what a reader has found."""
+        """Return the grid of the result of a reader."""
         if cells.columns is not None and cells.rows is not None:
             columns = as_bounds(cells.columns, name="lon", degrees=True)
             rows = as_bounds(cells.rows, name="lat", degrees=True)
@@ -677,7 +677,7 @@ class Grid(GridCells):
 
 
 def _alone(vectors: Floats, starts: Rows) -> tuple[Any, ...]:
-    """Return the arrays of the core for cells of one ring each."""
+    """Return the arrays for the core, for cells of one ring each."""
     count = len(starts) - 1
     cells = np.arange(count + 1, dtype=np.int64)
     return vectors, starts, cells, np.zeros(count, dtype=np.bool_)

@@ -44,7 +44,7 @@ def healpix_corners(nside: int, *, nested: bool, workers: int) -> Floats:
 
 
 def _place(n: int, face: Rows, x: Rows, y: Rows, workers: int) -> Floats:
-    """Return vectors of corners: their ring from the north pole, and their place in it."""
+    """Return vectors of corners by their ring, from the north pole, and their place in it."""
     ring = _RING[face] * n - x - y
     # A quarter of a ring has as many corners as rings lie between it and its pole, at most nside.
     wide = np.minimum(np.minimum(ring, 4 * n - ring), n)
@@ -67,7 +67,7 @@ def _nested(n: int) -> tuple[Rows, Rows, Rows]:
 
 
 def _even_bits(value: Rows) -> Rows:
-    """Return the numbers that every other bit forms."""
+    """Return the numbers that every second bit forms."""
     found = np.zeros_like(value)
     for bit in range(14):
         found |= ((value >> (2 * bit)) & 1) << bit

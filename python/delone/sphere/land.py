@@ -109,7 +109,7 @@ def _outer(made: ConstrainedTriangulation, origin: Origin, closed: Bools) -> Row
     row = np.repeat(np.arange(len(count)), count)
     wanted = np.flatnonzero(closed[made.source] & origin.outer[made.source])
     geometry = origin.geometries[made.source[wanted]].astype(np.int64)
-    # A side that occurs twice, such as a cut along the date line, does not count.
+    # A side that occurs twice, such as a cut along the date line, does not tell the inside.
     keys = row[wanted] * (int(geometry.max(initial=0)) + 1) + geometry
     _, first, times = np.unique(keys, return_index=True, return_counts=True)
     at = wanted[first[times == 1]]
@@ -154,7 +154,7 @@ def _areas(inside: Indices, size: Floats, count: int = 0) -> Floats:
 
 
 def _warn_of_large(area: Floats) -> None:
-    """Warn of geometries that their winding makes larger than half of the sphere."""
+    """Warn about geometries that are larger than half of the sphere because of their winding."""
     large = np.flatnonzero(area > 2 * math.pi + _HALF).tolist()
     if large:
         share = area[large[0]] / (4 * math.pi)

@@ -37,7 +37,7 @@ _ESMF = {
     "linear": "Bilinear",
     "bilinear": "Bilinear",
 } | dict.fromkeys(("sibson", "laplace", "inverse_distance"), "Interpolation")
-# Sums of weights that differ by less agree.
+# Sums of weights that differ by less than this agree.
 _NEAR = 1e-9
 _ROW = {"esmf": "row", "scrip": "dst_address"}
 # The kind of sides, in files that contain the grids.

@@ -398,7 +398,7 @@ def _integrals(pieces: _Pieces, centers: Floats) -> Floats:
         total = np.zeros((len(rows), 3))
         for node, weight in zip(_NODES, _GAUSS, strict=True):
             w = turn * (1 + node) / 2
-            # The path from the first corner, by half angles, and its derivative.
+            # The path from the first corner, in half angles, and its derivative.
             cosine, sine = -2 * np.sin(w / 2) ** 2, np.sin(w)
             x = cosine * a[:, 0] - sine * a[:, 1]
             y = sine * a[:, 0] + cosine * a[:, 1]

@@ -30,7 +30,7 @@ _DIGITS = 10**60
 def nearby(
     vectors: Floats, units: Floats, arcs: Indices, queries: Floats, limit: float, *, degrees: bool
 ) -> Rows:
-    """Return for each query an arc that is at most an angle away, -1 if there is none.
+    """Return, for each query, an arc that is at most an angle away, or -1 if there is none.
 
     `units` are the rounded unit vectors of `vectors`; queries have any length.
     """

@@ -25,7 +25,7 @@ POINTWISE = (
 )  # fmt: skip
 
 
-# Distances with a smaller relative difference are equal.
+# Distances with a smaller relative difference count as equal.
 _EQUAL = 1e-12
 
 

@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
 __all__ = ["between_corners"]
 
-# Maximum steps of Newton's method; quadratic convergence takes about five.
+# Maximum number of steps of Newton's method; with quadratic convergence, it takes about five.
 _STEPS = 30
 # Smaller steps end it: a few units in the last place of 1.
 _SMALL = 2.0**-48
-# A solution farther outside of the quadrilateral that contains the query is on a wrong branch.
+# A solution farther outside the quadrilateral that contains the query is on a wrong branch.
 _OUTSIDE = 1e-6
 # Half the size of the triangles, in radians, by which pieces are looked up: their areas are large
 # enough for the core not to treat them as empty.
@@ -177,7 +177,7 @@ def _corners(source: Grid, used: Bools | None) -> tuple[Rows, Rows, Rows, Rows, 
     within = np.arange(len(cell)) - np.repeat(np.cumsum(lengths) - lengths, lengths)
     at = np.repeat(rings[of], lengths) + within
     node = number[at]
-    # Without repeated corners.
+    # Drop repeated corners.
     kept = node != node[_shifted(cell, 1)]
     cell, node = cell[kept], node[kept]
     before, after = node[_shifted(cell, 1)], node[_shifted(cell, -1)]

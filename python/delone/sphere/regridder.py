@@ -318,7 +318,7 @@ class Regridder(Immutable):
             data = self._chunked(ordered.data, dims, kind, options)
         else:
             data = _last(ordered.values, weights=self._weights, **options)
-        # Where the first dimension of the source was.
+        # The former place of the first dimension of the source.
         first = min(array.dims.index(dim) for dim in dims)
         place = sum(dim not in dims for dim in array.dims[:first])
         attrs = {key: value for key, value in array.attrs.items() if key not in _REFERRING}

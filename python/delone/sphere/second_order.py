@@ -38,7 +38,7 @@ _FLAT = 1e-9
 
 
 class _Slopes(NamedTuple):
-    """What slopes add to weights of first order."""
+    """The terms that slopes add to weights of first order."""
 
     # For each first-order entry: the offset of its centroid from that of the cell, by weight.
     offsets: Floats

@@ -98,7 +98,7 @@ def divided(parts: Parts, sides: str | None, quarter: float, *, name: str) -> Pa
 
 
 def _inserted(parts: Parts, ends: NDArray[np.int64], count: NDArray[np.int64]) -> Parts:
-    """Parts whose sides are divided into equal pieces, as many as `count` says."""
+    """Return parts whose sides are divided into equal pieces; `count` gives their number."""
     if not (count > 1).any():
         return parts
     rows = np.ones(len(parts.coordinates), dtype=np.int64)
@@ -114,7 +114,7 @@ def _inserted(parts: Parts, ends: NDArray[np.int64], count: NDArray[np.int64]) -
 
 
 def _warn_of_long(tail: Floats, head: Floats, name: str) -> None:
-    """Warn of arcs that are far from the straight line on a map; angles are in radians."""
+    """Warn about arcs that are far from the straight line on a map; angles are in radians."""
     half = (head - tail) / 2
     chord = np.sin(half[:, 1]) ** 2 + np.cos(tail[:, 1]) * np.cos(head[:, 1]) * (
         np.sin(half[:, 0]) ** 2
@@ -151,7 +151,7 @@ def whole_sphere(parts: Parts, vectors: Floats, ends: Indices, origin: Origin) -
 
 
 def _area(parts: Parts, geometry: np.integer) -> Fraction:
-    """Twice the area of the outer rings of a geometry on the map, exactly."""
+    """Return twice the area of the outer rings of a geometry on the map, exactly."""
     total = Fraction(0)
     for k in np.flatnonzero((parts.geometries == geometry) & (parts.kinds == geodata.EXTERIOR)):
         ring = parts.coordinates[parts.starts[k] : parts.starts[k + 1]].tolist()

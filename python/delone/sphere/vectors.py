@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 __all__ = ["VectorInterpolation", "Vectors", "polar_rows"]
 
-# Avoids a division by zero.
+# Avoids division by zero.
 _TINY = 2.0**-1022
 
 
@@ -95,7 +95,7 @@ class _Halves(NamedTuple):
         return cls((np.cos(across), np.sin(across)), (np.cos(up), np.sin(up)))
 
     def at(self, rows: Any) -> _Halves:
-        """Those of some places, or of one for each entry."""
+        """Return those of some places, or of one for each entry."""
         (a, b), (c, d) = self
         return _Halves((a[rows], b[rows]), (c[rows], d[rows]))
 
@@ -110,8 +110,8 @@ def _turns(start: _Halves, end: _Halves) -> tuple[Floats, Floats]:
     (cb, sb), (cv, sv) = end
     sine = (su * cv + cu * sv) * (sb * ca - cb * sa)
     cosine = (cu * cv + su * sv) * (cb * ca + sb * sa)
-    # The square of the middle of two unit vectors. It is 0 only for opposite ones, which have no
-    # unique great circle; the weights of such sites are 0, because all others are nearer.
+    # The squared length of the mean of two unit vectors. It is 0 only for opposite ones, which
+    # have no unique great circle; the weights of such sites are 0, as all others are nearer.
     square = np.maximum(cosine * cosine + sine * sine, _TINY)
     return (cosine * cosine - sine * sine) / square, -2.0 * cosine * sine / square
 
@@ -176,7 +176,7 @@ def transports(
 
 
 def refuse_ordered(duplicates: str) -> None:
-    """Refuse the policies that compare values, which vectors do not allow."""
+    """Reject policies that compare values, because vectors have no order."""
     if duplicates in ("min", "max"):
         raise InputError(f"duplicates={duplicates!r:.20}: vectors have no order; choose 'mean'")
 

@@ -489,7 +489,7 @@ class Voronoi(OnGlobe):
         >>> len(cells[0]), len(cells[1]), sorted(cells[1][0][0].round(6).tolist())
         (0, 1, [[-9.0, -9.0], [-9.0, 9.0], [9.0, -9.0], [9.0, 9.0]])
         """
-        # Arcs of half a turn need their middles, which `_rings` adds.
+        # Arcs of half a turn need their midpoints, which `_rings` adds.
         lunes = self._cells.middles is not None or not len(self.ridge_points)
         if self._left is not None or lunes:
             cells = self._rings() if self._left is None else self._left.polygons(self.npoints)
@@ -560,13 +560,13 @@ class Voronoi(OnGlobe):
         return beside(shapes[self.duplicate_of], data, "EPSG:4326" if crs is None else crs)
 
     def _rings(self) -> list[list[list[Floats]]]:
-        """Return the parts of whole cells as rings of unit vectors; one site has a part without."""
+        """Return parts of whole cells as rings of unit vectors; that of a single site has none."""
         if not len(self.ridge_points):
             return [[[]] if cell >= 0 else [] for cell in self._cells.cell.tolist()]
         return whole_rings(self._cells, self._spans[0], self.points, self.regions)
 
     def _nearest(self, places: Floats) -> Indices:
-        """Return the sites nearest to vectors, also on one great circle."""
+        """Return the sites nearest to vectors, also if all sites are on one great circle."""
         if self._mesh is not None:
             return self._mesh._ask(places, self._mesh._locator.nearest)
         sites = np.flatnonzero(self._cells.cell >= 0).astype(np.int32)
