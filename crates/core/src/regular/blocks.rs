@@ -13,11 +13,11 @@
 //!
 //! The center of a power sphere, relative to its first corner, is a quotient of sums. The filter
 //! gives up unless the denominator exceeds 10^-6 of the sum of the magnitudes of its monomials,
-//! so its relative error is below 10^-9. If S is the quotient of magnitudes, the error of the center
-//! is below 10^-8 S, and that of differences of squared distances below 10^-7 (d^2 + S^2), where d
-//! is the distance to another block; ten times that is required. S and the denominator are in a
-//! range where nothing underflows that matters. A simplex about which the filter gives up is not
-//! certain, which costs time but changes nothing.
+//! so its relative error is below 10^-9. If S is the quotient of magnitudes, the error of the
+//! center is below 10^-8 S, and that of differences of squared distances below 10^-7 (d^2 + S^2),
+//! where d is the distance to another block; the filter requires ten times that. S and the
+//! denominator are in a range where no underflow matters. A simplex about which the filter gives up
+//! is not certain, which costs time but changes nothing.
 
 use std::collections::HashMap;
 
@@ -28,7 +28,7 @@ use crate::base::memory::{filled, push, with_room};
 use crate::base::parallel;
 use crate::base::watch::Watch;
 
-/// Simplices, or if there are none, the sites that are not hidden.
+/// Simplices or, if there are none, the sites that are not hidden.
 pub type Found<const N: usize> = std::result::Result<Arrays<N>, Vec<u32>>;
 
 /// Simplices between two checks for interruption.
@@ -206,7 +206,7 @@ fn is_certain<const D: usize, const N: usize>(
         let size = square + scale * scale + weight.abs() + heaviest.abs();
         square - heaviest - power > 1e-6 * size
     };
-    // All other blocks are outside of the box of this one.
+    // All other blocks are outside the box of this one.
     let ground = &grounds[own];
     let depth = (0..D)
         .map(|k| {

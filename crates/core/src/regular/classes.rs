@@ -1,26 +1,28 @@
-//! Periodic triangulations: one triangle of each class of translates, and what lies across its edges.
+//! Periodic triangulations: one triangle of each class of translates, and what lies across its
+//! edges.
 //!
 //! First, the points are triangulated without their copies. Their bounding box is at most one
-//! period wide, so all copies lie outside of the box that is one period wide from its largest
-//! coordinates back and from its smallest ones on. A triangle whose circle lies inside this larger
+//! period wide, so no copy lies in the larger box that extends from its largest coordinates minus
+//! one period to its smallest ones plus one period. A triangle whose circle lies inside this larger
 //! box is also a triangle of the periodic set: call it final. If all triangles around a point are
 //! final, and it does not lie on the hull, no other triangle has it as a corner. So the triangles
 //! that are not final join only the remaining points, and those are triangulated with all their
 //! copies (see `periodic`): few, unless there are few points at all.
 //!
-//! Both triangulations are canonical: ties are broken by an order of the points, so a triangle with an
-//! empty circle is also one of each set that is smaller and has its corners. Hence the edges around the
-//! final triangles are edges of the second triangulation, and what that has on their other side, up to
-//! the next such edge, is the rest.
+//! Both triangulations are canonical: ties are broken by an order of the points, so a triangle with
+//! an empty circle is also one of each set that is smaller and has its corners. Hence the edges
+//! around the final triangles are edges of the second triangulation, and what that has on their
+//! other side, up to the next such edge, is the rest.
 //!
 //! # The bounds of the circles
 //!
-//! Let u = 2^-53, s the largest difference of two coordinates, W that of two weights, d the determinant
-//! of the differences. Numerators of the center, seen from a corner, are at most 4 s (s^2 + W) and err
-//! by less than 64 u s (s^2 + W); d errs by less than 16 u s^2. If |d| > 2^-20 s^2, the center errs by
-//! less than 2^-26 s (s^2 + W) / |d| (the quotient's own roundings included), and 2^-20 in its place is
-//! also more than what the radius and the bounds of the box lose, up to their own magnitudes times
-//! 2^-48. Nothing depends on how tight this is: a triangle that is not found to be final is made again.
+//! Let u = 2^-53, s the largest difference of two coordinates, W that of two weights, d the
+//! determinant of the differences. Numerators of the center, seen from a corner, are at most 4 s
+//! (s^2 + W) and err by less than 64 u s (s^2 + W); d errs by less than 16 u s^2. If |d| > 2^-20
+//! s^2, the center errs by less than 2^-26 s (s^2 + W) / |d| (the quotient's own roundings
+//! included), and 2^-20 in its place is also more than what the radius and the bounds of the box
+//! lose, up to their own magnitudes times 2^-48. Nothing depends on how tight this is: a triangle
+//! that is not found to be final is made again.
 
 use std::collections::HashMap;
 
@@ -51,7 +53,7 @@ const STEPS: usize = 1 << 14;
 pub struct Periodic {
     /// One triangle of each class, as rows of points, counterclockwise; the smallest row first.
     pub simplices: Vec<[i32; 3]>,
-    /// By how many periods each corner is translated, x and y by turns; 0 for the first one.
+    /// By how many periods each corner is translated: x and y of each; 0 for the first one.
     pub offsets: Vec<[i32; 6]>,
     /// What is opposite each corner, as 3 t + k for corner k of triangle t; -1 outside.
     pub partners: Vec<[i32; 3]>,
@@ -62,9 +64,10 @@ pub struct Periodic {
 /// A directed edge: two rows, and by how many periods the second is translated against the first.
 type Edge = ([i32; 2], [i32; 2]);
 
-/// Triangulates finite points that lie within one period, excluding its end; a period of 0 means not
-/// periodic. With weights, one for each point, the triangulation is the regular one. Of coincident
-/// points one row is used: the first of the heaviest. The same for any number of workers.
+/// Triangulates finite points that lie within one period, excluding its end; a period of 0 means
+/// not periodic. With weights, one for each point, the triangulation is the regular one. Of
+/// coincident points one row is used: the first of the heaviest. The same for any number of
+/// workers.
 pub fn periodic(
     points: &[Point2],
     weights: &[f64],
@@ -210,7 +213,7 @@ impl Inner {
     }
 }
 
-/// A circle around the corners of a triangle, with weights the one orthogonal to theirs.
+/// The circle through the corners of a triangle; with weights, the circle orthogonal to theirs.
 struct Circle {
     center: Point2,
     /// The square of the distance from the center to the first corner.
@@ -360,7 +363,8 @@ fn joined(
     pace: &mut Pace<'_>,
 ) -> Result<Periodic> {
     let places = around.places(pace)?;
-    // Edges between final triangles and others: the code in `around` of the other side, and the side.
+    // Edges between final triangles and others: the code in `around` of the other side, and the
+    // side.
     let mut walls: HashMap<usize, Side> = HashMap::new();
     for simplex in (0..given.simplices.len()).filter(|&t| inner.is_final[t]) {
         for corner in (0..3).filter(|&k| !inner.has(given.neighbors[simplex][k])) {

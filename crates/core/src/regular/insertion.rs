@@ -8,7 +8,7 @@
 //! be removed are connected, their cavity is star-shaped, and the result is independent of the
 //! order of insertion.
 //!
-//! Outside the hull ghosts take the place of triangles: (b, a, GHOST) for each hull edge from a to
+//! Outside the hull, ghosts take the place of triangles: (b, a, GHOST) for each hull edge from a to
 //! b.
 
 use delone_predicates::Sign;
@@ -44,8 +44,8 @@ pub trait Sites {
         }
     }
 
-    /// Whether triangle p, u, v and its neighbor across the edge from u to v, with apex q, are locally
-    /// regular.
+    /// Whether triangle p, u, v and its neighbor across the edge from u to v, with apex q, are
+    /// locally regular.
     fn verdict(&self, [p, u, v, q]: [u32; 4]) -> Verdict {
         match self.height([p, u, v, q]) {
             Sign::Positive => Verdict::Wrong,

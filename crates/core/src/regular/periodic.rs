@@ -7,8 +7,8 @@
 //! nearer is strictly nearer to z. (N. P. Dolbilin and D. H. Huson, "Periodic Delone tilings",
 //! 1997.) This holds if all points lie within one period, excluding its end.
 //!
-//! The coordinate of a copy, x + k L, is in general not a double. Predicates therefore use the pair
-//! of point and copy: a filter on x - x' + (k - k') L with a bound that includes the rounding of
+//! The coordinate of a copy, x + k L, is generally not a double. Predicates therefore use the pair
+//! of point and periods: a filter on x - x' + (k - k') L with a bound that includes the rounding of
 //! both, and integers on the exact sum. Nothing is rounded to a double before a sign is known. Ties
 //! are broken by the lexicographic order of the copies, which no translation changes, so all
 //! periods are triangulated alike.
@@ -20,11 +20,11 @@
 //! has 2 monomials of degree 2, each off by 2 D 4 u m, and roundings of 4 u D^2: together less than
 //! 32 u D (m + D). An in-circle test has 12 of degree 4, each off by 4 D^3 4 u m and roundings of
 //! 16 u D^4: less than 256 u D^3 (m + D). With weights, and W the largest difference of two, a
-//! square of up to 2 D^2 becomes one of up to 2 D^2 + W, and all of the above stays below 256 u D
+//! square of up to 2 D^2 becomes a term of up to 2 D^2 + W, and the total error stays below 256 u D
 //! (m + D) (D^2 + W). Magnitudes are kept between 2^-200 and 2^200.
 //!
-//! All copies of a site have the same weight. A copy of q one period nearer to z than another is
-//! nearer, and therefore has less power, so copies one period away suffice with weights, too.
+//! All copies of a site have the same weight, so the copy of q that is nearer to z also has less
+//! power. Hence copies one period away suffice with weights, too.
 
 use delone_predicates::{Point2, Sign};
 use num_bigint::BigInt;

@@ -1,6 +1,6 @@
 //! Areas, centroids and perimeters of polygons, and the lengths of their edges.
 //!
-//! Coordinates enter as differences to the first corner of a polygon, so that no digits are lost
+//! Coordinates enter as differences from the first corner of a polygon, so that no digits are lost
 //! far from the origin.
 
 use delone_predicates::Point2;
@@ -12,7 +12,7 @@ use crate::base::watch::Watch;
 
 /// Polygons per task.
 const SHARE: usize = 1 << 13;
-/// Areas out of this range, 2^-600 to 2^600, are measured in other units.
+/// Areas outside this range, 2^-600 to 2^600, are measured in other units.
 const TINY: f64 = f64::from_bits((1023 - 600) << 52);
 const HUGE: f64 = f64::from_bits((1023 + 600) << 52);
 

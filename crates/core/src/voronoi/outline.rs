@@ -67,9 +67,9 @@ impl Grid {
     }
 }
 
-/// For each convex polygon the number of its group of untouched ones, or -1 if it is touched or has
-/// no corners; and how many groups there are. `ridges` names the edges that two polygons share; -1
-/// for other edges.
+/// For each convex polygon, the number of its group of untouched ones, or -1 if it is touched or
+/// has no corners; and how many groups there are. `ridges` names the edges that two polygons share;
+/// -1 for other edges.
 pub fn touched(
     starts: &[i32],
     points: &[Point2],

@@ -1,17 +1,17 @@
 //! Clips convex cells by an outline, where exact predicates leave no doubt.
 //!
-//! The outline is a set of rings with the inside to the left of each. A segment of it crosses an
-//! edge of a cell if four orientations, exact, say so; the crossing is rounded once. From each
-//! crossing where the outline enters the cell, a piece follows the outline until it leaves, then
-//! the boundary of the cell counterclockwise to the next crossing, and so on until it closes (K.
-//! Weiler and P. Atherton, "Hidden surface removal using polygon area sorting", SIGGRAPH 1977).
+//! The outline is a set of rings with the inside to the left of each. Four exact orientations
+//! decide whether a segment of it crosses an edge of a cell; the crossing is rounded once. From
+//! each crossing where the outline enters the cell, a piece follows the outline until it leaves,
+//! then the boundary of the cell counterclockwise to the next crossing, and so on until it closes
+//! (K. Weiler and P. Atherton, "Hidden surface removal using polygon area sorting", SIGGRAPH 1977).
 //! Rounding to nearest is monotone, so rounded crossings that differ are in their true order along
 //! an edge.
 //!
 //! All degenerate cases are *doubtful* and left to the caller: a corner of one on an edge of the
-//! other, edges that overlap, crossings that round to the same point, a cell that rounding has made
-//! concave. So is a cell that would take too long, as this is quadratic in the number of corners
-//! near each other.
+//! other, edges that overlap, crossings that round to the same point, or a cell that rounding has
+//! made concave. So is a cell that would take too long: the time is quadratic in the number of
+//! corners near each other.
 
 use std::cmp::Ordering;
 
@@ -411,7 +411,7 @@ impl<'a> Cutter<'a> {
             }
             ring.dedup_by(|b, a| {
                 let same = a.0 == b.0;
-                // Of an edge of zero length only the next one is kept.
+                // Drop an edge of zero length: the corner keeps the next edge.
                 if same {
                     a.1 = b.1;
                 }
@@ -426,7 +426,7 @@ impl<'a> Cutter<'a> {
         }
     }
 
-    /// Adds the outline from where it enters to where it leaves; `ahead` tells whether that is
+    /// Adds the outline from where it enters to where it leaves; `ahead` tells whether the exit is
     /// later in its ring.
     fn follow(&self, enter: &Crossing, leave: &Crossing, ahead: bool, ring: &mut Ring) {
         ring.push((enter.at, -1));
@@ -518,7 +518,7 @@ impl Cell<'_> {
     }
 
     /// Adds the boundary from where the outline leaves to where it enters; `ahead` tells whether
-    /// that is later.
+    /// the entry is later.
     fn follow(&self, leave: &Crossing, enter: &Crossing, ahead: bool, ring: &mut Ring) {
         ring.push((leave.at, self.ridges[leave.edge]));
         if leave.edge == enter.edge && ahead {

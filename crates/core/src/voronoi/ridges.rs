@@ -1,6 +1,6 @@
 //! Edges of Voronoi cells: the duals of Delaunay edges, on the bisectors of their two sites.
 //!
-//! With weights, on the radical axis of the sites.
+//! With weights, they lie on the radical axis of the sites.
 
 use delone_predicates::Point2;
 

@@ -11,8 +11,8 @@ use crate::measure::center::{Center, Centered};
 const SHARE: usize = 1 << 14;
 /// Simplices numbered between two checks for interruption.
 const LOT: usize = 1 << 16;
-/// Simplices whose corners are gathered before the first of their centers is computed: the loads
-/// are independent.
+/// The number of simplices whose corners are loaded before the first of their centers is computed,
+/// because the loads are independent.
 const BATCH: usize = 64;
 /// Two roundings of one number, each within 4 units in the last place, differ by less than this
 /// share of it.
