@@ -1,15 +1,15 @@
 //! Clips cells to a convex polyhedron.
 //!
-//! A bounded cell with all vertices inside is unchanged. Each of the others is computed as the
-//! polyhedron, clipped by the planes of the cell's ridges one after the other (C. H. Rycroft,
-//! "Voro++: a three-dimensional Voronoi cell library in C++", Chaos 19, 2009), so vertices that are
-//! far away or at infinity are not used.
+//! A bounded cell with all vertices inside is unchanged. Every other cell is computed from the
+//! polyhedron, which is clipped by the planes of the cell's ridges one after the other (C. H.
+//! Rycroft, "Voro++: a three-dimensional Voronoi cell library in C++", Chaos 19, 2009), so vertices
+//! that are far away or at infinity are not used.
 //!
 //! Corners are computed in floating point. If three planes meet at a flat angle, as those toward
 //! two close sites do with a third one, the corner is computed in integers (`meeting`).
 //!
-//! A ridge is measured once: as a whole if one of its two cells is whole, otherwise in the cell of
-//! its first site. So both cells have the same value.
+//! A ridge is measured once: as a whole if one of its two cells is unchanged, otherwise in the cell
+//! of its first site. So both cells have the same value.
 
 use delone_predicates::{Point3, Sign, orient3d};
 
@@ -171,8 +171,8 @@ struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// The plane of a face, as exactly as it is known: if all corners are coplanar, as those of
-    /// facets are, their plane. Corners of half-spaces may have been rounded off theirs.
+    /// The plane of a face, as exactly as it is known: the plane of all corners if they are
+    /// coplanar, as those of facets are. Corners of half-spaces may be off their plane by rounding.
     fn plane(&self, face: usize) -> Plane {
         let bounds = self.clip.starts[face] as usize..self.clip.starts[face + 1] as usize;
         let corners = &self.clip.corners[bounds];
@@ -220,8 +220,8 @@ impl Planes<'_> {
     }
 
     /// The point where three planes meet, correctly rounded, if the angle is so flat that a point
-    /// on each plane up to rounding may be far from it, and if it is on the inner side of all
-    /// others.
+    /// may be far from it although rounding puts it on each plane, and if the point is on the inner
+    /// side of all other planes.
     fn corner(&self, labels: [i32; 3]) -> Option<Point3> {
         let [p, q, r] = labels.map(|label| self.normal(label));
         let upright = [0, 1, 2].map(|k| {

@@ -181,7 +181,7 @@ impl Units {
     }
 }
 
-/// The measures of a ridge: its area is multiplied by a power of two.
+/// The measures of a ridge, with its area multiplied by a power of two.
 #[derive(Clone, Copy)]
 struct Face {
     area: f64,

@@ -147,7 +147,7 @@ impl Polyhedron {
         }
     }
 
-    /// The new corner on an edge, starting at a corner that is kept, for both faces beside it.
+    /// The new corner on an edge, starting at a corner that is kept, for both adjacent faces.
     fn on_edge(
         &self,
         (kept, other): (u32, u32),

@@ -1,7 +1,7 @@
 //! Faces of 3-D Voronoi cells: the duals of Delaunay edges, in the bisecting planes of their two
 //! sites.
 //!
-//! With weights, in the radical plane of the sites.
+//! With weights, they lie in the radical plane of the sites.
 //!
 //! The tetrahedra around an edge, in order, have the vertices of the face as centers. A vertex
 //! shared by several tetrahedra counts once. An edge that is a diagonal of a polytope of
@@ -24,7 +24,8 @@ use crate::voronoi::Given;
 /// Tetrahedra per task.
 const SHARE: usize = 1 << 14;
 
-/// The edges of a tetrahedron: two corners, and the other two so that all four are positively oriented.
+/// The edges of a tetrahedron: two corners, and the other two so that all four are positively
+/// oriented.
 const EDGES: [[usize; 4]; 6] = [
     [0, 1, 2, 3],
     [0, 2, 3, 1],
