@@ -28,7 +28,7 @@ _TURN = 360.0
 def as_boxes(lon: Floats, lat: Floats, middle: Floats, names: tuple[str, str]) -> Floats:
     """Return the west, east, south and north of cells, (n, 4), from their bounds in degrees.
 
-    Two meridians have two intervals between them; a cell is the one that contains its `middle`.
+    Two meridians have two intervals between them; a cell is in the one that contains its `middle`.
     Latitudes must not be beyond the poles.
     """
     if not len(lon):
@@ -54,7 +54,7 @@ class _Listed(NamedTuple):
 
     # West, east, south and north.
     boxes: Floats
-    # West from 0 to 360 degrees, and east beyond it.
+    # West from 0 to 360 degrees, and east as the next bound after it.
     start: Floats
     end: Floats
     # The row of each, and its number in the input.
@@ -69,8 +69,8 @@ class _Listed(NamedTuple):
 def rows_of(boxes: Floats, merge: tuple[float, float]) -> tuple[tuple[Any, ...], int]:
     """Return the arrays of the core, and how many bounds moved to those of their neighbors.
 
-    Meridians and parallels closer than `merge`, in degrees, become one, unless cells are that
-    small.
+    Meridians and parallels closer than `merge`, in degrees, become one. In grids with cells that
+    small, the limit is a quarter of the smallest cell.
     """
     near, close = (
         min(limit, float((boxes[:, k + 1] - boxes[:, k]).min()) / 4)
@@ -141,7 +141,7 @@ def _arrays(cells: _Listed, first: Rows, joined: Bools) -> tuple[Any, ...]:
 
 
 def _cut(edges: Floats, angles: Floats, row: Rows) -> tuple[Floats, Rows]:
-    """Return directions of meridians, with more in wide gaps, and the given meridian of each."""
+    """Return directions of meridians, with further ones in wide gaps, and the edge of each."""
     width = np.append(np.diff(edges), 0.0)
     width[np.append(row[1:] != row[:-1], True)] = 0.0
     parts = np.maximum(np.ceil(width / WIDE), 1).astype(np.int64)

@@ -102,7 +102,7 @@ class _Wedges(NamedTuple):
     of: Rows
 
     def ordered(self, count: int) -> _Wedges:
-        """Return the wedges sorted by node, then by right edge; no two may have the same."""
+        """Return them sorted by node, then by right edge, which no two may share."""
         keys = self.node * count + self.right
         order = np.argsort(keys, kind="stable")
         same = np.flatnonzero(np.diff(keys[order]) == 0)
@@ -111,13 +111,13 @@ class _Wedges(NamedTuple):
             at = same[np.argmin(order[same + 1])]
             one, other = order[at], order[at + 1]
             raise InputError(
-                f"cells {self.of[one]} and {self.of[other]} overlap: both are on one side of the "
-                f"edge of nodes {self.node[one]} and {self.right[one]}"
+                f"cells {self.of[one]} and {self.of[other]} overlap: both are on the same side of "
+                f"the edge between nodes {self.node[one]} and {self.right[one]}"
             )
         return _Wedges(*(array[order] for array in self))
 
     def following(self, count: int) -> Rows:
-        """Return the wedge to the left of each, -1 at the boundary; the wedges must be sorted."""
+        """Return the wedge to the left of each ordered wedge, -1 at the boundary."""
         keys, wanted = self.node * count + self.right, self.node * count + self.left
         at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
         found: Rows = np.where(keys[at] == wanted, at, -1)
@@ -127,7 +127,7 @@ class _Wedges(NamedTuple):
 def _chained(wedges: _Wedges, count: int) -> tuple[Rows, Rows, Bools]:
     """Return the wedges chain by chain, where chains start, and which begin at a boundary.
 
-    A chain at the boundary starts there, and others close; those at the boundary come first.
+    Chains at the boundary start there and come first; all others close.
     """
     follows = wedges.following(count)
     inner = np.zeros(len(follows), dtype=bool)

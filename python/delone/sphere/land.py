@@ -109,7 +109,7 @@ def _outer(made: ConstrainedTriangulation, origin: Origin, closed: Bools) -> Row
     row = np.repeat(np.arange(len(count)), count)
     wanted = np.flatnonzero(closed[made.source] & origin.outer[made.source])
     geometry = origin.geometries[made.source[wanted]].astype(np.int64)
-    # A side that occurs twice, such as a cut along the date line, does not tell the inside.
+    # A side that occurs twice, such as a cut along the date line, does not count.
     keys = row[wanted] * (int(geometry.max(initial=0)) + 1) + geometry
     _, first, times = np.unique(keys, return_index=True, return_counts=True)
     at = wanted[first[times == 1]]

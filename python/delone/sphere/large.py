@@ -1,8 +1,8 @@
 """Cells that no hemisphere contains, as parts that the core can use.
 
 Each cell of the core lies within a hemisphere. A larger one is the union of its parts: the outer
-rings of a multipolygon, each with its holes, or triangles between the corners of a cell whose rings
-alone do not tell which side is meant. No corner moves, so parts meet exactly.
+rings of a multipolygon, each with its holes; or, if the rings alone do not tell which side is
+meant, triangles between the corners and a few added points. No corner moves, so parts meet exactly.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ __all__ = ["LARGE", "Parts", "overlaps_of", "wound"]
 
 # The core's numbers for faults of cells.
 _EMPTY, LARGE = 1, 3
-# Points added to the corners so that no triangle is nearly as wide as a hemisphere.
+# Points added to the corners, so that no triangle is nearly as large as a hemisphere.
 _BETWEEN = np.array([v for v in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(v)])
-# Each is triangulated alone.
+# Each large cell is triangulated separately, so there is a limit.
 _MOST = 1000
 # Sums of rounded areas, in steradians, count as half of the sphere within this.
 _HALF = 1e-9
@@ -129,7 +129,7 @@ def overlaps_of(one: Any, other: Any, workers: int) -> Any:
 
 
 def wound(arrays: Arrays, winding: str, workers: int | None) -> Arrays:
-    """Return cells on the side of their outer rings that `winding` says.
+    """Return cells on the side of their outer rings that `winding` selects.
 
     Those that no hemisphere contains become triangles.
     """
