@@ -32,7 +32,7 @@ const LEVELS: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
 /// machine parts with 3,000 to 9,000 triangles took minutes, for angles two degrees larger.
 const SHARE: usize = 16;
 const FEWEST: usize = 1000;
-/// A new vertex must gain this factor, or reach the level, because it stays in the mesh for good.
+/// A new vertex must gain this factor, or reach the level, because it stays in the mesh.
 const WORTH: f64 = 1.3;
 /// If an insertion reaches this multiple of the level, the search for a better one ends.
 const ENOUGH: f64 = 1.2;
