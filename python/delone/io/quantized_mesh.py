@@ -70,7 +70,7 @@ def write_quantized_mesh(
         The largest vertical distance in meters of a point from the finest level. It determines the
         number of levels: as Cesium expects, the error of level z is at most 77067 / 2^z meters.
     outside : float, optional
-        The height in meters at corners and sides of tiles where there is no surface.
+        The height, in meters, used at corners and sides of tiles beyond the surface.
 
     Returns
     -------
@@ -176,7 +176,7 @@ class _Ground:
         self.back = pyproj.Transformer.from_crs("EPSG:4326", tin.crs, always_xy=True)
 
     def heights(self, degrees: Floats) -> Floats:
-        """Return heights at longitudes and latitudes; `outside` where there is no surface."""
+        """Return heights at longitudes and latitudes, with `outside` beyond the surface."""
         found = np.full(len(degrees), self.outside)
         near = np.flatnonzero(((degrees >= self.low) & (degrees <= self.high)).all(axis=1))
         if len(near):

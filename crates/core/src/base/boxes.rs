@@ -172,7 +172,7 @@ mod tests {
 
     #[test]
     fn each_box_has_its_items_and_those_of_the_boxes_below() {
-        for count in 0..60 {
+        for count in (0..60).chain([10_000]) {
             let row = row(count);
             assert_eq!(row.root().is_none(), count == 0);
             for level in 0..=row.top() {
