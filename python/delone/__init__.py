@@ -96,6 +96,7 @@ if TYPE_CHECKING:
     from delone.refine.report import MeshReport
     from delone.regular import RegularTriangulation
     from delone.solids.surface.check import check_surface
+    from delone.solids.surface.imprint import ImprintedSurface, imprint_surface
     from delone.solids.surface.report import SurfaceCheck
     from delone.solids.surface.resolve import resolve_touches
     from delone.solids.tetmesh.improvement import improve
@@ -137,6 +138,7 @@ __all__ = [
     "FileFormatError",
     "GeographicWarning",
     "HandleError",
+    "ImprintedSurface",
     "ImproveReport",
     "InputError",
     "InternalError",
@@ -181,6 +183,7 @@ __all__ = [
     "explore",
     "from_geometry",
     "graphs",
+    "imprint_surface",
     "improve",
     "interpolate",
     "lawson",
@@ -236,6 +239,7 @@ _HOMES = {
     "Dynamic": "dynamic.dynamic",
     "Editing": "constrained.editing",
     "Estimate": "estimation",
+    "ImprintedSurface": "solids.surface.imprint",
     "ImproveReport": "solids.tetmesh.report",
     "Location": "_tiling.location",
     "PlaneTriangulation": "_tiling.space",
@@ -260,6 +264,7 @@ _HOMES = {
     "estimate": "estimation",
     "explore": "explorer.widget",
     "from_geometry": "constrained.polygons",
+    "imprint_surface": "solids.surface.imprint",
     "improve": "solids.tetmesh.improvement",
     "lawson": "flips",
     "lloyd": "voronoi.centroidal",

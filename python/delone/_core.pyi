@@ -22,6 +22,7 @@ __all__ = [
     "ContourBands",
     "ContourLines",
     "CornerWeights",
+    "CutSurface",
     "DeepestPoints",
     "Diagram2",
     "Diagram3",
@@ -105,6 +106,7 @@ __all__ = [
     "hull2",
     "hull3",
     "hull_n",
+    "imprint_surface3",
     "improve3",
     "incircle",
     "influence",
@@ -494,6 +496,35 @@ class CornerWeights:
     @property
     def slopes(self) -> NDArray[np.float64]:
         """Weights of gradients at its corners, (q, 3, 2)."""
+
+@final
+class CutSurface:
+    """A surface cut at itself."""
+
+    @property
+    def added(self) -> NDArray[np.float64]:
+        """Vertices after those of the input, (k, 3)."""
+    @property
+    def faces(self) -> NDArray[np.int32]:
+        """Triangles, (f, 3)."""
+    @property
+    def source(self) -> NDArray[np.int32]:
+        """The face of the input that each is a part of, (f,)."""
+    @property
+    def merged(self) -> NDArray[np.int32]:
+        """Rows of points with the rows that replace them, (k, 2)."""
+    @property
+    def distance(self) -> float:
+        """The largest distance of a vertex from its source."""
+    @property
+    def tolerance(self) -> float:
+        """The tolerance used."""
+    @property
+    def rounds(self) -> int:
+        """The number of rounds."""
+    @property
+    def crossing(self) -> NDArray[np.int32]:
+        """Rows of faces of which parts still cross, (k, 2)."""
 
 @final
 class DeepestPoints:
@@ -1896,6 +1927,11 @@ def hull_n(points: NDArray[np.float64]) -> HullN:
     """The convex hull of points with four to nine coordinates: 8-D half-spaces are vectors
     in 9-D.
     """
+
+def imprint_surface3(
+    points: NDArray[np.float64], faces: NDArray[np.int32], tolerance: float, workers: int
+) -> CutSurface:
+    """Cuts a surface where its faces cross, overlap or touch."""
 
 def improve3(
     points: NDArray[np.float64],

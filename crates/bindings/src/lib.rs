@@ -128,7 +128,9 @@ mod _core {
         sphere_spans, sphere_units,
     };
     #[pymodule_export]
-    use super::surface::{CheckedSurface, FacePairs, check_surface3, resolve_touches3};
+    use super::surface::{
+        CheckedSurface, CutSurface, FacePairs, check_surface3, imprint_surface3, resolve_touches3,
+    };
     #[pymodule_export]
     use super::terrain::{
         ContourBands, ContourLines, Simplified2, contour_bands2, contour_lines2, simplify2,

@@ -2,6 +2,8 @@
 
 use delone_core::Point3;
 use delone_core::base::error::Result;
+use delone_core::base::memory::signed;
+use delone_core::solids::imprint;
 use delone_core::solids::surface::{self, Checked, Options, Pairs, Resolved};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
@@ -145,4 +147,49 @@ fn parts_of(py: Python<'_>, made: &Resolved) -> Outcome<Parts> {
     let faces = made.faces.iter().map(|face| face.map(|v| v as i32));
     let source = made.source.iter().map(|&row| row as i32).collect();
     Ok((table(py, faces.collect())?, column(py, source)))
+}
+
+/// A surface cut at itself.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct CutSurface {
+    /// Vertices after those of the input, (k, 3).
+    pub added: Table<f64>,
+    /// Triangles, (f, 3).
+    pub faces: Table<i32>,
+    /// The face of the input that each is a part of, (f,).
+    pub source: Column<i32>,
+    /// Rows of points with the rows that replace them, (k, 2).
+    pub merged: Table<i32>,
+    /// The largest distance of a vertex from its source.
+    pub distance: f64,
+    /// The tolerance used.
+    pub tolerance: f64,
+    /// The number of rounds.
+    pub rounds: usize,
+    /// Rows of faces of which parts still cross, (k, 2).
+    pub crossing: Table<i32>,
+}
+
+/// Cuts a surface where its faces cross, overlap or touch.
+#[pyfunction]
+pub fn imprint_surface3(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    faces: PyReadonlyArray2<'_, i32>,
+    tolerance: f64,
+    workers: usize,
+) -> Outcome<CutSurface> {
+    let (points, faces) = borrowed(&points, &faces)?;
+    let options = imprint::Options { tolerance, workers };
+    let made = watched(py, |watch| imprint::imprint(points, faces, options, watch))?;
+    Ok(CutSurface {
+        added: table(py, made.added)?,
+        faces: table(py, signed(made.faces))?,
+        source: numbers(py, made.source),
+        merged: number_rows(py, &made.merged)?,
+        distance: made.distance,
+        tolerance: made.tolerance,
+        rounds: made.rounds,
+        crossing: number_rows(py, &made.crossing)?,
+    })
 }

@@ -78,6 +78,18 @@ def fill(
         str,
         typer.Option(help="What is kept: faces, or surface (triangles in one plane are replaced)."),
     ] = "faces",
+    imprint: Annotated[
+        bool,
+        typer.Option(
+            "--imprint", help="Cut triangles that cross, overlap or touch at each other first."
+        ),
+    ] = False,
+    tolerance: Annotated[
+        float | None,
+        typer.Option(
+            help="Join what is nearer than this, in the unit of the file; with --imprint."
+        ),
+    ] = None,
     hole: Annotated[
         list[str] | None,
         typer.Option(
@@ -132,6 +144,9 @@ def fill(
     With ``--boundary surface``, triangles in one plane are replaced, which adds fewer points, and
     divided where sizes require it. Sizes, ``--radius-edge`` and ``--min-angle`` add points inside.
 
+    With ``--imprint``, bodies may overlap or be in contact: their triangles are cut at each other,
+    at rounded points.
+
     A PNG file shows the tetrahedra behind a cut.
     """
     with writing():
@@ -139,6 +154,8 @@ def fill(
         writers = {path: ready(path, space=True, order=order) for path in output or ()}
     options: dict[str, Any] = {
         "boundary": boundary,
+        "imprint": imprint,
+        "tolerance": tolerance,
         # Faces of TetGen's files have any orientation.
         "inside": inside or ("enclosed" if source.suffix.lower() in _UNORIENTED else "winding"),
         "holes": _numbers(hole, "--hole", 3),

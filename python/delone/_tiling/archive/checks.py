@@ -162,6 +162,9 @@ def _check_recovery(*, most: int, **arrays: NDArray[Any]) -> None:
     check_range("recut", arrays["recut"], 0, len(arrays["points"]))
     check_range("recut_source", arrays["recut_source"], 0, 2**31)
     require(len(arrays["recut"]) == len(arrays["recut_source"]), "recut has not one source each")
+    check_range("imprinted", arrays["imprinted"], 0, 2**31)
+    distance = arrays["imprint_distance"]
+    require(len(distance) == 1 and 0 <= distance[0] < np.inf, "the report is incomplete")
     for name in ("subdivided", "repeated", "degenerate", "dangling", "outside"):
         check_range(name, arrays[name], 0, 2**31)
         require((np.diff(arrays[name]) > 0).all(), f"{name} is out of order")

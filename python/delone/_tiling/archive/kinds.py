@@ -124,6 +124,8 @@ _TET_MESH = Kind(
         "outside": ("<i8", 0),
         "recut": ("<i8", 3),
         "recut_source": ("<i8", 2),
+        "imprinted": ("<i8", 0),
+        "imprint_distance": ("<f8", 0),
         "angles": ("<f8", 0),
         "counts": ("<i8", 0),
         "bounds": ("<f8", 0),

@@ -1,11 +1,18 @@
-"""Surfaces of triangles in 3-D: exact checks, and subdivision where triangles touch.
+"""Surfaces of triangles in 3-D: exact checks, and subdivision where triangles touch or cross.
 
-`check` has the function `check_surface`, `report` its result, `resolve` the function
-`resolve_touches`.
+`check` has the function `check_surface`, `report` its result; `resolve` and `imprint` have the
+functions that cut faces at each other, at given vertices and at new ones.
 """
 
 from delone.solids.surface.check import check_surface
+from delone.solids.surface.imprint import ImprintedSurface, imprint_surface
 from delone.solids.surface.report import SurfaceCheck
 from delone.solids.surface.resolve import resolve_touches
 
-__all__ = ["SurfaceCheck", "check_surface", "resolve_touches"]
+__all__ = [
+    "ImprintedSurface",
+    "SurfaceCheck",
+    "check_surface",
+    "imprint_surface",
+    "resolve_touches",
+]

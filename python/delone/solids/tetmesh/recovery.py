@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -38,6 +38,7 @@ RECOVERY_ROWS = (
     "outside",
     "recut",
     "recut_source",
+    "imprinted",
 )
 _SHOWN = 5
 
@@ -85,6 +86,11 @@ class RecoveryReport(ReadOnly):
     recut_source : ndarray of int64, shape (k, 2)
         The input face of each of these, and the `face_source` of the faces that replace them. The
         triangles and the faces with the same value have the same union.
+    imprinted : ndarray of int64, shape (k,)
+        With ``imprint=True``, the input face that each face of the cut surface is a part of;
+        otherwise empty. All other rows of faces here refer to the cut surface.
+    imprint_distance : float
+        The largest distance of the cut surface from the input.
 
     Attributes
     ----------
@@ -120,6 +126,8 @@ class RecoveryReport(ReadOnly):
     outside: Rows
     recut: Rows
     recut_source: Rows
+    imprinted: Rows = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    imprint_distance: float = 0.0
 
     @property
     def ok(self) -> bool:
@@ -132,6 +140,11 @@ class RecoveryReport(ReadOnly):
 
     def __str__(self) -> str:
         lines = [f"{counted(self.nadded, 'point')} added"]
+        if len(self.imprinted):
+            lines.append(
+                f"faces cut at each other: {len(self.imprinted):,} parts, at most "
+                f"{self.imprint_distance:.2g} from the input"
+            )
         if self.missing_edges or self.missing_faces:
             lines.append(
                 f"the Delaunay triangulation lacks {counted(self.missing_edges, 'edge')} and "

@@ -33,6 +33,7 @@ _UNRECOVERED: dict[str, NDArray[Any]] = {
     "duplicate_points": np.empty((0, 2), dtype=np.int64),
     "recut": np.empty((0, 3), dtype=np.int64),
     "recut_source": np.empty((0, 2), dtype=np.int64),
+    "imprint_distance": _NO_NUMBERS,
 }
 _UNREFINED: dict[str, NDArray[Any]] = {
     "refinement": _NO_COUNTS,
@@ -113,10 +114,12 @@ def _improvement_of(arrays: Arrays) -> ImproveReport:
 
 def _of_recovery(report: RecoveryReport) -> Arrays:
     counts = np.array([getattr(report, name) for name in RECOVERY_COUNTS], dtype=np.int64)
-    return {"recovery": counts} | {name: getattr(report, name) for name in RECOVERY_ROWS}
+    rows = {name: getattr(report, name) for name in RECOVERY_ROWS}
+    return {"recovery": counts, "imprint_distance": np.array([report.imprint_distance]), **rows}
 
 
 def _recovery_of(arrays: Arrays) -> RecoveryReport:
     counts: dict[str, Any] = dict(zip(RECOVERY_COUNTS, arrays["recovery"].tolist(), strict=True))
     rows: dict[str, Any] = {name: arrays[name] for name in RECOVERY_ROWS}
-    return RecoveryReport(**counts, **rows)
+    distance = float(arrays["imprint_distance"][0])
+    return RecoveryReport(**counts, **rows, imprint_distance=distance)

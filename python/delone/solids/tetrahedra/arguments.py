@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from delone._base.types import Floats, Indices
+    from delone.solids.surface import ImprintedSurface
     from delone.solids.tetrahedra.sources import Given
 
 __all__ = ["Task", "task"]
@@ -36,6 +37,10 @@ class Task(NamedTuple):
     extra: Floats
     limit: int
     workers: int | None
+
+    def imprinted(self, cut: ImprintedSurface) -> Task:
+        """Return the task with the surface cut at itself; parts inherit markers."""
+        return self._replace(points=cut.points, faces=cut.faces, markers=self.markers[cut.source])
 
 
 def task(

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
     from delone._base.types import Bools, Floats, Indices, Rows
     from delone._core import RecoveryCounts
-    from delone.solids.surface import SurfaceCheck
+    from delone.solids.surface import ImprintedSurface, SurfaceCheck
 
-__all__ = ["Parts", "counts_of", "parts_of", "reported"]
+__all__ = ["Parts", "counts_of", "of_imprint", "parts_of", "reported"]
 
 _OVERLAPS = ("coplanar overlap", "folded")
 _AXES = ((0, 1), (1, 2), (2, 0))
@@ -113,6 +113,13 @@ def _turn(flat: Floats, a: Indices, b: Indices, c: Indices) -> NDArray[np.int8]:
 def counts_of(counts: RecoveryCounts, nadded: int) -> dict[str, Any]:
     """Return the counts of a report; some of the points added may have been left out."""
     return {name: getattr(counts, name, nadded) for name in RECOVERY_COUNTS}
+
+
+def of_imprint(cut: ImprintedSurface | None) -> dict[str, Any]:
+    """Return the entries of a report on a surface that was cut at itself, if it was."""
+    if cut is None:
+        return {}
+    return {"imprinted": cut.source.astype(np.int64), "imprint_distance": cut.largest_distance}
 
 
 def reported(

@@ -13,6 +13,7 @@ from delone import _core
 from delone._base.arrays import (
     as_callback,
     as_choice,
+    as_flag,
     as_workers,
 )
 from delone._base.counting import counted, listed
@@ -26,11 +27,11 @@ from delone.errors import (
     InternalError,
     ShapeError,
 )
-from delone.solids.surface import check_surface
+from delone.solids.surface import check_surface, imprint_surface
 from delone.solids.tetmesh.refinement import as_bounds, refined
 from delone.solids.tetmesh.tetmesh import TetMesh
 from delone.solids.tetrahedra import arguments, seeds, sources
-from delone.solids.tetrahedra.covering import counts_of, parts_of, reported
+from delone.solids.tetrahedra.covering import counts_of, of_imprint, parts_of, reported
 from delone.solids.tetrahedra.inside import RULES, inner_cells
 from delone.solids.tetrahedra.recutting import recut, uncut
 from delone.solids.tetrahedra.seeds import Tiling
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
 
     from delone._base.types import Bools, Floats, Indices
     from delone._core import RecoveryCounts
-    from delone.solids.surface import SurfaceCheck
+    from delone.solids.surface import ImprintedSurface, SurfaceCheck
     from delone.solids.tetmesh.refinement import Bounds
     from delone.solids.tetrahedra.arguments import Task
     from delone.solids.tetrahedra.covering import Parts
@@ -60,6 +61,8 @@ def tetrahedralize(
     faces: ArrayLike | None = None,
     *,
     boundary: str = "faces",
+    imprint: bool = False,
+    tolerance: float | None = None,
     inside: str | None = None,
     holes: ArrayLike | None = None,
     regions: ArrayLike | None = None,
@@ -91,6 +94,13 @@ def tetrahedralize(
         What is kept: all triangles, or only the surface. In the second case, exactly coplanar
         triangles are retriangulated with the same vertices, which takes fewer points and less time
         for models with flat sides; see Notes.
+    imprint : bool, optional
+        Whether faces that cross, overlap or touch are cut at each other first, by
+        `imprint_surface`: for assemblies, whose bodies are in contact or overlap. Cut faces can
+        leave the surface by rounding; see `report`. By default, faces that cross are an error.
+    tolerance : float, optional
+        With ``imprint=True``, the distance below which vertices, edges and faces are joined, as for
+        `imprint_surface`.
     inside : {"winding", "parity", "enclosed"}, optional
         What is filled: regions with a nonzero winding number; regions that an odd number of faces
         separates from the outside, whatever their orientation; or everything enclosed. By default
@@ -134,7 +144,7 @@ def tetrahedralize(
     Raises
     ------
     CrossingFacesError
-        Faces cross; the error contains the pairs and their kinds.
+        Faces cross; the error contains the pairs and their kinds. See `imprint`.
     OpenSurfaceError
         The surface encloses nothing; the error contains its boundary edges.
     DegenerateInputError
@@ -158,6 +168,7 @@ def tetrahedralize(
     See Also
     --------
     check_surface : Check the surface alone.
+    imprint_surface : Cut faces that cross, overlap or touch at each other.
     TetMesh.refine : Add points for sizes and shapes later.
     improve : Remove slivers from the mesh.
 
@@ -167,6 +178,11 @@ def tetrahedralize(
     or overlap in one plane, they are subdivided at existing vertices, as by `resolve_touches`, and
     the report lists them. Edges may have any number of faces: sheets inside, several shells, and
     walls between regions all become faces of the mesh.
+
+    With ``imprint=True``, the mesh is that of the surface returned by `imprint_surface`: its points
+    follow those of the input in `points`, `face_source` names its faces, and
+    ``report.imprinted[mesh.face_source]`` is the input face of each. Volumes enclosed by two bodies
+    are regions of their own.
 
     With ``boundary="surface"``, the edge between two triangles is flipped if the triangles are
     exactly coplanar and have the same orientation and marker, until each flat part has its
@@ -229,7 +245,13 @@ def tetrahedralize(
         )
     surface = sources.given(points, faces, face_markers, holes, regions)
     task = arguments.task(surface, extra_points, max_points, workers)
-    stages = _Stages(task, boundary, inside or surface.rule, progress, bounds)
+    cut = None
+    if as_flag(imprint, name="imprint"):
+        cut = imprint_surface(task.points, task.faces, tolerance=tolerance, workers=workers)
+        task = task.imprinted(cut)
+    elif tolerance is not None:
+        raise InputError("tolerance is for imprint=True: otherwise nothing is rounded or joined")
+    stages = _Stages(task, cut, boundary, inside or surface.rule, progress, bounds)
     return stages.filled()
 
 
@@ -260,6 +282,8 @@ class _Stages(NamedTuple):
     """The stages of one call."""
 
     task: Task
+    # The surface cut at itself, if it is.
+    cut: ImprintedSurface | None
     boundary: str
     rule: str
     progress: Callable[[str, float], object] | None
@@ -408,7 +432,7 @@ class _Stages(NamedTuple):
                 self.task.workers,
             ),
         }
-        entries = counts_of(found.counts, nadded) | cut.reported(there)
+        entries = counts_of(found.counts, nadded) | cut.reported(there) | of_imprint(self.cut)
         report = reported(entries, self.task.faces, cut.before, there, check)
         return TetMesh._of(arrays, report, nadded, self.task.workers)
 

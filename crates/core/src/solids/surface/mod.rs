@@ -10,6 +10,7 @@ mod clean;
 mod contact;
 mod edges;
 mod fans;
+pub(crate) mod meeting;
 mod pairs;
 mod resolve;
 mod sides;
@@ -117,7 +118,7 @@ pub fn check(
 }
 
 /// Faults of single rows, and the pairs.
-fn prepared(
+pub(crate) fn prepared(
     points: &[Point3],
     faces: &[[i32; 3]],
     Options { limit, workers }: Options,

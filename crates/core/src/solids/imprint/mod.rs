@@ -1,0 +1,248 @@
+//! Surfaces that cross or overlap, cut at each other: afterwards their triangles have only vertices and
+//! edges in common, or all three vertices.
+//!
+//! Points where edges cross edges and faces are rounded, and what is nearer than a tolerance, which
+//! exceeds the rounding errors, is one: vertices, vertices on edges and in faces, edges that cross.
+//! Each round finds these for all pairs of triangles whose boxes are that near, adds the vertices,
+//! and cuts each triangle along the lines that it has in common with others. Cut triangles are not
+//! exactly in the planes of their sources, so there are further rounds until nothing is near. Which
+//! points are near is a question of distances in doubles; that nothing crosses in the end is proven by
+//! the exact tests for surfaces.
+//!
+//! Coordinates are scaled by a power of two first. Vertices, edges and faces are processed in the order
+//! of coordinates, so the result does not depend on the order of rows or on threads.
+
+mod cut;
+mod events;
+mod near;
+#[cfg(test)]
+mod tests;
+mod work;
+
+use delone_predicates::Point3;
+
+use self::cut::cut;
+use self::events::Events;
+use self::work::{Edges, Work};
+use super::surface::{NONE, Options as Limits, prepared};
+use crate::base::error::Result;
+use crate::base::memory::{copied, push, with_room};
+use crate::base::points::{Extent, scan};
+use crate::base::watch::Watch;
+use crate::order::sort;
+
+/// Rounds at most. Almost all surfaces need two: one that cuts, and one that finds nothing.
+const ROUNDS: usize = 16;
+/// How often lines that cross on a face become vertices in one round.
+const CROSSINGS: usize = 4;
+/// Two to this power is the smallest tolerance relative to the largest coordinate.
+const FINEST: i32 = -48;
+
+/// Options of the caller.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// The distance within which vertices, edges and faces are one; at least
+    /// [`finest`] is used.
+    pub tolerance: f64,
+    /// The number of threads.
+    pub workers: usize,
+}
+
+/// A surface cut at itself.
+#[derive(Debug)]
+pub struct Imprinted {
+    /// Vertices after those of the input.
+    pub added: Vec<Point3>,
+    /// The triangles, each oriented as its source.
+    pub faces: Vec<[u32; 3]>,
+    /// The row of the input that each is a part of, ascending.
+    pub source: Vec<u32>,
+    /// `[row, row that replaces it]`: vertices of the input that are one, ascending.
+    pub merged: Vec<[u32; 2]>,
+    /// The largest distance of a vertex of a part from its source.
+    pub distance: f64,
+    /// The tolerance used.
+    pub tolerance: f64,
+    /// The number of rounds that changed something.
+    pub rounds: usize,
+    /// `[row, row]`: faces of which parts still cross or could not be cut, ascending.
+    pub crossing: Vec<[u32; 2]>,
+}
+
+/// The smallest tolerance for these points: some roundings of the largest coordinate.
+pub fn finest(points: &[Point3]) -> f64 {
+    times(1.0, exponent(points) + FINEST)
+}
+
+/// Cuts a surface at itself; `faces` must be rows of `points`.
+pub fn imprint(
+    points: &[Point3],
+    faces: &[[i32; 3]],
+    options: Options,
+    watch: &Watch,
+) -> Result<Imprinted> {
+    scan(points)?;
+    let shift = exponent(points);
+    let used = options.tolerance.max(finest(points));
+    let tolerance = times(used, -shift);
+    let workers = options.workers;
+    let mut scaled = with_room(points.len())?;
+    scaled.extend(points.iter().map(|p| p.map(|x| times(x, -shift))));
+    let mut given = with_room(faces.len())?;
+    given.extend(
+        (0u32..)
+            .zip(faces)
+            .map(|(row, f)| (f.map(|v| v as u32), row)),
+    );
+    let mut rows: Vec<u32> = with_room(points.len())?;
+    rows.extend(0..points.len() as u32);
+    let mut made = Imprinted {
+        added: Vec::new(),
+        faces: Vec::new(),
+        source: Vec::new(),
+        merged: Vec::new(),
+        distance: 0.0,
+        tolerance: used,
+        rounds: 0,
+        crossing: Vec::new(),
+    };
+    let (mut work, merged) = Work::arranged(&scaled, &rows, &given, tolerance, watch)?;
+    made.merged = merged;
+    let mut narrow = Vec::new();
+    while made.rounds < ROUNDS {
+        let next = round(&mut work, tolerance, workers, watch)?;
+        let Some((parts, stuck)) = next else {
+            break;
+        };
+        made.rounds += 1;
+        narrow = stuck;
+        let (next, merged) = Work::arranged(&work.at, &work.row, &parts, tolerance, watch)?;
+        for pair in merged {
+            push(&mut made.merged, pair)?;
+        }
+        work = next;
+    }
+    sort(&mut made.merged, watch)?;
+    made.distance = times(distance(&scaled, faces, &work), shift);
+    made.number(points.len(), &work, shift)?;
+    made.crossing = made.left(points, &narrow, workers, watch)?;
+    Ok(made)
+}
+
+/// Cuts all triangles once: the parts, and the sources that could not be cut. `None` if nothing is
+/// near.
+#[allow(clippy::type_complexity)]
+fn round(
+    work: &mut Work,
+    tolerance: f64,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Option<(Vec<([u32; 3], u32)>, Vec<u32>)>> {
+    let edges = Edges::of(&work.faces, watch)?;
+    let mut events = Events::of(work, &edges, tolerance, workers, watch)?;
+    if events.on.is_empty() {
+        return Ok(None);
+    }
+    for turn in 0..=CROSSINGS {
+        let last = turn == CROSSINGS;
+        match cut(work, &edges, &events, tolerance, last, workers, watch)? {
+            Ok(parts) => return Ok(Some((parts.faces, parts.narrow))),
+            // Three faces meet in a point: a vertex on all of them.
+            Err(met) => {
+                events.extend(met)?;
+                events.name(work, &edges, tolerance, watch)?;
+            }
+        }
+    }
+    Ok(None)
+}
+
+impl Imprinted {
+    /// Fills in the vertices and triangles of the result.
+    fn number(&mut self, count: usize, work: &Work, shift: i32) -> Result<()> {
+        let mut name = with_room(work.at.len())?;
+        for (&row, &p) in work.row.iter().zip(&work.at) {
+            if row == NONE {
+                name.push((count + self.added.len()) as u32);
+                push(&mut self.added, p.map(|x| times(x, shift)))?;
+            } else {
+                name.push(row);
+            }
+        }
+        self.faces = with_room(work.faces.len())?;
+        self.source = with_room(work.faces.len())?;
+        for face in &work.faces {
+            self.faces.push(face.oriented().map(|v| name[v as usize]));
+            self.source.push(face.source);
+        }
+        Ok(())
+    }
+
+    /// The pairs of sources of which parts cross, by the exact test, and with themselves those that
+    /// could not be cut.
+    fn left(
+        &self,
+        points: &[Point3],
+        narrow: &[u32],
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<Vec<[u32; 2]>> {
+        let mut all = copied(points)?;
+        all.extend(&self.added);
+        let mut faces = with_room(self.faces.len())?;
+        faces.extend(self.faces.iter().map(|f| f.map(|v| v as i32)));
+        let limits = Limits {
+            limit: 1 << 16,
+            workers,
+        };
+        let (_, pairs) = prepared(&all, &faces, limits, watch)?;
+        let mut left: Vec<[u32; 2]> = with_room(pairs.first.len() + narrow.len())?;
+        let crossing = pairs.first.iter().filter(|pair| !pair.touching);
+        left.extend(crossing.map(|pair| {
+            let [f, g] = pair.faces.map(|face| self.source[face as usize]);
+            [f.min(g), f.max(g)]
+        }));
+        left.extend(narrow.iter().map(|&row| [row; 2]));
+        sort(&mut left, watch)?;
+        left.dedup();
+        Ok(left)
+    }
+}
+
+/// The largest distance of a vertex of a part from its source.
+fn distance(points: &[Point3], faces: &[[i32; 3]], work: &Work) -> f64 {
+    let of = |face: &work::Face| {
+        let source = faces[face.source as usize];
+        let corners = source.map(|v| points[v as usize]);
+        let distances = face.ids.map(|v| {
+            let row = work.row[v as usize];
+            if row != NONE && source.contains(&(row as i32)) {
+                0.0
+            } else {
+                near::distance(work.at[v as usize], corners)
+            }
+        });
+        distances.into_iter().fold(0.0, f64::max)
+    };
+    work.faces.iter().map(of).fold(0.0, f64::max)
+}
+
+/// The exponent of the smallest power of two above all coordinates.
+fn exponent(points: &[Point3]) -> i32 {
+    let Extent { min, max } = Extent::of(points.iter().copied());
+    let most = min
+        .into_iter()
+        .chain(max)
+        .fold(0.0, |most: f64, x| most.max(x.abs()));
+    if most == 0.0 || !most.is_finite() {
+        return 0;
+    }
+    // The logarithm may be one off at powers of two, which does no harm.
+    (most.log2().floor() as i32 + 1).clamp(-1022, 1024)
+}
+
+/// `x` times a power of two, without overflow on the way.
+fn times(x: f64, power: i32) -> f64 {
+    let half = power / 2;
+    x * 2.0_f64.powi(half) * 2.0_f64.powi(power - half)
+}
