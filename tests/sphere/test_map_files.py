@@ -276,3 +276,88 @@ def test_xesmf_applies_maps(tmp_path: Path, target: Grid) -> None:
     expected = weights.matrix @ field.ravel()
     assert np.allclose(np.asarray(found).ravel(), expected, rtol=1e-13, atol=1e-15)
     assert "xesmf" not in sys.modules
+
+
+class YacGrid:
+    """What YAC needs of a grid between meridians and parallels."""
+
+    def __init__(self, yac: Any, name: str, grid: Grid, lon: Floats, lat: Floats) -> None:
+        cyclic = [bool(np.isclose(lon[-1] - lon[0], 360.0)), False]
+        east = lon[:-1] if cyclic[0] else lon
+        made = yac.BasicGrid.reg_2d_new(name, np.radians(east), np.radians(lat), cyclic=cyclic)
+        place, nowhere = yac.yac_location.YAC_LOC_CELL, np.zeros(grid.ncells)
+        self.field = yac.InterpField(made.add_coordinates(place, nowhere, nowhere))
+        made.set_global_index(place, np.arange(grid.ncells))
+        self.kept = made
+
+
+def yac_grids(yac: Any) -> list[YacGrid]:
+    around, rows = np.arange(0.0, 361, 20), np.arange(-90.0, 91, 15)
+    part = np.arange(-20.0, 41, 10), np.arange(-30.0, 31, 10)
+    return [YacGrid(yac, "globe", ROWS, around, rows), YacGrid(yac, "region", REGION, *part)]
+
+
+def yac_core() -> Any:
+    # Without an MPI library the import fails, with an error that has no name of a module.
+    return pytest.importorskip(
+        "yac.core", reason="could not import 'yac.core'", exc_type=ImportError
+    )
+
+
+@pytest.mark.parametrize("method", ["conservative", "normalized", "sum", "nearest"])
+@pytest.mark.parametrize("form", ["NETCDF4", "NETCDF3_64BIT_DATA"])
+def test_yac_applies_maps(tmp_path: Path, method: str, form: str) -> None:
+    yac, path = yac_core(), tmp_path / "map.nc"
+    if method == "nearest":
+        made = Weights.between(ROWS, REGION, method)
+    else:
+        made = Overlaps(ROWS, REGION).to_weights(method)
+    names = ("globe", "region")
+    made.to_netcdf(path, layout="yac", grid_names=names, format=form, source=ROWS, target=REGION)
+    stack = yac.InterpolationStack()
+    stack.add_user_file(str(path))
+    source, target = yac_grids(yac)
+    applied = yac.compute_weights(stack, source.field, target.field)
+    field = field_on(ROWS)
+    found = applied.get_interpolation(collection_size=1)(field.reshape(1, -1)).ravel()
+    assert np.allclose(found, made.apply(field).ravel(), rtol=1e-14, atol=0)
+
+
+def test_maps_of_yac(tmp_path: Path) -> None:
+    yac, path = yac_core(), tmp_path / "map.nc"
+    stack = yac.InterpolationStack()
+    kinds = yac.yac_interp_method_conserv_normalisation
+    stack.add_conservative(
+        order=1,
+        enforced_conserv=False,
+        partial_coverage=False,
+        normalisation=kinds.YAC_INTERP_CONSERV_DESTAREA,
+    )
+    source, target = yac_grids(yac)
+    made = yac.compute_weights(stack, source.field, target.field)
+    made.write_to_file(str(path), "globe", "region", ROWS.ncells, REGION.ncells)
+    field = field_on(ROWS)
+    found = Weights.from_netcdf(path, source=ROWS, target=REGION).apply(field)
+    applied = made.get_interpolation(collection_size=1)(field.reshape(1, -1))
+    assert np.allclose(found.ravel(), applied.ravel(), rtol=1e-14, atol=0)
+    assert np.allclose(found, Overlaps(ROWS, REGION).to_weights().apply(field), rtol=1e-10)
+
+
+@pytest.mark.parametrize("form", ["NETCDF4", "NETCDF3_64BIT_DATA"])
+def test_the_layout_of_yac(tmp_path: Path, form: str) -> None:
+    path = tmp_path / "map.nc"
+    made = Overlaps(MESH, REGION).to_weights("normalized")
+    made.to_netcdf(path, layout="yac", grid_names=("ocean", "coast"), format=form)
+    with netcdf.Dataset(path) as file:
+        file.set_auto_mask(False)
+        assert file.version == "yac weight file 1.0"
+        assert (file.src_grid_name, file.dst_grid_name) == ("ocean", "coast")
+        assert (file.contains_links, file.contains_fixed_dst) == ("TRUE", "FALSE")
+        assert file.variables["num_links_per_src_field"][:].tolist() == [len(made.values)]
+        for name, shape in (("src_locations", (1, 10)), ("dst_location", (10,))):
+            place = file.variables[name][:]
+            assert place.shape == shape and place.tobytes().rstrip(b"\0") == b"CELL"
+        assert file.variables["src_address"][:].min() >= 1
+    read = Weights.from_netcdf(path)
+    assert read.method == "normalized" and np.array_equal(read.values, made.values)
+    assert np.array_equal(read.matrix.toarray(), made.matrix.toarray())

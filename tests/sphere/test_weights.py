@@ -330,7 +330,7 @@ def test_what_files_refuse(tmp_path: Path) -> None:
     with pytest.raises(delone.InputError, match="majority"):
         OVERLAPS.to_weights("majority").to_netcdf(path)
     with pytest.raises(delone.InputError, match="layout"):
-        OVERLAPS.to_weights().to_netcdf(path, layout="yac")
+        OVERLAPS.to_weights().to_netcdf(path, layout="cdo")
     with pytest.raises(delone.InputError, match="source has 12 cells, and the weights 768"):
         OVERLAPS.to_weights().to_netcdf(path, source=Grid.from_healpix(1))
     assert not path.exists()

@@ -1,4 +1,4 @@
-"""Map files: weights in the layouts of ESMF and of SCRIP."""
+"""Map files: weights in the layouts of ESMF, of SCRIP and of YAC."""
 
 from __future__ import annotations
 
@@ -39,11 +39,14 @@ _ESMF = {
 } | dict.fromkeys(("sibson", "laplace", "inverse_distance"), "Interpolation")
 # Sums of weights that differ by less than this agree.
 _NEAR = 1e-9
-_ROW = {"esmf": "row", "scrip": "dst_address"}
+# YAC's files have the names of SCRIP, and more.
+_ROW = {"esmf": "row", "scrip": "dst_address", "yac": "dst_address"}
 # The kind of sides, in files that contain the grids.
 _EDGES = ("delone_source_edges", "delone_target_edges")
 _SIDES = {"parallel": "meridians and parallels", "arc": "arcs of great circles"}
-_COLUMN = {"esmf": "col", "scrip": "src_address"}
+_COLUMN = {"esmf": "col", "scrip": "src_address", "yac": "src_address"}
+# The length of the names of locations in YAC's files.
+_LOCATION = 10
 
 
 def _names(layout: str, side: int) -> dict[str, str]:
@@ -68,7 +71,13 @@ def _names(layout: str, side: int) -> dict[str, str]:
 
 
 def write_map(
-    weights: Any, path: str | os.PathLike[str], layout: str, grids: Grids, form: str
+    weights: Any,
+    path: str | os.PathLike[str],
+    layout: str,
+    grids: Grids,
+    form: str,
+    *,
+    grid_names: tuple[str, str],
 ) -> None:
     """Write a `Weights`; see its `to_netcdf`."""
     if weights.method == "majority":
@@ -87,7 +96,7 @@ def write_map(
         if grid is not None and grid.ncells != len(areas):
             raise InputError(f"{name} has {grid.ncells} cells, and the weights {len(areas)}")
     with replacing(path) as temporary, netcdf.Dataset(temporary, "w", format=form) as file:
-        _write_heads(file, weights, layout)
+        _write_heads(file, weights, layout, grid_names)
         fractions = weights.source_fractions, weights.fractions
         sizes = weights.source_areas, weights.target_areas
         shapes = weights.source_shape, weights.target_shape
@@ -110,16 +119,18 @@ def write_map(
         else:
             shape = (links, "num_wgts")
             file.createVariable("remap_matrix", "f8", shape)[:] = weights.values[:, None]
+        if layout == "yac":
+            _write_locations(file, len(weights.values))
 
 
-def _write_heads(file: Any, weights: Any, layout: str) -> None:
+def _write_heads(file: Any, weights: Any, layout: str, grid_names: tuple[str, str]) -> None:
     """Write the attributes by which readers recognize a file."""
     esmf = layout == "esmf"
     # NCO looks for the name of ESMF's program in the title.
     file.title = (
         "delone: weights in the layout of ESMF Offline Regridding Weight Generator"
         if esmf
-        else "delone: weights in the layout of SCRIP"
+        else f"delone: weights in the layout of {layout.upper()}"
     )
     file.conventions = "NCAR-CSM" if esmf else "SCRIP"
     file.normalization = _NORMALIZATION.get(weights.method, "none")
@@ -130,7 +141,11 @@ def _write_heads(file: Any, weights: Any, layout: str) -> None:
         )
         file.domain_a = file.domain_b = file.grid_file_src = file.grid_file_dst = "not given"
     else:
-        file.source_grid = file.dest_grid = "not given"
+        file.source_grid, file.dest_grid = grid_names
+    if layout == "yac":
+        file.version = "yac weight file 1.0"
+        file.src_grid_name, file.dst_grid_name = grid_names
+        file.contains_links, file.contains_fixed_dst = "TRUE", "FALSE"
     file.delone_method = weights.method
     file.delone_order = np.int32(weights.order)
 
@@ -154,6 +169,19 @@ def _write_cells(
     mask.units = "unitless"
     # Cells that are not covered are masked.
     mask[:] = (fractions > 0).astype(np.int32)
+
+
+def _write_locations(file: Any, links: int) -> None:
+    """Write that there is one source field, and that values are those of cells, as YAC requires."""
+    file.createDimension("num_src_fields", 1)
+    file.createDimension("max_loc_str_len", _LOCATION)
+    numbers = file.createVariable("num_links_per_src_field", "i4", ("num_src_fields",))
+    numbers[:] = np.array([links], dtype=np.int32)
+    cells = np.zeros((1, _LOCATION), dtype="S1")
+    cells[0, :4] = list("CELL")
+    for name, dims in (("src_locations", ("num_src_fields",)), ("dst_location", ())):
+        place = file.createVariable(name, "S1", (*dims, "max_loc_str_len"))
+        place[:] = cells if dims else cells[0]
 
 
 def _write_places(file: Any, names: dict[str, str], grid: Grid) -> None:

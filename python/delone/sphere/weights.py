@@ -225,18 +225,21 @@ class Weights(AreaWeights):
         layout: str = "esmf",
         source: Grid | None = None,
         target: Grid | None = None,
+        grid_names: tuple[str, str] = ("source", "target"),
         format: str = "NETCDF4",
     ) -> None:
-        """Write a map file that ESMF's tools, xESMF, uxarray, NCO and CDO read (extra ``xarray``).
+        """Write a map file for ESMF's tools, xESMF, uxarray, NCO, CDO or YAC (extra ``xarray``).
 
         Parameters
         ----------
         path : str or path-like
             The file; written atomically.
-        layout : {"esmf", "scrip"}, optional
-            Names of dimensions and variables: those of ESMF, or of SCRIP and CDO.
+        layout : {"esmf", "scrip", "yac"}, optional
+            Names of dimensions and variables: those of ESMF, of SCRIP and CDO, or of YAC.
         source, target : Grid, optional
             The grids, whose centers and corners are then also written. NCO and CDO need them.
+        grid_names : (str, str), optional
+            What the file calls the grids. YAC refuses a file unless its own grids have these names.
         format : {"NETCDF4", "NETCDF3_64BIT_DATA"}, optional
             NetCDF-4, or CDF-5.
 
@@ -261,9 +264,9 @@ class Weights(AreaWeights):
         """
         from delone.sphere.maps import write_map
 
-        kind = as_choice(layout, ("esmf", "scrip"), name="layout")
+        kind = as_choice(layout, ("esmf", "scrip", "yac"), name="layout")
         form = as_choice(format, ("NETCDF4", "NETCDF3_64BIT_DATA"), name="format")
-        write_map(self, path, kind, (source, target), form)
+        write_map(self, path, kind, (source, target), form, grid_names=grid_names)
 
     @classmethod
     def from_netcdf(
@@ -280,7 +283,7 @@ class Weights(AreaWeights):
         path : str or path-like
             The file.
         source, target : Grid, optional
-            The grids. Files that do not say how many cells these have, such as those of YAC, need
+            The grids. Files that do not say how many cells these have, such as some of YAC, need
             them. Fields then have their shapes.
 
         Returns
