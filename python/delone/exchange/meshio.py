@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from delone.exchange.parts import Given, Parts
 
-__all__ = ["TAGS", "to_meshio"]
+__all__ = ["TAGS", "region_tags", "to_meshio"]
 
 # Names of cells by kind and order, and of facets by the kind that they bound.
 _CELLS = {
@@ -78,13 +78,19 @@ def _tags(parts: Parts) -> dict[str, list[NDArray[Any]]]:
     if parts.segments is None or "marker" not in parts.of_segments:
         return {}
     none = np.zeros(len(parts.simplices), dtype=np.int32)
-    region = np.asarray(parts.of_simplices.get("region", none)).astype(np.int64)
-    if region.min(initial=1) < 1:
-        region += 1 - region.min(initial=1)
+    region = region_tags(parts.of_simplices.get("region", none))
     marker = parts.of_segments["marker"].astype(np.int64)
     # Negative numbers have no place in Gmsh: they follow the largest one.
     below = np.unique(marker[marker < 0])
     numbers = max(0, marker.max(initial=0)) + 1 + np.arange(len(below))
     marker[marker < 0] = numbers[np.searchsorted(below, marker[marker < 0])]
-    tags = [region.astype(np.int32), marker.astype(np.int32)]
+    tags = [region, marker.astype(np.int32)]
     return {name: [tag.copy() for tag in tags] for name in TAGS}
+
+
+def region_tags(region: NDArray[Any]) -> NDArray[np.int32]:
+    """Return the numbers of regions as Gmsh has them, from 1 on."""
+    found = np.asarray(region).astype(np.int64)
+    if found.min(initial=1) < 1:
+        found += 1 - found.min(initial=1)
+    return found.astype(np.int32)

@@ -11,6 +11,7 @@ import tokenize
 import zipfile
 import zlib
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,12 +23,12 @@ from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import FileFormatError, InputError
 from delone.io.heights import split_attributes
 from delone.io.meshfile import MeshFile
+from delone.io.numbered import as_markers
 from delone.io.pointset import PointSet, choose_columns, find_column
 from delone.regular import RegularTriangulation
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -85,7 +86,35 @@ def read_mesh(path: Path) -> MeshFile:
         simplices = as_simplices(_member(archive, "simplices"), len(points), points.shape[1])
         neighbors = _member(archive, "neighbors") if "neighbors" in names else None
         z = _member(archive, "z") if "z" in names else None
-    return MeshFile(points=points, simplices=simplices, neighbors=neighbors, z=z, source=source)
+        region = faces = face_markers = None
+        solid = points.shape[1] == 3
+        if solid and "region" in names:
+            region = _numbers(archive, "region", len(simplices))
+        if solid and "input_faces" in names:
+            faces = as_simplices(_member(archive, "input_faces"), len(points), 2)
+            if "face_markers" in names:
+                face_markers = _numbers(archive, "face_markers", len(faces))
+    return MeshFile(
+        points=points,
+        simplices=simplices,
+        neighbors=neighbors,
+        z=z,
+        source=source,
+        region=region,
+        faces=faces,
+        face_markers=face_markers,
+    )
+
+
+def _numbers(archive: zipfile.ZipFile, name: str, count: int) -> NDArray[np.int32]:
+    """Read a number for each of so many cells."""
+    values = _member(archive, name)
+    if values.shape != (count,) or values.dtype.kind not in "iu":
+        raise FileFormatError(
+            f"{archive.filename}: array {name!r:.20} has {values.dtype!s:.20} of shape "
+            f"{values.shape!s:.40}, not {count} integers"
+        )
+    return as_markers(values.astype(np.float64)[:, None], Path(str(archive.filename)), name).ravel()
 
 
 def _computed(archive: zipfile.ZipFile, path: Path) -> MeshFile:

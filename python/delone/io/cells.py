@@ -12,10 +12,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["POLYGONS", "Cells", "ReadMesh", "grouped", "name_of_polygon"]
+__all__ = ["POLYGONS", "SOLIDS", "Cells", "ReadMesh", "grouped", "name_of_polygon"]
 
 # Types of cells that are polygons, which have markers.
 POLYGONS = ("triangle", "quad", "polygon")
+# Those that have regions.
+SOLIDS = ("tetra",)
 
 
 class Cells(NamedTuple):
@@ -27,12 +29,16 @@ class Cells(NamedTuple):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ReadMesh:
-    """Points, cells in the order of the file, values of points, and markers of polygons."""
+    """Points, cells in the order of the file, values of points, and numbers of cells.
+
+    Markers are those of polygons, regions those of tetrahedra, in the order of their cells.
+    """
 
     points: NDArray[np.float64]
     cells: list[Cells]
     point_data: Mapping[str, NDArray[Any]] = field(default_factory=dict)
     markers: NDArray[np.int32] | None = None
+    regions: NDArray[np.int32] | None = None
 
 
 def grouped(polygons: Sequence[Sequence[int]]) -> list[Cells]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone.io.cells import POLYGONS
+from delone.io.cells import POLYGONS, SOLIDS
 from delone.io.gmsh import Bytes, Checked, Words, spans
 from delone.io.numbered import as_markers
 
@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["group_name", "markers", "physical_groups"]
+    from delone._base.types import Floats
+
+__all__ = ["group_name", "numbers", "physical_groups"]
 
 # A line of names: dimension, number, and the name in quotes.
 _NAMED = re.compile(rb'\s*(\d{1,9})\s+(-?\d{1,9})\s+"([^"]*)"\s*')
@@ -40,7 +42,7 @@ class Groups(NamedTuple):
 
 
 def group_name(kind: str, value: int) -> str:
-    """Return the name of a group of markers or regions, which `markers` understands."""
+    """Return the name of a group of markers or regions, which `numbers` understands."""
     return f"{kind} {value}"
 
 
@@ -90,25 +92,38 @@ def _entities(checked: Checked, body: bytes) -> dict[tuple[int, int], int]:
     return found
 
 
-def markers(mesh: Any, path: Path) -> NDArray[np.int32] | None:
-    """Return a number for each polygon of a mesh of meshio: its group, 0 where there is none.
+def numbers(mesh: Any, path: Path) -> tuple[NDArray[np.int32] | None, NDArray[np.int32] | None]:
+    """Return numbers for the polygons and for the tetrahedra of a mesh of meshio: their groups.
 
-    A name that delone writes, as "marker 7", gives the number in it. None if there are no groups.
+    0 stands for no group. A name that delone writes, as "marker 7", gives the number in it. None if
+    there are no groups.
     """
     groups = physical_groups(path)
     tags = mesh.cell_data.get("gmsh:physical" if groups.entities is None else "gmsh:geometrical")
     if tags is None or (groups.entities is not None and not groups.entities):
-        return None
-    meaning = {tag: _OWN.fullmatch(name) for (ndim, tag), name in groups.names.items() if ndim == 2}
+        return None, None
+    return (
+        as_markers(_of_kinds(mesh, tags, groups, POLYGONS, 2), path).ravel(),
+        as_markers(_of_kinds(mesh, tags, groups, SOLIDS, 3), path, "region").ravel(),
+    )
+
+
+def _of_kinds(
+    mesh: Any, tags: list[NDArray[Any]], groups: Groups, kinds: tuple[str, ...], dimension: int
+) -> Floats:
+    """Return the numbers of the groups of cells of some kinds, (n, 1)."""
+    meaning = {
+        tag: _OWN.fullmatch(name) for (ndim, tag), name in groups.names.items() if ndim == dimension
+    }
     rows = [np.empty((0, 1))]
     for block, own in zip(mesh.cells, tags, strict=True):
-        if block.type not in POLYGONS:
+        if block.type not in kinds:
             continue
         values, place = np.unique(np.asarray(own, dtype=np.int64), return_inverse=True)
         known = []
         for value in values.tolist():
-            tag = value if groups.entities is None else groups.entities.get((2, value), 0)
+            tag = value if groups.entities is None else groups.entities.get((dimension, value), 0)
             word = meaning.get(tag)
             known.append(int(word[1]) if word else tag)
         rows.append(np.array(known, dtype=np.float64)[place].reshape(-1, 1))
-    return as_markers(np.concatenate(rows), path).ravel()
+    return np.concatenate(rows)

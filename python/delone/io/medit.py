@@ -1,6 +1,6 @@
 """Medit's MESH files as text: sections of a word, a count and rows of numbers, read by delone.
 
-Cells keep their references where they are polygons. Sections of other names are left out.
+Polygons and tetrahedra keep their references. Sections of other names are left out.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone.errors import FileFormatError
-from delone.io.cells import POLYGONS, Cells, ReadMesh
+from delone.io.cells import POLYGONS, SOLIDS, Cells, ReadMesh
 from delone.io.numbered import as_markers, as_rows, parsed, read_text
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def read(path: Path) -> ReadMesh:
     if words[-1][0] != "End":
         raise FileFormatError(f"{path} has no End at its end: it is cut short")
     ndim, points = 0, np.empty((0, 3))
-    cells, markers = [], []
+    cells, markers, regions = [], [], []
     for word, following in itertools.pairwise(words):
         name = word[0]
         if name not in ("Dimension", "Vertices", *_KINDS):
@@ -56,10 +56,16 @@ def read(path: Path) -> ReadMesh:
             cells.append(Cells(kind, corners))
             if kind in POLYGONS:
                 markers.append(as_markers(rows[:, width:], path).ravel())
+            elif kind in SOLIDS:
+                regions.append(as_markers(rows[:, width:], path, "region").ravel())
     if ndim == 0:
         raise FileFormatError(f"{path} has no Dimension of 2 or 3")
-    found = np.concatenate(markers) if markers else None
-    return ReadMesh(points=points, cells=cells, markers=found)
+    return ReadMesh(
+        points=points,
+        cells=cells,
+        markers=np.concatenate(markers) if markers else None,
+        regions=np.concatenate(regions) if regions else None,
+    )
 
 
 def _rows(numbers: Floats, width: int, name: str, path: Path) -> Floats:

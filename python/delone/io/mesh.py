@@ -21,9 +21,9 @@ from delone._base.arrays import as_points, as_simplices
 from delone._base.extras import require
 from delone._base.values import as_values
 from delone.errors import DeloneError, FileFormatError, InputError
-from delone.exchange.meshio import TAGS, to_meshio
+from delone.exchange.meshio import TAGS, region_tags, to_meshio
 from delone.io import gmsh_groups, medit, msh, obj, ply, vtk, vtu
-from delone.io.cells import POLYGONS, Cells, ReadMesh
+from delone.io.cells import POLYGONS, SOLIDS, Cells, ReadMesh
 from delone.io.content import content
 from delone.io.facets import facet_triangles
 from delone.io.gmsh import needed_sections
@@ -31,7 +31,7 @@ from delone.io.meshfile import MeshFile
 from delone.io.pointset import PointSet
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -137,7 +137,7 @@ def _simplices(mesh: ReadMesh, kind: str, npoints: int, path: Path) -> NDArray[n
 
 
 def _tetrahedra(mesh: ReadMesh, path: Path) -> MeshFile:
-    """The tetrahedra of a 3-D mesh; faces and edges are left out."""
+    """The tetrahedra of a 3-D mesh, and its triangles as faces; edges are left out."""
     plane, z = _coordinates(mesh, path)
     others = {block.type for block in mesh.cells} - {"tetra", "triangle", "vertex", "line"}
     if others or z is None:
@@ -145,7 +145,15 @@ def _tetrahedra(mesh: ReadMesh, path: Path) -> MeshFile:
         raise FileFormatError(f"{path} contains {found} beside its tetrahedra")
     simplices = _simplices(mesh, "tetra", len(plane), path)
     points = np.ascontiguousarray(np.column_stack((plane, z)))
-    return MeshFile(points=points, simplices=simplices, source=str(path))
+    marked = any(block.type == "triangle" for block in mesh.cells)
+    return MeshFile(
+        points=points,
+        simplices=simplices,
+        source=str(path),
+        region=mesh.regions,
+        faces=_simplices(mesh, "triangle", len(points), path) if marked else None,
+        face_markers=mesh.markers if marked else None,
+    )
 
 
 def _coordinates(
@@ -165,8 +173,8 @@ def _coordinates(
 def _read(path: Path, attributes: Sequence[str] | None = (), *, marked: bool = False) -> ReadMesh:
     """Return the points and cells of a file, and values of points: all, or those of an MSH file.
 
-    None means all of an MSH file as well. With `marked`, triangles of an MSH file have the numbers
-    of their groups, as those of other files have them in any case.
+    None means all of an MSH file as well. With `marked`, triangles and tetrahedra of an MSH file
+    have the numbers of their groups, as those of other files have them in any case.
     """
     suffix = path.suffix.lower()
     if suffix in _OWN:
@@ -194,10 +202,17 @@ def _read(path: Path, attributes: Sequence[str] | None = (), *, marked: bool = F
             f"{path} is truncated or not a {suffix} file: {reason!s:.100}"
         ) from error
     cells = [Cells(block.type, block.data) for block in mesh.cells]
-    surface = all(block.type in (*POLYGONS, "vertex", "line") for block in cells)
-    groups = marked and suffix == ".msh" and surface
-    markers = gmsh_groups.markers(mesh, path) if groups else None
-    return ReadMesh(points=mesh.points, cells=cells, point_data=mesh.point_data, markers=markers)
+    markers = regions = None
+    wanted = all(block.type in (*POLYGONS, *SOLIDS, "vertex", "line") for block in cells)
+    if marked and suffix == ".msh" and wanted:
+        markers, regions = gmsh_groups.numbers(mesh, path)
+    return ReadMesh(
+        points=mesh.points,
+        cells=cells,
+        point_data=mesh.point_data,
+        markers=markers,
+        regions=regions,
+    )
 
 
 @contextlib.contextmanager
@@ -245,8 +260,20 @@ def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     )
     made = to_meshio(found.bare() if suffix in _PLAIN else found.whole())
     if suffix == ".msh" and TAGS[0] in made.cell_data:
-        _write_tagged(path, made, found, wanted.version or "2.2")
+        # meshio reads values of mixed cells in no version.
+        if found.of_simplices:
+            raise FileFormatError(
+                ".msh files of meshes cannot store attributes of triangles; use .vtu"
+            )
+        _write_tagged(path, made, found, {}, wanted.version or "2.2")
         return
+    if suffix == ".msh" and made.cells[0].type in ("tetra", "tetra10"):
+        region = made.cell_data.get("region")
+        if region is not None:
+            values = {name: each[0] for name, each in made.cell_data.items()}
+            made.cell_data |= {tag: [region_tags(region[0])] for tag in TAGS}
+            _write_tagged(path, made, found, values, wanted.version or "2.2")
+            return
     for tag in TAGS:
         made.cell_data.pop(tag, None)
     if found.heights is not None and suffix == ".vtu":
@@ -254,13 +281,13 @@ def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     _write(path, suffix, made, wanted.version or "4.1")
 
 
-def _write_tagged(path: Path, mesh: Any, found: Content, version: str) -> None:
+def _write_tagged(
+    path: Path, mesh: Any, found: Content, of_cells: Mapping[str, NDArray[Any]], version: str
+) -> None:
     """Write simplices and segments to an MSH file, with regions and markers as its groups.
 
-    meshio reads values of mixed cells in no version.
+    Values of cells are those of simplices in a mesh without segments.
     """
-    if found.of_simplices:
-        raise FileFormatError(".msh files of meshes cannot store attributes of triangles; use .vtu")
     # Points have the markers of their segments; these are groups here.
     mesh.point_data = {
         name: values
@@ -268,12 +295,13 @@ def _write_tagged(path: Path, mesh: Any, found: Content, version: str) -> None:
         if name in {**found.of_points, **found.of_nodes}
     }
     if version == "4.1":
-        msh.write(path, mesh.points, _groups(mesh), mesh.point_data)
+        msh.write(path, mesh.points, _groups(mesh), mesh.point_data, of_cells)
         return
     mesh.field_data = {
         group.name: np.array([group.number, group.ndim]) for group in _groups(mesh, unmarked=False)
     }
     mesh.cell_data = {tag: mesh.cell_data[tag] for tag in TAGS}
+    mesh.cell_data |= {name: [values] for name, values in of_cells.items()}
     module = importlib.import_module("meshio.gmsh")
     module.write(path, mesh, "2.2", binary=True)
 
@@ -285,7 +313,7 @@ def _groups(mesh: Any, *, unmarked: bool = True) -> list[msh.Group]:
     or with ``unmarked=False`` none.
     """
     found = []
-    for name, block in (("region", 0), ("marker", 1)):
+    for name, block in (("region", 0), ("marker", 1))[: len(mesh.cells)]:
         values, tags = mesh.cell_data.get(name), mesh.cell_data[TAGS[0]][block]
         own = np.zeros(len(tags), dtype=np.int64) if values is None else np.asarray(values[block])
         cells = mesh.cells[block]
@@ -294,10 +322,8 @@ def _groups(mesh: Any, *, unmarked: bool = True) -> list[msh.Group]:
             tag = int(tags[rows[0]])
             if tag or unmarked:
                 number = tag or int(tags.max()) + 1
-                group = msh.Group(
-                    gmsh_groups.group_name(name, value), number, cells.type, cells.data[rows]
-                )
-                found.append(group)
+                named = gmsh_groups.group_name(name, value)
+                found.append(msh.Group(named, number, cells.type, cells.data[rows], rows))
     return found
 
 

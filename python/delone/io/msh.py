@@ -38,6 +38,7 @@ class Group(NamedTuple):
     number: int  # from 1 on
     kind: str  # as meshio has it
     cells: NDArray[np.integer[Any]]
+    rows: NDArray[np.int64]  # of the mesh
 
     @property
     def ndim(self) -> int:
@@ -46,9 +47,13 @@ class Group(NamedTuple):
 
 
 def write(
-    path: Path, points: Floats, groups: list[Group], values: Mapping[str, NDArray[Any]]
+    path: Path,
+    points: Floats,
+    groups: list[Group],
+    of_points: Mapping[str, NDArray[Any]],
+    of_cells: Mapping[str, NDArray[Any]],
 ) -> None:
-    """Write groups of cells and values of points, (n, 3)."""
+    """Write points, (n, 3), groups of cells, and values of points and, where of one kind, cells."""
     groups = sorted(
         (group for group in groups if len(group.cells)),
         key=lambda group: (group.ndim, group.number),
@@ -72,13 +77,17 @@ def write(
         for group in groups:
             number, ndim, order = _KINDS[group.kind]
             file.write(_integers(ndim, group.number, number) + _sizes(len(group.cells)))
-            rows = np.arange(first, first + len(group.cells))
+            numbers = np.arange(first, first + len(group.cells))
             corners = np.asarray(group.cells, dtype=np.int64)[:, order] + 1
-            file.write(np.column_stack((rows, corners)).astype("<u8").tobytes())
+            file.write(np.column_stack((numbers, corners)).astype("<u8").tobytes())
             first += len(group.cells)
         file.write(b"\n$EndElements\n")
-        for name, own in values.items():
-            file.write(_values(name, own))
+        for name, own in of_points.items():
+            file.write(_values("NodeData", name, own))
+        # Elements are numbered in the order of their groups.
+        rows = np.concatenate([group.rows for group in groups])
+        for name, own in of_cells.items():
+            file.write(_values("ElementData", name, own[rows]))
 
 
 def _entities(points: Floats, groups: list[Group]) -> bytes:
@@ -92,13 +101,13 @@ def _entities(points: Floats, groups: list[Group]) -> bytes:
     return b"".join(found)
 
 
-def _values(name: str, values: NDArray[Any]) -> bytes:
-    """A view of values of points: one string, one time, and three counts before the rows."""
+def _values(section: str, name: str, values: NDArray[Any]) -> bytes:
+    """A view of values: one string, one time, and three counts before the rows."""
     word = name.replace('"', "")
-    head = f'$NodeData\n1\n"{word}"\n1\n0.0\n3\n0\n1\n{len(values)}\n'
+    head = f'${section}\n1\n"{word}"\n1\n0.0\n3\n0\n1\n{len(values)}\n'
     rows = np.empty(len(values), dtype=[("row", "<i4"), ("value", "<f8")])
     rows["row"], rows["value"] = np.arange(1, len(values) + 1), values
-    return head.encode() + rows.tobytes() + b"\n$EndNodeData\n"
+    return head.encode() + rows.tobytes() + f"\n$End{section}\n".encode()
 
 
 def _integers(*numbers: int) -> bytes:

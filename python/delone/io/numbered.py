@@ -185,13 +185,13 @@ def first_number(numbers: Floats, path: Path) -> int:
     return int(first)
 
 
-def as_markers(numbers: Floats, path: Path) -> NDArray[np.int32]:
-    """Return a column of markers as integers."""
+def as_markers(numbers: Floats, path: Path, what: str = "marker") -> NDArray[np.int32]:
+    """Return a column of markers, or of other numbers of parts, as integers."""
     good = (np.abs(numbers) < _LARGEST) & (numbers == np.floor(numbers))
     if not good.all():
         row = int(np.flatnonzero(~good.all(axis=1))[0])
         raise FileFormatError(
-            f"{path}: the marker in row {row} is {numbers[row, 0]:.17g}, not a 32-bit integer"
+            f"{path}: the {what} in row {row} is {numbers[row, 0]:.17g}, not a 32-bit integer"
         )
     return numbers.astype(np.int32)
 

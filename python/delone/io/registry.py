@@ -512,8 +512,8 @@ def read_mesh(path: str | os.PathLike[str], *, polygons: str | None = None) -> M
     path : str or path-like
         An npz file of a `Delaunay`, `ConstrainedDelaunay`, `RegularTriangulation`, `Mesh` or
         `TetMesh`, or VTU, VTK (legacy), PLY, OBJ, STL, OFF, MSH, MESH (Medit), or Triangle's ELE
-        with its NODE next to it. Tetrahedra are read from npz, VTU, VTK, MSH, MESH and TetGen's
-        ELE; its FACE, SMESH and POLY have triangles in 3-D.
+        with its NODE next to it. Tetrahedra, with regions and marked faces, are read from npz, VTU,
+        VTK, MSH, MESH and TetGen's ELE (no faces); its FACE, SMESH and POLY have triangles in 3-D.
     polygons : {"raise", "split"}, optional
         Whether faces with more than three corners are an error or become triangles. By default an
         error in VTU, VTK, MSH and MESH, whose polygons may be the cells of a mesh, and triangles
@@ -597,8 +597,8 @@ def write_mesh(
         node in the middle of each edge, in the order of ``triangulation.edges`` behind the points.
         Attributes are those of points, of simplices, or of all nodes.
     version : {"2.2", "4.1"}, optional
-        Version of an MSH file. By default 2.2 where segments or faces have markers, which more
-        programs read, otherwise 4.1.
+        Version of an MSH file. By default 2.2, which more programs read, where segments or faces
+        have markers or tetrahedra have regions; otherwise 4.1, which orders simplices by group.
 
     Raises
     ------

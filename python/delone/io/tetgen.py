@@ -108,7 +108,14 @@ def read_mesh(path: Path) -> MeshFile:
         tetrahedra = as_rows(rows[:, 1:5], first, path, len(points))
         if not count:
             raise FileFormatError(f"{path} contains no tetrahedra")
-        return MeshFile(points=points, simplices=tetrahedra, source=str(path))
+        region = rows[:, 1 + corners : 2 + corners]
+        whole = attributes and (region == np.floor(region)).all()
+        return MeshFile(
+            points=points,
+            simplices=tetrahedra,
+            source=str(path),
+            region=as_markers(region, path, "region").ravel() if whole else None,
+        )
     if suffix == ".face":
         return _faces(path)
     return _facets(path)

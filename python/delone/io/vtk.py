@@ -1,4 +1,4 @@
-"""Legacy VTK files, as text or binary: points, cells, and values of points and triangles.
+"""Legacy VTK files, as text or binary: points, cells, values of points, markers and regions.
 
 PolyData and unstructured grids are read, in the layout before version 5 and in that of 5.1. What a
 file declares is compared with the bytes that follow before memory is set aside.
@@ -15,7 +15,7 @@ from delone.errors import FileFormatError
 from delone.io.cells import ReadMesh
 from delone.io.counts import announced
 from delone.io.numbered import parsed
-from delone.io.vtu import POLYGON, cells_of, markers_of
+from delone.io.vtu import POLYGON, cells_of, numbers_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -102,12 +102,11 @@ class _Reader:
             cells = cells_of(grid.corners, grid.ends, types, self._path)
         if any(len(each) != len(points) for each in values["POINT_DATA"].values()):
             raise FileFormatError(f"{self._path} has other numbers of points and of values")
-        marker = values["CELL_DATA"].get("marker")
         return ReadMesh(
             points=points,
             cells=cells,
             point_data=values["POINT_DATA"],
-            markers=None if marker is None else markers_of(cells, marker, self._path),
+            **numbers_of(cells, values["CELL_DATA"], self._path),
         )
 
     def _cells(self) -> _List:

@@ -1,4 +1,4 @@
-"""VTU: points, cells, values of points and markers of triangles, read with Python's XML parser.
+"""VTU: points, cells, values of points, markers and regions, read with Python's XML parser.
 
 Arrays are text, or binary inline or appended, raw or in base64, compressed by zlib or LZMA or not.
 What an array declares is compared with the bytes that follow before memory is set aside, and it is
@@ -12,24 +12,24 @@ import itertools
 import lzma
 import re
 import zlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict
 from xml.etree import ElementTree
 
 import numpy as np
 
 from delone._base.bounded import largest
 from delone.errors import FileFormatError
-from delone.io.cells import POLYGONS, Cells, ReadMesh, name_of_polygon
+from delone.io.cells import POLYGONS, SOLIDS, Cells, ReadMesh, name_of_polygon
 from delone.io.markup import decoded, refuse_document_type
 from delone.io.numbered import as_markers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-__all__ = ["POLYGON", "cells_of", "markers_of", "read"]
+__all__ = ["POLYGON", "cells_of", "numbers_of", "read"]
 
 _TYPES = {
     **{"Float32": "f4", "Float64": "f8", "Int8": "i1", "Int16": "i2", "Int32": "i4"},
@@ -76,9 +76,19 @@ def read(path: Path) -> ReadMesh:
         if name in shared
     }
     points = np.concatenate([piece.points for piece in pieces])
-    marked = [piece.markers for piece in pieces if piece.markers is not None]
-    markers = np.concatenate(marked) if len(marked) == len(pieces) else None
-    return ReadMesh(points=points, cells=cells, point_data=values, markers=markers)
+    return ReadMesh(
+        points=points,
+        cells=cells,
+        point_data=values,
+        markers=_joined([piece.markers for piece in pieces]),
+        regions=_joined([piece.regions for piece in pieces]),
+    )
+
+
+def _joined(numbers: list[NDArray[np.int32] | None]) -> NDArray[np.int32] | None:
+    """Return the numbers of all pieces; None where one has none."""
+    found = [each for each in numbers if each is not None]
+    return np.concatenate(found) if len(found) == len(numbers) else None
 
 
 def _tree(path: Path) -> tuple[Any, bytes | None]:
@@ -122,31 +132,54 @@ def _piece(piece: Any, arrays: _Arrays, path: Path) -> ReadMesh:
     values = {name: found[:, 0] if found.shape[1] == 1 else found for name, found in values.items()}
     if any(len(found) != len(points) for found in values.values()):
         raise FileFormatError(f"{path} is corrupt: the numbers of points and of values differ")
-    marker = next(
-        (each for each in piece.findall("CellData/DataArray") if each.get("Name") == "marker"), None
-    )
+    named = {each.get("Name"): each for each in piece.findall("CellData/DataArray")}
+    of_cells = {name: arrays.table(named[name]) for name in ("marker", "region") if name in named}
     return ReadMesh(
         points=points.astype(np.float64),
         cells=cells,
         point_data=values,
-        markers=None if marker is None else markers_of(cells, arrays.table(marker), path),
+        **numbers_of(cells, of_cells, path),
     )
 
 
-def markers_of(cells: list[Cells], values: NDArray[Any], path: Path) -> NDArray[np.int32] | None:
-    """Return the values of triangles and polygons, in their order; None for vectors."""
-    count = sum(len(block.data) for block in cells)
-    if values.shape[1:] not in ((), (1,)):
+class Numbers(TypedDict):
+    """The markers of polygons and the regions of tetrahedra, as `ReadMesh` has them."""
+
+    markers: NDArray[np.int32] | None
+    regions: NDArray[np.int32] | None
+
+
+def numbers_of(cells: list[Cells], values: Mapping[str, NDArray[Any]], path: Path) -> Numbers:
+    """Return the values of cells that are called marker and region.
+
+    They are those of triangles and polygons, and of tetrahedra, in their order. Vectors are none.
+    """
+    return {
+        "markers": _own(cells, POLYGONS, values.get("marker"), "marker", path),
+        "regions": _own(cells, SOLIDS, values.get("region"), "region", path),
+    }
+
+
+def _own(
+    cells: list[Cells],
+    kinds: tuple[str, ...],
+    values: NDArray[Any] | None,
+    what: str,
+    path: Path,
+) -> NDArray[np.int32] | None:
+    """Return the values of the cells of some kinds as integers."""
+    if values is None or values.shape[1:] not in ((), (1,)):
         return None
+    count = sum(len(block.data) for block in cells)
     if len(values) != count:
-        raise FileFormatError(f"{path} is corrupt: it has {count} cells and {len(values)} markers")
+        raise FileFormatError(f"{path} is corrupt: it has {count} cells and {len(values)} {what}s")
     start, found = 0, [np.empty((0, 1))]
     for block in cells:
         stop = start + len(block.data)
-        if block.type in POLYGONS:
+        if block.type in kinds:
             found.append(values[start:stop].reshape(-1, 1).astype(np.float64))
         start = stop
-    return as_markers(np.concatenate(found), path).ravel()
+    return as_markers(np.concatenate(found), path, what).ravel()
 
 
 def cells_of(
