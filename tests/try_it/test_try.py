@@ -157,6 +157,7 @@ def test_files_and_errors_are_those_of_python(
     assert "problem" not in found, found
     assert found["points"] == flat(mesh.points)
     assert found["triangles"] == flat(mesh.simplices)
+    assert found["said"].startswith(f"{len(mesh.points):,} points from {name}")
     assert ("distances are distorted" in found["said"]) is bool(warned)
     assert page.complaints() == []
 

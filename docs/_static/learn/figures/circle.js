@@ -28,7 +28,7 @@ export default {
           dots(points),
           dots(points, three, { color: "accent", radius: 6 }),
         ]],
-        say: `The circle of triangle ${t + 1} holds no point inside. ${sum}`,
+        say: `The circle of triangle ${t + 1} contains no points. ${sum}`,
       };
     });
   },

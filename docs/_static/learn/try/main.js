@@ -78,7 +78,8 @@ class Page {
       return;
     }
     const content = await file.arrayBuffer();
-    await this.read(file.name.replace(/\.[^.]*$/, ""), { content, source: file.name }, [content]);
+    const given = { content, source: file.name };
+    await this.read(file.name.replace(/\.[^.]*$/, ""), given, [content], file.name);
   }
 
   dropped(event) {
@@ -88,10 +89,10 @@ class Page {
     if (file) this.readFile(file);
   }
 
-  read(name, given, transfer = []) {
+  read(name, given, transfer = [], file = "") {
     const wanted = this.parts.columns.value.split(",").map((each) => each.trim()).filter(Boolean);
     this.parts.sample.value = "";
-    return this.begin(name, "read", { ...given, wanted }, transfer);
+    return this.begin(name, "read", { ...given, wanted }, transfer, file);
   }
 
   readSample(name) {
@@ -100,7 +101,7 @@ class Page {
   }
 
   /** Ask for the triangulation of other points, and show it or what is wrong with them. */
-  async begin(name, call, given, transfer) {
+  async begin(name, call, given, transfer, file = "") {
     const number = (this.busy += 1);
     this.reading = true;
     this.parts.element.classList.add("try-busy");
@@ -109,7 +110,7 @@ class Page {
       const found = await this.client.ask(call, given, transfer);
       if (number !== this.busy) return;
       this.name = name;
-      this.take(found);
+      this.take(found, file);
     } catch (problem) {
       if (number === this.busy) this.fail(problem);
     } finally {
@@ -120,7 +121,8 @@ class Page {
     }
   }
 
-  take(found) {
+  /** Show a result; the text names the file, which the file chooser no longer does. */
+  take(found, file) {
     const { parts, picture } = this;
     parts.problem.hidden = true;
     parts.element.classList.add("try-full");
@@ -128,7 +130,7 @@ class Page {
     parts.layers.move.checked = found.points.length <= 2 * FEW || found.movable === true;
     picture.setScene(scene);
     this.tell(found);
-    parts.status.textContent = describe(found);
+    parts.status.textContent = describe(found, file);
     this.addCells();
     if (this.hand.movable()) this.hand.prepare();
   }

@@ -30,8 +30,8 @@ export function tell(table, summary) {
   }
 }
 
-/** A sentence about a result. */
-export function describe({ summary, columns = [], note = "", reading, triangulating }) {
+/** A sentence about a result, with the name of its file. */
+export function describe({ summary, columns = [], note = "", reading, triangulating }, file = "") {
   const { points, triangles, duplicates } = summary;
   const twice = duplicates ? `, ${whole(duplicates)} of them duplicates` : "";
   const from = columns.length && columns.some((name) => !/^\d+$/.test(name))
@@ -39,5 +39,6 @@ export function describe({ summary, columns = [], note = "", reading, triangulat
     : "";
   const read = reading === undefined ? "" : ` Read in ${reading.toFixed(0)} ms.`;
   const time = triangulating === undefined ? "" : `${read} Triangulated in ${triangulating.toFixed(0)} ms.`;
-  return `${whole(points)} points${twice}: ${whole(triangles)} triangles.${time}${from}${note ? ` ${note}` : ""}`;
+  const of = file && ` from ${file}`;
+  return `${whole(points)} points${of}${twice}: ${whole(triangles)} triangles.${time}${from}${note ? ` ${note}` : ""}`;
 }
