@@ -29,9 +29,11 @@ SHAPES = {
     "line": lambda: delone.concave_hull([(0, 0), (1, 1), (2, 2)], ratio=1),
 }
 TABLES = {
-    "contours": lambda: HILLS.contours(interval=0.25, index=2, min_length=0.2, min_area=0.01),
+    "contours": lambda: HILLS.contours(
+        interval=0.25, index=2, min_length=0.2, min_area=0.01, simplify=0.02
+    ),
     "no line": lambda: HILLS.contours([99.0]),
-    "bands": lambda: HILLS.bands(interval=0.25, min_area=0.01),
+    "bands": lambda: HILLS.bands(interval=0.25, min_area=0.01, simplify=0.02),
     "plain": lambda: TIN.from_points(np.column_stack((FLAT, FLAT[:, 0]))).bands([0.5]),
 }
 

@@ -56,7 +56,7 @@ def test_files_are_those_of_separate_commands(hill, command, tmp_path):
     assert (code, err) == (0, "")
     for name, own in (
         ("contours", ("--interval", "0.5", *lines)),
-        ("bands", ("--bands", "--interval", "2", "--min-area", "2")),
+        ("bands", ("--bands", "--interval", "2", "--min-area", "2", "--simplify", "0.2")),
     ):
         alone = tmp_path / f"{name}.gpkg"
         assert command("contours", hill, *COMMON, *own, "-o", alone)[0] == 0

@@ -226,8 +226,8 @@ def test_triangles_that_are_left_out_add_up(monkeypatch: pytest.MonkeyPatch) -> 
         return drawing._Part(*empty, np.array(tangled, np.int64), np.array(outer, np.int64))
 
     monkeypatch.setattr(drawing, "_lines", lines)
-    parts, left_out = drawing._untangled(np.array([1.0]), [((0, 1), ["0-0.npz"])], "serial")
-    assert (len(parts), left_out) == (1, 2)
+    parts, dropped = drawing._untangled(np.array([1.0]), [((0, 1), ["0-0.npz"])], "serial")
+    assert (len(parts), dropped.tolist()) == (1, [2, 7])
     assert [state.dropped.tolist() for state in states] == [[], [7], [2, 7], [2, 7], [2, 7]]
     # Then points that are far apart are united, and at last triangles are collapsed.
     assert [state.far for state in states] == [False, False, False, True, True]

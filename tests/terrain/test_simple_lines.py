@@ -1,7 +1,8 @@
-"""Contours with fewer points: nothing crosses, nothing changes sides, and the distance holds."""
+"""Contours and bands with fewer points: nothing crosses or changes sides, the distance holds."""
 
+from collections import Counter
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
@@ -199,6 +200,83 @@ def test_the_direction_of_lines_changes_nothing(count):
         assert np.array_equal(one[first[k] : first[k + 1]], two[second[at] : second[at + 1]][::-1])
 
 
+def lattice(seed):
+    """Heights at levels: plateaus, lines through vertices, and lines that touch the outline."""
+    random = np.random.default_rng(seed)
+    x, y = np.meshgrid(np.arange(30.0), np.arange(30.0))
+    z = random.integers(0, 5, x.shape)
+    return TIN.from_points(np.column_stack((x.ravel(), y.ravel(), z.ravel())))
+
+
+def bay(seed):
+    """An outline that is not convex, with a hole."""
+    random = np.random.default_rng(seed)
+    xy = random.random((1200, 2)) * 100
+    z = 8 * np.sin(xy[:, 0] / 9) * np.cos(xy[:, 1] / 7) + random.random(1200) * 2
+    outline = np.array([(0.0, 0), (100, 0), (100, 100), (50, 20), (0, 100)])
+    hole = np.array([(30.0, 10), (60, 12), (50, 18), (45, 14)])
+    return TIN.from_points(np.column_stack((xy, z)), boundary=[outline], holes=[hole])
+
+
+def sides_of(lines):
+    """Return how often there is each side of lines, whatever its direction."""
+    return Counter(frozenset(map(tuple, side.tolist())) for side in pieces(lines))
+
+
+def rings_of(found):
+    return [found.points[a:b] for a, b in pairwise(found.ring_starts.tolist())]
+
+
+def area(ring):
+    """Twice the area, exactly."""
+    points = [(Fraction(x), Fraction(y)) for x, y in ring.tolist()]
+    return sum(a * d - b * c for (a, b), (c, d) in pairwise(points))
+
+
+SURFACES = {"hills": lambda seed: hills(seed, 1200), "lattice": lattice, "bay": bay}
+
+
+@pytest.mark.parametrize("kind", SURFACES)
+@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("tolerance", [0.3, 3.0, 1e3])
+def test_bands_have_the_borders_of_contours(kind, seed, tolerance):
+    tin = SURFACES[kind](seed)
+    every, few = tin.bands(interval=1), tin.bands(interval=1, simplify=tolerance)
+    lines = tin.contours(interval=1, simplify=tolerance)
+    assert few.straightened == lines.straightened > 0
+    sides, before = sides_of(rings_of(few)), sides_of(rings_of(every))
+    borders = sides_of(lines_of(lines))
+    # Each side of a contour is a border of two polygons, or along the outline, which stays.
+    outline = {side for side, count in before.items() if count == 1}
+    assert max(sides.values()) == 2
+    assert all(sides[side] == 2 or side in outline for side in borders)
+    assert {side for side, count in sides.items() if count == 1} == outline
+    assert {side for side, count in sides.items() if count == 2} <= borders.keys()
+    # Nothing crosses, so polygons are what their rings enclose.
+    require_no_crossing([np.array(list(side)) for side in sides])
+    first = set(few.polygon_starts[:-1].tolist())
+    for k, ring in enumerate(rings_of(few)):
+        assert (area(ring) > 0) == (k in first)
+    assert sum(map(area, rings_of(few))) == sum(map(area, rings_of(every)))
+    assert len(few) + few.flattened == len(every)
+    assert shapely.is_valid(few.to_shapely()).all()
+
+
+def test_a_polygon_that_becomes_flat_is_counted():
+    # The contour goes around the middle of a straight outline, from one vertex to another.
+    low = [(0, 0, 0), (9, 0, 0), (9, 9, 0), (0, 9, 0), (4, 2, 0)]
+    tin = TIN.from_points([*low, (3, 0, 4), (5, 0, 4), (4, 0, 6), (4, 1, 4)])
+    every, few = tin.bands([4.0]), tin.bands([4.0], simplify=9.0)
+    assert (len(every), len(few), few.flattened) == (2, 2, 0)
+    # Without the vertex between, nothing is left of the polygon but a side of the outline.
+    tin = TIN.from_points([*low, (3, 0, 4), (5, 0, 4), (4, 1, 4)])
+    every, few = tin.bands([4.0]), tin.bands([4.0], simplify=9.0)
+    assert (len(every), len(few), few.flattened, few.straightened) == (2, 1, 1, 1)
+    assert few.to_shapely()[0].area == 81
+    assert tin.contours([4.0], simplify=9.0).points.tolist() == [[5, 0], [3, 0]]
+    assert sum(lattice(seed).bands(interval=1, simplify=9).flattened for seed in range(3)) > 0
+
+
 def test_none_and_bad_values():
     tin = hills(0, 200)
     assert tin.contours([1000.0], simplify=1.0).straightened == 0
@@ -206,6 +284,9 @@ def test_none_and_bad_values():
     for bad in (-1, np.nan, np.inf):
         with pytest.raises(InputError, match="simplify must be"):
             tin.contours(interval=1, simplify=bad)
+        with pytest.raises(InputError, match="simplify must be"):
+            tin.bands(interval=1, simplify=bad)
+    assert (tin.bands(interval=1).straightened, tin.bands([1e3], simplify=1).straightened) == (0, 0)
 
 
 def test_the_judge_sees_crossings():

@@ -120,10 +120,10 @@ def terrain(
     shades = [name for name in _SHADES if given[name]]
     if shades and dem is None:
         raise Failure(f"--{shades[0]} needs --dem, the size of its cells", Exit.USAGE)
-    if contours is None and (smooth or min_length or simplify):
-        raise Failure("--smooth, --min-length and --simplify are for --contours", Exit.USAGE)
-    if contours is None and bands is None and min_area:
-        raise Failure("--min-area is for --contours and --bands", Exit.USAGE)
+    if contours is None and (smooth or min_length):
+        raise Failure("--smooth and --min-length are for --contours", Exit.USAGE)
+    if contours is None and bands is None and (min_area or simplify):
+        raise Failure("--min-area and --simplify are for --contours and --bands", Exit.USAGE)
     products = _wanted(folder, given, shades)
     watch = Stopwatch()
     inputs = [source, *(profile or []), *options.inputs()]
@@ -226,7 +226,8 @@ def _computed(
         options = {name: given[name] for name in ("smooth", "min_length", "min_area", "simplify")}
         found.append(lambda: tin.contours(interval=given["contours"], **options))
     if given["bands"] is not None:
-        found.append(lambda: tin.bands(interval=given["bands"], min_area=given["min_area"]))
+        areas = {name: given[name] for name in ("min_area", "simplify")}
+        found.append(lambda: tin.bands(interval=given["bands"], **areas))
     if given["dem"] is not None:
         cells = given["dem"]
         measures = ["height", *shades]

@@ -87,7 +87,7 @@ def contours(
         float,
         typer.Option(
             help="Leave out points of lines that are within this distance of the rest; lines stay "
-            "on the same side of each other."
+            "on the same side of each other, and polygons share what remains."
         ),
     ] = 0.0,
     bands: Annotated[
@@ -117,8 +117,6 @@ def contours(
         raise Failure("--smooth is for lines, not for --bands", Exit.USAGE)
     if bands and min_length:
         raise Failure("--min-length is for lines, not for --bands", Exit.USAGE)
-    if bands and simplify:
-        raise Failure("--simplify is for lines, not for --bands", Exit.USAGE)
     if labels is None and label_length is not None:
         raise Failure("--label-length needs --labels", Exit.USAGE)
     if labels is not None and bands:
@@ -144,6 +142,7 @@ def contours(
                     interval=interval,
                     base=base,
                     min_area=min_area,
+                    simplify=simplify,
                     max_points=max_points,
                 )
             else:
@@ -173,6 +172,7 @@ def contours(
         "short_lines_left_out": found.short if min_length else None,
         f"small_{what}_left_out": found.small if min_area else None,
         "points_of_lines_left_out": found.straightened if simplify else None,
+        "flat_polygons_left_out": found.flattened if bands and simplify else None,
         "labels": None if texts is None else len(texts),
         "lines_too_short_for_a_label": None if texts is None else texts.short,
         "stages": watch.rows(tin.npoints),

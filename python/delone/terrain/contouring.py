@@ -18,6 +18,7 @@ from delone._base.extras import require
 from delone._base.immutable import ReadOnly, sealed
 from delone._base.renames import renamed
 from delone._tiling.complex import Filed
+from delone._tiling.plane import topology
 from delone.errors import BudgetExceededError, DtypeError, InputError
 from delone.terrain.labeling import Labels, labels_of
 from delone.terrain.layer import Layer
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
     from delone._base.types import Bools, Floats, Rows
     from delone.exchange.parts import Parts
-    from delone.terrain.surface import Surface
+    from delone.terrain.surface import Sheet, Surface
 
 __all__ = [
     "MOST",
@@ -53,6 +54,9 @@ _MOST_ROUNDS = 5
 # The arrays of lines and of areas in files.
 _LINES = ("points", "starts", "level", "index", "levels")
 _AREAS = ("points", "ring_starts", "polygon_starts", "low", "high")
+# The numbers of what is left out.
+_LINES_LEFT_OUT = ("left_out", "short", "small", "straightened")
+_AREAS_LEFT_OUT = ("left_out", "small", "straightened", "flattened")
 # The maximum number of levels that an interval may give.
 _LEVELS = 1_000_000
 
@@ -116,11 +120,11 @@ class Contours(ReadOnly, Filed, Layer):
     _SAVES_CRS: ClassVar[bool] = True
 
     def _saved(self) -> dict[str, NDArray[Any]]:
-        return _arrays_of(self, _LINES, ("left_out", "short", "small"))
+        return _arrays_of(self, _LINES, _LINES_LEFT_OUT)
 
     @classmethod
     def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
-        return cls(**_arguments_of(arrays, _LINES, ("left_out", "short", "small")))
+        return cls(**_arguments_of(arrays, _LINES, _LINES_LEFT_OUT))
 
     def __len__(self) -> int:
         return len(self.level)
@@ -354,6 +358,11 @@ class Bands(ReadOnly, Filed, Layer):
     small : int, optional
         The number of polygons that were merged into the one around them because of `min_area`.
         There, the surface is above `high` or below `low`.
+    straightened : int, optional
+        The number of points that are left out of borders because of `simplify`.
+    flattened : int, optional
+        The number of polygons that are left out because their simplified border is an edge of the
+        outline, so that they have no area.
     crs : str, optional
         Coordinate reference system.
     units : str, optional
@@ -379,6 +388,8 @@ class Bands(ReadOnly, Filed, Layer):
     high: Floats
     left_out: int = 0
     small: int = 0
+    straightened: int = 0
+    flattened: int = 0
     crs: str | None = None
     units: str | None = None
 
@@ -386,11 +397,11 @@ class Bands(ReadOnly, Filed, Layer):
     _SAVES_CRS: ClassVar[bool] = True
 
     def _saved(self) -> dict[str, NDArray[Any]]:
-        return _arrays_of(self, _AREAS, ("left_out", "small"))
+        return _arrays_of(self, _AREAS, _AREAS_LEFT_OUT)
 
     @classmethod
     def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
-        return cls(**_arguments_of(arrays, _AREAS, ("left_out", "small")))
+        return cls(**_arguments_of(arrays, _AREAS, _AREAS_LEFT_OUT))
 
     def __len__(self) -> int:
         return len(self.low)
@@ -546,6 +557,7 @@ class Drawn(NamedTuple):
     starts: Rows
     level: NDArray[np.int32]
     left_out: int
+    outline: Floats | None  # its edges, (k, 2, 2), needed to simplify lines
 
 
 class Finish(NamedTuple):
@@ -574,8 +586,9 @@ class Finish(NamedTuple):
 
 def lines(tin: Surface, levels: Floats, marked: Bools, max_points: int, finish: Finish) -> Contours:
     """Return the contours of a surface."""
-    made, left_out = _within(_core.contour_lines2, tin, levels, max_points, finish.factor)
-    drawing = Drawn(made.points, made.starts, made.levels, left_out)
+    made, sheet, left_out = _within(_core.contour_lines2, tin, levels, max_points, finish.factor)
+    outline = _outline(sheet) if finish.simplify else None
+    drawing = Drawn(made.points, made.starts, made.levels, left_out, outline)
     return finished(drawing, (levels, marked), finish, tin, tin.crs, tin.units)
 
 
@@ -594,7 +607,7 @@ def finished(  # noqa: PLR0917
     from delone.terrain.generalizing import simplified
     from delone.terrain.smoothing import smoothed
 
-    points, starts, level, left_out = drawing
+    points, starts, level, left_out, outline = drawing
     levels, marked = of
     every = len(level)
     if finish.smooth:
@@ -610,7 +623,7 @@ def finished(  # noqa: PLR0917
         points, starts, level = *_only(points, starts, kept), level[kept]
     before = len(points)
     if finish.simplify:
-        points, starts = simplified(points, starts, finish.simplify)
+        points, starts = simplified(points, starts, finish.simplify, outline)
     return Contours(
         points=points,
         starts=starts,
@@ -624,6 +637,11 @@ def finished(  # noqa: PLR0917
         crs=crs,
         units=units,
     )
+
+
+def _outline(sheet: Sheet) -> Floats:
+    """Return the edges at the outline of a surface, (k, 2, 2)."""
+    return sheet.points[topology.boundary_edges(sheet.simplices, sheet.neighbors)]
 
 
 def _least(given: float, name: str) -> float:
@@ -652,11 +670,11 @@ def _only(points: Floats, starts: Rows, kept: Bools) -> tuple[Floats, Rows]:
 
 def _within(
     compute: Any, tin: Surface, levels: Floats, max_points: int, factor: int
-) -> tuple[Any, int]:
+) -> tuple[Any, Sheet, int]:
     """Compute contours of at most `max_points` points once each is replaced by `factor`.
 
-    The core counts them before it computes them. The second result is the number of triangles that
-    were left out.
+    The core counts them before it computes them. The other results are the surface that they are
+    of, and the number of triangles that were left out.
     """
     limit = as_count(max_points, name="max_points")
     try:
@@ -675,15 +693,23 @@ def _within(
         ) from error
 
 
-def bands(tin: Surface, levels: Floats, min_area: float, max_points: int) -> Bands:
+def bands(tin: Surface, levels: Floats, min_area: float, simplify: float, max_points: int) -> Bands:
     """Return the polygons between contours of a surface."""
-    smallest = _least(min_area, "min_area")
-    made, left_out = _within(_core.contour_bands2, tin, levels, max_points, 1)
+    from delone.terrain.borders import simplified_borders
+
+    smallest, tolerance = _least(min_area, "min_area"), _least(simplify, "simplify")
+    made, _, left_out = _within(_core.contour_bands2, tin, levels, max_points, 1)
     used = tin.z[on_surface(tin)]
     ends = np.concatenate(([used.min()], levels, [used.max()]))
     found, rows = Rings(made.points, made.rings, made.polygons), np.arange(len(made.bands))
     if smallest:
         found, rows = without_small(found, smallest)
+    small, straightened, flattened = len(made.bands) - len(rows), 0, 0
+    if tolerance and len(rows):
+        before = len(rows)
+        found, left, straightened = simplified_borders(found, made.bands[rows], tolerance)
+        rows = rows[left]
+        flattened = before - len(rows)
     band = made.bands[rows]
     return Bands(
         points=found.points,
@@ -692,7 +718,9 @@ def bands(tin: Surface, levels: Floats, min_area: float, max_points: int) -> Ban
         low=ends[band],
         high=ends[band + 1],
         left_out=left_out,
-        small=len(made.bands) - len(band),
+        small=small,
+        straightened=straightened,
+        flattened=flattened,
         crs=tin.crs,
         units=tin.units,
     )

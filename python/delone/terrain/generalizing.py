@@ -1,9 +1,10 @@
 """Lines with fewer points that cross nothing and stay on their side of all other lines.
 
-A point between two others is left out if no other point of any line is inside of or on the triangle
-of the three, which is decided exactly. Moving the line across an empty triangle is an isotopy: no
-line crosses another one or itself, closed lines still enclose what they enclosed, and lines that
-touch do so at the same points. This is the condition of A. Saalfeld, "Topologically consistent line
+A point between two others is left out if no other point of any line, and no vertex of the outline,
+is inside of or on the triangle of the three, which is decided exactly. Moving the line across an
+empty triangle is an isotopy: no line crosses another one, itself or the outline, closed lines still
+enclose what they enclosed, and lines that touch do so at the same points, for which two points are
+never joined twice. This is the condition of A. Saalfeld, "Topologically consistent line
 simplification with the Douglas-Peucker algorithm", CaGIS 26 (1999), for one point at a time, as M.
 Visvalingam and J. Whyatt leave points out (The Cartographic Journal 30, 1993).
 
@@ -11,6 +12,10 @@ Every point that is left out is within the tolerance of the segment that replace
 points are left out that deviate less than both of their neighbors; ties are broken by coordinates.
 The triangles of such points remain empty when others are left out, so that one round equals leaving
 them out one by one.
+
+Points where lines touch stay, and cut lines into parts. A closed line without such points keeps the
+first of its points by coordinates. So the result depends on the points of lines, but not on where
+they begin and how they are joined, and borders of bands get the same points as contours.
 """
 
 from __future__ import annotations
@@ -27,7 +32,7 @@ if TYPE_CHECKING:
 
     from delone._base.types import Bools, Floats, Rows
 
-__all__ = ["simplified"]
+__all__ = ["kept_points", "simplified"]
 
 # Points in boxes of triangles that are compared at once.
 _PAIRS = 1 << 22
@@ -44,47 +49,134 @@ class _State:
     """Points of all lines, and which of them are still there."""
 
     points: Floats
+    number: Rows  # points at the same place have the same number
     fixed: Bools
-    line: Rows
-    closed: Bools  # of each line
+    last: Bools  # where a line ends, or follows the outline
+    part: Rows  # the number of each part between fixed points
+    closed: Bools  # of each part
     alive: Bools
     blocker: Rows  # a point in the triangle of each point, -1 if none is known
     deviation: Floats  # what leaving out each point would cost, NaN if that has to be computed
     cells: _Cells | None = None  # of the points left when they were built
 
 
-def simplified(points: Floats, starts: Rows, tolerance: float) -> tuple[Floats, Rows]:
-    """Return lines with fewer points, within a distance of all that are left out."""
+def simplified(
+    points: Floats, starts: Rows, tolerance: float, outline: Floats | None = None
+) -> tuple[Floats, Rows]:
+    """Return lines with fewer points, within a distance of all that are left out.
+
+    Closed lines may begin elsewhere. Lines remain on their side of an outline, edges (k, 2, 2).
+    """
     if len(starts) < 2:
         return points, starts
-    state = _state(points, starts)
+    points = points[_turned(points, starts, outline)]
+    alive = kept_points(points, starts, tolerance, outline)
+    counts = np.add.reduceat(alive.astype(np.int64), starts[:-1])
+    return points[alive], np.concatenate(([0], np.cumsum(counts)))
+
+
+def kept_points(
+    points: Floats, starts: Rows, tolerance: float, outline: Floats | None = None
+) -> Bools:
+    """Return which points of lines remain; closed lines keep the one at which they begin."""
+    if len(starts) < 2:
+        return np.ones(len(points), dtype=bool)
+    count = len(points)
+    state = _state(*_with_vertices(points, starts, outline), outline)
     # Each round leaves out a point, or finds a blocker, which stays until a point is left out.
     while _round(state, tolerance):
         pass
-    counts = np.add.reduceat(state.alive.astype(np.int64), starts[:-1])
-    return points[state.alive], np.concatenate(([0], np.cumsum(counts)))
+    return state.alive[:count]
 
 
-def _state(points: Floats, starts: Rows) -> _State:
-    sizes = np.diff(starts)
+def _with_vertices(points: Floats, starts: Rows, outline: Floats | None) -> tuple[Floats, Rows]:
+    """Return lines with the vertices of the outline, each a line that has nothing to leave out."""
+    if outline is None or not len(outline):
+        return points, starts
+    corners = np.unique(outline.reshape(-1, 2), axis=0)
+    ends = np.arange(1, len(corners) + 1) + len(points)
+    return np.concatenate((points, corners)), np.concatenate((starts, ends))
+
+
+def _turned(points: Floats, starts: Rows, outline: Floats | None) -> Rows:
+    """Return points in an order in which closed lines begin where they touch something.
+
+    If they touch nothing, they begin at the point with the smallest coordinates.
+    """
     first, last = starts[:-1], starts[1:] - 1
-    closed = (points[first] == points[last]).all(axis=1)
-    # Where lines touch, both keep the point; the two ends of a closed line are one.
+    closed = (points[first] == points[last]).all(axis=1) & (last > first)
+    number, single = _numbers(*_with_vertices(points, starts, outline))
+    touching = (np.bincount(number[single], minlength=len(number))[number] > 1)[: len(points)]
+    number, single = number[: len(points)], single[: len(points)]
+    # Numbers follow coordinates.
+    key = np.where(touching, number, number + number.max() + 1)
+    best = np.minimum.reduceat(key, first)
+    line = np.repeat(np.arange(len(first)), np.diff(starts))
+    at = np.flatnonzero((key == best[line]) & single)[::-1]
+    begin = first.copy()
+    begin[line[at]] = at
+    begin = np.where(closed, begin, first)
+    size = np.where(closed, last - first, last - first + 1)[line]
+    place = np.arange(len(points)) - first[line]
+    found: Rows = first[line] + (place + (begin - first)[line]) % size
+    return found
+
+
+def _numbers(points: Floats, starts: Rows) -> tuple[Rows, Bools]:
+    """Return a number for each place, in the order of coordinates.
+
+    The second result is False where a closed line ends: its two ends are one point.
+    """
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    new = (np.diff(points[order], axis=0) != 0).any(axis=1)
+    number = np.empty(len(points), dtype=np.int64)
+    number[order] = np.concatenate(([0], np.cumsum(new)))
+    first, last = starts[:-1], starts[1:] - 1
     single = np.ones(len(points), dtype=bool)
-    single[last[closed]] = False
-    _, number = np.unique(points, axis=0, return_inverse=True)
-    number = number.ravel()
+    single[last[(number[first] == number[last]) & (last > first)]] = False
+    return number, single
+
+
+def _state(points: Floats, starts: Rows, outline: Floats | None) -> _State:
+    first, last = starts[:-1], starts[1:] - 1
+    # Where lines touch, both keep the point.
+    number, single = _numbers(points, starts)
     fixed = np.bincount(number[single], minlength=len(points))[number] > 1
     fixed[first], fixed[last] = True, True
+    # The points between two fixed ones are of the part that begins at the first of these.
+    part = np.cumsum(fixed) - 1
+    ends = np.flatnonzero(fixed)
+    closed = number[ends] == number[np.append(ends[1:], ends[:1])]
+    end = np.zeros(len(points), dtype=bool)
+    end[last] = True
+    if outline is not None:
+        # Where a line follows the outline, another one may, too: nothing is between them.
+        at = np.flatnonzero(fixed[:-1] & fixed[1:] & ~end[:-1])
+        end[at[_among(points, at, outline)]] = True
     return _State(
         points,
+        number,
         fixed,
-        np.repeat(np.arange(len(sizes)), sizes),
+        end,
+        part,
         closed,
         np.ones(len(points), dtype=bool),
         np.full(len(points), -1, dtype=np.int64),
         np.full(len(points), np.nan),
     )
+
+
+def _among(points: Floats, at: Rows, edges: Floats) -> Bools:
+    """Return which sides of lines, by the rows where they begin, are among edges."""
+    sides = np.stack((points[at], points[at + 1]), axis=1)
+    both = np.concatenate((sides, edges))
+    swap = (both[:, 0, 0] > both[:, 1, 0]) | (
+        (both[:, 0, 0] == both[:, 1, 0]) & (both[:, 0, 1] > both[:, 1, 1])
+    )
+    both = np.where(swap[:, None, None], both[:, ::-1], both).reshape(-1, 4)
+    _, number = np.unique(both, axis=0, return_inverse=True)
+    number = number.ravel()
+    return np.isin(number[: len(at)], number[len(at) :])
 
 
 def _round(state: _State, tolerance: float) -> bool:
@@ -95,10 +187,10 @@ def _round(state: _State, tolerance: float) -> bool:
     new = np.isnan(state.deviation[v])
     state.deviation[v[new]] = _deviations(state.points, u[new], w[new])
     deviation = state.deviation[v]
-    counts = np.bincount(state.line[rows], minlength=len(state.closed))
-    # A closed line repeats its first point.
-    few = state.closed & (counts - 1 <= _FEW)
-    enough = ~(state.closed & (counts - 1 <= _LEAST))[state.line[v]]
+    # With the fixed point at which the part begins.
+    counts = np.bincount(state.part[rows], minlength=len(state.closed))
+    few = state.closed & (counts <= _FEW)
+    enough = ~(state.closed & (counts <= _LEAST))[state.part[v]]
     possible = (deviation <= tolerance) & enough & (state.blocker[v] < 0)
     chosen = _independent(state.points, rows, place[possible], deviation[possible])
     chosen = _one_of_few(state, v[possible], deviation[possible], chosen, few)
@@ -106,6 +198,9 @@ def _round(state: _State, tolerance: float) -> bool:
         return False
     u, v, w = (each[possible][chosen] for each in (u, v, w))
     found = _inside(state, rows, u, v, w)
+    twice = _joined_twice(state, rows, u, v, w)
+    # Until one of its neighbors is left out, nothing changes for such a point.
+    found[twice] = v[twice]
     state.blocker[v] = found
     gone = v[found < 0]
     state.alive[gone] = False
@@ -145,13 +240,37 @@ def _independent(points: Floats, rows: Rows, place: Rows, deviation: Floats) -> 
 
 
 def _one_of_few(state: _State, v: Rows, deviation: Floats, chosen: Bools, few: Bools) -> Bools:
-    """Of closed lines with few points, keep only the first of the chosen points."""
-    rows = np.flatnonzero(chosen & few[state.line[v]])
+    """Of closed parts with few points, keep only the first of the chosen points."""
+    rows = np.flatnonzero(chosen & few[state.part[v]])
     x, y = state.points[v[rows]].T
-    order = rows[np.lexsort((y, x, deviation[rows], state.line[v[rows]]))]
-    again = np.diff(state.line[v[order]], prepend=-1) == 0
+    order = rows[np.lexsort((y, x, deviation[rows], state.part[v[rows]]))]
+    again = np.diff(state.part[v[order]], prepend=-1) == 0
     found = chosen.copy()
     found[order[again]] = False
+    return found
+
+
+def _joined_twice(state: _State, rows: Rows, u: Rows, v: Rows, w: Rows) -> Bools:
+    """Return the points without which two fixed points would be joined twice."""
+    found = np.zeros(len(u), dtype=bool)
+    some = np.flatnonzero(state.fixed[u] & state.fixed[w])
+    if not len(some):
+        return found
+    side = np.flatnonzero(state.fixed[rows[:-1]] & state.fixed[rows[1:]] & ~state.last[rows[:-1]])
+    known = _joints(state, rows[side], rows[side + 1])
+    wanted = _joints(state, u[some], w[some])
+    # Of several in this round, the first by coordinates.
+    order = np.lexsort((state.number[v[some]], wanted))
+    again = np.zeros(len(some), dtype=bool)
+    again[order[1:]] = np.diff(wanted[order]) == 0
+    found[some] = again | np.isin(wanted, known)
+    return found
+
+
+def _joints(state: _State, a: Rows, b: Rows) -> Rows:
+    """Return a number for each pair of places."""
+    one, other = state.number[a], state.number[b]
+    found: Rows = np.minimum(one, other) * np.int64(len(state.points)) + np.maximum(one, other)
     return found
 
 

@@ -33,8 +33,11 @@ class _Part(NamedTuple):
     heights: Floats
 
 
-def drawn(compute: Callable[[Sheet, Bools, bool], Any], sheet: Sheet) -> tuple[Any, int]:
-    """Compute contours or bands, and return the number of triangles that are left out for them."""
+def drawn(compute: Callable[[Sheet, Bools, bool], Any], sheet: Sheet) -> tuple[Any, Sheet, int]:
+    """Compute contours or bands.
+
+    The other results are the surface without the triangles that are left out, and their number.
+    """
     collapsed = np.zeros(len(sheet.simplices), dtype=bool)
     left_out, far = 0, False
     # Each round leaves out or collapses at least one triangle, or is the first that unites points
@@ -42,7 +45,7 @@ def drawn(compute: Callable[[Sheet, Bools, bool], Any], sheet: Sheet) -> tuple[A
     while True:
         made = compute(sheet, collapsed, far)
         if not len(made.tangled):
-            return made, left_out
+            return made, sheet, left_out
         outer = at_the_outline(sheet, made.tangled)
         if outer.any():
             left_out += int(outer.sum())

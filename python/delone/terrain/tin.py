@@ -429,8 +429,8 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
             Closed lines that enclose less than this are left out and counted.
         simplify : float, optional
             Points of lines are left out and counted as long as each is within this distance of the
-            line that remains, no line crosses another one or itself, and lines stay on the same
-            side of each other.
+            line that remains, no line crosses another one, itself or the outline, and lines stay on
+            the same side of each other.
         max_points : int, optional
             Maximum number of points of all contours; smoothing may double them in each round.
 
@@ -477,6 +477,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         interval: float | None = None,
         base: float = 0.0,
         min_area: float = 0.0,
+        simplify: float = 0.0,
         max_points: int = contouring.MOST,
     ) -> contouring.Bands:
         """Compute the areas between contours as polygons.
@@ -488,6 +489,9 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         min_area : float, optional
             A polygon with a smaller area than this that fills a hole of another one is merged into
             it, with everything inside; holes of the surface stay. Merged polygons are counted.
+        simplify : float, optional
+            Points of the borders between polygons are left out and counted, the same for both
+            polygons, as for `contours`. The outline stays.
 
         Returns
         -------
@@ -508,7 +512,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         <Bands of 2 ranges: 2 polygons>
         """
         wanted, _ = contouring.levels_of(partial(slopes.extremes, self), levels, interval, base, 1)
-        return contouring.bands(self, wanted, min_area, max_points)
+        return contouring.bands(self, wanted, min_area, simplify, max_points)
 
     def profile(self, line: Any) -> profiles.Profile:
         """Compute the heights along a line.

@@ -233,7 +233,7 @@ def check_contours(**arrays: NDArray[Any]) -> None:
     require(len(arrays["index"]) == len(level), "index and lines do not match")
     require(np.isfinite(levels).all() and (np.diff(levels) > 0).all(), "levels are out of order")
     require(np.isin(level, levels).all(), "a line has a level that is not there")
-    _check_counts(points, arrays["counts"], 3)
+    _check_counts(points, arrays["counts"], 4)
 
 
 def check_bands(**arrays: NDArray[Any]) -> None:
@@ -246,7 +246,7 @@ def check_bands(**arrays: NDArray[Any]) -> None:
     require(len(high) == len(low), "low and high do not match")
     require(np.isfinite(low).all() and np.isfinite(high).all(), "a height is not finite")
     require((low <= high).all(), "a range is empty")
-    _check_counts(points, arrays["counts"], 2)
+    _check_counts(points, arrays["counts"], 4)
 
 
 def _check_starts(name: str, starts: NDArray[np.int64], end: int, count: int, least: int) -> None:

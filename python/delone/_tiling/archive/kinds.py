@@ -280,7 +280,7 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
                 "level": ("<f8", 0),
                 "index": ("|b1", 0),
                 "levels": ("<f8", 0),
-                # Triangles, short lines and small lines that are left out.
+                # Triangles, short lines, small lines and points of lines that are left out.
                 "counts": ("<i8", 0),
             },
             checks.check_contours,
@@ -296,7 +296,7 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
                 "polygon_starts": ("<i8", 0),
                 "low": ("<f8", 0),
                 "high": ("<f8", 0),
-                # Triangles and small polygons that are left out.
+                # Triangles, small polygons, points of borders and flat polygons left out.
                 "counts": ("<i8", 0),
             },
             checks.check_bands,

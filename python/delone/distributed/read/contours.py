@@ -24,7 +24,7 @@ import numpy as np
 from delone import _core
 from delone._base.arrays import as_count
 from delone._base.counting import counted
-from delone._tiling.plane import slivers
+from delone._tiling.plane import slivers, topology
 from delone.distributed.read.folder import TileFolder
 from delone.distributed.read.parts import Piece, heights_of, joined, piece_of
 from delone.distributed.read.tasks import mapped
@@ -92,12 +92,30 @@ def contours(  # noqa: PLR0917
             limit=most,
             found=found,
         )
-    parts, left_out = _drawn(tin, value, levels, scan, executor)
-    drawing = _together(parts, left_out)
+    parts, dropped = _drawn(tin, value, levels, scan, executor)
+    outline = _outline(tin, dropped) if finish.simplify else None
+    drawing = _together(parts, len(dropped), outline)
     return finished(drawing, (levels, marked), finish, None, tin.crs, None)
 
 
-def _together(parts: list[_Part], left_out: int) -> Drawn:
+def _outline(tin: TileFolder, dropped: Rows) -> Floats:
+    """Return the edges at the outline of all tiles without some triangles, (k, 2, 2)."""
+    keys = [np.empty(0, dtype=np.int64)]
+    ends = [np.empty((0, 2, 2))]
+    for tile in tin.tiles():
+        left = ~_among(tin.starts[tile.number] + np.arange(len(tile.simplices)), dropped)
+        simplices = np.ascontiguousarray(tile.simplices[left])
+        beyond = topology.neighbors(simplices, len(tile.points))
+        edges = topology.boundary_edges(simplices, beyond)
+        keys.append(_numbers(tin, tile.ids[edges]))
+        ends.append(tile.points[edges])
+    # An edge between two tiles is in both.
+    _, first, counts = np.unique(np.concatenate(keys), return_index=True, return_counts=True)
+    found: Floats = np.concatenate(ends)[first[counts == 1]]
+    return found
+
+
+def _together(parts: list[_Part], left_out: int, outline: Floats | None) -> Drawn:
     """Put the lines of all levels together, and empty `parts`, so that memory holds one copy."""
     none = np.empty(0, dtype=np.int64)
     counts = np.concatenate([none, *(np.diff(part.starts) for part in parts)])
@@ -108,7 +126,7 @@ def _together(parts: list[_Part], left_out: int) -> Drawn:
         some = parts.pop().points
         points[at : at + len(some)] = some
         at += len(some)
-    return Drawn(points, np.concatenate(([0], np.cumsum(counts))), level, left_out)
+    return Drawn(points, np.concatenate(([0], np.cumsum(counts))), level, left_out, outline)
 
 
 def _extremes(tin: TileFolder, value: str) -> tuple[float, float]:
@@ -155,15 +173,23 @@ def _thin(tile: Tile) -> Rows:
 
 def _edges(tin: TileFolder, tile: Tile, some: Any = slice(None)) -> Rows:
     """The edges of triangles, (m, 3), by the rows of their ends in the source."""
-    ends = np.sort(tile.ids[tile.simplices[some]][:, [[1, 2], [2, 0], [0, 1]]], axis=2)
+    return _numbers(tin, tile.ids[tile.simplices[some]][:, [[1, 2], [2, 0], [0, 1]]])
+
+
+def _numbers(tin: TileFolder, edges: Rows) -> Rows:
+    """Return a number for each edge, (..., 2), of rows in the source."""
+    ends = np.sort(edges, axis=-1)
     found: Rows = ends[..., 0] * np.int64(tin.manifest["rows"]) + ends[..., 1]
     return found
 
 
 def _drawn(
     tin: TileFolder, value: str, levels: Floats, scan: _Scan, executor: Any
-) -> tuple[list[_Part], int]:
-    """Draw the lines of all levels, part by part, until none of them is tangled."""
+) -> tuple[list[_Part], Rows]:
+    """Draw the lines of all levels, part by part, until none of them is tangled.
+
+    The second result is the triangles that are left out.
+    """
     ranges = _ranges(scan.crossings)
     # On a cluster, other machines have to see the files.
     place = None if isinstance(executor, str) else tin.path
@@ -183,8 +209,8 @@ def _drawn(
 
 def _untangled(
     levels: Floats, ranges: list[tuple[tuple[int, int], list[str]]], executor: Any
-) -> tuple[list[_Part], int]:
-    """Draw lines, and return them with the number of triangles that are left out.
+) -> tuple[list[_Part], Rows]:
+    """Draw lines, and return them with the triangles that are left out.
 
     Each round leaves out or collapses at least one triangle, or is the first that unites points
     that are far apart, as in `delone.terrain.slivers.drawn`.
@@ -196,7 +222,7 @@ def _untangled(
         parts = list(mapped(executor, _lines, tasks))
         tangled = np.unique(np.concatenate([none, *(part.tangled for part in parts)]))
         if not len(tangled):
-            return parts, len(state.dropped)
+            return parts, state.dropped
         outer = np.unique(np.concatenate([none, *(part.outer for part in parts)]))
         if len(outer):
             state = state._replace(dropped=np.union1d(state.dropped, outer))
