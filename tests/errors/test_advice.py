@@ -163,8 +163,8 @@ def test_extra_points_are_no_seeds():
 def test_faces_without_room_advise_the_surface():
     from delone.solids.tetrahedra.filling import _Stages
 
-    assert 'boundary="surface"' in _Stages(None, "faces", "winding", None, None)._advice()
-    assert not _Stages(None, "surface", "winding", None, None)._advice()
+    assert 'boundary="surface"' in _Stages(None, None, "faces", "winding", None, None)._advice()
+    assert not _Stages(None, None, "surface", "winding", None, None)._advice()
     with pytest.raises(delone.BudgetExceededError, match='boundary="surface"'):
         delone.tetrahedralize(*solids.schoenhardt(), max_points=0)
 

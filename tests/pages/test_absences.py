@@ -95,7 +95,7 @@ ABSENCES: dict[tuple[str, str], str] = {
     ("coming_from/startinpy.rst", "IDW"): "it needs no triangulation",
     ("coming_from/stripy.rst", "smoothing"): "sphere has neither smoothing nor regular meshes",
     ("coming_from/tetgen.rst", "``M``, ``O``: none"): "faces are kept exactly; improve optimizes",
-    ("coming_from/tetgen.rst", "boolean operations"): "there is no geometry kernel",
+    ("coming_from/tetgen.rst", "STEP, IGES"): "there is no geometry kernel",
     ("coming_from/tetgen.rst", "curved boundaries"): "edges are straight",
     ("coming_from/tetgen.rst", "hexahedral meshes"): "cells are triangles and tetrahedra",
     ("coming_from/tetgen.rst", "``setPeriodic``"): "mesh takes no periods",

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from delone._base.types import Floats, Indices, Rows
+    from delone._core import CutSurface
 
 __all__ = ["ImprintedSurface", "imprint_surface"]
 
@@ -130,8 +131,8 @@ def imprint_surface(
     Raises
     ------
     CrossingFacesError
-        After 16 rounds, parts of faces still cross, because details are not much larger than the
-        tolerance; the error contains the pairs of input faces.
+        Parts of faces still cross after 16 rounds, or rounds make ever more parts, because details
+        are not much larger than the tolerance; the error contains the pairs of input faces.
     InputError
         `tolerance` is negative, infinite or NaN.
     NonFiniteError, ShapeError, DtypeError, MemoryError
@@ -152,9 +153,9 @@ def imprint_surface(
     along an axis. Where faces overlap in one plane, both get the same triangles.
 
     Added vertices are rounded to doubles, so parts are not exactly in the planes of their sources:
-    `largest_distance` says how far away they are. Rounds are repeated until nothing is within the
-    tolerance of anything else that it is not joined with. Nearness is decided with distances in
-    doubles; that no parts cross in the end is proven by the exact tests of `check_surface`.
+    `largest_distance` says how far away they are. Rounds are repeated as long as parts cross.
+    Nearness is decided with distances in doubles; whether parts cross is decided by the exact tests
+    of `check_surface`.
 
     Regions are kept: what a closed surface enclosed is enclosed by its parts. Volumes enclosed by
     two bodies become regions of their own, with a winding number of 2. The result does not depend
@@ -179,6 +180,9 @@ def imprint_surface(
     made = _core.imprint_surface3(given, rows, margin, as_workers(workers))
     if len(made.crossing):
         raise _failure(made.crossing.astype(np.int64), made.tolerance, made.rounds)
+    loose = _unpaired(rows, made)
+    if len(loose):
+        raise _failure(np.column_stack((loose, loose)), made.tolerance, made.rounds)
     parts = np.bincount(made.source, minlength=len(rows))
     return ImprintedSurface(
         points=np.concatenate((given, made.added)),
@@ -193,6 +197,29 @@ def imprint_surface(
         collapsed=np.flatnonzero(parts == 0),
         nfaces=len(rows),
     )
+
+
+def _unpaired(faces: Indices, made: CutSurface) -> Rows:
+    """Return the sources of parts with an edge that has no partner, though each input edge has one.
+
+    If each edge is traversed equally often in both directions, that holds for the parts.
+    """
+    name = np.arange(int(faces.max(initial=-1)) + 1, dtype=np.int32)
+    for row, other in made.merged.tolist():
+        if row < len(name):
+            name[row] = other
+    if len(_unbalanced(name[faces])):
+        return np.empty(0, dtype=np.int64)
+    return np.unique(made.source[_unbalanced(made.faces)]).astype(np.int64)
+
+
+def _unbalanced(faces: Indices) -> Rows:
+    """Return the faces at edges that are not traversed equally often in both directions."""
+    edges = faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2).astype(np.int64)
+    low, high = edges.min(axis=1), edges.max(axis=1)
+    _, place = np.unique(low * (high.max(initial=0) + 1) + high, return_inverse=True)
+    ways = np.where(edges[:, 0] < edges[:, 1], 1, -1)
+    return np.flatnonzero(np.bincount(place, ways)[place] != 0) // 3
 
 
 def as_tolerance(tolerance: float) -> float:

@@ -249,12 +249,13 @@ impl<'a> Net<'a> {
     fn cut(&self, face: usize, lines: Vec<Line>, last: bool, watch: &Watch) -> Result<Cut> {
         let whole = self.work.faces[face].oriented();
         let ids = self.vertices(face as u32);
-        if ids.len() == 3 {
-            return Ok(Cut::Parts(vec![whole]));
-        }
         let border = self.border(face);
+        // A triangle with a corner on the opposite edge has no area.
         if border.is_empty() {
             return Ok(Cut::Parts(Vec::new()));
+        }
+        if ids.len() == 3 {
+            return Ok(Cut::Parts(vec![whole]));
         }
         let own = border
             .iter()

@@ -22,7 +22,7 @@ pub enum On {
     Face(u32),
 }
 
-/// A point that is no vertex yet, and one thing that it is on.
+/// A point that is not a vertex yet, and one thing that it is on.
 #[derive(Debug, Clone, Copy)]
 pub struct Met {
     /// The point.
@@ -36,7 +36,7 @@ pub struct Met {
 pub struct Events {
     /// Which vertices are on what, ascending.
     pub on: Vec<(On, u32)>,
-    /// Points that are no vertices yet.
+    /// Points that are not vertices yet.
     met: Vec<Met>,
     /// The pairs of faces with events, ascending.
     pub pairs: Vec<[u32; 2]>,
@@ -208,7 +208,7 @@ impl Events {
         Ok(())
     }
 
-    /// Adds points that are no vertices yet.
+    /// Adds points that are not vertices yet.
     pub fn extend(&mut self, met: impl IntoIterator<Item = Met>) -> Result<()> {
         for one in met {
             push(&mut self.met, one)?;

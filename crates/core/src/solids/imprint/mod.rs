@@ -1,13 +1,13 @@
-//! Surfaces that cross or overlap, cut at each other: afterwards their triangles have only vertices and
+//! Surfaces that cross or overlap, cut at each other: afterward their triangles have only vertices and
 //! edges in common, or all three vertices.
 //!
 //! Points where edges cross edges and faces are rounded, and what is nearer than a tolerance, which
 //! exceeds the rounding errors, is one: vertices, vertices on edges and in faces, edges that cross.
 //! Each round finds these for all pairs of triangles whose boxes are that near, adds the vertices,
 //! and cuts each triangle along the lines that it has in common with others. Cut triangles are not
-//! exactly in the planes of their sources, so there are further rounds until nothing is near. Which
-//! points are near is a question of distances in doubles; that nothing crosses in the end is proven by
-//! the exact tests for surfaces.
+//! exactly in the planes of their sources, so there are further rounds as long as some cross. Which
+//! points are near is a question of distances in doubles; whether parts cross is decided by the exact
+//! tests for surfaces.
 //!
 //! Coordinates are scaled by a power of two first. Vertices, edges and faces are processed in the order
 //! of coordinates, so the result does not depend on the order of rows or on threads.
@@ -31,8 +31,12 @@ use crate::base::points::{Extent, scan};
 use crate::base::watch::Watch;
 use crate::order::sort;
 
-/// Rounds at most. Almost all surfaces need two: one that cuts, and one that finds nothing.
+/// Rounds at most. Almost all surfaces need one.
 const ROUNDS: usize = 16;
+/// Rounds end when there are this many times as many parts as faces, some more for few faces: what is
+/// nearer than the tolerance then causes ever more parts.
+const MOST: usize = 64;
+const LEAST: usize = 1 << 12;
 /// How often lines that cross on a face become vertices in one round.
 const CROSSINGS: usize = 4;
 /// Two to this power is the smallest tolerance relative to the largest coordinate.
@@ -65,7 +69,7 @@ pub struct Imprinted {
     pub tolerance: f64,
     /// The number of rounds that changed something.
     pub rounds: usize,
-    /// `[row, row]`: faces of which parts still cross or could not be cut, ascending.
+    /// `[row, row]`: faces of which parts still cross or touch, or could not be cut, ascending.
     pub crossing: Vec<[u32; 2]>,
 }
 
@@ -110,8 +114,8 @@ pub fn imprint(
     made.merged = merged;
     let mut narrow = Vec::new();
     while made.rounds < ROUNDS {
-        let next = round(&mut work, tolerance, workers, watch)?;
-        let Some((parts, stuck)) = next else {
+        let before = (work.faces.len(), work.at.len());
+        let Some((parts, stuck)) = round(&mut work, tolerance, workers, watch)? else {
             break;
         };
         made.rounds += 1;
@@ -121,6 +125,14 @@ pub fn imprint(
             push(&mut made.merged, pair)?;
         }
         work = next;
+        made.number(points.len(), &work, shift)?;
+        made.crossing = made.left(points, &narrow, workers, watch)?;
+        // What nothing crosses any more stays, even if some parts are near others; and further rounds are of no
+        // use if they change nothing, or make more and more parts.
+        let after = (work.faces.len(), work.at.len());
+        if made.crossing.is_empty() || after == before || after.0 > MOST * (given.len() + LEAST) {
+            break;
+        }
     }
     sort(&mut made.merged, watch)?;
     made.distance = times(distance(&scaled, faces, &work), shift);
@@ -160,6 +172,7 @@ fn round(
 impl Imprinted {
     /// Fills in the vertices and triangles of the result.
     fn number(&mut self, count: usize, work: &Work, shift: i32) -> Result<()> {
+        self.added.clear();
         let mut name = with_room(work.at.len())?;
         for (&row, &p) in work.row.iter().zip(&work.at) {
             if row == NONE {
@@ -178,8 +191,8 @@ impl Imprinted {
         Ok(())
     }
 
-    /// The pairs of sources of which parts cross, by the exact test, and with themselves those that
-    /// could not be cut.
+    /// The pairs of sources of which parts cross, or touch other than in vertices and edges, by the exact
+    /// test, and with themselves those that could not be cut.
     fn left(
         &self,
         points: &[Point3],
@@ -197,8 +210,7 @@ impl Imprinted {
         };
         let (_, pairs) = prepared(&all, &faces, limits, watch)?;
         let mut left: Vec<[u32; 2]> = with_room(pairs.first.len() + narrow.len())?;
-        let crossing = pairs.first.iter().filter(|pair| !pair.touching);
-        left.extend(crossing.map(|pair| {
+        left.extend(pairs.first.iter().map(|pair| {
             let [f, g] = pair.faces.map(|face| self.source[face as usize]);
             [f.min(g), f.max(g)]
         }));

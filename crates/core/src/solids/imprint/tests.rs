@@ -131,7 +131,7 @@ fn the_order_of_rows_and_threads_do_not_matter() {
     let same: Vec<u32> = (0..surface.1.len() as u32).collect();
     let all = parts(&surface, &made, &same);
     assert_eq!(parts(&surface, &cut_of(&surface, 3), &same), all);
-    // Points and faces backwards, and corners in another order.
+    // Points and faces backward, and corners in another order.
     let last = surface.0.len() as i32 - 1;
     let points: Vec<Point3> = surface.0.iter().rev().copied().collect();
     let mixed = surface
