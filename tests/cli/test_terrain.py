@@ -7,6 +7,8 @@ import json
 import numpy as np
 import pytest
 
+from delone import distributed
+from delone.distributed.read import contours
 from delone.interpolate import grid
 from delone.terrain import TIN
 
@@ -246,6 +248,26 @@ def test_tiles_in_place_of_a_file(folder, figures, command):
         code, _, err = command(*wrong)
         assert code == 2
         assert message in err
+
+
+@pytest.mark.parametrize("suffix", [".gpkg", ".shp", ".sqlite", ".geojson"])
+def test_contours_of_tiles_are_written_in_parts(figures, monkeypatch, tmp_path, suffix):
+    monkeypatch.setattr(contours, "CROSSINGS", 1)
+    random = np.random.default_rng(1)
+    points = np.column_stack((random.random((900, 2)) * 90, random.random(900) * 9))
+    tiles = distributed.triangulate(points, tmp_path / "a.tin", tile_points=200)
+    right = TIN.from_points(points).contours(interval=1, min_length=9)
+    out = tmp_path / f"a{suffix}"
+    found = figures("contours", tiles.path, "--interval", 1, "--min-length", 9, "-o", out)
+    table = geopandas.read_file(out)
+    assert table.level.tolist() == right.level.tolist() and len(set(right.level)) > 5
+    assert shapely.get_coordinates(table.geometry).tolist() == right.points.tolist()
+    assert table["index"].astype(bool).tolist() == right.index.tolist()
+    assert found["short_lines_left_out"] == right.short > 0
+    assert (found["lines"], found["coordinates"]) == (len(right), len(right.points))
+    # No line at all.
+    assert figures("contours", tiles.path, "--levels", 99, "-o", out)["lines"] == 0
+    assert len(geopandas.read_file(out)) == 0
 
 
 @pytest.mark.parametrize(

@@ -93,6 +93,28 @@ def test_lines_are_finished_alike(both: Any) -> None:
         )
 
 
+@pytest.mark.parametrize("crossings", [1, 3000, 1 << 40])
+def test_parts_are_all_lines(both: Any, monkeypatch: pytest.MonkeyPatch, crossings: int) -> None:
+    tiles, _, interval = both
+    monkeypatch.setattr(drawing, "CROSSINGS", crossings)
+    how = {"interval": interval, "min_length": 0.5, "min_area": 0.01}
+    whole = tiles.contours(**how)
+    parts = list(tiles.contour_parts(**how))
+    assert len(parts) == (1 if crossings > 3000 else len(parts)) and len(parts) >= 1
+    assert crossings > 1 or len(parts) == len(whole.levels)
+    for name in ("points", "level", "index"):
+        assert np.array_equal(
+            np.concatenate([getattr(each, name) for each in parts]), getattr(whole, name)
+        )
+    assert np.array_equal(
+        np.concatenate([np.diff(each.starts) for each in parts]), np.diff(whole.starts)
+    )
+    assert all(np.array_equal(each.levels, whole.levels) for each in parts)
+    for name in ("short", "small"):
+        assert sum(getattr(each, name) for each in parts) == getattr(whole, name)
+    assert [len(each) for each in tiles.contour_parts([])] == [0]
+
+
 def test_levels_without_lines(both: Any) -> None:
     tiles, tin, _ = both
     for levels in ([1e9], [], [-1e9, 0.0, 1e9]):
@@ -215,19 +237,17 @@ def test_contours_and_volumes_on_dask(both: Any) -> None:
 
 def test_triangles_that_are_left_out_add_up(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each round leaves out more triangles; those of all rounds are left out in the next one."""
-    none = np.empty(0, dtype=np.int64)
-    empty = np.empty((0, 2)), np.zeros(1, dtype=np.int64), none
     states: list[Any] = []
     rounds = [([4, 7], [7]), ([4, 2], [2]), ([4], []), ([4], []), ([], [])]
 
     def lines(levels: Any, wanted: Any, files: Any, state: Any) -> drawing._Part:
         states.append(state)
         tangled, outer = rounds[len(states) - 1]
-        return drawing._Part(*empty, np.array(tangled, np.int64), np.array(outer, np.int64))
+        return drawing._Part("a.npz", np.array(tangled, np.int64), np.array(outer, np.int64))
 
     monkeypatch.setattr(drawing, "_lines", lines)
     parts, dropped = drawing._untangled(np.array([1.0]), [((0, 1), ["0-0.npz"])], "serial")
-    assert (len(parts), dropped.tolist()) == (1, [2, 7])
+    assert (parts, dropped.tolist()) == (["a.npz"], [2, 7])
     assert [state.dropped.tolist() for state in states] == [[], [7], [2, 7], [2, 7], [2, 7]]
     # Then points that are far apart are united, and at last triangles are collapsed.
     assert [state.far for state in states] == [False, False, False, True, True]

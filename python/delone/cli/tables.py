@@ -14,7 +14,7 @@ from delone.io.vector import write_layer
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["TABLE_SUFFIXES", "ready_table", "write_table"]
+__all__ = ["APPENDED", "TABLE_SUFFIXES", "ready_table", "write_table"]
 
 _DRIVERS = {
     ".gpkg": "GPKG",
@@ -26,6 +26,8 @@ _DRIVERS = {
     ".mif": "MapInfo File",
 }
 TABLE_SUFFIXES = (*_DRIVERS, ".parquet")
+# Formats in which rows can be added to a file.
+APPENDED = (".gpkg", ".shp", ".sqlite")
 # Characters of the name of a column in a Shapefile.
 _SHORT = 10
 
@@ -44,16 +46,21 @@ def ready_table(path: Path, what: str, *, also: str = "") -> None:
     check_target(path)
 
 
-def write_table(table: Any, path: Path, *, layer: str, multi: bool = False) -> None:
+def write_table(
+    table: Any, path: Path, *, layer: str, multi: bool = False, append: bool = False
+) -> None:
     """Write a GeoDataFrame in place; the suffix determines the format.
 
-    `multi`: single geometries may be among parts of several.
+    `multi`: single geometries may be among parts of several. `append`: the file has rows already,
+    for a suffix of `APPENDED`.
     """
     suffix = path.suffix.lower()
     if suffix == ".parquet":
         table.to_parquet(path, index=False)
         return
     options: dict[str, Any] = {"driver": _DRIVERS[suffix], "promote_to_multi": multi}
+    if append:
+        options["append"] = True
     if suffix == ".kml":
         if table.crs is None:
             raise FileFormatError(
@@ -61,7 +68,8 @@ def write_table(table: Any, path: Path, *, layer: str, multi: bool = False) -> N
             )
         table = table.to_crs(4326)
     elif suffix == ".shp":
-        table = _with_short_names(table)
+        # The layer has the name of the file; GDAL would write further rows to another file.
+        table, layer = _with_short_names(table), path.stem
     if suffix == ".fgb" and (table.geometry.isna() | table.geometry.is_empty).any():
         # The index of FlatGeobuf cannot contain empty geometries.
         options["SPATIAL_INDEX"] = "NO"

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, Self
 
 import numpy as np
 import typer
@@ -47,17 +48,17 @@ from delone.cli.surfaces import (
     print_figures,
     with_surface,
 )
-from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
+from delone.cli.tables import APPENDED, TABLE_SUFFIXES, ready_table, write_table
 from delone.cli.tiled import surface_or_tiles
 from delone.io import read_geometries, write_drawing
-from delone.terrain import TIN, Volumes
+from delone.terrain import TIN, Contours, Volumes
 from delone.terrain.contouring import MOST
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from delone.distributed import TiledDelaunay
-    from delone.terrain import Volume
+    from delone.terrain import Bands, Volume
 
 __all__ = ["contours", "profile", "volume", "write_lines"]
 
@@ -127,47 +128,39 @@ def contours(
             protect_inputs([labels, *(output or [])], source, *options.inputs())
             ready_table(labels, "labels")
     watch = Stopwatch()
+    how: dict[str, Any] = {"interval": interval, "base": base, "min_area": min_area}
+    how["max_points"] = max_points
+    of_lines: dict[str, Any] = {"index": index, "min_length": min_length}
     with spinner(options.silent) as say:
         tin = surface_or_tiles(source, options, watch, say)
         say("computing contours")
-        with watch.stage("contours"):
-            found: Any
-            if bands and not isinstance(tin, TIN):
-                raise Failure(
-                    "--bands is for files of points, not for folders of tiles", Exit.USAGE
-                )
-            if isinstance(tin, TIN) and bands:
-                found = tin.bands(
-                    wanted,
-                    interval=interval,
-                    base=base,
-                    min_area=min_area,
-                    simplify=simplify,
-                    max_points=max_points,
-                )
-            else:
-                found = tin.contours(
-                    wanted,
-                    interval=interval,
-                    base=base,
-                    index=index,
-                    smooth=smooth,
-                    min_length=min_length,
-                    min_area=min_area,
-                    simplify=simplify,
-                    max_points=max_points,
-                )
-        say(f"writing {len(found):,} {'polygons' if bands else 'lines'}")
-        write_lines(found, output or [], watch, "bands" if bands else "contours")
-        texts = None if labels is None else found.labels(length=label_length)
-        if texts is not None:
-            write_lines(texts, [labels] if labels else [], watch, "labels")
+        draw: Any
+        if not bands:
+            draw = partial(tin.contours, smooth=smooth, **of_lines)
+        elif isinstance(tin, TIN):
+            draw = tin.bands
+        else:
+            raise Failure("--bands is for files of points, not for folders of tiles", Exit.USAGE)
+        texts = None
+        in_parts = labels is None and not (smooth or simplify) and _appended(output or [])
+        if in_parts and not isinstance(tin, TIN):
+            parts = tin.contour_parts(wanted, **how, **of_lines)
+            found = _write_parts(parts, output or [], watch, say)
+        else:
+            with watch.stage("contours"):
+                made = draw(wanted, simplify=simplify, **how)
+            say(f"writing {len(made):,} {'polygons' if bands else 'lines'}")
+            write_lines(made, output or [], watch, "bands" if bands else "contours")
+            texts = None if labels is None else made.labels(length=label_length)
+            if texts is not None:
+                write_lines(texts, [labels] if labels else [], watch, "labels")
+            found = _Drawn.of(made)
     what = "polygons" if bands else "lines"
     written = [*(output or []), *([] if labels is None else [labels])]
     figures = figures_of(source, tin, written) | {
-        what: len(found),
-        "levels": len(np.unique(found.low if bands else found.level)),
-        "coordinates": len(found.points),
+        what: found.number,
+        "levels": len(found.levels),
+        "coordinates": found.points,
         "triangles_left_out": found.left_out or None,
         "short_lines_left_out": found.short if min_length else None,
         f"small_{what}_left_out": found.small if min_area else None,
@@ -178,6 +171,48 @@ def contours(
         "stages": watch.rows(tin.npoints),
     }
     print_figures(source, figures, as_json=options.as_json, quiet=options.quiet)
+
+
+class _Drawn(NamedTuple):
+    """What is reported of contours or bands."""
+
+    number: int = 0
+    levels: frozenset[float] = frozenset()
+    points: int = 0
+    left_out: int = 0
+    short: int = 0
+    small: int = 0
+    straightened: int = 0
+    flattened: int = 0
+
+    @classmethod
+    def of(cls, made: Contours | Bands) -> Self:
+        """Return the figures of contours or bands."""
+        if isinstance(made, Contours):
+            of, own = made.level, {"short": made.short}
+        else:
+            of, own = made.low, {"flattened": made.flattened}
+        return cls(
+            number=len(made),
+            levels=frozenset(np.unique(of).tolist()),
+            points=len(made.points),
+            left_out=made.left_out,
+            small=made.small,
+            straightened=made.straightened,
+            **own,
+        )
+
+    def plus(self, part: Contours) -> Self:
+        """Return the figures of more lines; triangles are left out of all parts."""
+        more = self.of(part)
+        return self._replace(
+            number=self.number + more.number,
+            levels=self.levels | more.levels,
+            points=self.points + more.points,
+            left_out=more.left_out,
+            short=self.short + more.short,
+            small=self.small + more.small,
+        )
 
 
 @with_surface
@@ -343,6 +378,37 @@ def _goal(
         with reading(quiet=options.quiet):
             return distributed.open(Path(other))
     return other_surface(Path(other), options, watch, say)
+
+
+def _appended(output: list[Path]) -> bool:
+    """Return whether rows can be added to all files."""
+    return all(path.suffix.lower() in APPENDED for path in output)
+
+
+def _write_parts(
+    parts: Iterable[Contours], output: list[Path], watch: Stopwatch, say: Callable[[str], None]
+) -> _Drawn:
+    """Write contours as they are drawn, so that only a part of them is in memory."""
+    found, begun = _Drawn(), False
+    waiting = iter(parts)
+    with ExitStack() as stack:
+        with writing():
+            targets = [stack.enter_context(replacing(path)) for path in output]
+        while True:
+            with watch.stage("contours"):
+                part = next(waiting, None)
+            if part is None:
+                break
+            found = found.plus(part)
+            say(f"writing lines: {found.number:,}")
+            rows = part.to_geopandas() if output else None
+            for path, target in zip(output, targets, strict=True):
+                with writing(), watch.stage(f"write {path.name}"):
+                    write_table(rows, target, layer="contours", append=begun)
+            begun = True
+        with writing():
+            stack.close()
+    return found
 
 
 def write_lines(found: Any, output: list[Path], watch: Stopwatch, layer: str) -> None:

@@ -3,7 +3,8 @@
 Work is divided by level, not by area: a line of a level depends on the triangles that this level
 crosses, wherever they are. So the triangles of a few levels are gathered from all tiles and drawn
 at once, and no line has to be joined. A line has about one point for each triangle, so these
-triangles need little more memory than the line itself.
+triangles need little more memory than the line itself. Lines wait on disk until those of all levels
+are drawn.
 
 Two things depend on more than one level. Where rounded lines would cross, points are united in the
 cell between two levels, so triangles are drawn with the level below and the one above, too. And
@@ -14,6 +15,7 @@ triangles and their neighbors are in each part, and what is left out in one part
 from __future__ import annotations
 
 import math
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -35,15 +37,19 @@ from delone.terrain.contouring import Contours, Drawn, Finish, finished, levels_
 from delone.terrain.slivers import at_the_outline
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import ArrayLike
 
     from delone._base.types import Bools, Floats, Rows
     from delone.distributed.read.tile import Tile
 
-__all__ = ["CROSSINGS", "contours"]
+__all__ = ["CROSSINGS", "contours", "parts"]
 
-# Crossings of triangles and levels that are drawn at once: about half a gigabyte.
-CROSSINGS = 4_000_000
+# Crossings of triangles and levels that are drawn at once, each with about 250 bytes of memory.
+CROSSINGS = 1_000_000
+# Triangles of a tile whose edges are compared at once.
+_TRIANGLES = 1 << 18
 
 
 class _State(NamedTuple):
@@ -62,11 +68,9 @@ class _Scan(NamedTuple):
 
 
 class _Part(NamedTuple):
-    """The lines of some levels, or what is in their way."""
+    """A file with the lines of some levels, or what is in their way."""
 
-    points: Floats
-    starts: Rows
-    level: Rows
+    lines: str
     tangled: Rows
     outer: Rows
 
@@ -80,6 +84,38 @@ def contours(  # noqa: PLR0917
     executor: Any,
 ) -> Contours:
     """Return the contours of all tiles."""
+    levels, marked, scan = _wanted(tin, given, finish, max_points, value)
+    with _drawn(tin, value, levels, scan, executor) as (files, dropped):
+        outline = _outline(tin, dropped) if finish.simplify else None
+        drawing = _together(files, len(dropped), outline)
+    return finished(drawing, (levels, marked), finish, None, tin.crs, None)
+
+
+def parts(  # noqa: PLR0917
+    tin: TileFolder,
+    given: tuple[ArrayLike | None, float | None, float, int],
+    finish: Finish,
+    max_points: int,
+    value: str,
+    executor: Any,
+) -> Iterator[Contours]:
+    """Yield the contours of all tiles, those of a few levels at once."""
+    levels, marked, scan = _wanted(tin, given, finish, max_points, value)
+    with _drawn(tin, value, levels, scan, executor) as (files, dropped):
+        # At least once, so that files with no lines have their columns.
+        for some in [[file] for file in files] or [[]]:
+            drawing = _together(some, len(dropped), None)
+            yield finished(drawing, (levels, marked), finish, None, tin.crs, None)
+
+
+def _wanted(
+    tin: TileFolder,
+    given: tuple[ArrayLike | None, float | None, float, int],
+    finish: Finish,
+    max_points: int,
+    value: str,
+) -> tuple[Floats, Bools, _Scan]:
+    """Return levels, which of them are index contours, and what crosses them."""
     tin._require(value)
     most = as_count(max_points, name="max_points") // finish.factor
     levels, marked = levels_of(partial(_extremes, tin, value), *given)
@@ -92,10 +128,7 @@ def contours(  # noqa: PLR0917
             limit=most,
             found=found,
         )
-    parts, dropped = _drawn(tin, value, levels, scan, executor)
-    outline = _outline(tin, dropped) if finish.simplify else None
-    drawing = _together(parts, len(dropped), outline)
-    return finished(drawing, (levels, marked), finish, None, tin.crs, None)
+    return levels, marked, scan
 
 
 def _outline(tin: TileFolder, dropped: Rows) -> Floats:
@@ -115,18 +148,22 @@ def _outline(tin: TileFolder, dropped: Rows) -> Floats:
     return found
 
 
-def _together(parts: list[_Part], left_out: int, outline: Floats | None) -> Drawn:
-    """Put the lines of all levels together, and empty `parts`, so that memory holds one copy."""
+def _together(files: list[str], left_out: int, outline: Floats | None) -> Drawn:
+    """Put the lines of files together."""
     none = np.empty(0, dtype=np.int64)
-    counts = np.concatenate([none, *(np.diff(part.starts) for part in parts)])
-    level = np.concatenate([none, *(part.level for part in parts)]).astype(np.int32)
-    points, at = np.empty((int(counts.sum()), 2)), 0
-    parts.reverse()
-    while parts:  # each round takes one
-        some = parts.pop().points
+    sizes, numbers = [none], [none]
+    for file in files:
+        with np.load(file) as arrays:
+            sizes.append(np.diff(arrays["starts"]))
+            numbers.append(arrays["level"])
+    starts = np.concatenate(([0], np.cumsum(np.concatenate(sizes))))
+    points, at = np.empty((int(starts[-1]), 2)), 0
+    for file in files:
+        with np.load(file) as arrays:
+            some = arrays["points"]
         points[at : at + len(some)] = some
         at += len(some)
-    return Drawn(points, np.concatenate(([0], np.cumsum(counts))), level, left_out, outline)
+    return Drawn(points, starts, np.concatenate(numbers).astype(np.int32), left_out, outline)
 
 
 def _extremes(tin: TileFolder, value: str) -> tuple[float, float]:
@@ -183,12 +220,13 @@ def _numbers(tin: TileFolder, edges: Rows) -> Rows:
     return found
 
 
+@contextmanager
 def _drawn(
     tin: TileFolder, value: str, levels: Floats, scan: _Scan, executor: Any
-) -> tuple[list[_Part], Rows]:
+) -> Iterator[tuple[list[str], Rows]]:
     """Draw the lines of all levels, part by part, until none of them is tangled.
 
-    The second result is the triangles that are left out.
+    The results are files, one for each part, and the triangles that are left out.
     """
     ranges = _ranges(scan.crossings)
     # On a cluster, other machines have to see the files.
@@ -204,13 +242,13 @@ def _drawn(
             [str(Path(folder, f"{part}-{number}.npz")) for number in range(tin.ntiles)]
             for part in range(len(ranges))
         ]
-        return _untangled(levels, list(zip(ranges, files, strict=True)), executor)
+        yield _untangled(levels, list(zip(ranges, files, strict=True)), executor)
 
 
 def _untangled(
     levels: Floats, ranges: list[tuple[tuple[int, int], list[str]]], executor: Any
-) -> tuple[list[_Part], Rows]:
-    """Draw lines, and return them with the triangles that are left out.
+) -> tuple[list[str], Rows]:
+    """Draw lines, and return their files with the triangles that are left out.
 
     Each round leaves out or collapses at least one triangle, or is the first that unites points
     that are far apart, as in `delone.terrain.slivers.drawn`.
@@ -222,7 +260,7 @@ def _untangled(
         parts = list(mapped(executor, _lines, tasks))
         tangled = np.unique(np.concatenate([none, *(part.tangled for part in parts)]))
         if not len(tangled):
-            return parts, state.dropped
+            return [part.lines for part in parts], state.dropped
         outer = np.unique(np.concatenate([none, *(part.outer for part in parts)]))
         if len(outer):
             state = state._replace(dropped=np.union1d(state.dropped, outer))
@@ -257,8 +295,9 @@ def _deal(  # noqa: PLR0917
     tile = tin.tile(number)
     first, last = _ranks(tile, value, levels)
     beside = np.zeros(len(first), dtype=bool)
-    if len(thin):
-        beside |= _among(_edges(tin, tile), thin).any(axis=1)
+    for start in range(0, len(first) if len(thin) else 0, _TRIANGLES):
+        some = slice(start, start + _TRIANGLES)
+        beside[some] = _among(_edges(tin, tile, some), thin).any(axis=1)
     for part, (low, high) in enumerate(ranges):
         needed = (first < high) & (last > low) & (first < last)
         piece = piece_of(tin, tile, value, needed | beside)
@@ -281,26 +320,18 @@ def _lines(levels: Floats, wanted: tuple[int, int], files: list[str], state: _St
     collapsed = _among(patch.numbers, state.collapsed)
     # The number of points was counted before.
     made = _core.contour_lines2(sheet, levels[start:stop], 2**31 - 1, collapsed, state.far)
+    # All pieces are in the same folder.
+    lines = str(Path(files[0]).with_name(f"lines-{low}.npz"))
     if len(made.tangled):
         outer = at_the_outline(sheet, made.tangled)
-        nothing = np.empty(0, dtype=np.int64)
-        return _Part(
-            np.empty((0, 2)),
-            np.zeros(1, dtype=np.int64),
-            nothing,
-            patch.numbers[made.tangled],
-            patch.numbers[outer],
-        )
+        return _Part(lines, patch.numbers[made.tangled], patch.numbers[outer])
     of = made.levels.astype(np.int64) + start
     begin, end = np.searchsorted(of, [low, high]).tolist()
     first, last = made.starts[[begin, end]].tolist()
-    return _Part(
-        made.points[first:last].copy(),
-        made.starts[begin : end + 1] - first,
-        of[begin:end],
-        np.empty(0, dtype=np.int64),
-        np.empty(0, dtype=np.int64),
-    )
+    starts = made.starts[begin : end + 1] - first
+    np.savez(lines, points=made.points[first:last], starts=starts, level=of[begin:end])
+    nothing = np.empty(0, dtype=np.int64)
+    return _Part(lines, nothing, nothing)
 
 
 def _among(values: Rows, known: Rows) -> Bools:

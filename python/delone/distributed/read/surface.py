@@ -9,6 +9,8 @@ from delone.distributed.read.folder import TileFolder
 from delone.terrain.contouring import MOST, Finish
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import ArrayLike
 
     from delone.terrain import TIN, Contours, Profile, Volume
@@ -65,9 +67,9 @@ class TiledSurface(TileFolder):
         Notes
         -----
         The lines must fit into memory. In addition, memory is needed for one tile and for the
-        triangles that a group of levels crosses, about half a gigabyte, or more if one level
-        crosses more than four million triangles. The triangles of each group are kept in temporary
-        files.
+        triangles that a group of levels crosses, about a quarter of a gigabyte, or more if one
+        level crosses more than a million triangles. Triangles and lines of each group are kept in
+        temporary files until all lines are drawn.
 
         Where rounded lines would cross, points of them are united, and which one of several points
         stays depends on the order of the triangles. So if levels are so near each other that lines
@@ -89,6 +91,56 @@ class TiledSurface(TileFolder):
         finish = Finish.of(smooth, min_length, min_area, simplify)
         given = levels, interval, base, index
         return contours.contours(self, given, finish, max_points, values, executor)
+
+    def contour_parts(
+        self,
+        levels: ArrayLike | None = None,
+        *,
+        interval: float | None = None,
+        base: float = 0.0,
+        index: int = 5,
+        min_length: float = 0.0,
+        min_area: float = 0.0,
+        max_points: int = MOST,
+        values: str = "z",
+        executor: Any = "serial",
+    ) -> Iterator[Contours]:
+        """Yield contour lines that need not fit into memory together, a few levels at a time.
+
+        Parameters
+        ----------
+        levels, interval, base, index, min_length, min_area, max_points, values, executor
+            As for `contours`.
+
+        Yields
+        ------
+        Contours
+            The lines of some levels, in the order of the levels; `levels` of each has all of them.
+
+        Raises
+        ------
+        InputError, BudgetExceededError
+            As for `contours`.
+
+        See Also
+        --------
+        contours : All lines at once, also smoothed and simplified, which needs all levels.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> from delone import datasets, distributed
+        >>> points = datasets.grid(400)
+        >>> slope = np.column_stack((points, points.sum(axis=1)))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     tin = distributed.triangulate(slope, folder + "/tin", tile_points=100)
+        ...     sum(len(part) for part in tin.contour_parts(interval=10))
+        3
+        """
+        finish = Finish.of(0, min_length, min_area, 0.0)
+        given = levels, interval, base, index
+        yield from contours.parts(self, given, finish, max_points, values, executor)
 
     def profile(self, line: Any, *, values: str = "z") -> Profile:
         """Compute the heights along a line, reading only the tiles along it.
