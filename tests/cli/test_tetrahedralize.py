@@ -42,6 +42,24 @@ def test_figures(tmp_path, figures):
     assert figures("tetrahedralize", source, "--inside", "parity")["volume"] == pytest.approx(63)
 
 
+def test_bodies_that_overlap_are_cut_at_each_other(tmp_path, figures, command):
+    source = save(tmp_path / "two.ply", *solids.joined(CUBE, solids.box((3, 3, 3), (5, 5, 5))))
+    code, _, err = command("tetrahedralize", source)
+    assert code != 0 and "cross" in err
+    found = figures("tetrahedralize", source, "--imprint")
+    assert len(found["regions"]) == 3 and found["volume"] == pytest.approx(64 + 8 - 1)
+    assert found["imprint"]["parts"] > 24 and found["imprint"]["distance"] == 0
+    assert "faces cut at each other" in found["report"]
+    # A gap that is closed by the tolerance.
+    apart = solids.joined(CUBE, solids.box((1, 1, 4.001), (2, 2, 5)))
+    source = save(tmp_path / "apart.ply", *apart)
+    assert figures("tetrahedralize", source, "--imprint")["imprint"]["distance"] == 0
+    found = figures("tetrahedralize", source, "--imprint", "--tolerance", "0.01")
+    assert found["imprint"]["distance"] == pytest.approx(0.001, rel=1e-3)
+    code, _, err = command("tetrahedralize", source, "--tolerance", "0.01")
+    assert code != 0 and "imprint" in err
+
+
 def test_triangles_in_one_plane_are_cut_again(tmp_path, figures, command):
     corners = np.array([(-1, 3), *((k, k * k) for k in range(6))]) / 4
     points = np.concatenate([np.column_stack((corners, np.full(7, z))) for z in (0.0, 1)])

@@ -214,3 +214,29 @@ def test_a_tolerance_needs_an_imprint() -> None:
         delone.tetrahedralize(points, faces, tolerance=1e-6)
     with pytest.raises(delone.DtypeError, match="imprint"):
         delone.tetrahedralize(points, faces, imprint="yes")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("low", [-1, 0])
+def test_the_line_along_which_faces_meet_is_kept_whole(low: int) -> None:
+    """Points on both sides of it are nearer to each other than to its ends."""
+    flat = [(-9, -8, 0), (9, -8, 0), (0, 9, 0)]
+    # It crosses the first one, or lies on it.
+    other = [(-3, 0, low), (3, 0, low), (0, -2 * low - 2, -2 * low)]
+    needles = [
+        [(x, y, -1), (x + 0.01, y, -1), (x, y, 1)] for x in (-0.5, 0.0, 0.5) for y in (-0.05, 0.05)
+    ]
+    points = np.array([flat, other, *needles]).reshape(-1, 3) @ AXES.T
+    faces = np.arange(len(points)).reshape(-1, 3)
+    cut = delone.imprint_surface(points, faces)
+    check(points, faces, cut)
+    assert cut.rounds == 1
+
+
+def test_a_vertex_near_an_edge_of_a_face_with_a_common_vertex_is_on_it() -> None:
+    """The other end of that edge is farther away than the tolerance."""
+    points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (100, -0.05, 0), (50, -50, 0)]
+    faces = [(0, 1, 2), (0, 4, 3)]
+    cut = delone.imprint_surface(points, faces, tolerance=1e-3)
+    assert cut.subdivided.tolist() == [1]
+    assert cut.largest_distance == pytest.approx(0.0005, rel=1e-3)
+    assert len(delone.imprint_surface(points, faces).faces) == 2

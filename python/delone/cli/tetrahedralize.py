@@ -31,6 +31,7 @@ from delone.io.registry import mesh_suffixes
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from delone import RecoveryReport
     from delone.cli.show import Row
 
 _UNORIENTED = (".smesh", ".poly", ".face")
@@ -259,8 +260,16 @@ def _figures(mesh: TetMesh) -> dict[str, Any]:
             name: _listed(getattr(recovery, name)) for name in _ROWS if len(getattr(recovery, name))
         },
         "report": str(recovery),
+        **_imprint(recovery),
         **refinement,
     }
+
+
+def _imprint(report: RecoveryReport) -> dict[str, Any]:
+    """Return the figures on faces that were cut at each other, if they were."""
+    if not len(report.imprinted):
+        return {}
+    return {"imprint": {"parts": len(report.imprinted), "distance": report.imprint_distance}}
 
 
 def _refinement(report: RefinementReport) -> dict[str, Any]:

@@ -265,7 +265,8 @@ def crossing_error(pairs: Rows, kinds: NDArray[np.str_], count: int) -> Crossing
     if len(pairs):
         what += f", first {pairs[0, 0]} and {pairs[0, 1]} ({kinds[0]})"
     return CrossingFacesError(
-        f"{what}; `error.pairs` and `error.kinds` have them: repair the surface there",
+        f"{what}; `error.pairs` and `error.kinds` have them: repair the surface there, or cut the "
+        "faces at each other with imprint_surface",
         pairs=pairs,
         kinds=kinds,
         count=count,

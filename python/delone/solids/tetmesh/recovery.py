@@ -156,14 +156,15 @@ class RecoveryReport(ReadOnly):
                 f"{counted(count, 'point')} with the coordinates of others: "
                 f"{listed(self.duplicate_points[:, 0], _SHOWN)}"
             )
+        face = "part" if len(self.imprinted) else "input face"
         lines += [
-            f"{counted(len(rows), 'input face')} {agreed(len(rows), *words)}: "
+            f"{counted(len(rows), face)} {agreed(len(rows), *words)}: "
             f"{listed(rows, _SHOWN)}"
             for rows, words in self._sentences()
             if len(rows)
         ]
         if self.ok:
-            lines.append("each input face is a face of the mesh")
+            lines.append(f"each {face} is a face of the mesh")
         return "\n".join(lines)
 
     def _sentences(self) -> list[tuple[Rows, tuple[str, str]]]:

@@ -33,10 +33,10 @@ use crate::order::sort;
 
 /// Rounds at most. Almost all surfaces need one.
 const ROUNDS: usize = 16;
-/// Rounds end when there are this many times as many parts as faces, some more for few faces: what is
-/// nearer than the tolerance then causes ever more parts.
-const MOST: usize = 64;
-const LEAST: usize = 1 << 12;
+/// Rounds end when there are this many times as many parts as after the first one, and some more for few:
+/// what is nearer than the tolerance then causes ever more parts.
+const MOST: usize = 8;
+const LEAST: usize = 1 << 10;
 /// How often lines that cross on a face become vertices in one round.
 const CROSSINGS: usize = 4;
 /// Two to this power is the smallest tolerance relative to the largest coordinate.
@@ -112,7 +112,7 @@ pub fn imprint(
     };
     let (mut work, merged) = Work::arranged(&scaled, &rows, &given, tolerance, watch)?;
     made.merged = merged;
-    let mut narrow = Vec::new();
+    let (mut narrow, mut most) = (Vec::new(), 0);
     while made.rounds < ROUNDS {
         let before = (work.faces.len(), work.at.len());
         let Some((parts, stuck)) = round(&mut work, tolerance, workers, watch)? else {
@@ -127,10 +127,13 @@ pub fn imprint(
         work = next;
         made.number(points.len(), &work, shift)?;
         made.crossing = made.left(points, &narrow, workers, watch)?;
-        // What nothing crosses any more stays, even if some parts are near others; and further rounds are of no
-        // use if they change nothing, or make more and more parts.
+        if made.rounds == 1 {
+            most = MOST * work.faces.len() + LEAST;
+        }
+        // What nothing crosses any more stays, even if some parts are near others; and further rounds are
+        // of no use if they change nothing, or make more and more parts.
         let after = (work.faces.len(), work.at.len());
-        if made.crossing.is_empty() || after == before || after.0 > MOST * (given.len() + LEAST) {
+        if made.crossing.is_empty() || after == before || after.0 > most {
             break;
         }
     }
