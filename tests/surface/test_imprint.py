@@ -161,6 +161,29 @@ def test_spheres_that_cross_enclose_three_regions() -> None:
     assert cut.rounds == 1 and cut.largest_distance < 1e-15
 
 
+@pytest.mark.parametrize("step", [2, 45, 100])
+def test_bodies_that_do_not_fit_need_a_tolerance(step: int) -> None:
+    """In files with few digits, contact faces cross each other at very small angles."""
+    a, b = 0.01 * step, 0.02 * step + 0.3
+    about_z = np.array([(math.cos(a), -math.sin(a), 0), (math.sin(a), math.cos(a), 0), (0, 0, 1)])
+    about_x = np.array([(1, 0, 0), (0, math.cos(b), -math.sin(b)), (0, math.sin(b), math.cos(b))])
+    bodies = [
+        box((0, 0, 0), (2, 2, 2)),
+        box((0.3, 0.7, 2), (1.1, 1.3, 3)),
+        box((1, 0, 2), (3, 3, 2.5)),
+    ]
+    points, faces = joined(*bodies)
+    points = np.round(np.asarray(points, dtype=float) @ (about_z @ about_x).T, 8)
+    with pytest.raises(delone.CrossingFacesError, match="give a larger tolerance") as caught:
+        delone.imprint_surface(points, faces)
+    assert caught.value.pairs.shape == (caught.value.count, 2)
+    assert 0 <= caught.value.pairs.min() <= caught.value.pairs.max() < len(faces)
+    cut = delone.imprint_surface(points, faces, tolerance=1e-7)
+    assert 1e-9 < cut.largest_distance < 1e-8
+    found = delone.check_surface(cut.points, cut.faces)
+    assert found.npairs == 0 and found.nregions == 4 and found.closed
+
+
 def test_a_tolerance_closes_gaps_and_lists_what_it_joins() -> None:
     lower, upper = box((0, 0, 0), (1, 1, 1)), box((0.25, 0.25, 1 + 1e-7), (0.75, 0.75, 2))
     points, faces = joined(lower, upper)

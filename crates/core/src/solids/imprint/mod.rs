@@ -33,6 +33,8 @@ use crate::order::sort;
 
 /// Rounds at most. Almost all surfaces need one.
 const ROUNDS: usize = 16;
+/// Rounds after which parts that do not cross are the result, even if some are near each other.
+const SETTLED: usize = 4;
 /// Rounds end when there are this many times as many parts as after the first one, and some more for few:
 /// what is nearer than the tolerance then causes ever more parts.
 const MOST: usize = 8;
@@ -112,7 +114,7 @@ pub fn imprint(
     };
     let (mut work, merged) = Work::arranged(&scaled, &rows, &given, tolerance, watch)?;
     made.merged = merged;
-    let (mut narrow, mut most) = (Vec::new(), 0);
+    let (mut narrow, mut most, mut last) = (Vec::new(), 0, None);
     while made.rounds < ROUNDS {
         let before = (work.faces.len(), work.at.len());
         let Some((parts, stuck)) = round(&mut work, tolerance, workers, watch)? else {
@@ -125,17 +127,25 @@ pub fn imprint(
             push(&mut made.merged, pair)?;
         }
         work = next;
-        made.number(points.len(), &work, shift)?;
-        made.crossing = made.left(points, &narrow, workers, watch)?;
         if made.rounds == 1 {
             most = MOST * work.faces.len() + LEAST;
         }
-        // What nothing crosses any more stays, even if some parts are near others; and further rounds are
-        // of no use if they change nothing, or make more and more parts.
+        made.number(points.len(), &work, shift)?;
+        made.crossing = made.left(points, &narrow, workers, watch)?;
         let after = (work.faces.len(), work.at.len());
-        if made.crossing.is_empty() || after == before || after.0 > most {
+        // Further rounds join what is still near, but they can also make parts that cross again.
+        if made.crossing.is_empty() {
+            last = Some(work.clone());
+        }
+        let settled = last.is_some() && made.rounds >= SETTLED;
+        // They are of no use if they change nothing, or make more and more parts.
+        if settled || after == before || after.0 > most {
             break;
         }
+    }
+    if let Some(found) = last {
+        work = found;
+        narrow.clear();
     }
     sort(&mut made.merged, watch)?;
     made.distance = times(distance(&scaled, faces, &work), shift);

@@ -50,7 +50,7 @@ impl Face {
 
 /// Vertices and triangles. The vertices of the input come before others, both sorted by coordinates, so
 /// that nothing depends on the order of rows.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Work {
     /// Coordinates.
     pub at: Vec<Point3>,
