@@ -263,3 +263,17 @@ def test_a_vertex_near_an_edge_of_a_face_with_a_common_vertex_is_on_it() -> None
     assert cut.subdivided.tolist() == [1]
     assert cut.largest_distance == pytest.approx(0.0005, rel=1e-3)
     assert len(delone.imprint_surface(points, faces).faces) == 2
+
+
+def test_lines_on_all_of_many_faces_are_kept_whole() -> None:
+    flat, other = [(-9, -8, 0), (9, -8, 0), (0, 9, 0)], [(-3, 0, -1), (3, 0, -1), (0, 0, 2)]
+    needles = [[(0.1, y, -1), (0.11, y, -1), (0.1, y, 1)] for y in (-0.05, 0.05)]
+    one = np.array([flat, other, *needles]).reshape(-1, 3)
+    many = np.concatenate(
+        [one + np.array((20 * i, 20 * j, 0)) for i in range(20) for j in range(10)]
+    )
+    faces = np.arange(len(many)).reshape(-1, 3)
+    cut = delone.imprint_surface(many, faces, workers=2)
+    assert cut.rounds == 1 and len(cut.merged) == 0
+    own = delone.imprint_surface(one, faces[:4])
+    assert len(cut.faces) == 200 * len(own.faces) and cut.nadded == 200 * own.nadded
