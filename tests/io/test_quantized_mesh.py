@@ -29,13 +29,13 @@ def bounds(zoom, x, y):
     return x * width - 180, y * width - 90, (x + 1) * width - 180, (y + 1) * width - 90
 
 
-def read(folder, zoom, x, y):
-    """Return vertices, triangles and sides, as another library reads them."""
+def read(folder, zoom, x, y, *, normals=False):
+    """Return vertices, triangles and the tile, as another library reads them."""
     west, south, east, north = bounds(zoom, x, y)
     tile = terrain.TerrainTile(west=west, south=south, east=east, north=north)
     path = folder / str(zoom) / str(x) / f"{y}.terrain"
     with path.open("rb") as file:
-        tile.fromBytesIO(file)
+        tile.fromBytesIO(file, hasLighting=normals)
         # Nothing is left over.
         assert file.read() == b""
     simplices = np.array(tile.indices, dtype=np.int64).reshape(-1, 3)
@@ -147,6 +147,46 @@ def test_headers_hold_what_they_bound(written):
         assert np.log2((high - low) / 32767) % 1 == 0
     first = struct.unpack("<3d2f4d3d", (folder / "0/1/0.terrain").read_bytes()[:88])
     assert np.isfinite(first).all()
+
+
+@pytest.mark.parametrize("south", [False, True])
+def test_normals_are_read_and_equal_where_tiles_meet(tmp_path, south):
+    where = {"crs": "EPSG:32719", "corner": (500_000, 6_300_000)} if south else {}
+    tin, bare = hill(height=30.0, **where), tmp_path / "bare"
+    errors = write_quantized_mesh(bare, tin, max_error=0.3)
+    tmp_path /= "tiles"
+    assert write_quantized_mesh(tmp_path, tin, max_error=0.3, normals=True) == errors
+    document = json.loads((tmp_path / "layer.json").read_text("utf-8"))
+    assert document.pop("extensions") == ["octvertexnormals"]
+    assert document == json.loads((bare / "layer.json").read_text("utf-8"))
+    to_space = pyproj.Transformer.from_crs("EPSG:4979", "EPSG:4978", always_xy=True)
+    for zoom in (0, 17, len(errors) - 1):
+        sums, found = {}, {}
+        for x, y in tiles_of(tmp_path, zoom):
+            path = f"{zoom}/{x}/{y}.terrain"
+            before = (bare / path).read_bytes()
+            assert (tmp_path / path).read_bytes()[: len(before)] == before
+            vertices, simplices, tile = read(tmp_path, zoom, x, y, normals=True)
+            grid = np.column_stack((tile.u, tile.v)) + np.array((x, y)) * 32767
+            keys = list(map(tuple, grid.tolist()))
+            space = np.column_stack(to_space.transform(*vertices.T))
+            for corners in simplices:
+                a, b, c = space[corners]
+                for corner in corners:
+                    sums[keys[corner]] = sums.get(keys[corner], 0) + np.cross(b - a, c - a)
+            assert len(tile.vLight) == len(vertices)
+            for key, normal in zip(keys, tile.vLight, strict=True):
+                found.setdefault(key, []).append(normal)
+        assert all(len(set(map(tuple, same))) == 1 for same in found.values())
+        if zoom:
+            assert sum(len(same) > 1 for same in found.values()) > 3
+        assert len(found) > 4
+        for key, (normal, *_) in found.items():
+            right = sums[key] / np.linalg.norm(sums[key])
+            if key[1] in (0, 2**zoom * 32767):
+                right = np.array((0, 0, np.sign(key[1] - 1)))
+            # Two numbers of 8 bits.
+            assert np.dot(normal, right) > np.cos(np.radians(1.5)), (zoom, key)
 
 
 def test_places_without_a_surface(tmp_path):

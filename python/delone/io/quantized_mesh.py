@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import json
 import math
+import struct
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Iterable
 
+    from numpy.typing import NDArray
+
     from delone._base.types import Floats, Rows
 
 __all__ = ["write_quantized_mesh"]
@@ -48,12 +51,19 @@ _MOST_TILES = 200_000
 _SAMPLES = 65
 # The corner of the first tile, in degrees.
 _CORNER = np.array([-180.0, -90.0])
+# The number of the extension with normals.
+_NORMALS = 1
 # Attempts to stay within the error of a level; each leaves less of it to simplification.
 _ATTEMPTS = 6
 
 
 def write_quantized_mesh(
-    folder: str | os.PathLike[str], tin: Any, *, max_error: float, outside: float = 0.0
+    folder: str | os.PathLike[str],
+    tin: Any,
+    *,
+    max_error: float,
+    outside: float = 0.0,
+    normals: bool = False,
 ) -> tuple[float, ...]:
     """Write a surface as quantized-mesh tiles with layer.json, for Cesium (extra ``globe``).
 
@@ -71,6 +81,9 @@ def write_quantized_mesh(
         number of levels: as Cesium expects, the error of level z is at most 77067 / 2^z meters.
     outside : float, optional
         The height, in meters, used at corners and sides of tiles beyond the surface.
+    normals : bool, optional
+        Whether to write a normal for each vertex (extension ``octvertexnormals``), with which
+        viewers light the terrain.
 
     Returns
     -------
@@ -101,6 +114,8 @@ def write_quantized_mesh(
     as edges, and gaps inside the hull, such as holes, are filled. Between the outline and the sides
     of a tile, triangles lead to the height `outside`. Adjacent tiles have the same points on the
     side between them, at exactly the same heights.
+    A normal is the sum of those of the triangles around the vertex, by area, in all tiles of the
+    level that share it, so no edge is seen between tiles. Each of its two numbers has 8 bits.
     ``layer.json`` is written last.
 
     Examples
@@ -130,15 +145,16 @@ def write_quantized_mesh(
     errors, available = [], []
     for level in levels:
         error, tiles = _within_error(level)
+        light = _normals(level, tiles) if normals else {}
         for (x, y), tile in tiles.items():
             place = target / str(level.zoom) / str(x)
             place.mkdir(parents=True, exist_ok=True)
             with replacing(place / f"{y}.terrain") as temporary:
-                temporary.write_bytes(tile.encoded(level, x, y))
+                temporary.write_bytes(tile.encoded(level, (x, y), light.get((x, y))))
         errors.append(error)
         available.append(_ranges(tiles))
     with replacing(target / "layer.json") as temporary:
-        text = json.dumps(_document(ground, available), indent=1, allow_nan=False) + "\n"
+        text = json.dumps(_document(ground, available, normals), indent=1, allow_nan=False) + "\n"
         temporary.write_text(text, encoding="utf-8", newline="\n")
     return tuple(errors)
 
@@ -191,7 +207,13 @@ class _Tile(NamedTuple):
 
     surface: Any
 
-    def encoded(self, level: _Level, x: int, y: int) -> bytes:
+    def places(self, level: _Level, tile: tuple[int, int]) -> Floats:
+        """Return longitudes and latitudes in degrees and heights in meters, (n, 3)."""
+        own = self.surface.xyz
+        degrees = level.degrees(own[:, :2] + np.multiply(tile, _STEPS))
+        return np.column_stack((degrees, own[:, 2] * level.step))
+
+    def encoded(self, level: _Level, tile: tuple[int, int], normals: Floats | None) -> bytes:
         """Return the file; vertices are in the order in which triangles use them."""
         encode = require("quantized_mesh_encoder.encode", extra="globe", what="writing tiles")
         flat = self.surface.simplices.ravel()
@@ -199,11 +221,9 @@ class _Tile(NamedTuple):
         number = np.empty(self.surface.npoints, dtype=np.uint32)
         number[order] = np.arange(len(order), dtype=np.uint32)
         own = self.surface.xyz[order]
-        degrees = level.degrees(own[:, :2] + (x * _STEPS, y * _STEPS))
         low = own[:, 2].min()
         with np.errstate(divide="ignore", invalid="ignore"):
-            places = np.column_stack((degrees, own[:, 2] * level.step))
-            header = encode.compute_header(places, "naive")
+            header = encode.compute_header(self.places(level, tile)[order], "naive")
         _keep_in_sight(header)
         # All tiles of a level have the same steps of height.
         header["maximumHeight"] = (low + _STEPS) * level.step
@@ -213,6 +233,9 @@ class _Tile(NamedTuple):
             encode.write_vertices(file, steps, len(steps))
             encode.write_indices(file, number[self.surface.simplices], len(steps))
             encode.write_edge_indices(file, steps, len(steps))
+            if normals is not None:
+                light = _octahedral(normals[order]).tobytes()
+                file.write(struct.pack("<BI", _NORMALS, len(light)) + light)
             return file.getvalue()
 
 
@@ -418,6 +441,47 @@ def _measured(level: _Level, tiles: dict[tuple[int, int], _Tile]) -> float:
     return worst
 
 
+def _normals(level: _Level, tiles: dict[tuple[int, int], _Tile]) -> dict[tuple[int, int], Floats]:
+    """Return unit normals in space of the vertices of tiles, the same where tiles meet."""
+    ecef = require("quantized_mesh_encoder.ecef", extra="globe", what="writing tiles")
+    around: dict[tuple[int, int], Floats] = {}
+    shared: dict[tuple[int, int], Floats] = {}
+    sides: dict[tuple[int, int], tuple[Rows, list[tuple[int, int]]]] = {}
+    for tile, each in tiles.items():
+        simplices, grid = each.surface.simplices, each.surface.xyz[:, :2].astype(np.int64)
+        a, b, c = ecef.to_ecef(each.places(level, tile))[simplices.T]
+        faces = np.cross(b - a, c - a)
+        around[tile] = np.zeros((len(grid), 3))
+        for corner in simplices.T:
+            np.add.at(around[tile], corner, faces)
+        # Vertices on sides are known by their column and row.
+        rows = np.flatnonzero(((grid == 0) | (grid == _STEPS)).any(axis=1))
+        keys = [(int(x), int(y)) for x, y in grid[rows] + np.multiply(tile, _STEPS)]
+        sides[tile] = rows, keys
+        for key, normal in zip(keys, around[tile][rows], strict=True):
+            shared[key] = shared.get(key, 0) + normal
+    for tile, each in tiles.items():
+        found, (rows, keys) = around[tile], sides[tile]
+        found[rows] = [shared[key] for key in keys]
+        # The points of a row at a pole are one place in space: upward.
+        row = each.surface.xyz[:, 1] + tile[1] * _STEPS
+        pole = (row == 0) | (row == level.size[1] * _STEPS)
+        found[pole] = np.column_stack((0 * row, 0 * row, row - 1))[pole]
+        length = np.linalg.norm(found, axis=1)
+        found /= length[:, None]
+    return around
+
+
+def _octahedral(normals: Floats) -> NDArray[np.uint8]:
+    """Return unit vectors on the octahedron, unfolded to a square, each as two bytes."""
+    x, y, z = (normals / np.abs(normals).sum(axis=1, keepdims=True)).T
+    below = z < 0
+    u = np.where(below, (1 - np.abs(y)) * np.where(x < 0, -1, 1), x)
+    v = np.where(below, (1 - np.abs(x)) * np.where(y < 0, -1, 1), y)
+    found: NDArray[np.uint8] = np.rint((np.column_stack((u, v)) + 1) * 127.5).astype(np.uint8)
+    return found
+
+
 def _ranges(tiles: Iterable[tuple[int, int]]) -> list[dict[str, int]]:
     """Return the tiles of a level as runs along rows."""
     found: list[dict[str, int]] = []
@@ -429,7 +493,9 @@ def _ranges(tiles: Iterable[tuple[int, int]]) -> list[dict[str, int]]:
     return found
 
 
-def _document(ground: _Ground, available: list[list[dict[str, int]]]) -> dict[str, Any]:
+def _document(
+    ground: _Ground, available: list[list[dict[str, int]]], normals: bool
+) -> dict[str, Any]:
     """Return the contents of layer.json."""
     return {
         "tilejson": "2.1.0",
@@ -443,4 +509,4 @@ def _document(ground: _Ground, available: list[list[dict[str, int]]]) -> dict[st
         "maxzoom": len(available) - 1,
         "bounds": [*ground.low.tolist(), *ground.high.tolist()],
         "available": available,
-    }
+    } | ({"extensions": ["octvertexnormals"]} if normals else {})
