@@ -95,6 +95,67 @@ def test_netcdf(ramp, command, tmp_path):
     assert (code, json.loads(out)["points"]) == (0, 16)
 
 
+@pytest.mark.parametrize(
+    ("call", "out"),
+    [
+        (("contours", "--interval", "1.5"), "a.gpkg"),
+        (("contours", "--interval", "1.5", "--bands"), "a.gpkg"),
+        (("volume", "3"), None),
+        (("profile",), "a.csv"),
+        (("dem", "-r", "1"), "a.tif"),
+        (("dem", "-r", "1", "--hillshade"), "a.tif"),
+        (("dem", "-r", "1", "--slope"), "a.tif"),
+        (("dem", "-r", "1", "--aspect"), "a.tif"),
+        (("simplify", "--max-error", "0.5"), "a.ply"),
+    ],
+)
+def test_netcdf_is_like_geotiff(command, tmp_path, call, out):
+    from delone.interpolate import Grid
+    from delone.io import read_points, write_raster
+
+    x, y = np.meshgrid(np.arange(12.0), np.arange(9.0))
+    heights = 4 + 3 * np.sin(x / 3) * np.cos(y / 2) + x / 5
+    heights[2, 3] = np.nan
+    line = tmp_path / "line.gpkg"
+    way = shapely.LineString([(0.5, 0.5), (10.5, 7.5)])
+    geopandas.GeoDataFrame(geometry=[way], crs="EPSG:28992").to_file(line)
+    figures, files = [], []
+    for suffix in (".tif", ".nc"):
+        path = tmp_path / f"dem{suffix}"
+        write_raster(path, Grid(heights, x[0], y[:, 0]), crs="EPSG:28992")
+        name, *more = call
+        given = [line] if name == "profile" else []
+        place = None if out is None else tmp_path / f"{suffix[1:]}-{out}"
+        given += [] if place is None else ["-o", place]
+        options = [each for each in more if each != "3"]
+        against = [each for each in more if each == "3"]
+        code, text, err = command(name, path, *against, *given, *options, "--json")
+        assert code == 0, err
+        assert "1 cell without a height left out" in err
+        found = json.loads(text)
+        assert found["crs"] == "EPSG:28992"
+        names = ("input", "source", "outputs", "output_bytes", "stages", "peak_memory_bytes")
+        figures.append({key: value for key, value in found.items() if key not in names})
+        files.append(place)
+    assert figures[0] == figures[1]
+    assert call[0] == "simplify" or figures[0]["points"] == 107
+    if out == "a.gpkg":
+        one, two = map(geopandas.read_file, files)
+        assert len(one) > 3
+        assert one.equals(two)
+    elif out == "a.tif":
+        one, two = (rasterio.open(file).read(1) for file in files)
+        assert np.isfinite(one).sum() > 50
+        assert np.array_equal(one, two, equal_nan=True)
+    elif out == "a.ply":
+        # Rows of the two files are in another order.
+        one, two = (np.column_stack((each.points, each.z)) for each in map(read_points, files))
+        assert sorted(one.tolist()) == sorted(two.tolist())
+    elif out is not None:
+        one, two = (file.read_bytes() for file in files)
+        assert one == two
+
+
 def test_windows_of_lidar(command, tmp_path):
     laspy = pytest.importorskip("laspy")
     pytest.importorskip("lazrs")
