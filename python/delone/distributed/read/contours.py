@@ -314,6 +314,7 @@ def _lines(levels: Floats, wanted: tuple[int, int], files: list[str], state: _St
         left = ~_among(piece.numbers, state.dropped)
         pieces.append(piece._replace(corners=piece.corners[left], numbers=piece.numbers[left]))
     patch = joined(pieces)
+    del pieces, piece
     sheet = patch.sheet()
     # With the level below and the one above.
     start, stop = max(low - 1, 0), min(high + 1, len(levels))
