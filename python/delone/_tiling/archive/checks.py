@@ -163,8 +163,9 @@ def _check_recovery(*, most: int, **arrays: NDArray[Any]) -> None:
     check_range("recut_source", arrays["recut_source"], 0, 2**31)
     require(len(arrays["recut"]) == len(arrays["recut_source"]), "recut has not one source each")
     check_range("imprinted", arrays["imprinted"], 0, 2**31)
-    distance = arrays["imprint_distance"]
-    require(len(distance) == 1 and 0 <= distance[0] < np.inf, "the report is incomplete")
+    largest = arrays["imprint_distance"]
+    require(len(largest) == 1 and np.isfinite(largest).all(), "the report is incomplete")
+    require((largest >= 0).all(), "imprint_distance is below 0")
     for name in ("subdivided", "repeated", "degenerate", "dangling", "outside"):
         check_range(name, arrays[name], 0, 2**31)
         require((np.diff(arrays[name]) > 0).all(), f"{name} is out of order")

@@ -1,3 +1,5 @@
+//! Surfaces cut at themselves: conforming, the same for every order, near their sources.
+
 use super::*;
 use crate::solids::surface::check;
 
