@@ -2,9 +2,9 @@
 Heat through an assembly
 ========================
 
-A chip heats a plate with round pins. The bodies are triangulated separately, and their contact faces have nothing in
-common but their plane. ``imprint=True`` cuts the faces at each other, so one mesh conforms to all bodies, and heat flows
-from one to the other.
+A chip heats a plate with round pins. The bodies are triangulated separately, and their contact faces share only
+a plane. ``imprint=True`` cuts the faces at each other, so one mesh conforms to all bodies, and heat flows
+from one to the next.
 
 Install: ``pip install "delone[fem,pyvista]"``.
 """
@@ -67,7 +67,7 @@ pin = 24 / 2 * 0.3**2 * np.sin(2 * np.pi / 24) * 1.2
 assert np.allclose(volumes, [2 * 0.85**2 * 0.2, 4**2 * 0.3, 9 * pin])
 
 # %%
-# The chip produces heat, and the free surfaces of the pins lose it to the air. Conductivities differ by body.
+# The chip produces heat, and every free surface loses it to the air. Conductivities differ by body.
 
 CONDUCTIVITY, POWER, LOSS = np.array([1.5, 4.0, 2.0]), 10.0, 0.5
 elements = skfem.Basis(mesh.to_skfem(), skfem.ElementTetP1())

@@ -48,13 +48,12 @@ class ImprintedSurface(ReadOnly):
     rounds : int
         Number of times that all faces were cut.
     merged : ndarray of int64, shape (m, 2)
-        Rows of points that are not used, because they are within the tolerance of another one, and
-        the rows that replace them.
+        Rows of points that are not used, because they are within the tolerance of another
+        point, and the rows that replace them.
     subdivided : ndarray of int64, shape (s,)
-        Input faces that have several parts.
+        Input faces that were cut into several parts.
     collapsed : ndarray of int64, shape (c,)
         Input faces without a part: they have no area, or are thinner than the tolerance.
-
     nfaces : int
         Number of input faces.
 
@@ -116,9 +115,9 @@ def imprint_surface(
         sheets, which may cross each other or themselves.
     tolerance : float, optional
         Vertices, edges and faces nearer than this are joined. By default, and at least, a few
-        roundings of the largest coordinate (between 3.6e-15 and 7.1e-15 of it). Give more for parts
-        whose contact faces are not exactly in one plane, such as parts rounded to a file's single
-        precision.
+        roundings of the largest coordinate (between 3.6e-15 and 7.1e-15 of it). Give a larger one
+        for parts whose contact faces are not exactly in one plane, such as parts rounded to single
+        precision in a file.
     workers : int, optional
         Number of threads; by default one per core. The result does not depend on it.
 
@@ -148,14 +147,15 @@ def imprint_surface(
     -----
     Vertices within the tolerance of each other become one. Vertices within the tolerance of an edge
     or a face become vertices of it. A vertex is added where an edge crosses an edge or a face, and
-    where three faces meet in a point. Each face becomes the constrained Delaunay triangulation of
-    the vertices on it, with the lines that it has in common with others as segments, projected
-    along an axis. Where faces overlap in one plane, both get the same triangles.
+    where three faces meet at a point. Each face becomes the constrained Delaunay triangulation of
+    the vertices on it, with the lines that it shares with other faces as segments, projected along
+    an axis. Where faces overlap in one plane, both get the same triangles.
 
     Added vertices are rounded to doubles, so parts are not exactly in the planes of their sources:
-    `largest_distance` says how far away they are. Rounds are repeated as long as parts cross.
-    Nearness is decided with distances in doubles; whether parts cross is decided by the exact tests
-    of `check_surface`.
+    `largest_distance` says how far away they are. Rounds are repeated as long as parts cross,
+    and up to four times until nothing is within the tolerance of anything else that it is not
+    joined with. Distances are computed in doubles; the exact tests of `check_surface` decide
+    whether parts cross.
 
     Regions are kept: what a closed surface enclosed is enclosed by its parts. Volumes enclosed by
     two bodies become regions of their own, with a winding number of 2. The result does not depend
@@ -164,7 +164,7 @@ def imprint_surface(
 
     Examples
     --------
-    A small cube on a larger one, with a common part of a side that is not a union of faces:
+    A small cube on a larger one, where the area of contact is not a union of faces:
 
     >>> import delone, numpy as np
     >>> corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)

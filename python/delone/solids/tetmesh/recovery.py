@@ -158,8 +158,7 @@ class RecoveryReport(ReadOnly):
             )
         face = "part" if len(self.imprinted) else "input face"
         lines += [
-            f"{counted(len(rows), face)} {agreed(len(rows), *words)}: "
-            f"{listed(rows, _SHOWN)}"
+            f"{counted(len(rows), face)} {agreed(len(rows), *words)}: {listed(rows, _SHOWN)}"
             for rows, words in self._sentences()
             if len(rows)
         ]

@@ -22,7 +22,7 @@ pub enum On {
     Face(u32),
 }
 
-/// A point that is not a vertex yet, and one thing that it is on.
+/// A point that is not yet a vertex, and one thing that it is on.
 #[derive(Debug, Clone, Copy)]
 pub struct Met {
     /// The point.
@@ -36,7 +36,7 @@ pub struct Met {
 pub struct Events {
     /// Which vertices are on what, ascending.
     pub on: Vec<(On, u32)>,
-    /// Points that are not vertices yet.
+    /// Points that are not yet vertices.
     met: Vec<Met>,
     /// The pairs of faces with events, ascending.
     pub pairs: Vec<[u32; 2]>,
@@ -208,7 +208,7 @@ impl Events {
         Ok(())
     }
 
-    /// Adds points that are not vertices yet.
+    /// Adds points that are not yet vertices.
     pub fn extend(&mut self, met: impl IntoIterator<Item = Met>) -> Result<()> {
         for one in met {
             push(&mut self.met, one)?;
@@ -282,7 +282,7 @@ fn names(work: &mut Work, distinct: &[Point3], tolerance: f64, watch: &Watch) ->
     let mut made = with_room(distinct.len())?;
     let mut vertex_of: Vec<Option<u32>> = near.clone();
     for (i, &vertex) in (0u32..).zip(&near) {
-        // A vertex of any of the points that are one is the vertex of all.
+        // A vertex of any of the points that are joined is the vertex of all.
         let root = sets.root(i) as usize;
         vertex_of[root] = vertex_of[root].or(vertex);
     }

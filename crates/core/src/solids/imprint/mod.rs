@@ -2,12 +2,12 @@
 //! edges in common, or all three vertices.
 //!
 //! Points where edges cross edges and faces are rounded, and what is nearer than a tolerance, which
-//! exceeds the rounding errors, is one: vertices, vertices on edges and in faces, edges that cross.
+//! exceeds the rounding errors, is joined: vertices, vertices on edges and in faces, edges that cross.
 //! Each round finds these for all pairs of triangles whose boxes are that near, adds the vertices,
 //! and cuts each triangle along the lines that it has in common with others. Cut triangles are not
-//! exactly in the planes of their sources, so there are further rounds as long as some cross. Which
-//! points are near is a question of distances in doubles; whether parts cross is decided by the exact
-//! tests for surfaces.
+//! exactly in the planes of their sources, so there are further rounds as long as some cross, and a few
+//! until nothing is near. Distances are computed in doubles; the exact tests for surfaces decide whether
+//! parts cross.
 //!
 //! Coordinates are scaled by a power of two first. Vertices, edges and faces are processed in the order
 //! of coordinates, so the result does not depend on the order of rows or on threads.
@@ -47,7 +47,7 @@ const FINEST: i32 = -48;
 /// Options of the caller.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// The distance within which vertices, edges and faces are one; at least
+    /// The distance within which vertices, edges and faces are joined; at least
     /// [`finest`] is used.
     pub tolerance: f64,
     /// The number of threads.
@@ -63,7 +63,7 @@ pub struct Imprinted {
     pub faces: Vec<[u32; 3]>,
     /// The row of the input that each is a part of, ascending.
     pub source: Vec<u32>,
-    /// `[row, row that replaces it]`: vertices of the input that are one, ascending.
+    /// `[row, row that replaces it]`: vertices of the input that were joined, ascending.
     pub merged: Vec<[u32; 2]>,
     /// The largest distance of a vertex of a part from its source.
     pub distance: f64,
@@ -75,7 +75,7 @@ pub struct Imprinted {
     pub crossing: Vec<[u32; 2]>,
 }
 
-/// The smallest tolerance for these points: some roundings of the largest coordinate.
+/// The smallest tolerance for these points: a few rounding errors of the largest coordinate.
 pub fn finest(points: &[Point3]) -> f64 {
     times(1.0, exponent(points) + FINEST)
 }

@@ -53,7 +53,7 @@ pub fn spot(x: Point3, t: [Point3; 3], tolerance: f64) -> Spot {
     let mut found = Spot::default();
     let normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
     let length = dot(normal, normal).sqrt();
-    // The height of a thin triangle can be less than the tolerance: its edges are asked in any case.
+    // The height of a thin triangle can be less than the tolerance, so its edges are always tested.
     if dot(normal, minus(x, t[0])).abs() > 2.0 * tolerance * length && length > tolerance {
         return found;
     }
@@ -63,7 +63,7 @@ pub fn spot(x: Point3, t: [Point3; 3], tolerance: f64) -> Spot {
     if found.is_on() || dot(normal, minus(x, t[0])).abs() > tolerance * length {
         return found;
     }
-    // Away from the edges, its sides of them are clear.
+    // Away from the edges, rounding cannot change which side of them it is on.
     found.inside = EDGES.into_iter().all(|(i, j)| {
         let side = cross(minus(t[j], t[i]), minus(x, t[i]));
         dot(side, normal) > 0.0
@@ -71,8 +71,8 @@ pub fn spot(x: Point3, t: [Point3; 3], tolerance: f64) -> Spot {
     found
 }
 
-/// Whether a plane proves that two triangles are farther apart than the tolerance, but for vertices that
-/// they share: the plane of one of them, or one through an edge that is perpendicular to it.
+/// Whether a plane proves that two triangles are farther apart than the tolerance, except at
+/// vertices that they share: the plane of one of them, or one through an edge that is perpendicular to it.
 pub fn apart(a: [Point3; 3], b: [Point3; 3], shared: [[bool; 3]; 2], tolerance: f64) -> bool {
     separated(a, b, shared, tolerance) || separated(b, a, [shared[1], shared[0]], tolerance)
 }
