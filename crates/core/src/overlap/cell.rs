@@ -8,19 +8,21 @@
 //! around it, the opposite side of the sphere is outside, and areas are below 2 pi.
 
 use std::cmp::Ordering;
+use std::sync::OnceLock;
 
 use delone_predicates::arithmetic::Pair;
 use delone_predicates::sphere::{Unit, leveled, same};
 use delone_predicates::{Point3, Sign, orient2d};
 
-use crate::base::points::Extent;
+use crate::base::error::Result;
+use crate::base::watch::Watch;
+use crate::locate::boxes::Boxes;
 
 use super::outline::{Fault, Prepared, distinct, start_at_smallest};
 use super::pairs::{Pair3, Turn, chart, chart_of, cross_of, factor, heads};
+use super::sides::{MANY, any_pair};
 use super::signs::{Moved, Side, side};
 
-/// Cells with more corners count as concave, so that this test does not take long.
-const MANY: usize = 64;
 /// Cells with smaller areas, in steradians, are empty: sums of triangles err by less.
 pub const LEAST: f64 = 1e-29;
 /// The least cosine of the angle between the center and a corner.
@@ -28,6 +30,9 @@ const WITHIN: f64 = 1e-6;
 
 /// Directions that agree in multiples of its inverse are one for the smallest cap.
 const GRAIN: f64 = 1e9;
+/// A direction so far beyond a cap is not there by rounding: of directions as close as the grain, the
+/// normal of their plane is known to 1e-7.
+const MISSED: f64 = 1e-6;
 
 /// A corner and the side that starts there.
 #[derive(Clone)]
@@ -43,10 +48,11 @@ pub struct Corner {
 }
 
 /// A cell.
-#[derive(Clone)]
 pub struct Cell {
     /// All corners, ring by ring.
     pub corners: Vec<Corner>,
+    /// Where rings after the first one start.
+    pub later: Vec<u32>,
     /// The area.
     pub area: f64,
     /// A direction around which the cell is, a unit vector.
@@ -59,6 +65,8 @@ pub struct Cell {
     pub turned: bool,
     /// Corners that repeat the one before.
     pub repeated: usize,
+    /// Sides by their boxes.
+    pub kept: OnceLock<Boxes<3>>,
 }
 
 /// Corners with their directions.
@@ -68,12 +76,14 @@ impl Prepared<3> for Cell {
     fn of(rings: &mut dyn Iterator<Item = (bool, &[Point3])>) -> (Option<Self>, Option<Fault>) {
         let mut cell = Self {
             corners: Vec::new(),
+            later: Vec::new(),
             area: 0.0,
             center: [0.0; 3],
             radius: 0.0,
             convex: false,
             turned: false,
             repeated: 0,
+            kept: OnceLock::new(),
         };
         let mut kept: Vec<(bool, Ring)> = Vec::new();
         for (hole, ring) in rings {
@@ -143,34 +153,9 @@ impl Prepared<3> for Cell {
         self.repeated
     }
 
-    /// Two sides that cross in their interiors, or run the same way in a common part, if any do.
-    fn crossing(&self) -> Option<[usize; 2]> {
-        if self.convex {
-            return None;
-        }
-        let mut spans: Vec<(f64, f64, usize)> = (0..self.corners.len())
-            .map(|k| {
-                let next = self.corners[k].next as usize;
-                let ([p, q], r) = ([k, next].map(|i| heads(&self.corners[i].unit)), self.center);
-                // Along the longest way from a pole of coordinates that is far from the center.
-                let axis = chart_of(r) / 2;
-                let (x, y) = (p[axis], q[axis]);
-                let bulge = 0.5 * (0..3).map(|i| (p[i] - q[i]) * (p[i] - q[i])).sum::<f64>();
-                (x.min(y) - bulge - 1e-12, x.max(y) + bulge + 1e-12, k)
-            })
-            .collect();
-        spans.sort_by(|p, q| p.0.total_cmp(&q.0));
-        for (at, &(_, end, e)) in spans.iter().enumerate() {
-            for &(start, _, f) in &spans[at + 1..] {
-                if start > end {
-                    break;
-                }
-                if self.cross(e, f) {
-                    return Some([e.min(f), e.max(f)]);
-                }
-            }
-        }
-        None
+    fn crossing(&self, watch: &Watch) -> Result<bool> {
+        let bad = |e: u32, f: u32| self.cross(e as usize, f as usize);
+        Ok(!self.convex && any_pair(self, bad, watch)?)
     }
 }
 
@@ -190,6 +175,9 @@ impl Cell {
 
     fn add(&mut self, ring: &Ring) {
         let from = self.corners.len();
+        if from > 0 {
+            self.later.push(from as u32);
+        }
         self.corners.reserve_exact(ring.len());
         for (k, &(v, unit)) in ring.iter().enumerate() {
             let next = if k + 1 == ring.len() { 0 } else { k + 1 };
@@ -237,20 +225,6 @@ impl Cell {
                         || side(self.side(e), self.corners[k].v, Moved::Neither) >= 0
                 })
             })
-    }
-
-    /// A box that holds the cell: that of its corners and, as the sphere bulges, the square of the
-    /// radius over two.
-    ///
-    /// A direction p of the cell is y / |y| for a y in the hull of the corners, with |y| at least
-    /// the cosine of the cap, 1 - radius^2 / 2.
-    pub fn extent(&self) -> Extent<3> {
-        let bulge = self.radius * self.radius * 0.5 + 1e-12;
-        let corners = Extent::of(self.corners.iter().map(|c| heads(&c.unit)));
-        Extent {
-            min: corners.min.map(|x| x - bulge),
-            max: corners.max.map(|x| x + bulge),
-        }
     }
 
     fn cross(&self, e: usize, f: usize) -> bool {
@@ -336,7 +310,8 @@ fn around(rings: &[(bool, Ring)]) -> Option<(Point3, f64)> {
     Some((center, farthest.sqrt()))
 }
 
-fn dotted(a: &Point3, b: &Point3) -> f64 {
+/// The dot product.
+pub fn dotted(a: &Point3, b: &Point3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
@@ -387,13 +362,19 @@ fn smallest_cap(units: &[Point3]) -> Option<Point3> {
             }
             // The one that touches p and q.
             center = scaled([0, 1, 2].map(|k| p[k] + q[k]))?;
-            for r in &order[..j] {
+            for (k, r) in order[..j].iter().enumerate() {
                 if beyond(&center, &on, r) {
                     let [u, v] = [q, *r].map(|x| [0, 1, 2].map(|k| x[k] - p[k]));
                     let n = heads(&cross_of(u, v));
                     let sign = if dotted(&n, &p) < 0.0 { -1.0 } else { 1.0 };
                     let length = dotted(&n, &n).sqrt();
                     center = n.map(|x| sign * x / length);
+                    // A hemisphere that contains all has such a cap in it, which contains those before.
+                    // Without one, almost every direction would be beyond each cap.
+                    let level = dotted(&center, &p) - MISSED;
+                    if order[..k].iter().any(|r| dotted(&center, r) < level) {
+                        return None;
+                    }
                 }
             }
         }

@@ -93,25 +93,25 @@ struct Extents {
 impl Extents {
     fn of(cells: &Polygons, workers: usize, watch: &Watch) -> Result<Self> {
         let tasks: Vec<usize> = (0..cells.len()).step_by(LOT).collect();
-        let parts =
-            map_watched(workers, tasks, watch, |first| {
-                let own = first..(first + LOT).min(cells.len());
-                let mut part = with_room(own.len())?;
-                for i in own {
-                    // Singles have 24 bits, and coordinates are at most 2.
-                    part.push(cells.cell::<Cell>(i).0.map_or(
-                        ([f32::MAX; 3], [f32::MIN; 3]),
-                        |cell| {
+        let parts = map_watched(workers, tasks, watch, |first| {
+            let own = first..(first + LOT).min(cells.len());
+            let mut part = with_room(own.len())?;
+            for i in own {
+                // Singles have 24 bits, and coordinates are at most 2.
+                part.push(
+                    cells
+                        .usable::<Cell>(i)
+                        .map_or(([f32::MAX; 3], [f32::MIN; 3]), |cell| {
                             let extent = cell.extent();
                             (
                                 extent.min.map(|x| (x - 2.5e-7) as f32),
                                 extent.max.map(|x| (x + 2.5e-7) as f32),
                             )
-                        },
-                    ));
-                }
-                Ok(part)
-            })?;
+                        }),
+                );
+            }
+            Ok(part)
+        })?;
         let mut all = Self {
             min: with_room(cells.len())?,
             max: with_room(cells.len())?,
@@ -173,12 +173,12 @@ fn of_polygons(
     let (order, targets) = (of_p.order(watch)?, of_q.order(watch)?);
     let tree = Boxes::packed(targets, |i| of_q.extent(i), watch)?;
     let meets = |i: usize, j: usize| of_q.meets(j, &of_p.extent(i));
-    let sides = (&|i| (p.cell::<Cell>(i).0, of_p.extent(i)), &|j| {
-        q.cell::<Cell>(j).0
+    let sides = (&|i| (p.usable::<Cell>(i), of_p.extent(i)), &|j| {
+        q.usable::<Cell>(j)
     });
-    let shared = |p: &Cell, q: &Cell, work: &mut Work| {
-        let area = meet::shared(p, q, work);
-        if area > TINY { area } else { 0.0 }
+    let shared = |p: &Cell, q: &Cell, work: &mut Work, pace: &mut Pace| {
+        let area = meet::shared(p, q, work, pace)?;
+        Ok(if area > TINY { area } else { 0.0 })
     };
     of_cells((order, tree), sides, meets, shared, workers, watch)
 }
@@ -197,7 +197,7 @@ pub fn overlaps_plane(
         let parts = map_watched(workers, tasks, watch, |first| {
             let mut part = with_room(LOT)?;
             for i in first..(first + LOT).min(cells.len()) {
-                let cell = cells.cell::<Region>(i).0;
+                let cell = cells.usable::<Region>(i);
                 part.push(cell.map_or(Extent::of([]), |cell| cell.extent()));
             }
             Ok(part)
@@ -224,22 +224,22 @@ pub fn overlaps_plane(
         let (a, b) = (&of_p[i], &of_q[j]);
         (0..2).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k])
     };
-    let sides = (&|i| (p.cell::<Region>(i).0, of_p[i]), &|j| {
-        q.cell::<Region>(j).0
+    let sides = (&|i| (p.usable::<Region>(i), of_p[i]), &|j| {
+        q.usable::<Region>(j)
     });
     let parts = of_cells((order, tree), sides, meets, plane::shared, workers, watch)?;
     gathered(parts, (p.len(), q.len()), false, 0.0, watch)
 }
 
 /// Parts of the cells of an order and of a tree of boxes.
-fn of_cells<C: Outline, const D: usize>(
+fn of_cells<C: Outline<D>, const D: usize>(
     (order, tree): (Vec<u32>, Boxes<D>),
     (first, second): (
         &(impl Fn(usize) -> (Option<C>, Extent<D>) + Sync),
         &(impl Fn(usize) -> Option<C> + Sync),
     ),
     meets: impl Fn(usize, usize) -> bool + Sync,
-    shared: impl Fn(&C, &C, &mut Work) -> f64 + Sync,
+    shared: impl Fn(&C, &C, &mut Work, &mut Pace) -> Result<f64> + Sync,
     workers: usize,
     watch: &Watch,
 ) -> Result<Vec<Vec<Part>>> {
@@ -264,8 +264,8 @@ fn of_cells<C: Outline, const D: usize>(
             for &j in &near {
                 let other = kept.entry(j).or_insert_with(|| second(j));
                 let Some(other) = other else { continue };
-                pace.spend(cell.count() * other.count())?;
-                let area = shared(&cell, other, &mut work);
+                pace.spend(cell.count() + other.count())?;
+                let area = shared(&cell, other, &mut work, &mut pace)?;
                 if area > 0.0 {
                     push(&mut found, (i, j as u32, area))?;
                 }
@@ -288,7 +288,7 @@ fn with_rows(
         let (mut found, mut work) = (Vec::new(), walk::Work::default());
         let mut pace = Pace::new(watch, PACE / 64);
         for i in first..(first + LOT).min(p.len()) {
-            let Some(cell) = p.cell::<Cell>(i).0 else {
+            let Some(cell) = p.usable::<Cell>(i) else {
                 continue;
             };
             let [south, north] = walk::latitudes(&cell);
@@ -296,8 +296,7 @@ fn with_rows(
                 if block.phi[0] > north || block.phi[block.rows()] < south {
                     continue;
                 }
-                pace.spend(cell.corners.len())?;
-                walk::shared(&cell, block, &mut work, &mut |j, area| {
+                walk::shared(&cell, block, &mut work, &mut pace, &mut |j, area| {
                     push(&mut found, (i as u32, j as u32, area))
                 })?;
             }

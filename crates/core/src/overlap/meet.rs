@@ -1,16 +1,24 @@
 //! The area that two cells with arcs of great circles share.
 
+use std::sync::OnceLock;
+
 use delone_predicates::Point3;
 use delone_predicates::sphere::leveled;
 
-use super::cell::{Cell, Corner};
+use crate::base::error::Result;
+use crate::base::points::Extent;
+use crate::base::watch::Pace;
+use crate::locate::boxes::Boxes;
+
+use super::cell::{Cell, Corner, dotted};
 use super::outline::{Met, Outline, Sum, Work, cross_at, meet};
 use super::pairs::{
     Pair3, Turn, base, chart, chart_of, cross, cross_of, dot, factor, heads, quotient, raised, unit,
 };
+use super::sides::{MANY, meeting};
 use super::signs::{Moved, Side, side};
 
-impl Outline for Cell {
+impl Outline<3> for Cell {
     fn count(&self) -> usize {
         self.corners.len()
     }
@@ -20,8 +28,33 @@ impl Outline for Cell {
         self.corners[k as usize].next
     }
 
+    fn later_rings(&self) -> &[u32] {
+        &self.later
+    }
+
     fn convex(&self) -> bool {
         self.convex
+    }
+
+    /// That of its corners and, as the sphere bulges, the square of the radius over two.
+    ///
+    /// A direction p of the cell is y / |y| for a y in the hull of the corners, with |y| at least
+    /// the cosine of the cap, 1 - radius^2 / 2.
+    fn extent(&self) -> Extent<3> {
+        let bulge = self.radius * self.radius * 0.5 + 1e-12;
+        wider(
+            Extent::of(self.corners.iter().map(|c| heads(&c.unit))),
+            bulge,
+        )
+    }
+
+    fn reach(&self, k: u32) -> Extent<3> {
+        let (a, b) = ends(self, k);
+        over(heads(&a.unit), heads(&b.unit))
+    }
+
+    fn kept(&self) -> &OnceLock<Boxes<3>> {
+        &self.kept
     }
 
     #[inline]
@@ -30,24 +63,37 @@ impl Outline for Cell {
         side(self.side(k as usize), v, moved) as i8
     }
 
-    fn holds(&self, other: &Self, corner: u32, moved: Moved) -> bool {
-        inside(self, other.corners[corner as usize].v, moved)
-    }
-
-    fn near(&self, other: &Self, found: &mut Vec<u32>) {
-        let extent = other.extent();
-        for k in 0..self.corners.len() as u32 {
-            let (a, b) = ends(self, k);
-            let (p, q) = (heads(&a.unit), heads(&b.unit));
-            // An arc rises above its chord by less than the square of that.
-            let bulge = (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f64>() + 1e-12;
-            let meets = (0..3).all(|i| {
-                p[i].min(q[i]) - bulge <= extent.max[i] && extent.min[i] <= p[i].max(q[i]) + bulge
-            });
-            if meets {
-                found.push(k);
-            }
+    /// The parity of sides that cross an arc from the corner to a direction outside, which belongs to
+    /// the other cell and moves with it.
+    fn holds(
+        &self,
+        other: &Self,
+        corner: u32,
+        moved: Moved,
+        found: &mut Vec<u32>,
+        pace: &mut Pace,
+    ) -> Result<bool> {
+        let q = &other.corners[corner as usize];
+        let Some(r) = self.outside(q.v) else {
+            return Ok(false);
+        };
+        let n = cross_of(q.v, r);
+        let arc = Side {
+            a: q.v,
+            b: r,
+            n: &n,
+        };
+        if self.corners.len() <= MANY {
+            return Ok(self.crossed(0..self.corners.len(), arc, moved));
         }
+        found.clear();
+        for extent in along(heads(&q.unit), &n) {
+            meeting(self, &extent, found, pace.watch())?;
+        }
+        found.sort_unstable();
+        found.dedup();
+        pace.spend(found.len())?;
+        Ok(self.crossed(found.iter().map(|&k| k as usize), arc, moved))
     }
 }
 
@@ -90,7 +136,7 @@ impl Sum for Product<'_> {
 }
 
 /// The area that cells share; the second one has moved.
-pub fn shared(p: &Cell, q: &Cell, work: &mut Work) -> f64 {
+pub fn shared(p: &Cell, q: &Cell, work: &mut Work, pace: &mut Pace) -> Result<f64> {
     // What both share is within the hemisphere around the smaller one.
     let axis = chart_of(if p.radius < q.radius { p } else { q }.center);
     let mut sum = Product {
@@ -101,12 +147,33 @@ pub fn shared(p: &Cell, q: &Cell, work: &mut Work) -> f64 {
         e: 0,
         from: p.corners[0].unit,
     };
-    match meet(p, q, work, &mut sum) {
+    Ok(match meet(p, q, work, pace, &mut sum)? {
         Met::Nothing => 0.0,
         Met::First => p.area,
         Met::Second => q.area,
         Met::Part => sum.turn.area(),
+    })
+}
+
+fn wider(extent: Extent<3>, by: f64) -> Extent<3> {
+    Extent {
+        min: extent.min.map(|x| x - by),
+        max: extent.max.map(|x| x + by),
     }
+}
+
+/// A box that holds an arc of less than half a circle: each place of it is above one of the chord, in the
+/// direction of the middle, by at most the height of that.
+fn over(p: Point3, q: Point3) -> Extent<3> {
+    let middle = [0, 1, 2].map(|i| 0.5 * (p[i] + q[i]));
+    // The distance of the chord from the center of the sphere.
+    let low = dotted(&middle, &middle).sqrt();
+    if low < 0.1 {
+        return wider(Extent::of([p, q]), 1.0);
+    }
+    let rise = middle.map(|x| x * ((1.0 - low).max(0.0) / low));
+    let moved = [p, q].map(|v| [0, 1, 2].map(|i| v[i] + rise[i]));
+    wider(Extent::of([p, q].into_iter().chain(moved)), 1e-12)
 }
 
 fn ends(cell: &Cell, k: u32) -> (&Corner, &Corner) {
@@ -114,36 +181,63 @@ fn ends(cell: &Cell, k: u32) -> (&Corner, &Corner) {
     (a, &cell.corners[a.next as usize])
 }
 
-/// Whether a corner of the other cell is in a cell, where `moved` tells which of the two has moved:
-/// the parity of sides that cross an arc from the corner to a direction outside, which belongs to
-/// the other cell and moves with it.
-pub fn inside(cell: &Cell, q: Point3, moved: Moved) -> bool {
-    // Opposite to the center; a little beside it if that is opposite to the corner, or the corner
-    // itself.
-    let c = cell.center;
-    let turned = [c[1], c[2], c[0]];
-    let far = [0.0, 1e-7, -1e-7]
-        .into_iter()
-        .map(|shift| leveled([0, 1, 2].map(|k| -c[k] + shift * turned[k])))
-        .find(|&r| heads(&cross_of(q, r)) != [0.0; 3]);
-    let Some(r) = far else { return false };
-    let n = cross_of(q, r);
-    let arc = Side { a: q, b: r, n: &n };
-    let other = match moved {
-        Moved::Corner => Moved::Side,
-        _ => Moved::Corner,
-    };
-    let mut odd = false;
-    for k in 0..cell.corners.len() {
-        let own = cell.side(k);
-        let of = [q, r].map(|v| side(own, v, moved) as i8);
-        if of[0] == of[1] {
-            continue;
-        }
-        let at = [own.a, own.b].map(|v| side(arc, v, other) as i8);
-        odd ^= cross_at(at, of);
+impl Cell {
+    /// A direction outside that is neither a corner of another cell nor opposite to it: opposite to
+    /// the center, or a little beside that.
+    fn outside(&self, q: Point3) -> Option<Point3> {
+        let c = self.center;
+        let turned = [c[1], c[2], c[0]];
+        [0.0, 1e-7, -1e-7]
+            .into_iter()
+            .map(|shift| leveled([0, 1, 2].map(|k| -c[k] + shift * turned[k])))
+            .find(|&r| heads(&cross_of(q, r)) != [0.0; 3])
     }
-    odd
+
+    /// Whether an odd number of sides cross an arc; `moved` tells whether that is with a corner, or the
+    /// sides have moved.
+    fn crossed(&self, sides: impl Iterator<Item = usize>, arc: Side, moved: Moved) -> bool {
+        let other = match moved {
+            Moved::Corner => Moved::Side,
+            _ => Moved::Corner,
+        };
+        let mut odd = false;
+        for k in sides {
+            let own = self.side(k);
+            let of = [arc.a, arc.b].map(|v| side(own, v, moved) as i8);
+            if of[0] == of[1] {
+                continue;
+            }
+            let at = [own.a, own.b].map(|v| side(arc, v, other) as i8);
+            odd ^= cross_at(at, of);
+        }
+        odd
+    }
+}
+
+/// Pieces of a half circle whose boxes are small.
+const PIECES: usize = 32;
+
+/// Boxes that hold the half of a circle which starts at a direction, with a normal. The normal has 101
+/// bits; if that is not enough to know its direction, everything.
+fn along(p: Point3, n: &Pair3) -> impl Iterator<Item = Extent<3>> {
+    let n = heads(n);
+    let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let n = n.map(|x| x / length);
+    // A quarter turn on.
+    let t = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| n[i] * p[j] - n[j] * p[i]);
+    let at = move |k: usize| {
+        let (s, c) = (k as f64 * (std::f64::consts::PI / PIECES as f64)).sin_cos();
+        [0, 1, 2].map(|i| c * p[i] + s * t[i])
+    };
+    let known = length > 1e-18;
+    let pieces = if known { PIECES } else { 1 };
+    (0..pieces).map(move |k| {
+        if known {
+            over(at(k), at(k + 1))
+        } else {
+            Extent::EVERYWHERE
+        }
+    })
 }
 
 /// Where a side of the first cell crosses one of the second, as a unit vector.

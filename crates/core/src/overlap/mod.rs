@@ -19,6 +19,7 @@ mod outline;
 mod pairs;
 mod plane;
 mod rows;
+mod sides;
 mod signs;
 mod walk;
 
@@ -124,7 +125,13 @@ impl<const D: usize> Polygons<'_, D> {
         Ok(())
     }
 
-    /// A cell, prepared.
+    /// A cell without faults, prepared.
+    fn usable<C: Prepared<D>>(&self, i: usize) -> Option<C> {
+        let (cell, fault) = self.cell(i);
+        cell.filter(|_| fault.is_none())
+    }
+
+    /// A cell, prepared, and what is wrong with it.
     fn cell<C: Prepared<D>>(&self, i: usize) -> (Option<C>, Option<Fault>) {
         let own = self.cells[i] as usize..self.cells[i + 1] as usize;
         let mut rings = own.map(|r| {
@@ -182,10 +189,14 @@ fn check_cells<C: Prepared<D>, const D: usize>(
     let parts = map_watched(workers, tasks, watch, |first| {
         let mut part = Checked::default();
         for i in first..(first + LOT).min(count) {
-            let (cell, mut fault) = cells.cell::<C>(i);
-            let crosses = |cell: &C| crossing && cell.crossing().is_some();
-            if cell.as_ref().is_some_and(crosses) {
+            let (mut cell, mut fault) = cells.cell::<C>(i);
+            if let Some(own) = &cell
+                && crossing
+                && own.crossing(watch)?
+            {
                 fault = Some(Fault::Crossing);
+            } else if fault.is_some() {
+                cell = None;
             }
             push(&mut part.areas, cell.as_ref().map_or(0.0, C::area))?;
             push(&mut part.faults, fault.map_or(0, |fault| fault as u8))?;

@@ -13,6 +13,12 @@
 
 use std::cmp::Ordering;
 
+use crate::base::error::{Error, Result};
+use crate::base::memory::push;
+use crate::base::watch::{Pace, Watch};
+
+pub use super::sides::Outline;
+use super::sides::meeting;
 use super::signs::Moved;
 
 /// What is wrong with a cell.
@@ -27,22 +33,6 @@ pub enum Fault {
     Large = 3,
     /// Two of its sides cross.
     Crossing = 4,
-}
-
-/// A cell with sides between corners.
-pub trait Outline: Sized {
-    /// The number of corners, and of sides.
-    fn count(&self) -> usize;
-    /// The corner at which the side that starts at a corner ends.
-    fn next(&self, k: u32) -> u32;
-    /// Whether the cell is known to be convex.
-    fn convex(&self) -> bool;
-    /// Where a corner of another cell is: 1 to the left of a side, -1 to its right.
-    fn sign(&self, k: u32, other: &Self, corner: u32, moved: Moved) -> i8;
-    /// Whether a corner of another cell is in this one; of the two, `moved` has moved.
-    fn holds(&self, other: &Self, corner: u32, moved: Moved) -> bool;
-    /// Appends the sides whose boxes meet that of another cell.
-    fn near(&self, other: &Self, found: &mut Vec<u32>);
 }
 
 /// Takes the terms of a sum.
@@ -78,14 +68,20 @@ pub struct Work {
     of: Vec<i8>,
     first: Near,
     second: Near,
+    crossings: Vec<Crossing>,
+    found: Vec<u32>,
 }
 
-/// Sides of a cell near the other one, and which of them end in that.
+/// Sides of a cell near the other one, ascending, and which of them end in that.
 #[derive(Default)]
 struct Near {
     sides: Vec<u32>,
     inside: Vec<bool>,
 }
+
+/// Where a side of the first cell crosses one of the second, by their places among those that are
+/// near, and whether it leaves the second cell there.
+type Crossing = (u32, u32, bool);
 
 /// Whether two arcs cross, from the signs of the second one's ends at the first one, and of the
 /// first one's ends at the second one.
@@ -100,57 +96,84 @@ pub fn cross_at(at: [i8; 2], of: [i8; 2]) -> bool {
     at[0] != at[1] && of[0] != of[1] && of[0] == at[1]
 }
 
+/// Cells with fewer corners take all their sides.
+const FEW: usize = 12;
+/// Up to so many pairs of sides, all signs are asked for; of more, those of sides whose boxes meet.
+const PAIRS: usize = 1 << 12;
+
 /// Gives the terms of the area that cells share; the second one has moved.
-pub fn meet<C: Outline>(p: &C, q: &C, work: &mut Work, sum: &mut impl Sum) -> Met {
+pub fn meet<C: Outline<D>, const D: usize>(
+    p: &C,
+    q: &C,
+    work: &mut Work,
+    pace: &mut Pace,
+    sum: &mut impl Sum,
+) -> Result<Met> {
     let Work {
         at,
         of,
         first,
         second,
+        crossings,
+        found,
     } = work;
-    near(p, q, first);
-    near(q, p, second);
+    near(p, q, first, pace.watch())?;
+    near(q, p, second, pace.watch())?;
     if first.sides.is_empty() && second.sides.is_empty() {
         // A cell inside the other one has its sides in the box of that.
-        return Met::Nothing;
+        return Ok(Met::Nothing);
     }
-    // Signs: rows are sides, columns both ends of the sides of the other cell.
-    if !signs(at, (q, &second.sides), (p, &first.sides), Moved::Side)
-        || !signs(of, (p, &first.sides), (q, &second.sides), Moved::Corner)
-    {
-        return Met::Nothing;
-    }
-    corners_inside(first, (p, q), at, second.sides.len(), Moved::Side);
-    corners_inside(second, (q, p), of, first.sides.len(), Moved::Corner);
-    let mut crossed = false;
     let (count, across) = (first.sides.len(), second.sides.len());
+    crossings.clear();
+    if count * across <= PAIRS {
+        pace.spend(count * across)?;
+        // Signs: rows are sides, columns both ends of the sides of the other cell.
+        if !signs(at, (q, &second.sides), (p, &first.sides), Moved::Side)
+            || !signs(of, (p, &first.sides), (q, &second.sides), Moved::Corner)
+        {
+            return Ok(Met::Nothing);
+        }
+        for k in 0..count {
+            for l in 0..across {
+                // The ends of e at f, and those of f at e.
+                let (i, j) = (2 * (l * count + k), 2 * (k * across + l));
+                let (ends_e, ends_f) = ([at[i], at[i + 1]], [of[j], of[j + 1]]);
+                if cross_at(ends_f, ends_e) {
+                    // To the left of a side is inside.
+                    crossings.push((k as u32, l as u32, ends_e[0] > 0));
+                }
+            }
+        }
+    } else {
+        at.clear();
+        of.clear();
+        crossings_by_boxes((p, first), (q, second), crossings, found, pace)?;
+    }
+    let own = crossings.iter().map(|x| x.0);
+    ends_inside(first, (p, q), at, own, Moved::Side, found, pace)?;
+    let own = crossings.iter().map(|x| x.1);
+    ends_inside(second, (q, p), of, own, Moved::Corner, found, pace)?;
+    let mut next = 0;
     for (k, &e) in first.sides.iter().enumerate() {
         sum.side(e);
         if first.inside[k] {
             sum.first();
         }
-        for (l, &f) in second.sides.iter().enumerate() {
-            // The ends of e at f, and those of f at e.
-            let (i, j) = (2 * (l * count + k), 2 * (k * across + l));
-            let (ends_e, ends_f) = ([at[i], at[i + 1]], [of[j], of[j + 1]]);
-            if cross_at(ends_f, ends_e) {
-                crossed = true;
-                // To the left of a side is inside.
-                sum.crossing(f, ends_e[0] > 0);
-            }
+        while let Some(&(_, l, leaves)) = crossings.get(next).filter(|x| x.0 == k as u32) {
+            sum.crossing(second.sides[l as usize], leaves);
+            next += 1;
         }
     }
-    if !crossed {
+    if crossings.is_empty() {
         // One cell inside the other: its area as it is.
-        let all = |near: &Near, cell: &C| {
-            near.sides.len() == cell.count() && near.inside.iter().all(|&x| x)
-        };
+        let all =
+            |near: &Near, count: usize| near.sides.len() == count && near.inside.iter().all(|&x| x);
         let none = |near: &Near| !near.inside.contains(&true);
-        if all(first, p) && none(second) {
-            return Met::First;
+        if all(first, p.count()) && none(second) {
+            return Ok(Met::First);
         }
-        if all(second, q) && none(first) {
-            return Met::Second;
+        if all(second, q.count()) && none(first) {
+            return Ok(Met::Second);
         }
     }
     for (l, &f) in second.sides.iter().enumerate() {
@@ -158,25 +181,55 @@ pub fn meet<C: Outline>(p: &C, q: &C, work: &mut Work, sum: &mut impl Sum) -> Me
             sum.second(f);
         }
     }
-    Met::Part
+    Ok(Met::Part)
 }
 
-/// Cells with fewer corners take all their sides.
-const FEW: usize = 12;
-
 /// Sides of a cell whose boxes meet that of the other one.
-fn near<C: Outline>(cell: &C, other: &C, found: &mut Near) {
-    found.sides.clear();
+fn near<C: Outline<D>, const D: usize>(
+    cell: &C,
+    other: &C,
+    near: &mut Near,
+    watch: &Watch,
+) -> Result<()> {
+    near.sides.clear();
     if cell.count() < FEW {
-        found.sides.extend(0..cell.count() as u32);
-    } else {
-        cell.near(other, &mut found.sides);
+        near.sides.extend(0..cell.count() as u32);
+        return Ok(());
     }
+    meeting(cell, &other.extent(), &mut near.sides, watch)
+}
+
+/// The crossings of sides whose boxes meet, by side of the first cell, then of the second one.
+fn crossings_by_boxes<C: Outline<D>, const D: usize>(
+    (p, first): (&C, &Near),
+    (q, second): (&C, &Near),
+    crossings: &mut Vec<Crossing>,
+    found: &mut Vec<u32>,
+    pace: &mut Pace,
+) -> Result<()> {
+    for (k, &e) in first.sides.iter().enumerate() {
+        found.clear();
+        meeting(q, &p.reach(e), found, pace.watch())?;
+        pace.spend(found.len() + 1)?;
+        for &f in &*found {
+            let ends_e = [e, p.next(e)].map(|v| q.sign(f, p, v, Moved::Side));
+            if ends_e[0] == ends_e[1] {
+                continue;
+            }
+            let ends_f = [f, q.next(f)].map(|v| p.sign(e, q, v, Moved::Corner));
+            if cross_at(ends_f, ends_e) {
+                let l = second.sides.binary_search(&f);
+                let l = l.map_err(|_| Error::Internal("a side is not in its cell's box".into()))?;
+                push(crossings, (k as u32, l as u32, ends_e[0] > 0))?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The signs of the ends of the other cell's sides at the sides of a cell. False if all are to the
 /// right of one side of a convex cell, which then shares nothing.
-fn signs<C: Outline>(
+fn signs<C: Outline<D>, const D: usize>(
     into: &mut Vec<i8>,
     (cell, sides): (&C, &[u32]),
     (other, others): (&C, &[u32]),
@@ -210,29 +263,53 @@ fn signs<C: Outline>(
     true
 }
 
-/// Which sides of a cell end in the other one.
-fn corners_inside<C: Outline>(
+/// Which sides of a cell end in the other one: `crossed` are the places of those that cross, once for
+/// each crossing. With all signs and a convex cell, the signs tell; else each crossing of a ring
+/// goes into the cell or out of it, and one corner of each ring is located.
+fn ends_inside<C: Outline<D>, const D: usize>(
     near: &mut Near,
     (cell, other): (&C, &C),
     at: &[i8],
-    rows: usize,
+    crossed: impl Iterator<Item = u32>,
     moved: Moved,
-) {
-    let count = near.sides.len();
+    found: &mut Vec<u32>,
+    pace: &mut Pace,
+) -> Result<()> {
+    let (count, rows) = (near.sides.len(), other.count());
     near.inside.clear();
-    for (k, &e) in near.sides.iter().enumerate() {
-        let found = if other.convex() && rows == other.count() {
-            (0..rows).all(|l| at[2 * (l * count + k) + 1] > 0)
-        } else {
-            other.holds(cell, cell.next(e), moved)
-        };
-        near.inside.push(found);
+    if other.convex() && at.len() == 2 * rows * count {
+        let ends = (0..count).map(|k| (0..rows).all(|l| at[2 * (l * count + k) + 1] > 0));
+        near.inside.extend(ends);
+        return Ok(());
     }
+    // Whether a side crosses an odd number of times, then whether it ends inside.
+    near.inside.resize(count, false);
+    for k in crossed {
+        near.inside[k as usize] ^= true;
+    }
+    let ring = |k: u32| cell.later_rings().partition_point(|&start| start <= k);
+    let mut from = 0;
+    while from < count {
+        let own = ring(near.sides[from]);
+        let end = from + near.sides[from..].partition_point(|&k| ring(k) == own);
+        let start = other.holds(cell, near.sides[from], moved, found, pace)?;
+        let mut inside = start;
+        for x in &mut near.inside[from..end] {
+            inside ^= *x;
+            *x = inside;
+        }
+        if inside != start {
+            return Err(Error::Internal("a ring goes in without coming out".into()));
+        }
+        from = end;
+    }
+    Ok(())
 }
 
 /// A cell made of rings.
-pub trait Prepared<const D: usize>: Outline {
-    /// Prepares a cell from its rings, each of which may be a hole.
+pub trait Prepared<const D: usize>: Outline<D> {
+    /// Prepares a cell from its rings, each of which may be a hole. One with a fault may be given for
+    /// [`Self::crossing`] only.
     fn of(rings: &mut dyn Iterator<Item = (bool, &[[f64; D]])>) -> (Option<Self>, Option<Fault>);
     /// The area.
     fn area(&self) -> f64;
@@ -240,8 +317,9 @@ pub trait Prepared<const D: usize>: Outline {
     fn turned(&self) -> bool;
     /// Corners that repeat the one before.
     fn repeated(&self) -> usize;
-    /// Two sides that cross in their interiors, or run the same way in a common part, if any do.
-    fn crossing(&self) -> Option<[usize; 2]>;
+    /// Whether two sides cross in their interiors or, in a cell without faults, run the same way in a
+    /// common part.
+    fn crossing(&self, watch: &Watch) -> Result<bool>;
 }
 
 /// The corners of a ring without those that repeat the one before; of several ways to write a corner,
@@ -273,16 +351,26 @@ pub fn distinct<T>(
 }
 
 /// Rotates a ring so that the sequence of its corners is the smallest one.
+///
+/// Of two starts whose sequences agree in k corners and then differ, neither the larger one nor the k
+/// after it are the smallest: each comparison of two corners removes a start or grows k, so there are
+/// at most three for each corner.
 pub fn start_at_smallest<T>(ring: &mut [T], compare: impl Fn(&T, &T) -> Ordering) {
     let count = ring.len();
-    let mut best = 0;
-    for start in 1..count {
-        let later = (0..count)
-            .map(|k| compare(&ring[(start + k) % count], &ring[(best + k) % count]))
-            .find(|order| order.is_ne());
-        if later == Some(Ordering::Less) {
-            best = start;
+    let (mut best, mut other, mut k) = (0, 1, 0);
+    while best < count && other < count && k < count {
+        match compare(&ring[(best + k) % count], &ring[(other + k) % count]) {
+            Ordering::Equal => {
+                k += 1;
+                continue;
+            }
+            Ordering::Greater => best += k + 1,
+            Ordering::Less => other += k + 1,
+        }
+        k = 0;
+        if best == other {
+            other += 1;
         }
     }
-    ring.rotate_left(best);
+    ring.rotate_left(best.min(other));
 }

@@ -14,18 +14,21 @@
 //! two terms alike; parallel lines do not cross, as one of them has moved.
 
 use std::cmp::Ordering;
+use std::sync::OnceLock;
 
 use delone_predicates::arithmetic::Pair;
 use delone_predicates::{Point2, Sign, orient2d};
 
+use crate::base::error::Result;
 use crate::base::points::Extent;
+use crate::base::watch::{Pace, Watch};
+use crate::locate::boxes::Boxes;
 
 use super::outline::{Fault, Met, Outline, Prepared, Sum, Work, distinct, meet, start_at_smallest};
 use super::pairs::{ZERO, pair, quotient};
+use super::sides::{MANY, any_pair, meeting};
 use super::signs::Moved;
 
-/// Cells with more corners count as concave, so that this test does not take long.
-const MANY: usize = 64;
 /// Cells with smaller areas, over the square of their extent, are empty.
 const LEAST: f64 = 1e-28;
 /// Smaller parts, over the square of the extent of the smaller cell, cannot be distinguished from
@@ -44,11 +47,17 @@ struct Corner {
 pub struct Region {
     /// All corners, ring by ring.
     corners: Vec<Corner>,
+    /// Where rings after the first one start.
+    later: Vec<u32>,
     area: f64,
     extent: Extent<2>,
     convex: bool,
     turned: bool,
     repeated: usize,
+    /// Whether it has an area.
+    usable: bool,
+    /// Sides by their boxes.
+    kept: OnceLock<Boxes<2>>,
 }
 
 fn compare(a: &Point2, b: &Point2) -> Ordering {
@@ -80,11 +89,14 @@ impl Prepared<2> for Region {
     fn of(rings: &mut dyn Iterator<Item = (bool, &[Point2])>) -> (Option<Self>, Option<Fault>) {
         let mut region = Self {
             corners: Vec::new(),
+            later: Vec::new(),
             area: 0.0,
             extent: Extent::of([]),
             convex: false,
             turned: false,
             repeated: 0,
+            usable: false,
+            kept: OnceLock::new(),
         };
         let mut sum = ZERO;
         let mut origin = None;
@@ -108,6 +120,9 @@ impl Prepared<2> for Region {
             // Now the order of terms is independent of that of the input.
             sum = sum + doubled(kept[0], &kept);
             let first = region.corners.len();
+            if first > 0 {
+                region.later.push(first as u32);
+            }
             for (k, &v) in kept.iter().enumerate() {
                 let next = if k + 1 == kept.len() { 0 } else { k + 1 };
                 region.corners.push(Corner {
@@ -121,15 +136,9 @@ impl Prepared<2> for Region {
         let side = region.extent.side();
         // Also if there are no corners, or the area is beyond the range of doubles.
         if !(region.area > LEAST * side * side && region.area < f64::INFINITY) {
-            // Parts to both sides of a crossing may cancel.
-            let crossed = region.first_pair(proper).is_some();
-            let fault = if crossed {
-                Fault::Crossing
-            } else {
-                Fault::Empty
-            };
-            return (None, Some(fault));
+            return (Some(region), Some(Fault::Empty));
         }
+        region.usable = true;
         region.convex = region.corners.len() <= MANY && region.is_convex();
         (Some(region), None)
     }
@@ -146,12 +155,13 @@ impl Prepared<2> for Region {
         self.repeated
     }
 
-    /// Two sides that cross in their interiors, or run the same way in a common part, if any do.
-    fn crossing(&self) -> Option<[usize; 2]> {
+    fn crossing(&self, watch: &Watch) -> Result<bool> {
         if self.convex {
-            return None;
+            return Ok(false);
         }
-        self.first_pair(crosses)
+        // Parts to both sides of a crossing may cancel, so that nothing is left.
+        let bad = if self.usable { crosses } else { proper };
+        any_pair(self, |e, f| bad(self.ends(e), self.ends(f)), watch)
     }
 }
 
@@ -160,33 +170,6 @@ impl Region {
     fn ends(&self, k: u32) -> [Point2; 2] {
         let a = self.corners[k as usize];
         [a.v, self.corners[a.next as usize].v]
-    }
-
-    /// A pair of sides whose spans meet and of which `bad` is true.
-    fn first_pair(&self, bad: impl Fn([Point2; 2], [Point2; 2]) -> bool) -> Option<[usize; 2]> {
-        let mut spans: Vec<(f64, f64, u32)> = (0..self.corners.len() as u32)
-            .map(|k| {
-                let [a, b] = self.ends(k);
-                (a[0].min(b[0]), a[0].max(b[0]), k)
-            })
-            .collect();
-        spans.sort_by(|p, q| p.0.total_cmp(&q.0));
-        for (at, &(_, end, e)) in spans.iter().enumerate() {
-            for &(start, _, f) in &spans[at + 1..] {
-                if start > end {
-                    break;
-                }
-                if bad(self.ends(e), self.ends(f)) {
-                    return Some([e.min(f) as usize, e.max(f) as usize]);
-                }
-            }
-        }
-        None
-    }
-
-    /// The box of the corners.
-    pub fn extent(&self) -> Extent<2> {
-        self.extent
     }
 
     /// Whether no corner is to the right of a side, and the ring runs around once: see `Cell`.
@@ -245,7 +228,7 @@ fn side([a, b]: [Point2; 2], q: Point2, moved: Moved) -> i8 {
     }
 }
 
-impl Outline for Region {
+impl Outline<2> for Region {
     fn count(&self) -> usize {
         self.corners.len()
     }
@@ -255,8 +238,25 @@ impl Outline for Region {
         self.corners[k as usize].next
     }
 
+    fn later_rings(&self) -> &[u32] {
+        &self.later
+    }
+
     fn convex(&self) -> bool {
         self.convex
+    }
+
+    /// The box of the corners.
+    fn extent(&self) -> Extent<2> {
+        self.extent
+    }
+
+    fn reach(&self, k: u32) -> Extent<2> {
+        Extent::of(self.ends(k))
+    }
+
+    fn kept(&self) -> &OnceLock<Boxes<2>> {
+        &self.kept
     }
 
     #[inline]
@@ -265,27 +265,33 @@ impl Outline for Region {
     }
 
     /// The parity of sides that cross the ray from the corner in the direction of the first axis.
-    fn holds(&self, other: &Self, corner: u32, moved: Moved) -> bool {
+    fn holds(
+        &self,
+        other: &Self,
+        corner: u32,
+        moved: Moved,
+        found: &mut Vec<u32>,
+        pace: &mut Pace,
+    ) -> Result<bool> {
         let q = other.corners[corner as usize].v;
         // A corner that has moved is above others of its height; so are corners of sides that have.
         let above = |v: Point2| v[1] > q[1] || (v[1] == q[1] && moved == Moved::Side);
+        let ray = Extent {
+            min: q,
+            max: [f64::INFINITY, q[1]],
+        };
+        found.clear();
+        meeting(self, &ray, found, pace.watch())?;
+        pace.spend(found.len())?;
         let mut odd = false;
-        for k in 0..self.corners.len() as u32 {
+        for &k in &*found {
             let [a, b] = self.ends(k);
             let up = above(b);
             if above(a) != up {
                 odd ^= up == (side([a, b], q, moved) > 0);
             }
         }
-        odd
-    }
-
-    fn near(&self, other: &Self, found: &mut Vec<u32>) {
-        let extent = other.extent;
-        found.extend((0..self.corners.len() as u32).filter(|&k| {
-            let [a, b] = self.ends(k);
-            (0..2).all(|i| a[i].min(b[i]) <= extent.max[i] && extent.min[i] <= a[i].max(b[i]))
-        }));
+        Ok(odd)
     }
 }
 
@@ -358,7 +364,7 @@ impl Sum for Doubled<'_> {
 }
 
 /// The area that cells share; the second one has moved.
-pub fn shared(p: &Region, q: &Region, work: &mut Work) -> f64 {
+pub fn shared(p: &Region, q: &Region, work: &mut Work, pace: &mut Pace) -> Result<f64> {
     let (first, second) = (p.extent.side(), q.extent.side());
     let (small, size) = if first < second {
         (p, first)
@@ -373,7 +379,7 @@ pub fn shared(p: &Region, q: &Region, work: &mut Work) -> f64 {
         e: 0,
         from: [ZERO; 2],
     };
-    match meet(p, q, work, &mut sum) {
+    Ok(match meet(p, q, work, pace, &mut sum)? {
         Met::Nothing => 0.0,
         Met::First => p.area,
         Met::Second => q.area,
@@ -381,5 +387,5 @@ pub fn shared(p: &Region, q: &Region, work: &mut Work) -> f64 {
             let area = sum.sum.hi / 2.0;
             if area > TINY * size * size { area } else { 0.0 }
         }
-    }
+    })
 }

@@ -14,6 +14,7 @@ use delone_predicates::Point3;
 use delone_predicates::arithmetic::Pair;
 
 use crate::base::error::{Error, Result};
+use crate::base::watch::Pace;
 
 use super::bands::{Block, angle};
 use super::cell::Cell;
@@ -71,6 +72,7 @@ pub fn shared(
     p: &Cell,
     block: &Block,
     work: &mut Work,
+    pace: &mut Pace,
     give: &mut impl FnMut(i32, f64) -> Result<()>,
 ) -> Result<()> {
     work.at.clear();
@@ -82,7 +84,9 @@ pub fn shared(
         work.at.push((row, column));
     }
     for k in 0..p.corners.len() {
+        let before = work.events.len();
         follow(p, k, block, work)?;
+        pace.spend(work.events.len() - before + 1)?;
     }
     let at = std::mem::take(&mut work.at);
     let walked = Walked {
@@ -91,7 +95,7 @@ pub fn shared(
         north: p.center[2] >= 0.0,
         at: &at,
     };
-    let done = walked.give(work, give);
+    let done = walked.give(work, pace, give);
     work.at = at;
     done
 }
@@ -238,7 +242,12 @@ struct Walked<'a> {
 }
 
 impl Walked<'_> {
-    fn give(&self, work: &mut Work, give: &mut impl FnMut(i32, f64) -> Result<()>) -> Result<()> {
+    fn give(
+        &self,
+        work: &mut Work,
+        pace: &mut Pace,
+        give: &mut impl FnMut(i32, f64) -> Result<()>,
+    ) -> Result<()> {
         let (block, p) = (self.block, self.p);
         work.crossings.sort_unstable();
         work.touched.clear();
@@ -263,6 +272,7 @@ impl Walked<'_> {
             return Ok(());
         }
         for run in work.touched.chunk_by(|a, b| a.0 == b.0) {
+            pace.spend(run.len())?;
             let (row, column) = ((run[0].0 / count) as usize, (run[0].0 % count) as usize);
             let area = self.sum(
                 row,
@@ -274,7 +284,7 @@ impl Walked<'_> {
             );
             give(block.number(row, column), area)?;
         }
-        self.covered(work, give)
+        self.covered(work, pace, give)
     }
 
     /// The cells that an event is in or between.
@@ -292,10 +302,13 @@ impl Walked<'_> {
     /// Whether the corner of a meridian and a parallel is in the polygon.
     fn holds(&self, m: usize, l: usize, crossings: &[(u32, i64)]) -> bool {
         let m = m as u32;
-        let start = crossings.partition_point(|x| x.0 < m);
-        let own = crossings[start..].iter().take_while(|x| x.0 == m);
-        let between = own.filter(|x| (x.1 < l as i64) == self.north);
-        between.count() % 2 == 1
+        let at = crossings.partition_point(|&x| x < (m, l as i64));
+        let between = if self.north {
+            at - crossings.partition_point(|x| x.0 < m)
+        } else {
+            crossings.partition_point(|x| x.0 <= m) - at
+        };
+        between % 2 == 1
     }
 
     /// The area in a cell that sides touch.
@@ -454,7 +467,12 @@ impl Walked<'_> {
 
     /// Cells that are inside the polygon and that no side touches: between crossings of the
     /// meridian to their west.
-    fn covered(&self, work: &Work, give: &mut impl FnMut(i32, f64) -> Result<()>) -> Result<()> {
+    fn covered(
+        &self,
+        work: &Work,
+        pace: &mut Pace,
+        give: &mut impl FnMut(i32, f64) -> Result<()>,
+    ) -> Result<()> {
         let (block, rows) = (self.block, self.block.rows() as i64);
         let count = block.columns() as u64;
         for own in work.crossings.chunk_by(|a, b| a.0 == b.0) {
@@ -467,9 +485,13 @@ impl Walked<'_> {
             };
             let (step, mut row) = (if self.north { 1 } else { -1 }, from);
             while if self.north { row < rows } else { row >= 0 } {
+                pace.spend(1)?;
                 // Crossings between that pole and this row.
-                let behind = |x: &&(u32, i64)| if self.north { x.1 < row } else { x.1 > row };
-                let passed = own.iter().filter(behind).count();
+                let passed = if self.north {
+                    own.partition_point(|x| x.1 < row)
+                } else {
+                    own.len() - own.partition_point(|x| x.1 <= row)
+                };
                 if passed == own.len() && passed % 2 == 0 {
                     break;
                 }

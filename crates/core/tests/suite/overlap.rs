@@ -3,8 +3,11 @@
 use delone_core::Point3;
 use delone_core::base::error::Error;
 use delone_core::base::watch::Watch;
-use delone_core::overlap::{Fault, Grid, Polygons, Rows, Shared, check, overlaps};
+use delone_core::overlap::{
+    Fault, Grid, Polygons, Rows, Shared, check, check_plane, overlaps, overlaps_plane,
+};
 use std::f64::consts::PI;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The sides of a cube, each in n x n cells.
 fn cube(n: usize) -> Vec<Vec<Point3>> {
@@ -222,4 +225,229 @@ fn an_interruption_ends_it() {
         let stopped = overlaps(&p.grid(), &target, 2, &Watch::new(&|| true));
         assert_eq!(stopped.err(), Some(Error::Interrupted));
     }
+}
+
+/// Calls with a watch that stops at its 40th check: more than any stage needs but the one that lasts.
+fn stops(call: impl Fn(&Watch) -> Option<Error>) -> bool {
+    let asked = AtomicUsize::new(0);
+    let stop = || asked.fetch_add(1, Ordering::Relaxed) == 40;
+    call(&Watch::new(&stop)) == Some(Error::Interrupted)
+}
+
+/// Teeth along the first axis, or along the second one: side by side in any order, their boxes meet if
+/// `slanted`.
+fn comb(teeth: usize, across: bool, slanted: bool) -> Vec<[f64; 2]> {
+    let mut ring = vec![[1.0, -1.0], [-1.0, -1.0]];
+    for k in 0..teeth {
+        let at = |part: f64| ((k as f64 + part) / teeth as f64) * 1.8 - 0.9;
+        ring.extend([
+            [-1.0, at(0.1)],
+            [0.95, at(0.4)],
+            [0.95, at(0.6)],
+            [-1.0, at(0.9)],
+        ]);
+    }
+    ring.push([1.0, 1.0]);
+    let turned = |[x, y]: [f64; 2]| match (across, slanted) {
+        (false, false) => [x, y],
+        (true, false) => [y, x],
+        (_, true) => [x - y, x + y],
+    };
+    ring.into_iter().map(turned).collect()
+}
+
+/// The ring on the plane z = 2.
+fn raised(ring: &[[f64; 2]]) -> Vec<Point3> {
+    ring.iter().map(|&[x, y]| [x, y, 2.0]).collect()
+}
+
+/// A ring around the origin with random radii.
+fn star(count: usize, seed: u64) -> Vec<[f64; 2]> {
+    let mut state = seed;
+    (0..count)
+        .map(|k| {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            let radius = 0.8 + 0.2 * (state >> 40) as f64 / (1 << 24) as f64;
+            let (s, c) = (k as f64 / count as f64 * 2.0 * PI).sin_cos();
+            [radius * c, radius * s]
+        })
+        .collect()
+}
+
+/// The arrays of polygons: vectors, rings, cells and holes.
+type Planar = (Vec<[f64; 2]>, Vec<i64>, Vec<i64>, Vec<bool>);
+
+/// Cells of one ring in the plane.
+fn flat(cells: &[Vec<[f64; 2]>]) -> Planar {
+    let lengths = cells.iter().map(|ring| ring.len() as i64);
+    let starts = lengths.scan(0, |sum, n| {
+        *sum += n;
+        Some(*sum)
+    });
+    let rings = std::iter::once(0).chain(starts).collect();
+    let each = (0..=cells.len() as i64).collect();
+    (cells.concat(), rings, each, vec![false; cells.len()])
+}
+
+fn in_plane((vectors, rings, cells, holes): &Planar) -> Polygons<'_, 2> {
+    Polygons {
+        vectors,
+        rings,
+        cells,
+        holes,
+    }
+}
+
+#[test]
+fn an_interruption_ends_what_takes_long_in_one_cell_or_one_pair() {
+    let (slanted, teeth, others) = (
+        comb(4000, false, true),
+        comb(1500, false, false),
+        comb(1500, true, false),
+    );
+    let plane = [slanted.clone(), teeth.clone(), others.clone()].map(|ring| flat(&[ring]));
+    let sphere = [slanted, teeth, others].map(|ring| Flat::of(&[raised(&ring)]));
+    assert!(stops(|watch| check_plane(
+        &in_plane(&plane[0]),
+        true,
+        1,
+        watch
+    )
+    .err()));
+    assert!(stops(|watch| check(&sphere[0].grid(), true, 1, watch).err()));
+    let [p, q] = [1, 2].map(|k| in_plane(&plane[k]));
+    assert!(stops(|watch| overlaps_plane(&p, &q, 1, watch).err()));
+    let [p, q] = [1, 2].map(|k| sphere[k].grid());
+    assert!(stops(|watch| overlaps(&p, &q, 1, watch).err()));
+    let bands = Bands::of(1800, 3600);
+    assert!(stops(|watch| overlaps(&p, &bands.grid(), 1, watch).err()));
+}
+
+/// Of a polygon with many corners, only sides near the other cell are asked for; cut into triangles
+/// around its center, all are.
+#[test]
+fn a_polygon_with_many_corners_shares_what_its_triangles_do() {
+    let (p, q) = (star(700, 1), star(900, 2));
+    let fan: Vec<Vec<[f64; 2]>> = (0..p.len())
+        .map(|k| vec![[0.0, 0.0], p[k], p[(k + 1) % p.len()]])
+        .collect();
+    let [whole, parts, other] = [
+        flat(std::slice::from_ref(&p)),
+        flat(&fan),
+        flat(std::slice::from_ref(&q)),
+    ];
+    let sums = |p: &_, q: &_| {
+        let found = overlaps_plane(&in_plane(p), &in_plane(q), 1, &Watch::idle());
+        found.expect("valid cells").areas.iter().sum::<f64>()
+    };
+    let all = sums(&parts, &other);
+    for one in [
+        sums(&whole, &other),
+        sums(&other, &whole),
+        sums(&other, &parts),
+    ] {
+        assert!((one / all - 1.0).abs() < 1e-14);
+    }
+    let lifted = |cells: &[Vec<[f64; 2]>]| {
+        let cells: Vec<_> = cells.iter().map(|ring| raised(ring)).collect();
+        Flat::of(&cells)
+    };
+    let [whole, parts, other] = [lifted(&[p]), lifted(&fan), lifted(&[q])];
+    let sums = |p: &Flat, q: &Flat| shared(&p.grid(), &q.grid()).areas.iter().sum::<f64>();
+    let all = sums(&parts, &other);
+    for one in [
+        sums(&whole, &other),
+        sums(&other, &whole),
+        sums(&other, &parts),
+    ] {
+        assert!((one / all - 1.0).abs() < 1e-14);
+    }
+}
+
+/// Rings that touch nothing of the other cell are inside or outside as wholes: islands in holes.
+#[test]
+fn rings_inside_each_other_share_rings() {
+    let ring = |r: f64, count: usize| -> Vec<[f64; 2]> {
+        (0..count)
+            .map(|k| {
+                let (s, c) = (k as f64 / count as f64 * 2.0 * PI).sin_cos();
+                [r * c, r * s]
+            })
+            .collect()
+    };
+    let area = |r: f64| r * r * 300.0 * (PI / 300.0).sin() * (PI / 300.0).cos();
+    // Between radii 6 and 5, and within 3, beside what is between 4 and 2.
+    let p = [ring(6.0, 300), ring(5.0, 300), ring(3.0, 300)].concat();
+    let q = [ring(4.0, 300), ring(2.0, 300)].concat();
+    let p = (
+        p,
+        vec![0, 300, 600, 900],
+        vec![0, 3],
+        vec![false, true, false],
+    );
+    let q = (q, vec![0, 300, 600], vec![0, 2], vec![false, true]);
+    for (p, q) in [(&p, &q), (&q, &p)] {
+        let found =
+            overlaps_plane(&in_plane(p), &in_plane(q), 1, &Watch::idle()).expect("valid cells");
+        let right = area(3.0) - area(2.0);
+        assert!((found.areas[0] / right - 1.0).abs() < 1e-14);
+    }
+    let lifted = |(v, rings, cells, holes): &Planar| Flat {
+        vectors: v.iter().map(|&[x, y]| [x, y, 10.0]).collect(),
+        rings: rings.clone(),
+        cells: cells.clone(),
+        holes: holes.clone(),
+    };
+    let [p, q] = [lifted(&p), lifted(&q)];
+    let cap = |r: f64| {
+        let ring = ring(r, 300)
+            .into_iter()
+            .map(|[x, y]| [x, y, 10.0])
+            .collect();
+        check(&Flat::of(&[ring]).grid(), true, 1, &Watch::idle())
+            .expect("a ring")
+            .areas[0]
+    };
+    let found = shared(&p.grid(), &q.grid());
+    assert!((found.areas[0] / (cap(3.0) - cap(2.0)) - 1.0).abs() < 1e-14);
+}
+
+/// A ring that repeats itself from many starts takes no longer than another one.
+#[test]
+fn a_ring_that_runs_around_often_starts_anywhere() {
+    let once = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+    let ring: Vec<[f64; 2]> = once.into_iter().cycle().take(400_000).collect();
+    let known = check_plane(&in_plane(&flat(&[ring])), false, 1, &Watch::idle()).expect("finite");
+    assert_eq!(known.areas, [400_000.0]);
+}
+
+/// Small rings all over the sphere, as holes of the cell around one of them: no hemisphere contains
+/// it, which thousands of corners must not hide for minutes.
+#[test]
+fn a_cell_with_holes_everywhere_is_larger_than_a_hemisphere() {
+    let (count, mut rings, mut vectors) = (1200, vec![0], Vec::new());
+    for k in 0..count {
+        let z = 1.0 - (2 * k + 1) as f64 / count as f64;
+        let (s, c) = (k as f64 * 2.4).sin_cos();
+        let r = (1.0 - z * z).sqrt();
+        let (across, up) = (
+            [-s * 0.01, c * 0.01, 0.0],
+            [-z * c * 0.01, -z * s * 0.01, r * 0.01],
+        );
+        for (i, j) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
+            let v = [r * c, r * s, z];
+            vectors.push([0, 1, 2].map(|x| v[x] + i * across[x] + j * up[x]));
+        }
+        rings.push(vectors.len() as i64);
+    }
+    let cell = Polygons {
+        vectors: &vectors,
+        rings: &rings,
+        cells: &[0, count as i64],
+        holes: &[&[false][..], &vec![true; count - 1]].concat(),
+    };
+    let known = check(&Grid::Polygons(cell), false, 1, &Watch::idle()).expect("finite vectors");
+    assert_eq!(known.faults, [Fault::Large as u8]);
 }
