@@ -67,7 +67,14 @@ fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     })
 }
 
+/// Bytes below which a refused allocation is reported without a text, which needs memory itself.
+const WORDS: usize = 1 << 16;
+
 fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
+    // Where even little memory is refused, there is none for words.
+    if matches!(error, Error::Memory { bytes } if *bytes < WORDS) {
+        return Ok(PyMemoryError::new_err(()));
+    }
     let details = PyDict::new(py);
     match error {
         Error::Interrupted => {
