@@ -4,6 +4,9 @@
 //! touch of fresh memory costs 40 ns per point with 4 KiB pages and 20 ns with 2 MiB pages: hence
 //! the `unsafe` below.
 
+use std::collections::HashMap;
+use std::hash::Hash;
+
 use crate::base::error::{Error, Result};
 
 /// Arrays smaller than this, a huge page, do not ask for huge pages.
@@ -37,6 +40,12 @@ pub fn make_room<T>(v: &mut Vec<T>, n: usize) -> Result<()> {
         v.try_reserve(n).map_err(|_| Error::Memory { bytes })?;
     }
     Ok(())
+}
+
+/// Reserves room for one more entry.
+pub fn room_for_one<K: Eq + Hash, V>(map: &mut HashMap<K, V>) -> Result<()> {
+    let bytes = (map.len() + 1).saturating_mul(size_of::<(K, V)>());
+    map.try_reserve(1).map_err(|_| Error::Memory { bytes })
 }
 
 /// A copy of `items`.

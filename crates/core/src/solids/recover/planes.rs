@@ -14,7 +14,7 @@ use delone_predicates::{Point3, Sign, insphere, orient3d};
 use super::mesh::{NONE, ascending, pair};
 use super::work::Work;
 use crate::base::error::Result;
-use crate::base::memory::{filled, push};
+use crate::base::memory::{copied, filled, push, room_for_one};
 use crate::base::sets::Sets;
 
 /// Triangles that fill a part of a plane, twice.
@@ -54,29 +54,32 @@ impl Work<'_> {
         let mut open = Vec::new();
         for (&edge, &two) in self.segments.iter().zip(&soft) {
             if two[0] != NONE && lacks[sets.root(two[0]) as usize] {
+                room_for_one(&mut edges)?;
                 edges.insert(edge, two);
                 push(&mut open, edge)?;
             }
         }
         let first = self.delaunay_in_planes(edges, open)?;
-        let mut parts: HashMap<u32, Part> = HashMap::new();
-        let mut order = Vec::new();
+        let mut place = filled(self.faces.len(), NONE)?;
+        let mut parts: Vec<Part> = Vec::new();
         for (f, (&new, &old)) in (0..).zip(first.iter().zip(&self.faces)) {
-            let group = sets.root(f);
-            if lacks[group as usize] {
-                let part = parts.entry(group).or_insert_with(|| {
-                    order.push(group);
-                    Part {
-                        first: Vec::new(),
-                        last: Vec::new(),
-                    }
-                });
-                part.first.push(new);
-                part.last.push(old);
+            let group = sets.root(f) as usize;
+            if !lacks[group] {
+                continue;
             }
+            if place[group] == NONE {
+                place[group] = parts.len() as u32;
+                let part = Part {
+                    first: Vec::new(),
+                    last: Vec::new(),
+                };
+                push(&mut parts, part)?;
+            }
+            let part = &mut parts[place[group] as usize];
+            push(&mut part.first, new)?;
+            push(&mut part.last, old)?;
         }
-        let parts = order.iter().filter_map(|group| parts.remove(group));
-        let parts = parts.filter(|part| part.first != part.last).collect();
+        parts.retain(|part| part.first != part.last);
         Ok((first, parts))
     }
 
@@ -119,7 +122,7 @@ impl Work<'_> {
         mut edges: HashMap<[u32; 2], Two>,
         mut open: Vec<[u32; 2]>,
     ) -> Result<Vec<[u32; 3]>> {
-        let mut faces = self.faces.clone();
+        let mut faces = copied(&self.faces)?;
         while let Some([a, b]) = open.pop() {
             self.pace.spend(1)?;
             let Some(&[t, u]) = edges.get(&[a, b]) else {
