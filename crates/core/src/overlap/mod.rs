@@ -189,15 +189,14 @@ fn check_cells<C: Prepared<D>, const D: usize>(
     let parts = map_watched(workers, tasks, watch, |first| {
         let mut part = Checked::default();
         for i in first..(first + LOT).min(count) {
-            let (mut cell, mut fault) = cells.cell::<C>(i);
-            if let Some(own) = &cell
-                && crossing
-                && own.crossing(watch)?
-            {
-                fault = Some(Fault::Crossing);
-            } else if fault.is_some() {
-                cell = None;
-            }
+            let (cell, own) = cells.cell::<C>(i);
+            let crossed = match &cell {
+                Some(cell) => crossing && cell.crossing(watch)?,
+                None => false,
+            };
+            let fault = if crossed { Some(Fault::Crossing) } else { own };
+            // What is known of a cell that has no area is not told, whether or not its sides cross.
+            let cell = cell.filter(|_| own.is_none());
             push(&mut part.areas, cell.as_ref().map_or(0.0, C::area))?;
             push(&mut part.faults, fault.map_or(0, |fault| fault as u8))?;
             push(&mut part.turned, cell.as_ref().is_some_and(C::turned))?;

@@ -451,3 +451,18 @@ fn a_cell_with_holes_everywhere_is_larger_than_a_hemisphere() {
     let known = check(&Grid::Polygons(cell), false, 1, &Watch::idle()).expect("finite vectors");
     assert_eq!(known.faults, [Fault::Large as u8]);
 }
+
+/// A hole that crosses the outer ring and is larger leaves less than nothing: the fault is told, and
+/// no area.
+#[test]
+fn a_cell_without_area_whose_sides_cross_has_none() {
+    let square = |at: f64, side: f64| {
+        [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]].map(|[x, y]| [x + at, y + at])
+    };
+    let ring = [square(0.0, 2.0), square(1.0, 4.0)].concat();
+    let cell = (ring, vec![0, 4, 8], vec![0, 2], vec![false, true]);
+    let known = check_plane(&in_plane(&cell), true, 1, &Watch::idle()).expect("finite");
+    assert_eq!(known.faults, [Fault::Crossing as u8]);
+    assert_eq!(known.areas, [0.0]);
+    assert_eq!((known.turned[0], known.concave[0]), (false, false));
+}
