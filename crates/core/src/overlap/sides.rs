@@ -1,5 +1,5 @@
-//! Cells with sides between corners, and the sides by their boxes: in a tree if there are many, so that what is asked of one place of
-//! a polygon with thousands of corners looks at the sides that are there.
+//! Cells with sides between corners, and the sides by their boxes: in a tree if there are many, so
+//! that a question about one place of a polygon with thousands of corners looks only at the sides there.
 
 use std::sync::OnceLock;
 

@@ -466,3 +466,38 @@ fn a_cell_without_area_whose_sides_cross_has_none() {
     assert_eq!(known.areas, [0.0]);
     assert_eq!((known.turned[0], known.concave[0]), (false, false));
 }
+
+/// The middle of a long side is far from its chord: a small cell there is divided by it.
+#[test]
+fn a_side_is_also_where_it_rises_above_its_chord() {
+    let at = |lon: f64, lat: f64| -> Point3 {
+        let (lon, lat) = (lon.to_radians(), lat.to_radians());
+        [lon.cos() * lat.cos(), lon.sin() * lat.cos(), lat.sin()]
+    };
+    let small: Vec<Point3> = [(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)]
+        .map(|(lon, lat)| at(lon, lat))
+        .to_vec();
+    // The long side is on the equator. With 20 corners, sides are chosen by their boxes; with more, by
+    // a tree.
+    for corners in [20, 200] {
+        let north =
+            (0..corners - 2).map(|k| at(30.0 - 60.0 * k as f64 / f64::from(corners - 3), 25.0));
+        let ring = [at(-30.0, 0.0), at(30.0, 0.0)].into_iter().chain(north);
+        let large = Flat::of(&[ring.collect::<Vec<_>>()]);
+        let one = Flat::of(std::slice::from_ref(&small));
+        let whole = check(&one.grid(), true, 1, &Watch::idle())
+            .expect("a valid cell")
+            .areas[0];
+        for found in [
+            shared(&large.grid(), &one.grid()),
+            shared(&one.grid(), &large.grid()),
+        ] {
+            assert_eq!(found.areas.len(), 1);
+            assert!(
+                (found.areas[0] / whole - 0.5).abs() < 1e-12,
+                "{:?}",
+                found.areas
+            );
+        }
+    }
+}
