@@ -113,6 +113,8 @@ def test_parts_are_all_lines(both: Any, monkeypatch: pytest.MonkeyPatch, crossin
     for name in ("short", "small"):
         assert sum(getattr(each, name) for each in parts) == getattr(whole, name)
     assert [len(each) for each in tiles.contour_parts([])] == [0]
+    with pytest.raises(InputError, match="interval"):
+        tiles.contour_parts(interval=-1.0)
 
 
 def test_levels_without_lines(both: Any) -> None:

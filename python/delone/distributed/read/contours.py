@@ -99,8 +99,20 @@ def parts(  # noqa: PLR0917
     value: str,
     executor: Any,
 ) -> Iterator[Contours]:
-    """Yield the contours of all tiles, those of a few levels at once."""
-    levels, marked, scan = _wanted(tin, given, finish, max_points, value)
+    """Return the contours of all tiles, those of a few levels at once."""
+    # Levels and limits are checked before the first lines are asked for.
+    wanted = _wanted(tin, given, finish, max_points, value)
+    return _parts(tin, finish, wanted, value, executor)
+
+
+def _parts(
+    tin: TileFolder,
+    finish: Finish,
+    wanted: tuple[Floats, Bools, _Scan],
+    value: str,
+    executor: Any,
+) -> Iterator[Contours]:
+    levels, marked, scan = wanted
     with _drawn(tin, value, levels, scan, executor) as (files, dropped):
         # At least once, so that files with no lines have their columns.
         for some in [[file] for file in files] or [[]]:

@@ -140,7 +140,7 @@ class TiledSurface(TileFolder):
         """
         finish = Finish.of(0, min_length, min_area, 0.0)
         given = levels, interval, base, index
-        yield from contours.parts(self, given, finish, max_points, values, executor)
+        return contours.parts(self, given, finish, max_points, values, executor)
 
     def profile(self, line: Any, *, values: str = "z") -> Profile:
         """Compute the heights along a line, reading only the tiles along it.
