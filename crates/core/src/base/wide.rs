@@ -127,6 +127,18 @@ pub fn angle(sine: &BigInt, cosine: &BigInt) -> f64 {
     }
 }
 
+/// `x * 2^exponent`, rounded at most once.
+pub fn times_power(x: f64, exponent: i32) -> f64 {
+    const STEP: i32 = 1000;
+    let power = |e: i32| f64::from_bits(((1023 + e) as u64) << 52);
+    // Only the last step may reach subnormal numbers; otherwise the result is zero anyway.
+    let mut x = x * power(exponent % STEP);
+    for _ in 0..(exponent / STEP).abs() {
+        x *= power(STEP * exponent.signum());
+    }
+    x
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

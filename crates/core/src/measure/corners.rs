@@ -19,7 +19,7 @@ use num_bigint::BigInt;
 
 use crate::base::vector;
 pub use crate::base::vector::{cross, dot};
-use crate::base::wide::{lowest, scaled};
+use crate::base::wide::{lowest, scaled, times_power};
 
 /// Above this share of the product of the lengths, a determinant in doubles is accurate enough.
 const PLAIN: f64 = 1.0 / 32.0;
@@ -194,18 +194,6 @@ pub struct Integers<const D: usize> {
 fn product_of_lengths<const D: usize>(vectors: &[[f64; D]; D]) -> f64 {
     let squares = vectors.map(|v| v.iter().map(|x| x * x).sum::<f64>());
     squares.iter().product::<f64>().sqrt()
-}
-
-/// `x * 2^exponent`, rounded at most once.
-pub fn times_power(x: f64, exponent: i32) -> f64 {
-    const STEP: i32 = 1000;
-    let power = |e: i32| f64::from_bits(((1023 + e) as u64) << 52);
-    // Only the last step may reach subnormal numbers; otherwise the result is zero anyway.
-    let mut x = x * power(exponent % STEP);
-    for _ in 0..(exponent / STEP).abs() {
-        x *= power(STEP * exponent.signum());
-    }
-    x
 }
 
 /// `x * 2^exponent`; the exponent is usually 0.

@@ -5,12 +5,11 @@ use num_bigint::BigInt;
 use super::batch::each;
 use super::corners::{
     Corners, Integers, Measure, Number, Vectors, cross, determinant2, determinant3, dot, in_units,
-    times_power,
 };
 use super::sphere;
 use crate::base::error::Result;
 use crate::base::watch::Watch;
-use crate::base::wide::{across, determinant, lowest, ratio, root, scaled};
+use crate::base::wide::{across, determinant, lowest, ratio, root, scaled, times_power};
 
 /// The areas of triangles, with a relative error below 1e-14; infinite, or subnormal and rounded,
 /// if out of range.

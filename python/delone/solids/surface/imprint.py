@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from delone._base.types import Floats, Indices, Rows
-    from delone._core import CutSurface
 
 __all__ = ["ImprintedSurface", "imprint_surface"]
 
@@ -180,9 +179,6 @@ def imprint_surface(
     made = _core.imprint_surface3(given, rows, margin, as_workers(workers))
     if len(made.crossing):
         raise _failure(made.crossing.astype(np.int64), made.tolerance, made.rounds)
-    loose = _unpaired(rows, made)
-    if len(loose):
-        raise _failure(np.column_stack((loose, loose)), made.tolerance, made.rounds)
     parts = np.bincount(made.source, minlength=len(rows))
     return ImprintedSurface(
         points=np.concatenate((given, made.added)),
@@ -197,29 +193,6 @@ def imprint_surface(
         collapsed=np.flatnonzero(parts == 0),
         nfaces=len(rows),
     )
-
-
-def _unpaired(faces: Indices, made: CutSurface) -> Rows:
-    """Return the sources of parts with an edge that has no partner, though each input edge has one.
-
-    If each edge is traversed equally often in both directions, that holds for the parts.
-    """
-    name = np.arange(int(faces.max(initial=-1)) + 1, dtype=np.int32)
-    for row, other in made.merged.tolist():
-        if row < len(name):
-            name[row] = other
-    if len(_unbalanced(name[faces])):
-        return np.empty(0, dtype=np.int64)
-    return np.unique(made.source[_unbalanced(made.faces)]).astype(np.int64)
-
-
-def _unbalanced(faces: Indices) -> Rows:
-    """Return the faces at edges that are not traversed equally often in both directions."""
-    edges = faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2).astype(np.int64)
-    low, high = edges.min(axis=1), edges.max(axis=1)
-    _, place = np.unique(low * (high.max(initial=0) + 1) + high, return_inverse=True)
-    ways = np.where(edges[:, 0] < edges[:, 1], 1, -1)
-    return np.flatnonzero(np.bincount(place, ways)[place] != 0) // 3
 
 
 def as_tolerance(tolerance: float) -> float:

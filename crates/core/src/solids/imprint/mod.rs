@@ -23,12 +23,14 @@ use delone_predicates::Point3;
 
 use self::cut::cut;
 use self::events::Events;
-use self::work::{Edges, Work};
+use self::work::{Edges, Face, Work};
+use super::surface::edges::Edges as SurfaceEdges;
 use super::surface::{NONE, Options as Limits, prepared};
 use crate::base::error::Result;
-use crate::base::memory::{copied, push, with_room};
+use crate::base::memory::{copied, filled, push, with_room};
 use crate::base::points::{Extent, scan};
 use crate::base::watch::Watch;
+use crate::base::wide::times_power;
 use crate::order::sort;
 
 /// Rounds at most. Almost all surfaces need one.
@@ -77,7 +79,7 @@ pub struct Imprinted {
 
 /// The smallest tolerance for these points: a few rounding errors of the largest coordinate.
 pub fn finest(points: &[Point3]) -> f64 {
-    times(1.0, exponent(points) + FINEST)
+    times_power(1.0, exponent(points) + FINEST)
 }
 
 /// Cuts a surface at itself; `faces` must be rows of `points`.
@@ -90,10 +92,10 @@ pub fn imprint(
     scan(points)?;
     let shift = exponent(points);
     let used = options.tolerance.max(finest(points));
-    let tolerance = times(used, -shift);
+    let tolerance = times_power(used, -shift);
     let workers = options.workers;
     let mut scaled = with_room(points.len())?;
-    scaled.extend(points.iter().map(|p| p.map(|x| times(x, -shift))));
+    scaled.extend(points.iter().map(|p| p.map(|x| times_power(x, -shift))));
     let mut given = with_room(faces.len())?;
     given.extend(
         (0u32..)
@@ -114,9 +116,29 @@ pub fn imprint(
     };
     let (mut work, merged) = Work::arranged(&scaled, &rows, &given, tolerance, watch)?;
     made.merged = merged;
-    let (mut narrow, mut most, mut last) = (Vec::new(), 0, None);
-    while made.rounds < ROUNDS {
-        let before = (work.faces.len(), work.at.len());
+    let closed = is_closed(&work.faces, work.at.len(), watch)?;
+    let (mut narrow, mut last, mut before, mut most) = (Vec::new(), None, None, usize::MAX);
+    loop {
+        made.number(points.len(), &work, shift)?;
+        made.crossing = made.left(points, &narrow, workers, watch)?;
+        // Parts of a closed surface are closed.
+        if closed && made.crossing.is_empty() {
+            made.crossing = loose(&work, watch)?;
+        }
+        let size = (work.faces.len(), work.at.len());
+        if made.rounds == 1 {
+            most = MOST * size.0 + LEAST;
+        }
+        // Further rounds join what is still near, but they can also make parts that cross again.
+        if made.rounds > 0 && made.crossing.is_empty() {
+            last = Some(work.clone());
+        }
+        let settled = last.is_some() && made.rounds >= SETTLED;
+        // They are of no use if they change nothing, or make more and more parts.
+        if settled || made.rounds == ROUNDS || before == Some(size) || size.0 > most {
+            break;
+        }
+        before = Some(size);
         let Some((parts, stuck)) = round(&mut work, tolerance, workers, watch)? else {
             break;
         };
@@ -127,30 +149,15 @@ pub fn imprint(
             push(&mut made.merged, pair)?;
         }
         work = next;
-        if made.rounds == 1 {
-            most = MOST * work.faces.len() + LEAST;
-        }
-        made.number(points.len(), &work, shift)?;
-        made.crossing = made.left(points, &narrow, workers, watch)?;
-        let after = (work.faces.len(), work.at.len());
-        // Further rounds join what is still near, but they can also make parts that cross again.
-        if made.crossing.is_empty() {
-            last = Some(work.clone());
-        }
-        let settled = last.is_some() && made.rounds >= SETTLED;
-        // They are of no use if they change nothing, or make more and more parts.
-        if settled || after == before || after.0 > most {
-            break;
-        }
     }
+    // The last parts that do not cross.
     if let Some(found) = last {
         work = found;
-        narrow.clear();
+        made.crossing.clear();
+        made.number(points.len(), &work, shift)?;
     }
     sort(&mut made.merged, watch)?;
-    made.distance = times(distance(&scaled, faces, &work), shift);
-    made.number(points.len(), &work, shift)?;
-    made.crossing = made.left(points, &narrow, workers, watch)?;
+    made.distance = times_power(distance(&scaled, faces, &work), shift);
     Ok(made)
 }
 
@@ -190,7 +197,7 @@ impl Imprinted {
         for (&row, &p) in work.row.iter().zip(&work.at) {
             if row == NONE {
                 name.push((count + self.added.len()) as u32);
-                push(&mut self.added, p.map(|x| times(x, shift)))?;
+                push(&mut self.added, p.map(|x| times_power(x, shift)))?;
             } else {
                 name.push(row);
             }
@@ -234,9 +241,42 @@ impl Imprinted {
     }
 }
 
+/// The edges of triangles, and which are not passed equally often in both directions.
+fn unbalanced(faces: &[Face], count: usize, watch: &Watch) -> Result<Vec<[u32; 2]>> {
+    let mut oriented = with_room(faces.len())?;
+    oriented.extend(faces.iter().map(Face::oriented));
+    let all = SurfaceEdges::of(&oriented, count, watch)?;
+    let mut found = all.faults(&oriented, &filled(faces.len(), 1)?, watch)?;
+    found.unbalanced.append(&mut found.boundary);
+    Ok(found.unbalanced)
+}
+
+/// Whether all edges are passed equally often in both directions.
+fn is_closed(faces: &[Face], count: usize, watch: &Watch) -> Result<bool> {
+    Ok(unbalanced(faces, count, watch)?.is_empty())
+}
+
+/// The sources of parts at edges that are not, each with itself.
+fn loose(work: &Work, watch: &Watch) -> Result<Vec<[u32; 2]>> {
+    let mut edges = unbalanced(&work.faces, work.at.len(), watch)?;
+    sort(&mut edges, watch)?;
+    let mut found = Vec::new();
+    for face in &work.faces {
+        let [a, b, c] = face.ids;
+        if [[a, b], [b, c], [a, c]]
+            .iter()
+            .any(|e| edges.binary_search(e).is_ok())
+        {
+            push(&mut found, [face.source; 2])?;
+        }
+    }
+    found.dedup();
+    Ok(found)
+}
+
 /// The largest distance of a vertex of a part from its source.
 fn distance(points: &[Point3], faces: &[[i32; 3]], work: &Work) -> f64 {
-    let of = |face: &work::Face| {
+    let of = |face: &Face| {
         let source = faces[face.source as usize];
         let corners = source.map(|v| points[v as usize]);
         let distances = face.ids.map(|v| {
@@ -264,10 +304,4 @@ fn exponent(points: &[Point3]) -> i32 {
     }
     // The logarithm may be one off at powers of two, which does no harm.
     (most.log2().floor() as i32 + 1).clamp(-1022, 1024)
-}
-
-/// `x` times a power of two, without overflow on the way.
-fn times(x: f64, power: i32) -> f64 {
-    let half = power / 2;
-    x * 2.0_f64.powi(half) * 2.0_f64.powi(power - half)
 }

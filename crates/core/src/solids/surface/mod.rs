@@ -8,7 +8,7 @@
 
 mod clean;
 mod contact;
-mod edges;
+pub(crate) mod edges;
 mod fans;
 pub(crate) mod meeting;
 mod pairs;
