@@ -184,6 +184,30 @@ def test_bodies_that_do_not_fit_need_a_tolerance(step: int) -> None:
     assert found.npairs == 0 and found.nregions == 4 and found.closed
 
 
+def test_parts_of_closed_bodies_are_closed_or_an_error() -> None:
+    """Where the tolerance is about the misfit, vertices are joined with edges and faces at will."""
+    bodies = [
+        box((0, 0, 0), (2, 2, 2)),
+        box((0.3, 0.7, 2), (1.1, 1.3, 3)),
+        box((1, 0, 2), (3, 3, 2.5)),
+    ]
+    points, faces = joined(*bodies)
+    points = np.asarray(points, dtype=float) @ AXES.T
+    refused = 0
+    for seed in (0, 15, 77, 113):
+        noise = np.random.default_rng(seed).uniform(-2e-3, 2e-3, points.shape)
+        rounded = np.round(points + noise, 6)
+        try:
+            cut = delone.imprint_surface(rounded, faces, tolerance=3e-3)
+        except delone.CrossingFacesError as error:
+            refused += 1
+            assert "without a partner" in str(error) or "still cross" in str(error)
+        else:
+            found = delone.check_surface(cut.points, cut.faces)
+            assert found.closed and found.oriented and found.npairs == 0
+    assert refused
+
+
 def test_a_tolerance_closes_gaps_and_lists_what_it_joins() -> None:
     lower, upper = box((0, 0, 0), (1, 1, 1)), box((0.25, 0.25, 1 + 1e-7), (0.75, 0.75, 2))
     points, faces = joined(lower, upper)

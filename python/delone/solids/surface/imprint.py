@@ -130,7 +130,8 @@ def imprint_surface(
     ------
     CrossingFacesError
         Parts of faces still cross after 16 rounds, or rounds make ever more parts, because details
-        are not much larger than the tolerance; the error contains the pairs of input faces.
+        are not much larger than the tolerance; the error contains the pairs of input faces. Also if
+        parts of a closed surface are not closed; then each pair is one face, twice.
     InputError
         `tolerance` is negative, infinite or NaN.
     NonFiniteError, ShapeError, DtypeError, MemoryError
@@ -205,9 +206,15 @@ def as_tolerance(tolerance: float) -> float:
 
 def _failure(pairs: Rows, tolerance: float, rounds: int) -> CrossingFacesError:
     count = len(pairs)
+    alone = pairs[:, 0] == pairs[:, 1]
+    if alone.all():
+        faces = counted(count, "face")
+        what = f"parts of {faces} have edges without a partner, first face {pairs[0, 0]}"
+    else:
+        first, second = pairs[~alone][0]
+        what = f"parts of faces still cross, first {first} and {second}"
     return CrossingFacesError(
-        f"parts of {counted(count, 'pair')} of faces still cross after {counted(rounds, 'round')}, "
-        f"first {pairs[0, 0]} and {pairs[0, 1]}; `error.pairs` has them: details there are not "
+        f"{what}, after {counted(rounds, 'round')}; `error.pairs` has all: details there are not "
         f"much larger than the tolerance {tolerance:.2g}; give a larger tolerance, or repair the "
         "surface",
         pairs=pairs,
