@@ -21,7 +21,7 @@ def containing(mesh: Segmented, polygons: Indices) -> Rows:
     `polygons` has the polygon of each row of segments, -1 for rows that are sides of none. The
     sides of each polygon must be closed rings; even-odd rule. For meshes of the whole hull.
     """
-    component = mesh._component()
+    component = mesh._component
     region = np.empty(int(component.max()) + 1, dtype=np.int64)
     region[component] = mesh.region
     within, polygon = coverage.containing(mesh._made, polygons, component).T
@@ -37,7 +37,7 @@ def inside(mesh: Segmented, polygons: Indices) -> Bools:
     """
     if not (polygons >= 0).any():
         return np.zeros(len(mesh._made.simplices), dtype=bool)
-    component = mesh._component()
+    component = mesh._component
     within = np.zeros(int(component.max()) + 1, dtype=bool)
     within[coverage.containing(mesh._made, polygons, component)[:, 0]] = True
     found: Bools = within[component]

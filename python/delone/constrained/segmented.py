@@ -119,7 +119,7 @@ class Segmented(segments.SegmentArrays, PointTriangulation):
         put(self, "_options", options)
         put(self, "_points", sealed(points))
         simplices, neighbors, constrained = made.simplices, made.neighbors, made.constrained
-        removed = self._removed()
+        removed, found = self._removed()
         number = None
         if removed is not None:
             rows = np.flatnonzero(~removed)
@@ -137,36 +137,53 @@ class Segmented(segments.SegmentArrays, PointTriangulation):
             stages=stages,
             workers=options.workers,
         )
+        self._cache.update(found)
 
-    def _removed(self) -> Bools | None:
-        """Return which triangles of the hull are in holes or outside; None if all are kept."""
+    def _removed(self) -> tuple[Bools | None, dict[str, Indices]]:
+        """Return which triangles of the hull are in holes or outside; None if all are kept.
+
+        The second result has what was found on the way, by the names of its attributes.
+        """
         holes, boundary = self._given.holes, self._options.boundary
         if boundary == "hull" and not len(holes):
-            return None
-        tiling, component = self._tiles(), self._component()
+            return None, {}
+        tiling, component = self._tiles(), self._components()
+        found = {"_component": component}
         removed = np.zeros(int(component.max()) + 1, dtype=bool)
         if boundary == "outline":
             removed |= regions.outside(tiling, component)
         elif boundary == "polygons":
-            removed |= self._polygons(component) < 0
+            found["_polygons"] = self._first_polygons(component)
+            removed |= found["_polygons"] < 0
         if len(holes):
             triangle, on_segment = self._located(holes)
             removed[component[triangle[(triangle >= 0) & ~on_segment]]] = True
-        return removed[component] if removed.any() else None
+        return removed[component] if removed.any() else None, found
 
-    def _polygons(self, component: Indices) -> Indices:
-        """Return the first polygon of each component."""
+    def _first_polygons(self, component: Indices) -> Indices:
         origin, npoints = self._given.origin, len(self._points)
         ends = vertices_of(self._made.duplicates, npoints)[self._given.segments]
         sides = coverage.closed_rings(ends, origin.geometries, origin.rings)
         return coverage.first_polygon(self._made, origin.geometries, component, sides)
 
+    @property
+    @kept
+    def _polygons(self) -> Indices:
+        """The first polygon that contains each component, or -1."""
+        return self._first_polygons(self._component)
+
     def _tiles(self) -> regions.Tiling:
         made = self._made
         return regions.Tiling(self._points, made.simplices, made.neighbors, made.constrained)
 
-    def _component(self) -> Indices:
+    def _components(self) -> Indices:
         return _core.components2(self._made.neighbors, self._made.constrained)
+
+    @property
+    @kept
+    def _component(self) -> Indices:
+        """The component of each triangle of the hull, between segments."""
+        return self._components()
 
     def _located(self, seeds: Floats) -> tuple[Indices, Bools]:
         """Return the triangles of the hull that contain seeds, and which seeds lie on segments."""
@@ -204,8 +221,7 @@ class Segmented(segments.SegmentArrays, PointTriangulation):
         geometry wind around it an odd number of times. If an edit has removed a side of its rings,
         a geometry has no inside.
         """
-        component = self._component()
-        return sealed(self._only_kept(self._polygons(component)[component]))
+        return sealed(self._only_kept(self._polygons[self._component]))
 
     @property
     @kept
@@ -217,7 +233,7 @@ class Segmented(segments.SegmentArrays, PointTriangulation):
         compared by their smallest corners, then their middle ones, then their largest; corners by
         x, then y. So the numbers do not depend on the order of rows.
         """
-        component = self._component()
+        component = self._component
         if self._options.labeled:
             label, _ = self._labeled(component)
             return sealed(self._only_kept(label))
@@ -263,7 +279,7 @@ class Segmented(segments.SegmentArrays, PointTriangulation):
         )
         if not len(self._given.regions):
             return report
-        return replace(report, regions_repeated=self._labeled(self._component())[1])
+        return replace(report, regions_repeated=self._labeled(self._component)[1])
 
     def _open_ends(self) -> Indices:
         """Return vertices outside at which the outline is open."""
