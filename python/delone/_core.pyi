@@ -78,6 +78,7 @@ __all__ = [
     "below2",
     "check_surface3",
     "circumcenters",
+    "coarsen3",
     "combine2",
     "components2",
     "components_beside2",
@@ -140,6 +141,7 @@ __all__ = [
     "simplify2",
     "sizes",
     "smooth2",
+    "smooth3",
     "spanning",
     "spanning_triangles2",
     "sphere_areas",
@@ -827,6 +829,9 @@ class ImprovementCounts:
     @property
     def added(self) -> int:
         """Vertices added."""
+    @property
+    def removed(self) -> int:
+        """Vertices removed; no tetrahedron uses their rows."""
     @property
     def passes(self) -> int:
         """Passes."""
@@ -1704,6 +1709,17 @@ def circumcenters(
 ) -> NDArray[np.float64]:
     """The centers of the circles or spheres through the corners of simplices."""
 
+def coarsen3(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    labels: NDArray[np.int32],
+    removable: NDArray[np.bool_],
+    min_angle: float,
+) -> ImprovedMesh:
+    """Removes some vertices, no two of which are neighbors, as far as no angle falls below
+    the bound or, if it is below already, becomes smaller.
+    """
+
 def combine2(
     indptr: NDArray[np.int64],
     indices: NDArray[np.int32],
@@ -1938,6 +1954,7 @@ def improve3(
     simplices: NDArray[np.int32],
     labels: NDArray[np.int32],
     fixed: NDArray[np.bool_],
+    removable: NDArray[np.bool_],
     min_angle: float,
     flips: bool,
     smooth: bool,
@@ -2207,6 +2224,19 @@ def smooth2(
 ) -> SmoothedMesh:
     """Moves free vertices of a mesh toward better positions; `cos2` is the squared cosine
     of the bound.
+    """
+
+def smooth3(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    labels: NDArray[np.int32],
+    fixed: NDArray[np.bool_],
+    min_angle: float,
+    target: str,
+    rounds: int,
+) -> ImprovedMesh:
+    """Moves vertices that are not fixed to the mean of the circumcenters of their
+    tetrahedra ("odt") or of their neighbors ("laplace"), as far as the bound allows.
     """
 
 def spanning(

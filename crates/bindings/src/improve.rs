@@ -2,8 +2,8 @@
 
 use delone_core::base::error::Result;
 use delone_core::base::error::{Error, Result as CoreResult};
-use delone_core::solids::improve::{Improved, Task, improve};
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use delone_core::solids::improve::{self, Improved, Target, Task};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, flat, in_range, rows, table};
@@ -26,6 +26,8 @@ pub struct ImprovementCounts {
     pub weights: usize,
     /// Vertices added.
     pub added: usize,
+    /// Vertices removed; no tetrahedron uses their rows.
+    pub removed: usize,
     /// Passes.
     pub passes: usize,
     /// Changes rejected.
@@ -51,11 +53,99 @@ pub struct ImprovedMesh {
     pub exhausted: bool,
 }
 
+/// The arrays of a mesh that is to be changed.
+struct Given<'py> {
+    points: PyReadonlyArray2<'py, f64>,
+    simplices: PyReadonlyArray2<'py, i32>,
+    labels: PyReadonlyArray1<'py, i32>,
+    fixed: PyReadonlyArray1<'py, bool>,
+    removable: PyReadonlyArray1<'py, bool>,
+}
+
+impl Given<'_> {
+    /// A task without any kind of changes, after a check of the arrays.
+    fn task(&self, min_angle: f64) -> Result<Task<'_>> {
+        let points = rows(&self.points, "points")?;
+        let simplices = rows(&self.simplices, "simplices")?;
+        in_range(simplices, 0, points.len(), "simplices")?;
+        Ok(Task {
+            points,
+            simplices,
+            labels: flat(&self.labels, "labels")?,
+            fixed: flat(&self.fixed, "fixed")?,
+            removable: flat(&self.removable, "removable")?,
+            min_angle,
+            flips: false,
+            smooth: false,
+            exude: false,
+            turn: false,
+            passes: 0,
+            most: 0,
+        })
+    }
+}
+
+/// Removes some vertices, no two of which are neighbors, as far as no angle falls below the bound or, if
+/// it is below already, becomes smaller.
+#[pyfunction]
+pub fn coarsen3<'py>(
+    py: Python<'py>,
+    points: PyReadonlyArray2<'py, f64>,
+    simplices: PyReadonlyArray2<'py, i32>,
+    labels: PyReadonlyArray1<'py, i32>,
+    removable: PyReadonlyArray1<'py, bool>,
+    min_angle: f64,
+) -> Outcome<ImprovedMesh> {
+    let given = Given {
+        fixed: PyArray1::zeros(py, 0, false).readonly(),
+        points,
+        simplices,
+        labels,
+        removable,
+    };
+    let task = given.task(min_angle)?;
+    arrays_of(py, watched(py, |watch| improve::coarsen(task, watch))?)
+}
+
+/// Moves vertices that are not fixed to the mean of the circumcenters of their tetrahedra ("odt") or of
+/// their neighbors ("laplace"), as far as the bound allows.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "one array or option each")]
+pub fn smooth3<'py>(
+    py: Python<'py>,
+    points: PyReadonlyArray2<'py, f64>,
+    simplices: PyReadonlyArray2<'py, i32>,
+    labels: PyReadonlyArray1<'py, i32>,
+    fixed: PyReadonlyArray1<'py, bool>,
+    min_angle: f64,
+    target: &str,
+    rounds: usize,
+) -> Outcome<ImprovedMesh> {
+    let Some(target) = Target::named(target) else {
+        return Err(Error::Shape(format!("unknown target {target}")).into());
+    };
+    let given = Given {
+        removable: PyArray1::zeros(py, 0, false).readonly(),
+        points,
+        simplices,
+        labels,
+        fixed,
+    };
+    let task = Task {
+        passes: rounds,
+        ..given.task(min_angle)?
+    };
+    arrays_of(
+        py,
+        watched(py, |watch| improve::relax(task, target, watch))?,
+    )
+}
+
 /// Improves tetrahedra. `progress` is called after each pass with its number and the number of
 /// tetrahedra below the bound.
 #[pyfunction]
-#[pyo3(signature = (points, simplices, labels, fixed, min_angle, flips, smooth, exude, turn, passes,
-                    most, progress=None))]
+#[pyo3(signature = (points, simplices, labels, fixed, removable, min_angle, flips, smooth, exude,
+                    turn, passes, most, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "one option each")]
 pub fn improve3<'py>(
     py: Python<'py>,
@@ -63,6 +153,7 @@ pub fn improve3<'py>(
     simplices: PyReadonlyArray2<'py, i32>,
     labels: PyReadonlyArray1<'py, i32>,
     fixed: PyReadonlyArray1<'py, bool>,
+    removable: PyReadonlyArray1<'py, bool>,
     min_angle: f64,
     flips: bool,
     smooth: bool,
@@ -72,25 +163,22 @@ pub fn improve3<'py>(
     most: usize,
     progress: Option<Passes>,
 ) -> Outcome<ImprovedMesh> {
-    let task = || -> Result<Task<'_>> {
-        let points = rows(&points, "points")?;
-        let simplices = rows(&simplices, "simplices")?;
-        in_range(simplices, 0, points.len(), "simplices")?;
-        Ok(Task {
-            points,
-            simplices,
-            labels: flat(&labels, "labels")?,
-            fixed: flat(&fixed, "fixed")?,
-            min_angle,
-            flips,
-            smooth,
-            exude,
-            turn,
-            passes,
-            most,
-        })
+    let given = Given {
+        points,
+        simplices,
+        labels,
+        fixed,
+        removable,
     };
-    let task = task()?;
+    let task = Task {
+        flips,
+        smooth,
+        exude,
+        turn,
+        passes,
+        most,
+        ..given.task(min_angle)?
+    };
     let mut failure = None;
     let mut notify = |pass: usize, below: usize| -> CoreResult<()> {
         let Some(progress) = &progress else {
@@ -102,7 +190,7 @@ pub fn improve3<'py>(
             Error::Interrupted
         })
     };
-    let outcome = watched(py, |watch| improve(task, watch, &mut notify));
+    let outcome = watched(py, |watch| improve::improve(task, watch, &mut notify));
     if let Some(error) = failure {
         return Err(error.into());
     }
@@ -118,6 +206,7 @@ fn arrays_of(py: Python<'_>, made: Improved) -> Outcome<ImprovedMesh> {
         moves: made.counts.moves,
         weights: made.counts.weights,
         added: made.counts.added,
+        removed: made.counts.removed,
         passes: made.counts.passes,
         refused: made.counts.refused,
     };

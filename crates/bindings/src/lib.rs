@@ -82,7 +82,7 @@ mod _core {
     #[pymodule_export]
     use super::hull::{Hull3, hull2, hull3};
     #[pymodule_export]
-    use super::improve::{ImprovedMesh, ImprovementCounts, improve3};
+    use super::improve::{ImprovedMesh, ImprovementCounts, coarsen3, improve3, smooth3};
     #[pymodule_export]
     use super::interpolate::{
         CornerWeights, NaturalWeights, WeightRows, combine2, gradients_global2, gradients_local2,

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use delone_core::Point3;
 use delone_core::base::error::{Error, Result};
 use delone_core::base::watch::Watch;
-use delone_core::solids::improve::{Improved, Task, improve};
+use delone_core::solids::improve::{Improved, Target, Task, coarsen, improve, relax};
 use delone_predicates::{Sign, orient3d};
 use num_rational::BigRational;
 use num_traits::Zero;
@@ -57,6 +57,7 @@ fn task<'a>(points: &'a [Point3], simplices: &'a [[i32; 4]]) -> Task<'a> {
         simplices,
         labels: &[],
         fixed: &[],
+        removable: &[],
         min_angle: 30.0,
         flips: true,
         smooth: true,
@@ -427,6 +428,102 @@ fn invalid_meshes_are_rejected() {
     );
     let nothing = run(task(&corners, &[])).unwrap();
     assert_eq!(nothing.simplices.len(), 0);
+}
+
+/// The changes that need not improve anything.
+type Change = fn(Task, &Watch) -> Result<Improved>;
+const CHANGES: [(&str, Change); 4] = [
+    ("coarsen", coarsen),
+    ("lloyd", |task, watch| relax(task, Target::Lloyd, watch)),
+    ("odt", |task, watch| relax(task, Target::Odt, watch)),
+    ("laplace", |task, watch| relax(task, Target::Laplace, watch)),
+];
+
+#[test]
+fn coarser_and_smoother_cubes_keep_walls_and_angles() {
+    let (points, simplices) = shaken(5, 0.6);
+    let labels: Vec<i32> = (0..simplices.len())
+        .map(|t| (t >= simplices.len() / 2) as i32)
+        .collect();
+    let fixed: Vec<bool> = (0..points.len()).map(|v| v % 5 == 0).collect();
+    let removable = vec![true; points.len()];
+    let part = |simplices: &[[i32; 4]], labels: &[i32], label: i32| -> Vec<[i32; 4]> {
+        let all = simplices.iter().zip(labels);
+        all.filter(|(_, l)| **l == label).map(|(v, _)| *v).collect()
+    };
+    for (name, change) in CHANGES {
+        let given = Task {
+            labels: &labels,
+            fixed: &fixed,
+            removable: &removable,
+            ..task(&points, &simplices)
+        };
+        let made = change(given, &Watch::idle()).unwrap();
+        boundary(&made.simplices, Some(&made.neighbors));
+        for label in 0..2 {
+            let (old, new) = (
+                part(&simplices, &labels, label),
+                part(&made.simplices, &made.labels, label),
+            );
+            assert_eq!(boundary(&old, None), boundary(&new, None), "{name}");
+            assert_eq!(total(&points, &old), total(&made.points, &new), "{name}");
+        }
+        let before = sharpest(&points, &simplices);
+        assert!(sharpest(&made.points, &made.simplices) <= before, "{name}");
+        let used: BTreeSet<i32> = made.simplices.as_flattened().iter().copied().collect();
+        assert_eq!(used.len() + made.counts.removed, points.len(), "{name}");
+        for v in (0..points.len()).filter(|&v| fixed[v]) {
+            assert!(points[v] == made.points[v] && used.contains(&(v as i32)));
+        }
+        assert!(made.counts.removed + made.counts.moves > 0, "{name}");
+        assert_eq!(made.counts.removed > 0, name == "coarsen");
+    }
+}
+
+#[test]
+fn a_vertex_is_removed_only_if_it_may_be() {
+    let (points, simplices) = shaken(4, 0.2);
+    let all = Task {
+        min_angle: 0.0,
+        ..task(&points, &simplices)
+    };
+    assert_eq!(coarsen(all, &Watch::idle()).unwrap().counts.removed, 0);
+    // One vertex inside.
+    let only: Vec<bool> = points
+        .iter()
+        .map(|p| p.iter().all(|x| (x - 2.0).abs() < 0.3))
+        .collect();
+    let one = Task {
+        removable: &only,
+        ..all
+    };
+    let made = coarsen(one, &Watch::idle()).unwrap();
+    let row = only.iter().position(|&may| may).unwrap() as i32;
+    assert_eq!(made.counts.removed, 1);
+    assert!(!made.simplices.as_flattened().contains(&row));
+    let wrong = Task {
+        removable: &only[1..],
+        ..all
+    };
+    assert!(matches!(
+        coarsen(wrong, &Watch::idle()),
+        Err(Error::Shape(_))
+    ));
+}
+
+#[test]
+fn an_interruption_ends_other_changes() {
+    let (points, simplices) = shaken(14, 0.6);
+    let removable = vec![true; points.len()];
+    let stop = || true;
+    for (name, change) in CHANGES {
+        let given = Task {
+            removable: &removable,
+            ..task(&points, &simplices)
+        };
+        let outcome = change(given, &Watch::new(&stop));
+        assert!(matches!(outcome, Err(Error::Interrupted)), "{name}");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 `improvement` has the function `improve`, `report` its result; `recovery` has the report of
 `delone.tetrahedralize`, `walls` what `improve` keeps of its faces, `refinement` adds points for
-sizes, which are in `lengths`, and shapes.
+sizes, which are in `lengths`, and shapes, and `relaxing` coarsens and smooths.
 """
 
 from delone.solids.tetmesh.improvement import improve

@@ -23,6 +23,7 @@ from delone._base.arrays import (
 from delone._base.counting import agreed, counted
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.solids.tetmesh import improving, walls
+from delone.solids.tetmesh.relaxing import mesh_of
 from delone.solids.tetmesh.tetmesh import TetMesh
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 __all__ = ["BOUNDARIES", "improve"]
 
 BOUNDARIES = ("faces", "surface")
+CONTRACT = ("added", "all", "none")
 _INDEX_MAX = int(np.iinfo(np.int32).max)
 
 
@@ -49,6 +51,7 @@ def improve(
     region: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
     max_points: int = 0,
+    contract: str = "added",
     max_iter: int = 30,
     progress: Callable[[int, int], object] | None = None,
 ) -> TetMesh:
@@ -83,6 +86,10 @@ def improve(
     max_points : int, optional
         Maximum number of added points, by default 0. Points are added inside regions, near
         tetrahedra below the goal that the other changes do not improve enough.
+    contract : {"added", "all", "none"}, optional
+        Which points inside regions may be removed, by contracting one of their edges, where that
+        improves tetrahedra below the goal more than other changes do: those that were added to a
+        TetMesh; all, so that rows of input points may be left without a tetrahedron; or none.
     max_iter : int, optional
         Maximum number of passes over the tetrahedra below the goal.
     progress : callable, optional
@@ -91,7 +98,7 @@ def improve(
     Returns
     -------
     TetMesh
-        The improved mesh, immutable: the same rows of points, some of them moved, followed by
+        The improved mesh, immutable: the same rows of input points, some of them moved, followed by
         added points, which `nadded` counts; and different tetrahedra that fill the same space. Its
         ``report`` has the angles before and after, the changes by kind, and the remaining
         tetrahedra below the goal, with causes.
@@ -109,11 +116,12 @@ def improve(
 
     Notes
     -----
-    There are four kinds of changes: removing an edge, with the best triangulation of the ring
+    There are five kinds of changes: removing an edge, with the best triangulation of the ring
     around it (G. T. Klincsek 1980; J. R. Shewchuk 2002), with the 3-2, 4-4 and 2-2 flips as special
     cases; the inverse, removing the faces between two vertices, as in the 2-3 flip; moving a vertex
     to the position where the worst tetrahedron around it is best (L. A. Freitag and C.
-    Ollivier-Gooch 1997); and, with `max_points`, replacing the tetrahedra of a cavity by those that
+    Ollivier-Gooch 1997); contracting an edge, which removes a point; and, with `max_points`,
+    replacing the tetrahedra of a cavity by those that
     join a new vertex to its boundary (B. M. Klingner and J. R. Shewchuk 2007). Vertices are
     inserted near the worst tetrahedra first. Exudation (S.-W. Cheng et al. 2000) lets the star of a
     vertex grow with its weight, up to a fifth of the squared distance to the nearest vertex; on a
@@ -160,37 +168,51 @@ def improve(
     labels = _labels(region, own, len(simplices))
     walled = isinstance(mesh, TetMesh) and len(mesh.input_faces) > 0 and boundary == "faces"
     kept = walls.Kept.of(simplices, mesh.neighbors, mesh.input_faces, labels) if walled else None
-    held = _mask(fixed, len(points))
+    held = improving.as_held(fixed, len(points))
     goal = improving.as_goal(min_angle)
     kinds = (
         as_flag(flips, name="flips"),
         as_flag(smooth, name="smooth"),
         as_flag(exude, name="exude"),
     )
+    removable = _removable(mesh, as_choice(contract, CONTRACT, name="contract"), len(points))
     flips_boundary = as_choice(boundary, BOUNDARIES, name="boundary") == "surface"
     passes = as_limit(max_iter, name="max_iter")
     most = min(as_limit(max_points, name="max_points"), _INDEX_MAX - len(points))
     as_callback(progress, name="progress")
     given = points, simplices, labels if kept is None else kept.labels
+    added = len(points) - (mesh.nadded if isinstance(mesh, TetMesh) else 0)
+    of_points = improving.Points(held, removable, added)
     made, judged, after = improving.improved(
-        given, held, goal, kinds=kinds, limits=(flips_boundary, passes, most), progress=progress
+        given,
+        of_points,
+        goal,
+        kinds=kinds,
+        limits=(flips_boundary, passes, most),
+        progress=progress,
     )
+    if kept is not None:
+        of_faces: TetMesh = mesh_of(mesh, kept, made, judged, after)
+        return of_faces
     arrays: dict[str, NDArray[Any]] = {
         "points": made.points,
         "simplices": made.simplices,
         "neighbors": made.neighbors,
         "region": made.labels,
     }
-    if kept is not None:
-        names = "input_faces", "face_source", "face_markers"
-        arrays |= {"region": kept.own[made.labels]} | {name: getattr(mesh, name) for name in names}
-    nadded = made.counts.added
     if isinstance(mesh, TetMesh):
         # The boundary is the same set, and so is what it leaves empty.
-        nadded, arrays["holes"] = nadded + mesh.nadded, mesh.holes
-    better = TetMesh._of(arrays, judged, nadded)
+        arrays["holes"] = mesh.holes
+    better = TetMesh._of(arrays, judged, len(made.points) - added)
     better._cache["quality"] = after
     return better
+
+
+def _removable(mesh: Any, contract: str, count: int) -> Bools:
+    if contract == "all":
+        return np.ones(count, dtype=bool)
+    nadded = mesh.nadded if contract == "added" and isinstance(mesh, TetMesh) else 0
+    return np.arange(count) >= count - nadded if nadded else np.empty(0, dtype=bool)
 
 
 def _given(mesh: Any) -> tuple[Floats, Indices, Indices | None]:
@@ -237,24 +259,3 @@ def _labels(region: ArrayLike | None, own: Indices | None, count: int) -> Indice
     if array.size and (array.min() < -_INDEX_MAX or array.max() > _INDEX_MAX):
         raise InputError("region must be 32-bit integers")
     return np.ascontiguousarray(array, dtype=np.int32)
-
-
-def _mask(fixed: ArrayLike | None, count: int) -> Bools:
-    if fixed is None:
-        return np.empty(0, dtype=bool)
-    array = as_plain_array(fixed, "fixed")
-    if array.dtype == bool:
-        if array.shape != (count,):
-            raise ShapeError(f"fixed must have shape ({count},), got {array.shape}")
-        return np.ascontiguousarray(array)
-    held = np.zeros(count, dtype=bool)
-    if array.shape == (0,):
-        return held
-    if array.dtype.kind not in "iu":
-        raise DtypeError(f"fixed must be a mask or rows of points, got dtype {array.dtype}")
-    if array.ndim != 1:
-        raise ShapeError(f"fixed must be 1-D, got shape {array.shape}")
-    if array.min() < 0 or array.max() >= count:
-        raise InputError(f"fixed must be rows of points, from 0 to {count - 1}")
-    held[array] = True
-    return held

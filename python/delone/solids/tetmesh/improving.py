@@ -1,26 +1,29 @@
-"""The call of the core that improves tetrahedra, for `improve` and for refined meshes."""
+"""The calls of the core that improve, coarsen and smooth tetrahedra, with their report."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_number
+from delone._base.arrays import as_number, as_plain_array
 from delone._tiling.space import quality
-from delone.errors import InputError, ShapeError
+from delone.errors import DtypeError, InputError, ShapeError
 from delone.solids.tetmesh import report
+from delone.solids.tetmesh.report import Changed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from numpy.typing import ArrayLike
 
     from delone._base.types import Bools, Floats, Indices
     from delone._core import ImprovedMesh
     from delone._tiling.space.quality import TetQuality
     from delone.solids.tetmesh.report import ImproveReport
 
-__all__ = ["as_goal", "improved"]
+__all__ = ["Points", "as_goal", "as_held", "coarsened", "improved", "smoothed"]
 
 # The dihedral angle of the regular tetrahedron, acos(1/3).
 _LARGEST_GOAL = 70.528
@@ -34,28 +37,97 @@ def as_goal(value: float) -> float:
     return goal
 
 
+def as_held(fixed: ArrayLike | None, count: int) -> Bools:
+    """Return the mask of points that must not move; empty for None."""
+    if fixed is None:
+        return np.empty(0, dtype=bool)
+    array = as_plain_array(fixed, "fixed")
+    if array.dtype == bool:
+        if array.shape != (count,):
+            raise ShapeError(f"fixed must have shape ({count},), got {array.shape}")
+        return np.ascontiguousarray(array)
+    held = np.zeros(count, dtype=bool)
+    if array.shape == (0,):
+        return held
+    if array.dtype.kind not in "iu":
+        raise DtypeError(f"fixed must be a mask or rows of points, got dtype {array.dtype}")
+    if array.ndim != 1:
+        raise ShapeError(f"fixed must be 1-D, got shape {array.shape}")
+    if array.min() < 0 or array.max() >= count:
+        raise InputError(f"fixed must be rows of points, from 0 to {count - 1}")
+    held[array] = True
+    return held
+
+
+class Points(NamedTuple):
+    """What may happen to points: masks, or empty arrays for none."""
+
+    # Those that must not move.
+    held: Bools
+    # Those that may be removed.
+    removable: Bools
+    # From this row on, points were added, and the rows of removed ones are left out.
+    added: int
+
+    @classmethod
+    def free(cls, count: int) -> Points:
+        """Return that points may move and not vanish."""
+        none = np.empty(0, dtype=bool)
+        return cls(none, none, count)
+
+
 def improved(
     mesh: tuple[Floats, Indices, Indices],
-    held: Bools,
+    of_points: Points,
     goal: float,
     *,
     kinds: tuple[bool, bool, bool] = (True, True, False),
     limits: tuple[bool, int, int] = (False, 30, 0),
     progress: Callable[[int, int], object] | None = None,
-) -> tuple[ImprovedMesh, ImproveReport, TetQuality]:
+) -> tuple[Changed, ImproveReport, TetQuality]:
     """Improve ``(points, simplices, labels)``; return the mesh, its report and its measures.
 
-    `held` are points that must not move, or empty; `kinds` are (flips, smooth, exude), and `limits`
-    whether coplanar faces of the boundary may be flipped, the maximum number of passes, and that of
-    added points.
+    `kinds` are (flips, smooth, exude), and `limits` whether coplanar faces of the boundary may be
+    flipped, the maximum number of passes, and that of added points.
     """
-    points, simplices, labels = mesh
+    held, removable, _ = of_points
+    return _judged(
+        mesh,
+        of_points,
+        goal,
+        lambda: _core.improve3(*mesh, held, removable, goal, *kinds, *limits, progress),
+    )
+
+
+def coarsened(
+    mesh: tuple[Floats, Indices, Indices], of_points: Points, goal: float
+) -> tuple[Changed, ImproveReport, TetQuality]:
+    """Remove points of ``(points, simplices, labels)``, no two of which are neighbors."""
+    removable = of_points.removable
+    return _judged(mesh, of_points, goal, lambda: _core.coarsen3(*mesh, removable, goal))
+
+
+def smoothed(
+    mesh: tuple[Floats, Indices, Indices], of_points: Points, goal: float, how: tuple[str, int]
+) -> tuple[Changed, ImproveReport, TetQuality]:
+    """Move points of ``(points, simplices, labels)``; `how` are (method, rounds)."""
+    held = of_points.held
+    return _judged(mesh, of_points, goal, lambda: _core.smooth3(*mesh, held, goal, *how))
+
+
+def _judged(
+    mesh: tuple[Floats, Indices, Indices],
+    of_points: Points,
+    goal: float,
+    change: Callable[[], ImprovedMesh],
+) -> tuple[Changed, ImproveReport, TetQuality]:
+    points, simplices, _ = mesh
     try:
-        made = _core.improve3(points, simplices, labels, held, goal, *kinds, *limits, progress)
+        made = Changed.of(change(), of_points.added)
     except ShapeError as error:
         raise InputError(*error.args) from None
     before = quality.measured(points, simplices)
-    free = np.zeros(len(made.points) - len(held), dtype=bool)
-    held = np.concatenate((held, free))
-    judged, after = report.report(before, made, held, goal)
+    held = np.zeros(len(made.left), dtype=bool)
+    held[: len(of_points.held)] = of_points.held
+    judged, after = report.report(before, made, held[made.left], goal)
     return made, judged, after

@@ -334,9 +334,9 @@ def _improved(state: _State, goal: float, left: int) -> tuple[_State, ImproveRep
     """Return a mesh with better tetrahedra and at most `left` more points, and how it was made."""
     neighbors = _core.facet_neighbors(state.simplices, len(state.points))
     kept = Kept.of(state.simplices, neighbors, state.faces, state.labels)
-    none = np.empty(0, dtype=bool)
+    free = improving.Points.free(len(state.points))
     made, report, _ = improving.improved(
-        (state.points, state.simplices, kept.labels), none, goal, limits=(False, _PASSES, left)
+        (state.points, state.simplices, kept.labels), free, goal, limits=(False, _PASSES, left)
     )
     return (
         state._replace(points=made.points, simplices=made.simplices, labels=kept.own[made.labels]),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -15,10 +15,10 @@ from delone._tiling.space.quality import EDGES
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._base.types import Floats, Indices
-    from delone._core import ImprovedMesh
+    from delone._base.types import Bools, Floats, Indices
+    from delone._core import ImprovedMesh, ImprovementCounts
 
-__all__ = ["CAUSES", "COUNTS", "ImproveReport", "report"]
+__all__ = ["CAUSES", "COUNTS", "Changed", "ImproveReport", "report"]
 
 CAUSES = ("angle", "boundary", "budget", "other", "rounding")
 _ANGLE, _BOUNDARY, _BUDGET, _OTHER, _ROUNDING = range(5)
@@ -33,12 +33,47 @@ COUNTS = (
     "moves",
     "exudations",
     "points_added",
+    "points_removed",
     "refused",
     "passes",
     "exhausted",
 )
 _SHOWN = 5
 _BAR = 40
+
+
+class Changed(NamedTuple):
+    """Tetrahedra that the core has changed, in the rows that are left."""
+
+    points: Floats
+    simplices: Indices
+    neighbors: Indices
+    labels: Indices
+    weights: Floats
+    counts: ImprovementCounts
+    exhausted: bool
+    # Which rows of the core are left.
+    left: Bools
+
+    @classmethod
+    def of(cls, made: ImprovedMesh, added: int) -> Changed:
+        """Return a mesh of the core without removed points among the rows from `added` on."""
+        points, simplices, weights = made.points, made.simplices, made.weights
+        left = np.ones(len(points), dtype=bool)
+        if made.counts.removed:
+            left[added:] = False
+            left[simplices] = True
+        rest = made.neighbors, made.labels, weights[left], made.counts, made.exhausted
+        number = _number(left)
+        return cls(points[left], number[simplices], *rest, left)
+
+    def renumbered(self, rows: Indices) -> Indices:
+        """Return rows of the core, none of which was removed, as rows of these points."""
+        return _number(self.left)[rows]
+
+
+def _number(left: Bools) -> Indices:
+    return (np.cumsum(left) - 1).astype(np.int32)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -60,10 +95,10 @@ class ImproveReport(ReadOnly):
         on), of the faces between two vertices (2-3 and so on), and of moves of vertices.
     exudations : int
         Number of vertices that got a weight.
-    points_added : int
-        Number of points that were added.
+    points_added, points_removed : int
+        Numbers of points that were added and removed.
     weights : ndarray of float64, shape (n,)
-        These weights, in the square of the unit of the points; 0 for other points.
+        The weights of vertices, in the square of the unit of the points; 0 for other points.
     refused : int
         Number of changes that would have raised the worst quality but were rejected: a smallest
         angle would have become smaller, or rounding left it undecided.
@@ -108,6 +143,7 @@ class ImproveReport(ReadOnly):
     exudations: int
     weights: Floats
     points_added: int
+    points_removed: int
     refused: int
     passes: int
     exhausted: bool
@@ -132,6 +168,8 @@ class ImproveReport(ReadOnly):
         ]
         if self.points_added:
             lines.append(f"{counted(self.points_added, 'point')} added")
+        if self.points_removed:
+            lines.append(f"{counted(self.points_removed, 'point')} removed")
         if self.exudations:
             lines.append(f"{counted(self.exudations, 'weight')} assigned to vertices")
         lines += self._histogram()
@@ -197,7 +235,7 @@ _SENTENCES = {
 
 
 def report(
-    before: quality.TetQuality, made: ImprovedMesh, fixed: NDArray[np.bool_], min_angle: float
+    before: quality.TetQuality, made: Changed, fixed: NDArray[np.bool_], min_angle: float
 ) -> tuple[ImproveReport, quality.TetQuality]:
     """Return the report of an improvement, and the measures of the result.
 
@@ -230,6 +268,7 @@ def report(
         exudations=counts.weights,
         weights=made.weights,
         points_added=counts.added,
+        points_removed=counts.removed,
         refused=counts.refused,
         passes=counts.passes,
         exhausted=made.exhausted,

@@ -13,6 +13,7 @@ from delone._tiling.triangulation import Triangulation
 from delone.solids.tetmesh import saving
 from delone.solids.tetmesh.planes import differing
 from delone.solids.tetmesh.refinement import as_bounds, refined
+from delone.solids.tetmesh.relaxing import coarsened, smoothed
 from delone.solids.tetmesh.validation import TetMeshReport, faults
 
 if TYPE_CHECKING:
@@ -40,12 +41,13 @@ _NOTHING: dict[str, NDArray[Any]] = {
     "its class"
 )
 class TetMesh(Triangulation):
-    """A tetrahedral mesh, created by `delone.tetrahedralize`, `delone.improve` or `refine`.
+    """A tetrahedral mesh, created by `delone.tetrahedralize` or `delone.improve`.
 
     Attributes
     ----------
     points : ndarray of float64, shape (n, 3)
-        The input points, row by row, then those that were added. `improve` moves some of them.
+        The input points, row by row, then those that were added. `improve` and `smooth` move some
+        of them.
     simplices : ndarray of int32, shape (m, 4)
         The tetrahedra as rows of `points`, positively oriented.
     neighbors : ndarray of int32, shape (m, 4)
@@ -63,10 +65,10 @@ class TetMesh(Triangulation):
     holes : ndarray of float64, shape (h, 3)
         A point in each region that these faces enclose and that is empty.
     nadded : int
-        The number of points that `tetrahedralize`, `refine` and `improve` added; they are the last
-        rows.
+        The number of points that `tetrahedralize`, `refine` and `improve` added, without those that
+        were removed again; they are the last rows.
     report : RecoveryReport, ImproveReport or RefinementReport
-        What `tetrahedralize` added, or what `improve` or `refine` changed.
+        What `tetrahedralize` added, or what `improve`, `refine`, `coarsen` or `smooth` changed.
 
     Notes
     -----
@@ -172,7 +174,7 @@ class TetMesh(Triangulation):
 
     @property
     def report(self) -> Report:
-        """What `tetrahedralize` added, or what `improve` or `refine` changed."""
+        """What `tetrahedralize` added, or what later changes did."""
         return self._report
 
     def validate(self) -> TetMeshReport:
@@ -330,6 +332,116 @@ class TetMesh(Triangulation):
         )
         finer: TetMesh = refined(self, marked, bounds)
         return finer
+
+    def coarsen(
+        self, marked: ArrayLike | None = None, *, min_angle: float | None = None
+    ) -> TetMesh:
+        """Return a coarser mesh, where the bound on angles allows it.
+
+        Parameters
+        ----------
+        marked : array_like of bool, shape (m,), or of int, optional
+            Tetrahedra whose points may be removed: a mask, or their numbers; by default all.
+        min_angle : float, optional
+            The bound on dihedral angles in degrees: by default the goal that this mesh was improved
+            for, or 20. Angles below it do not become smaller.
+
+        Returns
+        -------
+        TetMesh
+            A mesh without some of the points that were added inside. Input points, points on faces
+            of the surface or between regions, and points that the bound requires remain. If no
+            point can be removed, this mesh is returned. Its ``report`` is an `ImproveReport` with
+            the number of removed points.
+
+        Raises
+        ------
+        InputError, ShapeError, DtypeError
+            `marked` is not a mask or array of tetrahedra of the mesh, or `min_angle` is out of
+            range.
+
+        Notes
+        -----
+        A point is removed by contracting the edge to the neighbor with which the worst tetrahedron
+        is best. The new tetrahedra are positively oriented, exactly, and bounds on rounding errors
+        prove that their angles are not below the bound. One call never removes two neighboring
+        points; call it again to remove more. The result does not depend on the order of rows. One
+        thread is used; the time is about 10 microseconds for each point and linear, as is memory.
+
+        Examples
+        --------
+        >>> import delone
+        >>> corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        >>> cube = delone.ConvexHull(corners)
+        >>> mesh = delone.tetrahedralize(cube.points, cube.simplices, size=0.2, boundary="surface")
+        >>> coarser = mesh.coarsen()
+        >>> coarser.npoints < mesh.npoints, coarser.report.smallest_after >= 20
+        (True, True)
+        """
+        coarser: TetMesh = coarsened(self, marked, min_angle)
+        return coarser
+
+    def smooth(
+        self,
+        max_iter: int = 1,
+        method: str = "lloyd",
+        *,
+        fixed: ArrayLike | None = None,
+        min_angle: float | None = None,
+    ) -> TetMesh:
+        """Return a mesh whose inner points are at better positions.
+
+        Parameters
+        ----------
+        max_iter : int, optional
+            Number of iterations.
+        method : {"lloyd", "odt", "laplace"}, optional
+            The target of each point: the centroid of its Voronoi cell, as far as its tetrahedra
+            cover it; the mean of the circumcenters of its tetrahedra, weighted by volume, as in an
+            optimal Delaunay triangulation (ODT); or the mean of its neighbors.
+        fixed : array_like of bool, shape (n,), or of int, optional
+            Points that must not move: a mask, or rows.
+        min_angle : float, optional
+            The bound on dihedral angles in degrees: by default the goal that this mesh was improved
+            for, or 20. Angles below it do not become smaller.
+
+        Returns
+        -------
+        TetMesh
+            The mesh with moved points. Points on the boundary, on faces of the surface and between
+            regions do not move. Its ``report`` is an `ImproveReport`.
+
+        Raises
+        ------
+        InputError, ShapeError, DtypeError
+            `max_iter` is negative, `method` is not one of its choices, or `fixed` does not fit the
+            points.
+
+        Notes
+        -----
+        Points move one after the other, in the order of their coordinates, to the target or, where
+        an angle would fall below the bound, up to 1/16 of the way. Tetrahedra stay positively
+        oriented, exactly, and no edge is flipped: `delone.improve` does that. The result does not
+        depend on the order of rows. One thread is used; the time is about 10 microseconds for each
+        point and iteration, and memory is linear.
+
+        References
+        ----------
+        .. [1] L. Chen and J. Xu, "Optimal Delaunay triangulations", Journal of Computational
+           Mathematics 22 (2004).
+
+        Examples
+        --------
+        >>> import delone
+        >>> corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        >>> cube = delone.ConvexHull(corners)
+        >>> mesh = delone.tetrahedralize(cube.points, cube.simplices, size=0.2, boundary="surface")
+        >>> better = mesh.smooth(5)
+        >>> bool(better.quality().radius_ratio.mean() > mesh.quality().radius_ratio.mean())
+        True
+        """
+        smoother: TetMesh = smoothed(self, (max_iter, method), fixed, min_angle)
+        return smoother
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Draw the surface and the tetrahedra with small dihedral angles (extra ``pyvista``).

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,14 @@ class Kept(NamedTuple):
     labels: Indices
     # The caller's label of each of these.
     own: Indices
+
+    @classmethod
+    def of_mesh(cls, mesh: Any) -> Kept:
+        """Return the labels of a TetMesh."""
+        if len(mesh.input_faces):
+            return cls.of(mesh.simplices, mesh.neighbors, mesh.input_faces, mesh.region)
+        own, labels = np.unique(mesh.region, return_inverse=True)
+        return cls(labels.reshape(-1).astype(np.int32), own)
 
     @classmethod
     def of(cls, simplices: Indices, neighbors: Indices, faces: Indices, labels: Indices) -> Kept:

@@ -1,5 +1,5 @@
-//! Improves tetrahedral meshes: edge and face removal, smoothing and vertex insertion, while the
-//! worst tetrahedron gets better.
+//! Improves tetrahedral meshes: edge and face removal, smoothing, edge contraction and vertex insertion,
+//! while the worst tetrahedron gets better. `relax` coarsens and smooths them instead.
 //!
 //! L. A. Freitag and C. Ollivier-Gooch, "Tetrahedral mesh improvement using swapping and
 //! smoothing", International Journal for Numerical Methods in Engineering 40 (1997); J. R.
@@ -28,18 +28,21 @@
 //! Vertices and tetrahedra are first sorted by coordinates, and everything runs in that order on
 //! one thread: the result is independent of the order of the rows.
 
+mod contract;
 mod edge;
 mod exude;
 mod face;
 mod insert;
 mod measure;
 mod order;
+mod relax;
 mod smooth;
 mod store;
 mod task;
 mod work;
 
 pub(crate) use order::{Imported, import, rotated};
+pub use relax::Target;
 pub use task::{Counts, Improved, Task, Tell};
 
 use crate::base::error::{Error, Result};
@@ -47,16 +50,43 @@ use crate::base::watch::Watch;
 
 /// Improves tetrahedra.
 pub fn improve(task: Task, watch: &Watch, tell: Tell) -> Result<Improved> {
+    changed(task, |work| work.run(watch, tell))
+}
+
+/// Removes vertices of tetrahedra, no two of which are neighbors, where the bound allows it.
+pub fn coarsen(task: Task, watch: &Watch) -> Result<Improved> {
+    changed(task, |work| work.coarsen(watch).map(|()| true))
+}
+
+/// Moves vertices of tetrahedra to their targets, as far as the bound allows, in up to `task.passes`
+/// rounds.
+pub fn relax(task: Task, target: Target, watch: &Watch) -> Result<Improved> {
+    changed(task, |work| {
+        for _ in 0..task.passes {
+            if !work.relax(target, watch)? {
+                break;
+            }
+        }
+        Ok(true)
+    })
+}
+
+/// Imports tetrahedra, changes them and exports them; `change` says whether it came to its end.
+fn changed<'a>(
+    task: Task<'a>,
+    change: impl FnOnce(&mut work::Work<'a>) -> Result<bool>,
+) -> Result<Improved> {
     for (given, n, name) in [
         (task.labels.len(), task.simplices.len(), "labels"),
         (task.fixed.len(), task.points.len(), "fixed"),
+        (task.removable.len(), task.points.len(), "removable"),
     ] {
         if given != 0 && given != n {
             return Err(Error::Shape(format!("{name} has {given} entries, not {n}")));
         }
     }
     let imported = import(task)?;
-    let mut work = work::Work::new(imported.store, task)?;
-    let exhausted = !work.run(watch, tell)?;
+    let mut work = work::Work::new(imported.store, task, &imported.rows)?;
+    let exhausted = !change(&mut work)?;
     order::export(work, task, imported.rows, imported.scale, exhausted)
 }

@@ -116,6 +116,12 @@ impl Store {
         self.corners[t as usize][0] != NONE
     }
 
+    /// Whether a vertex is a corner of a tetrahedron.
+    #[inline]
+    pub fn is_used(&self, v: u32) -> bool {
+        self.at[v as usize] != NONE
+    }
+
     /// The coordinates of corners.
     #[inline]
     pub fn places_of(&self, v: Corners) -> [Point3; 4] {

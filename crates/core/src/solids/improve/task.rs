@@ -15,6 +15,8 @@ pub struct Task<'a> {
     pub labels: &'a [i32],
     /// For each row, whether it is fixed. Empty if none is.
     pub fixed: &'a [bool],
+    /// For each row, whether it may be removed, unless it is fixed or at a wall. Empty if none may.
+    pub removable: &'a [bool],
     /// Tetrahedra with a smaller dihedral angle, in degrees, are improved; so are those with an
     /// obtuse angle of a smaller weighted sine.
     pub min_angle: f64,
@@ -47,6 +49,8 @@ pub struct Counts {
     pub weights: usize,
     /// Vertices added.
     pub added: usize,
+    /// Vertices removed.
+    pub removed: usize,
     /// Passes.
     pub passes: usize,
     /// Changes that would have raised the worst quality but were not made, because the smallest
@@ -58,6 +62,7 @@ pub struct Counts {
 #[derive(Debug)]
 pub struct Improved {
     /// Rows of coordinates, with the moved ones at their new positions, then those of added vertices.
+    /// Removed vertices keep their rows, which no tetrahedron uses.
     pub points: Vec<Point3>,
     /// Tetrahedra in rows.
     pub simplices: Vec<[i32; 4]>,

@@ -1,5 +1,7 @@
 //! The passes: removals for each tetrahedron below the bound, worst first; then moves of vertices;
-//! and, when these gain little, new vertices.
+//! and, when these gain little, fewer and new vertices.
+
+use delone_predicates::Point3;
 
 use super::edge::{self, Plan, Ring};
 use super::insert::{Insertion, Search};
@@ -7,7 +9,7 @@ use super::measure::{Bounds, are_positive, bounds, quality};
 use super::smooth::Star;
 use super::store::{FACES, NONE, Store};
 use super::task::{Counts, Task, Tell};
-use super::{exude, face};
+use super::{contract, exude, face};
 use crate::base::error::Result;
 use crate::base::memory::{filled, push, with_room};
 use crate::base::watch::Watch;
@@ -46,21 +48,26 @@ pub struct Work<'a> {
     /// The weight of each vertex.
     pub weights: Vec<f64>,
     task: Task<'a>,
+    /// Whether each vertex may be removed.
+    removable: Vec<bool>,
     /// The quality below which a tetrahedron is improved.
-    bound: f64,
+    pub(super) bound: f64,
     ring: Ring,
     star: Star,
     search: Search,
     /// How many more places for vertices may be searched for.
     searches: usize,
     made: Vec<u32>,
-    around: Vec<u32>,
+    /// The tetrahedra around a vertex.
+    pub(super) around: Vec<u32>,
     /// The number of the latest attempt: what has not changed since its last attempt is not tried
     /// again.
     clock: u64,
     /// For each vertex, when a tetrahedron at it last changed, and when a move was last tried.
     touched: Vec<u64>,
     moved: Vec<u64>,
+    /// For each vertex, when its removal was last tried.
+    contracted: Vec<u64>,
     /// For each tetrahedron, when its removal and an insertion were last tried.
     tried: Vec<u64>,
     entered: Vec<u64>,
@@ -70,13 +77,19 @@ pub struct Work<'a> {
 type Standing = (usize, f64);
 
 impl<'a> Work<'a> {
-    /// Measures all tetrahedra.
-    pub fn new(mut store: Store, task: Task<'a>) -> Result<Self> {
+    /// Measures all tetrahedra; `rows` has the row of each vertex.
+    pub fn new(mut store: Store, task: Task<'a>, rows: &[u32]) -> Result<Self> {
         for t in 0..store.corners.len() {
             store.quality[t] = quality(store.places_of(store.corners[t]));
         }
         let (n, m) = (store.points.len(), store.corners.len());
+        let mut removable = filled(n, false)?;
+        for (may, &row) in removable.iter_mut().zip(rows) {
+            *may = task.removable.get(row as usize).copied().unwrap_or(false);
+        }
         Ok(Self {
+            removable,
+            contracted: filled(n, 0)?,
             clock: 1,
             weights: filled(n, 0.0)?,
             touched: filled(n, 1)?,
@@ -102,11 +115,13 @@ impl<'a> Work<'a> {
         if self.task.exude {
             self.weigh_all(watch)?;
         }
-        // First without new vertices, as long as that gains; then with vertices at the worst
-        // tetrahedra, and at less bad ones when those gain nothing more.
+        // First without a change of the number of vertices, as long as that gains; then vertices are
+        // removed and added at the worst tetrahedra, and at less bad ones when those gain nothing
+        // more.
         let mut ended = self.run_passes(None, watch, tell)?;
+        let removes = self.removable.contains(&true);
         for level in LEVELS {
-            if ended && self.counts.added < self.task.most {
+            if ended && (removes || self.counts.added < self.task.most) {
                 ended = self.run_passes(Some(level * self.bound), watch, tell)?;
             }
         }
@@ -114,8 +129,8 @@ impl<'a> Work<'a> {
     }
 
     /// Runs passes until all are above the level, by default the bound (true), nothing more is
-    /// gained (true), or the limit is reached (false). With a level, vertices are inserted at
-    /// tetrahedra below it.
+    /// gained (true), or the limit is reached (false). With a level, vertices are removed and inserted
+    /// at tetrahedra below it.
     fn run_passes(&mut self, level: Option<f64>, watch: &Watch, tell: Tell) -> Result<bool> {
         let goal = level.unwrap_or(self.bound);
         let patience = if level.is_some() { 1 } else { PATIENCE };
@@ -128,6 +143,7 @@ impl<'a> Work<'a> {
             // One pass: vertices, then flips, which need no new positions, then moves.
             let changes = self.changes();
             if let Some(level) = level {
+                self.contract_all(level, watch)?;
                 self.insert_all(level, watch)?;
             }
             if self.task.flips {
@@ -162,7 +178,8 @@ impl<'a> Work<'a> {
     }
 
     fn changes(&self) -> usize {
-        self.counts.edges + self.counts.faces + self.counts.moves + self.counts.added
+        let counts = &self.counts;
+        counts.edges + counts.faces + counts.moves + counts.added + counts.removed
     }
 
     fn standing(&self, goal: f64) -> Standing {
@@ -244,7 +261,7 @@ impl<'a> Work<'a> {
         let Some(is_edge) = kind else {
             return Ok(false);
         };
-        if !self.carry_out(&best)? {
+        if !self.carry_out(&best, Bounds::surely_better)? {
             self.counts.refused += 1;
             return Ok(false);
         }
@@ -257,13 +274,18 @@ impl<'a> Work<'a> {
         Ok(true)
     }
 
-    /// Replaces tetrahedra if the new ones are certainly better.
-    fn carry_out(&mut self, plan: &Plan) -> Result<bool> {
+    /// Replaces tetrahedra if the new ones are positive and `good`, given their bounds and those of the
+    /// old ones.
+    pub(super) fn carry_out(
+        &mut self,
+        plan: &Plan,
+        good: impl Fn(Bounds, Bounds) -> bool,
+    ) -> Result<bool> {
         let store = &mut self.store;
         let new = || plan.new.iter().map(|&v| store.places_of(v));
         let old = plan.old.iter().map(|&t| store.corners[t as usize]);
         let now = bounds(old.map(|v| store.places_of(v)));
-        if !bounds(new()).surely_better(now) || !are_positive(new()) {
+        if !good(bounds(new()), now) || !are_positive(new()) {
             return Ok(false);
         }
         store.replace(&plan.old, &plan.new, plan.turning, &mut self.made)?;
@@ -278,6 +300,58 @@ impl<'a> Work<'a> {
             }
         }
         Ok(true)
+    }
+
+    /// Whether a vertex may be removed, and is there.
+    pub(super) fn may_vanish(&self, v: u32) -> bool {
+        let fixed = self.store.fixed[v as usize];
+        self.removable[v as usize] && !fixed && self.store.is_used(v)
+    }
+
+    /// Counts a vertex that no tetrahedron uses anymore.
+    pub(super) fn vanished(&mut self, v: u32) {
+        self.store.at[v as usize] = NONE;
+        self.counts.removed += 1;
+    }
+
+    /// Tries to remove vertices of each tetrahedron below a level, worst first.
+    fn contract_all(&mut self, level: f64, watch: &Watch) -> Result<()> {
+        let mut steps = 0;
+        for t in self.below(level)? {
+            for k in 0..4 {
+                // A slot that was reused now has other corners.
+                if !self.is_below(t, level) {
+                    break;
+                }
+                let v = self.store.corners[t as usize][k];
+                if !self.may_vanish(v) || self.touched[v as usize] < self.contracted[v as usize] {
+                    continue;
+                }
+                steps += 1;
+                if steps % WATCH_EVERY == 0 {
+                    watch.check()?;
+                }
+                self.clock += 1;
+                self.contracted[v as usize] = self.clock;
+                self.contract_one(v)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes a vertex if the tetrahedra are certainly better without it.
+    fn contract_one(&mut self, v: u32) -> Result<()> {
+        self.store.star(v, &mut self.around)?;
+        let qualities = self.around.iter().map(|&t| self.store.quality[t as usize]);
+        let above = GAIN * qualities.fold(f64::INFINITY, f64::min);
+        if let Some(plan) = contract::remove(&self.store, v, &self.around, above) {
+            if self.carry_out(&plan, Bounds::surely_better)? {
+                self.vanished(v);
+            } else {
+                self.counts.refused += 1;
+            }
+        }
+        Ok(())
     }
 
     /// Assigns weights to free vertices of tetrahedra below the bound, at most once to each.
@@ -312,7 +386,7 @@ impl<'a> Work<'a> {
         self.store.star(v, &mut self.around)?;
         let found = exude::pump(&self.store, &self.weights, v, &self.around, 0.0)?;
         if let Some((plan, weight)) = found {
-            if self.carry_out(&plan)? {
+            if self.carry_out(&plan, Bounds::surely_better)? {
                 self.weights[v as usize] = weight;
                 self.counts.weights += 1;
             } else {
@@ -359,7 +433,9 @@ impl<'a> Work<'a> {
         push(&mut self.weights, 0.0)?;
         push(&mut self.touched, self.clock)?;
         push(&mut self.moved, 0)?;
-        if self.carry_out(&insertion.plan)? {
+        push(&mut self.contracted, 0)?;
+        push(&mut self.removable, false)?;
+        if self.carry_out(&insertion.plan, Bounds::surely_better)? {
             self.counts.added += 1;
             return Ok(());
         }
@@ -370,6 +446,8 @@ impl<'a> Work<'a> {
         self.weights.pop();
         self.touched.pop();
         self.moved.pop();
+        self.contracted.pop();
+        self.removable.pop();
         Ok(())
     }
 
@@ -413,14 +491,27 @@ impl<'a> Work<'a> {
         let Some((there, _)) = self.star.climb(here) else {
             return Ok(false);
         };
+        let moved = self.try_move(v, there, Bounds::surely_better);
+        self.counts.refused += usize::from(!moved);
+        Ok(moved)
+    }
+
+    /// Moves a vertex, whose tetrahedra are `around`, if these are then positive and `good`, given
+    /// their bounds and those before.
+    pub(super) fn try_move(
+        &mut self,
+        v: u32,
+        there: Point3,
+        good: impl Fn(Bounds, Bounds) -> bool,
+    ) -> bool {
+        let store = &mut self.store;
+        let before = star_bounds(store, &self.around);
+        let here = std::mem::replace(&mut store.points[v as usize], there);
         let now = star_bounds(store, &self.around);
-        store.points[v as usize] = there;
-        let then = star_bounds(store, &self.around);
-        let places = self.around.iter().map(|&t| store.corners[t as usize]);
-        if !then.surely_better(now) || !are_positive(places.map(|v| store.places_of(v))) {
+        let corners = self.around.iter().map(|&t| store.corners[t as usize]);
+        if !good(now, before) || !are_positive(corners.map(|v| store.places_of(v))) {
             store.points[v as usize] = here;
-            self.counts.refused += 1;
-            return Ok(false);
+            return false;
         }
         for &t in &self.around {
             let t = t as usize;
@@ -429,7 +520,7 @@ impl<'a> Work<'a> {
                 self.touched[v as usize] = self.clock;
             }
         }
-        Ok(true)
+        true
     }
 }
 

@@ -83,6 +83,7 @@ pub fn import(given: &Given) -> Result<(Mesh, Order)> {
         simplices: given.simplices,
         labels: given.labels,
         fixed: &[],
+        removable: &[],
         min_angle: 0.0,
         flips: false,
         smooth: false,
