@@ -131,7 +131,7 @@ def test_geometries_that_are_not_points() -> None:
     with pytest.raises(NonFiniteError, match="2 of 4 rows are missing or an empty point; first: 1"):
         delone.Delaunay(gaps)
     for odd in ((1.0, 2.0), np.nan, "POINT (1 1)"):
-        with pytest.raises(DtypeError, match="contains geometries, and in row 1 an object"):
+        with pytest.raises(DtypeError, match=r"contains geometries, and a \w+ in row 1"):
             delone.Delaunay([shapely.Point(0, 0), odd, shapely.Point(1, 1)])
     tops = geopandas.GeoSeries.from_xy(*PLACES.T, PLACES[:, 0])
     with pytest.raises(InputError, match=r"points with heights: pass shapely\.force_2d"):

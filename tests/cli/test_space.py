@@ -155,7 +155,7 @@ def test_the_limit_on_passes_is_reported(tmp_path, command, figures):
     assert (found["passes"], found["exhausted"]) == (1, True)
     assert found["below"]["budget"] > 0
     out = command("triangulate", source, "--improve", "--max-iter", "1")[1]
-    assert "the limit on passes, 1: more may improve further" in out
+    assert "the limit on passes (1); more may improve the result" in out
     code, _, err = command("triangulate", source, "--max-iter", "1")
     assert (code, "--improve" in err) == (2, True)
 

@@ -36,11 +36,11 @@ _INT32 = np.dtype(np.int32)
 # Every integer of at most this magnitude is a float64; the next one, 2**53 + 1, is not.
 _LARGEST_EXACT_INTEGER = 2**53
 _LARGEST_INDEX = 2**31 - 1
-# A limit beyond it is none: no call adds more points than an int32 numbers.
+# A larger limit has no effect: no call adds more points than an int32 can number.
 LARGEST_LIMIT = 2**31 - 1
 # More threads only cost memory for stacks: the result does not depend on their number.
 _MOST_WORKERS = 256
-# Columns that are x and y of points, and third ones that are numbers of rows.
+# Names of columns that contain x and y of points, and of third columns that contain row numbers.
 _PLANAR_COLUMNS = (
     ("x", "y"),
     ("lon", "lat"),
@@ -95,7 +95,7 @@ def _coordinates(points: Any, ndim: int | None, name: str) -> Any:
     Geometries are those of a GeoDataFrame, GeoSeries or sequence of shapely points.
     """
     held = points
-    # Only what is loaded can have made geometries.
+    # Without shapely loaded, no object can be a shapely geometry.
     is_numbers = isinstance(points, np.ndarray) and points.dtype.kind != "O"
     if is_numbers or "shapely" not in sys.modules:
         return points
@@ -125,13 +125,13 @@ def _of_points(
     strange = np.flatnonzero(~shapely.is_valid_input(every))
     if len(strange):
         kind = type(every[strange[0]]).__name__
-        raise DtypeError(f"{name} contains geometries, and in row {strange[0]} an object {kind}")
+        raise DtypeError(f"{name} contains geometries, and a {kind} in row {strange[0]}")
     kinds = shapely.get_type_id(every)
     if len(other := np.flatnonzero(kinds > 0)):
         raise DtypeError(
             f"{name} contains geometries that are not points, the first in row {other[0]}, a "
-            f"{every[other[0]].geom_type}: shapely.get_coordinates({name}) has the coordinates of "
-            "all; delone.from_geometry accepts all kinds of geometries"
+            f"{every[other[0]].geom_type}: shapely.get_coordinates({name}) returns the coordinates "
+            "of all; delone.from_geometry accepts all kinds of geometries"
         )
     empty = np.flatnonzero((kinds < 0) | shapely.is_empty(every))
     if len(empty):
@@ -172,7 +172,7 @@ def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np
         _refuse_kind(array, name)
         raise ShapeError(f"{name} must have shape (..., {d}), got {array.shape}")
     if array.ndim == 2:
-        # Geometries have become numbers, which nothing can have rounded.
+        # Coordinates of geometries are floats already, so no integer can have been rounded.
         found = array if getattr(values, "ndim", 2) == 1 else values
         return as_points(found, ndim=d, name=name)
     if array.ndim == 1 and isinstance(values, list | tuple):
@@ -379,7 +379,7 @@ def as_plain_array(points: Any, name: str) -> NDArray[Any]:
 
 
 def _refuse_columns(points: Any, array: NDArray[Any], name: str) -> None:
-    """Reject a table whose columns x and y, by name, are not the first, or the only ones.
+    """Reject a table whose columns x and y, by name, are not the first two, or not the only ones.
 
     A third column may be a coordinate.
     """
@@ -400,14 +400,14 @@ def _refuse_columns(points: Any, array: NDArray[Any], name: str) -> None:
             shown = ", ".join(f"{each}"[:30] for each in names[:8])
             more = ", ..." if len(names) > 8 else ""
             raise InputError(
-                f"{name} is a table with the columns {shown}{more}, which would be the coordinates "
-                f"in this order: pass {name}[{pair}] for points in 2-D"
+                f"{name} is a table with the columns {shown}{more}, which would be read as "
+                f"coordinates in this order: pass {name}[{pair}] for points in 2-D"
             )
 
 
 def refuse_geometries(array: NDArray[Any], name: str) -> None:
-    """Reject geometries, also in one column of a table, and say how to get coordinates."""
-    # In a table the geometries are one column, behind any number of others.
+    """Reject geometries, even in one column of a table, and say how to get coordinates."""
+    # In a table, geometries are one column, after any number of others.
     first = array[:1] if array.ndim > 1 else np.atleast_1d(array)[:8]
     if array.dtype.kind == "O" and any(hasattr(each, "geom_type") for each in first.ravel()):
         raise DtypeError(
@@ -449,7 +449,7 @@ def _refuse_shape(array: NDArray[Any], wanted: Sequence[int], name: str) -> None
 
 
 def _is_across(array: NDArray[Any], wanted: Sequence[int]) -> bool:
-    """Return whether the rows of many columns are x, y and z of points; they would be too few."""
+    """Return whether the array is transposed: two or three rows, x, y and z, of many columns."""
     return len(wanted) > 2 and array.shape[1] > 3 and array.shape[0] in (2, 3)
 
 

@@ -1,7 +1,7 @@
 """The command ``delone``: reads files, calls the public interface, and reports.
 
-`app` is the command line, `commands` the list of commands, `report` has the figures, `show` their
-output, `exits` the exit codes. Needs typer and rich (extra ``cli``).
+`app` is the command line, `commands` the list of commands, `report` computes the figures, `show`
+prints them, and `exits` defines the exit codes. Needs typer and rich (extra ``cli``).
 """
 
 from delone.cli.app import run

@@ -68,7 +68,7 @@ def run(arguments: Sequence[str]) -> int:
     before = signal.signal(signal.SIGTERM, _terminated) if main else None
     _prepare_streams()
     try:
-        # typer reports errors of the command line itself, and Ctrl-C must not become its Abort.
+        # typer reports errors in the command line itself, and Ctrl-C must not become its Abort.
         code = typer.main.get_command(app).main(
             args=list(arguments), prog_name="delone", standalone_mode=False
         )
@@ -107,7 +107,7 @@ def _said(error: BaseException) -> int:
         _dropped_stdout()
         return Exit.PIPE
     if isinstance(error, OSError) and not isinstance(error, OutputError | MissingExtraError):
-        # Errors of files were handled before: this one is of standard output.
+        # File errors were handled before, so this one comes from standard output.
         _dropped_stdout()
         why = f"the report cannot be printed: {error.strerror}; files of -o, if any, are complete"
         error = Failure(why, Exit.OUTPUT)

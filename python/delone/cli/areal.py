@@ -1,4 +1,4 @@
-"""The command ``areal``: columns of one layer of polygons on the polygons of another."""
+"""The command ``areal``: transfer columns from one layer of polygons to another."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _IMAGES = (".png", ".svg", ".pdf")
 _SUFFIXES = (".csv", *TABLE_SUFFIXES, *_IMAGES)
 # Percentiles of values at the ends of the colors of a map.
 _SPREAD = (2, 98)
-# What the fraction of a cell that is covered is called.
+# The column for the covered fraction of each cell.
 _COVERED = "covered"
 
 
@@ -64,7 +64,7 @@ def areal(
         str | None, _columns("sum", "amounts, such as inhabitants, that are divided by area")
     ] = None,
     normalized: Annotated[
-        str | None, _columns("normalized", "states and rates: means over what is covered")
+        str | None, _columns("normalized", "states and rates: means over the covered part")
     ] = None,
     conservative: Annotated[
         str | None, _columns("conservative", "densities: integrals over the area of a target cell")
@@ -77,7 +77,9 @@ def areal(
     ] = False,
     min_fraction: Annotated[
         float,
-        typer.Option(help="Target cells of which a smaller fraction has values are missing."),
+        typer.Option(
+            help="Target cells with values on a smaller fraction of their area are missing."
+        ),
     ] = 0.0,
     layer: Annotated[str | None, typer.Option(help="Layer of SOURCE, if it has several.")] = None,
     target_layer: Annotated[
@@ -85,13 +87,13 @@ def areal(
     ] = None,
     crs: Crs = None,
     target_crs: Annotated[
-        str | None, typer.Option(help="As --crs, for TARGET; by default that of SOURCE.")
+        str | None, typer.Option(help="Like --crs, for TARGET; by default the system of SOURCE.")
     ] = None,
     project: Annotated[
         str | None,
         typer.Option(
-            help="Equal-area system in which areas are computed, such as EPSG:6933; TARGET is "
-            "written in its own."
+            help="Equal-area system in which areas are computed, such as EPSG:6933; TARGET keeps "
+            "its own system in the output."
         ),
     ] = None,
     planar: Planar = False,
@@ -179,10 +181,10 @@ def _ready(output: list[Path], source: Path, target: Path, methods: dict[str, st
 def _layer(
     path: Path, name: str | None, crs: str | None, *, planar: bool, quiet: bool
 ) -> GeometrySet:
-    """Return a layer with all columns; a note tells of coordinates that look like degrees."""
+    """Return a layer with all columns; print a note if coordinates look like degrees."""
     layer = read_geometries(path, layer=name, attributes="all")
     system = layer.crs if crs is None else crs
-    # What declares degrees is refused later.
+    # Layers that declare degrees are rejected later.
     known = system is not None and is_geographic(system)
     return referenced(layer, crs, planar=planar or known, quiet=quiet)
 
@@ -235,7 +237,7 @@ def _write(output: list[Path], result: _Result, watch: Stopwatch, *, quiet: bool
     columns: dict[str, Any] = {}
     for name, values in own.attributes.items():
         free = name
-        # Ends, since the names are finitely many.
+        # Terminates, because there are finitely many names.
         while free in columns or free in (*found, _COVERED, "geometry"):
             free = f"target_{free}"
         if free != name and any(path.suffix.lower() not in _IMAGES for path in output):
@@ -283,7 +285,7 @@ def _draw(path: Path, suffix: str, result: _Result) -> None:
     if method == "majority":
         options = {"categorical": True, "legend": True, "categories": sorted(set(known), key=str)}
     else:
-        # A few cells with extreme values would leave one color to all others.
+        # Otherwise, a few cells with extreme values would leave a single color for all others.
         low, high = np.percentile(known, _SPREAD) if known else (0.0, 1.0)
         options = {"vmin": low, "vmax": high}
     figure = figures.Figure(figsize=(11.0, 5.2), dpi=140, layout="constrained")
@@ -354,7 +356,7 @@ def _number(value: Any) -> float:
 
 
 def _share(areas: Any, shares: Any) -> float | None:
-    """Return the fraction of all cells together that is covered."""
+    """Return the covered fraction of the total area of all cells."""
     total = float(areas.sum())
     used = areas > 0
     return float((areas[used] * shares[used]).sum() / total) if total else None

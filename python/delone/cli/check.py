@@ -83,7 +83,7 @@ def _figures(
     """Prove that triangles are Delaunay, or name the faults: figures, with ``ok``, and lines.
 
     Files of `ConstrainedDelaunay.save` are checked as constrained triangulations. With `canonical`,
-    a different choice among cocircular points is a fault. `say` is told the current step.
+    a different choice among cocircular points is a fault. `say` is called with the current step.
     """
     watch = Stopwatch()
     say(f"reading {path.name}")
@@ -95,7 +95,7 @@ def _figures(
         report = _checked(mesh, path)
     faults = {each.name: getattr(report, each.name) for each in fields(report)}
     faults = {name: culprits for name, culprits in faults.items() if culprits.size}
-    # Which of equal rows is the vertex, and which diagonal divides a cocircular polygon, is
+    # Which of several equal rows is the vertex, and which diagonal divides a cocircular polygon, is
     # delone's own choice; other programs may choose differently.
     delaunay = set(faults) <= {"ties", "repeats"}
     figures = {

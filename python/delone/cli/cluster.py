@@ -58,13 +58,13 @@ class Selection(StrEnum):
 
 
 class Labels(NamedTuple):
-    """What is known of each point."""
+    """The label and the other results of each point."""
 
     labels: NDArray[np.int32]
     others: dict[str, NDArray[Any]]
 
 
-# The methods that have an option.
+# The methods that each option belongs to.
 _OWN = {
     "--min-cluster-size": (Method.HDBSCAN,),
     "--min-samples": (Method.HDBSCAN, Method.DBSCAN),
@@ -75,7 +75,7 @@ _OWN = {
     "--height": (Method.SINGLE,),
     "--n-clusters": (Method.SINGLE,),
 }
-# The arguments that they are.
+# The arguments that options set, where their names differ.
 _NAMES = {
     "--selection": "cluster_selection_method",
     "--epsilon": "cluster_selection_epsilon",
@@ -91,29 +91,33 @@ def cluster_points(
         list[Path] | None, outputs("File of points with labels", ROW_SUFFIXES)
     ] = None,
     min_cluster_size: Annotated[
-        int | None, typer.Option(help="hdbscan: smallest number of points; 5 by default.")
+        int | None, typer.Option(help="hdbscan: smallest size of a cluster; 5 by default.")
     ] = None,
     min_samples: Annotated[
         int | None,
         typer.Option(
-            help="hdbscan, dbscan: number of points nearby that makes a point dense, itself "
-            "included; by default that of --min-cluster-size, or 5."
+            help="hdbscan, dbscan: number of nearby points, itself included, that makes a point "
+            "dense; by default the value of --min-cluster-size, or 5."
         ),
     ] = None,
     selection: Annotated[
         Selection | None,
-        typer.Option(help="hdbscan: most stable clusters, or the smallest; eom by default."),
+        typer.Option(
+            help="hdbscan: eom for the most stable clusters, leaf for the smallest; eom by default."
+        ),
     ] = None,
     epsilon: Annotated[
-        float | None, typer.Option(help="hdbscan: do not split clusters at smaller distances.")
+        float | None, typer.Option(help="hdbscan: do not split clusters at distances below this.")
     ] = None,
     single_cluster: Annotated[
         bool | None,
         typer.Option("--single-cluster", help="hdbscan: all points may form one cluster."),
     ] = None,
-    eps: Annotated[float | None, typer.Option(help="dbscan: the distance of neighbors.")] = None,
+    eps: Annotated[
+        float | None, typer.Option(help="dbscan: the maximum distance between neighbors.")
+    ] = None,
     height: Annotated[
-        float | None, typer.Option(help="single-linkage: the longest step inside a cluster.")
+        float | None, typer.Option(help="single-linkage: the longest edge within a cluster.")
     ] = None,
     n_clusters: Annotated[
         int | None, typer.Option(help="single-linkage: the number of clusters.")
@@ -191,7 +195,7 @@ def cluster_points(
 
 
 def _require_own(method: Method, given: dict[str, Any]) -> None:
-    """Refuse options of other methods, and require those without a default."""
+    """Reject options of other methods, and require those without a default."""
     require_own("--method", method, given, _OWN)
     if method is Method.DBSCAN and given["--eps"] is None:
         raise Failure("--method dbscan needs --eps, the distance of neighbors", Exit.USAGE)
@@ -211,7 +215,7 @@ def _options(given: dict[str, Any], workers: int | None) -> dict[str, Any]:
 
 
 def _found(method: Method, points: NDArray[np.float64], options: dict[str, Any]) -> Labels:
-    """Labels by a method. Notes about degrees have been printed."""
+    """Labels by a method. Notes about degrees have already been printed."""
     if method is Method.HDBSCAN:
         model = cluster.HDBSCAN(**options).fit(points)
         return Labels(model.labels_, {"probability": model.probabilities_})

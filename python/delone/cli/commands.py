@@ -1,7 +1,7 @@
 """The list of commands: a command's module is imported when the command is called.
 
-The list itself needs none of the modules, so that ``delone --help`` is quick, and a command does
-not wait for the libraries of others.
+The list itself imports none of these modules, so ``delone --help`` is fast, and a command does not
+wait for the libraries of others.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Listed(NamedTuple):
     module: str
     function: str
     summary: str
-    # Whether its rows are those of the file, so that errors can name lines.
+    # Whether its rows correspond to lines of the file, so that errors can name lines.
     on_rows: bool = True
 
 
@@ -87,12 +87,12 @@ COMMANDS = {
     "tile": Listed(
         "tile",
         "tile",
-        "Triangulate more points than fit into memory, in tiles that form one triangulation.",
+        "Triangulate more points than fit in memory, in tiles that form one triangulation.",
     ),
     "dem": Listed(
         "dem",
         "dem",
-        "Make a raster of the surface of points: its heights, slope, aspect or hillshade.",
+        "Make a raster of the surface through points: its heights, slope, aspect or hillshade.",
     ),
     "ground": Listed(
         "ground",
@@ -103,7 +103,7 @@ COMMANDS = {
     "terrain": Listed(
         "site",
         "terrain",
-        "Make several products of one surface, and a page of pictures and numbers about them.",
+        "Make several products from one surface, and a page with pictures and numbers.",
     ),
     "contours": Listed(
         "terrain",
@@ -128,13 +128,13 @@ COMMANDS = {
     "simplify": Listed(
         "simplify",
         "simplify",
-        "Leave out points of a surface, with a bound on the error at each of them.",
+        "Simplify a surface, with a bound on the error at each point that is left out.",
     ),
     "hull": Listed("hull", "hull", "Compute the outline of points, and write its polygons."),
     "mesh": Listed(
         "mesh",
         "make_mesh",
-        "Mesh polygons, or what closed lines enclose, with triangles without small angles.",
+        "Mesh polygons, or areas enclosed by lines, with triangles that have no small angles.",
         on_rows=False,
     ),
     "tetrahedralize": Listed(
@@ -172,7 +172,7 @@ TASKS = {
 
 
 class _Loading(dict[str, Any]):
-    """The commands by name, each loaded when it is asked for."""
+    """The commands by name, each loaded when it is requested."""
 
     def __getitem__(self, name: str) -> Any:
         if super().__getitem__(name) is None:
@@ -191,12 +191,12 @@ class Commands(TyperGroup):  # type: ignore[misc]
         self.commands = _Loading.fromkeys(COMMANDS)
 
     def format_commands(self, ctx: Context, formatter: HelpFormatter) -> None:
-        """Write the commands by task, with whole summaries, for which none of them is loaded."""
+        """Write the commands by task, with whole summaries, without loading any of them."""
         del ctx
         width = max(map(len, COMMANDS))
         for task, names in TASKS.items():
             with formatter.section(task):
-                # One width for all lists, so that the summaries begin in one column.
+                # One width for all lists, so that all summaries begin in the same column.
                 formatter.write_dl([(f"{name:{width}}", COMMANDS[name].summary) for name in names])
 
 

@@ -33,7 +33,7 @@ class Constraints(NamedTuple):
     crossing: str | None  # None if not given
     outline: bool  # remove triangles outside
     conforming: bool  # add vertices until all segments are Delaunay edges
-    max_points: int | None  # the most vertices to add
+    max_points: int | None  # the maximum number of vertices to add
 
     def require_none(self, source: str) -> None:
         """Reject options that do not apply to points."""
@@ -84,7 +84,7 @@ def read_input(
 def triangulated(
     survey: PointSet | GeometrySet, constraints: Constraints, **options: Any
 ) -> tuple[Mesh, NDArray[np.float64] | None]:
-    """Triangulate the input, with `method` and `workers`; return heights of its points as well."""
+    """Triangulate the input, with `method` and `workers`; also return the heights of its points."""
     if not isinstance(survey, GeometrySet):
         constraints.require_none(survey.source)
         return Delaunay(survey.points, **options), survey.z
@@ -118,7 +118,7 @@ def _crossing(error: CrossingSegmentsError) -> str:
 
 
 def _boundary(survey: GeometrySet, outline: bool) -> str:
-    """Return the boundary option: lines alone have only the inside that they enclose."""
+    """Return the boundary option: for lines alone, the inside is what they enclose."""
     if not outline:
         return "hull"
     return "polygons" if len(survey.areas) else "outline"

@@ -72,21 +72,24 @@ def dem(
         typer.Option("--aspect", help="Downhill direction, degrees clockwise from north."),
     ] = False,
     azimuth: Annotated[
-        float | None, typer.Option(help="Direction of the light of --hillshade; by default 315.")
+        float | None,
+        typer.Option(help="Direction of the light for --hillshade, in degrees; by default 315."),
     ] = None,
     altitude: Annotated[
-        float | None, typer.Option(help="Angle of the light above the horizon; by default 45.")
+        float | None,
+        typer.Option(help="Angle of the light above the horizon, in degrees; by default 45."),
     ] = None,
     z_factor: Annotated[
-        float | None, typer.Option(help="Factor of heights for --hillshade; by default 1.")
+        float | None, typer.Option(help="Factor for heights in --hillshade; by default 1.")
     ] = None,
     bounds: Annotated[
-        str | None, typer.Option(help="Left, bottom, right, top; by default those of the points.")
+        str | None,
+        typer.Option(help="Left, bottom, right, top; by default the bounding box of the points."),
     ] = None,
-    value: Annotated[str, typer.Option(help="Column of the values of tiles.")] = "z",
+    value: Annotated[str, typer.Option(help="Column of tiles with the values.")] = "z",
     options: SurfaceOptions,
 ) -> None:
-    """Make a raster of the surface of points: its heights, slope, aspect or hillshade.
+    """Make a raster of the surface through points: its heights, slope, aspect or hillshade.
 
     The surface is linear between the points. A folder of tiles has no breaklines, and its raster
     may show a column other than the heights.

@@ -47,7 +47,7 @@ def difference(
     other: Annotated[
         str,
         typer.Argument(
-            metavar="OTHER", help="What is subtracted: a raster, points, a surface, or a height."
+            metavar="OTHER", help="What to subtract: a raster, points, a surface, or a height."
         ),
     ],
     *,
@@ -94,7 +94,7 @@ def difference(
             goal = Path(other)
             bands["other_band"] = band_of(goal, other_layer or options.layer)
         elif goal is None:
-            # A window is that of the first raster; the surface is all of the other one.
+            # A window applies to the first raster; the surface is the whole second one.
             own = replace(options, layer=other_layer, window=None)
             if not is_raster(Path(other)):
                 own = replace(own, nodata=None)
@@ -111,7 +111,7 @@ def difference(
 
 
 def _difference(source: Path, goal: Any, **options: Any) -> Difference:
-    """Return the difference; what cures other cells are options here."""
+    """Return the difference; errors about different cells name options."""
     try:
         return terrain.difference(source, goal, **options)
     except InputError as error:

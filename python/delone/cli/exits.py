@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 Given = ParamSpec("Given")
-# Number of pairs of rows whose lines are named; for single rows errors list ten.
+# Number of pairs of rows whose lines are named; for single rows, errors list ten.
 _FIRST = 10
 
 __all__ = [
@@ -85,7 +85,7 @@ MEANINGS = {
 
 
 class Failure(Exception):  # noqa: N818
-    """Terminates the command with a message of one line for the user and an exit code."""
+    """Terminates the command with a one-line message for the user and an exit code."""
 
     def __init__(self, message: str, code: Exit) -> None:
         super().__init__(message)
@@ -106,7 +106,7 @@ def protect_inputs(outputs: Iterable[Path], *inputs: Path) -> None:
 
 
 def code_of(error: BaseException) -> Exit:
-    """Return the exit code of an error unrelated to a file; an unexpected one is a bug."""
+    """Return the exit code of an error that is not about a file; an unexpected error is a bug."""
     codes: tuple[tuple[type[BaseException], Exit], ...] = (
         (MissingExtraError, Exit.MISSING_EXTRA),
         (DegenerateInputError, Exit.DEGENERATE),
@@ -138,7 +138,7 @@ _OPTION = re.compile(
 def as_options(message: str) -> str:
     """Rewrite Python arguments in a message as options: ``nan='drop'`` as ``--nan drop``.
 
-    What attributes of the exception have is left out.
+    The parts that attributes of the exception contain are left out.
     """
     plain = _ATTRIBUTE.sub("", message).replace("max_points", "--max-points")
     return _OPTION.sub(lambda found: f"--{found[1]} {found[2].translate(_QUOTES)}", plain)
@@ -154,8 +154,8 @@ def os_message(error: OSError) -> str:
 
 @contextmanager
 def reading(*, quiet: bool = False) -> Iterator[None]:
-    """Treat errors of files as errors of the input, and print warnings as notes."""
-    # Help shows the exit codes, and needs no reader.
+    """Treat file errors as errors in the input, and print warnings as notes."""
+    # The help shows the exit codes without importing the readers.
     from delone.cli.notes import noting
 
     with _blaming(Exit.INPUT), noting(quiet=quiet):
@@ -164,7 +164,7 @@ def reading(*, quiet: bool = False) -> Iterator[None]:
 
 @contextmanager
 def writing() -> Iterator[None]:
-    """Treat errors of files as errors of the output."""
+    """Treat file errors as errors in the output."""
     with _blaming(Exit.OUTPUT), warnings.catch_warnings():
         warnings.simplefilter("ignore")
         yield

@@ -18,7 +18,7 @@ from delone.io import input_suffixes
 
 __all__ = ["explore"]
 
-# How often the server looks for Ctrl-C where that does not interrupt it.
+# How often the server checks for Ctrl-C where that does not interrupt it.
 _LOOK = 0.1  # seconds
 
 
@@ -66,10 +66,10 @@ def explore(
 ) -> None:
     """Show the triangulation of a file in the browser, where points can be moved.
 
-    The page is served to this machine only, at an address with a random token, until Ctrl-C.
+    The page is served only to this machine, at an address with a random token, until Ctrl-C.
     Nothing is written. Heights are values at the points.
     """
-    # On demand: the modules of a server are of no use to other commands.
+    # Imported here, because other commands do not need the modules of a server.
     from delone.explorer.server import ExploreServer
     from delone.explorer.state import Exploration
 
@@ -92,6 +92,6 @@ def explore(
     with server:
         print_text(f"{server.address}\nCtrl-C ends the command")
         if not no_browser:
-            # Some browsers return only when they are closed.
+            # Some browsers do not return until they are closed.
             threading.Thread(target=webbrowser.open, args=[server.address], daemon=True).start()
         server.serve_forever(poll_interval=_LOOK)

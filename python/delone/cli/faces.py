@@ -1,4 +1,4 @@
-"""Exact check of a surface in 3-D in a file: the figures of ``delone check --surface``."""
+"""Exact check of a 3-D surface in a file: the figures of ``delone check --surface``."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["check_faces", "read_faces", "read_parts"]
 
 _FIRST = 10
-# Attributes of the result with the rows of faults.
+# Attributes of the result that list the rows of faults.
 _FAULTS = (
     "boundary",
     "nonmanifold_edges",
@@ -37,7 +37,7 @@ _FAULTS = (
 
 
 def read_faces(path: Path, *, quiet: bool) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Read the points, (n, 3), and triangles of a surface in 3-D."""
+    """Read the points, (n, 3), and triangles of a 3-D surface."""
     points, mesh = read_parts(path, quiet=quiet)
     return points, mesh.simplices
 
@@ -56,7 +56,7 @@ def read_parts(path: Path, *, quiet: bool) -> tuple[NDArray[np.float64], MeshFil
 def check_faces(
     path: Path, *, say: Callable[[str], None], quiet: bool
 ) -> tuple[dict[str, Any], list[str]]:
-    """Check a surface exactly: figures, with ``ok``, and lines. `say` is told the current step."""
+    """Check a surface exactly: figures, with ``ok``, and lines. `say` gets the current step."""
     watch = Stopwatch()
     say(f"reading {path.name}")
     with watch.stage("read"):
@@ -92,7 +92,7 @@ def _fault(rows: NDArray[np.int64]) -> dict[str, Any]:
 
 
 def _pairs(found: SurfaceCheck) -> dict[str, Any]:
-    # Those that cross are named first.
+    # Crossing faces are named first.
     first = np.argsort(~found.crossing, kind="stable")[:_FIRST]
     return {
         "count": found.npairs,

@@ -52,7 +52,7 @@ _SUFFIXES = (*TABLE_SUFFIXES, ".csv", ".npz")
 
 
 class Rows(NamedTuple):
-    """The points with the columns of the input, which of these have other names, and the rows."""
+    """The points with the columns of the input, the columns that were renamed, and the rows."""
 
     survey: PointSet
     columns: dict[str, NDArray[Any]]
@@ -78,7 +78,7 @@ class Kind(StrEnum):
 
 
 class Boundary(StrEnum):
-    """Whether points on the outline of a region are in it."""
+    """Whether points on the outline of a region belong to it."""
 
     CLOSED = "closed"
     OPEN = "open"
@@ -91,7 +91,7 @@ class Region(StrEnum):
     CIRCLE = "circle"
 
 
-# The kinds that have an option.
+# The kinds that each option belongs to.
 _OWN = {
     "--boundary": (Kind.GABRIEL, Kind.BETA, Kind.INFLUENCE),
     "--beta": (Kind.BETA,),
@@ -116,8 +116,8 @@ def graph(
     boundary: Annotated[
         Boundary | None,
         typer.Option(
-            help="gabriel, beta, influence: whether points on the outline of a region are in it; "
-            "closed by default."
+            help="gabriel, beta, influence: whether points on the outline of a region belong to "
+            "it; closed by default."
         ),
     ] = None,
     beta: Annotated[float | None, typer.Option(help="beta: the parameter, from 1 to 2.")] = None,
@@ -128,7 +128,7 @@ def graph(
     max_length: Annotated[float | None, typer.Option(help="Remove edges longer than this.")] = None,
     percentile: Annotated[
         float | None,
-        typer.Option(help="Remove edges longer than those of this percentile, up to 100."),
+        typer.Option(help="Remove edges longer than this percentile of the lengths, up to 100."),
     ] = None,
     classes: Classes = None,
     columns: SolidColumns = None,
@@ -143,7 +143,7 @@ def graph(
 ) -> None:
     """Compute a graph of neighbors, such as a spanning tree, and write its edges as lines.
 
-    Points that have columns are written as well: to a second layer of GeoPackages, or by --nodes.
+    Points that have columns are written as well: to a second layer of a GeoPackage, or by --nodes.
     """
     given = {"--boundary": boundary, "--beta": beta, "--region": region, "-k": k}
     _require_own(kind, given)
@@ -204,7 +204,7 @@ def graph(
     show_figures(str(source), figures, _rows, as_json=as_json, quiet=quiet)
 
 
-# By kind: the function, with the options that it takes.
+# For each kind: the function, with the options that it accepts.
 _MAKE: dict[Kind, Callable[[Any, dict[str, Any]], Graph]] = {
     Kind.DELAUNAY: lambda points, options: graphs.delaunay_graph(points, **options),
     Kind.GABRIEL: lambda points, options: graphs.gabriel(points, **options),
@@ -218,7 +218,7 @@ _MAKE: dict[Kind, Callable[[Any, dict[str, Any]], Graph]] = {
 
 
 def _require_own(kind: Kind, given: dict[str, Any]) -> None:
-    """Refuse options of other kinds, and require those without a default."""
+    """Reject options of other kinds, and require those without a default."""
     require_own("--kind", kind, given, _OWN)
     if kind is Kind.BETA and given["--beta"] is None:
         raise Failure("--kind beta needs --beta, a number from 1 to 2", Exit.USAGE)
@@ -231,7 +231,7 @@ def _options(given: dict[str, Any], workers: int | None) -> dict[str, Any]:
     names = {"--boundary": "boundary", "--beta": "beta", "--region": "kind", "-k": "k"}
     options = {names[name]: value for name, value in given.items() if value is not None}
     plain = {name: str(x) if isinstance(x, StrEnum) else x for name, x in options.items()}
-    # Notes about degrees have been printed.
+    # Notes about degrees have already been printed.
     return plain | {"workers": workers, "planar": True}
 
 
@@ -248,7 +248,7 @@ def _ready(path: Path) -> None:
 
 
 def _tell(table: Rows, output: list[Path], nodes: list[Path], *, quiet: bool) -> None:
-    """Print notes: which columns have other names, and which are in no file."""
+    """Print notes: which columns were renamed, and which are not written to any file."""
     with_nodes = [path for path in output if path.suffix.lower() == ".gpkg"]
     if table.columns and (nodes or with_nodes):
         note(renaming(table.renamed), quiet=quiet)

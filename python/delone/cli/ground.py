@@ -1,4 +1,4 @@
-"""The command ``ground``: the ground points of a lidar file, as its classes."""
+"""The command ``ground``: find the ground points of a lidar file, and write their classes."""
 
 from __future__ import annotations
 
@@ -44,17 +44,17 @@ def find_ground(
     ] = None,
     angle: Annotated[float, typer.Option(help="Largest angle at the corners, in degrees.")] = 6.0,
     distance: Annotated[
-        float | None, typer.Option(help="Largest distance from triangles; 1.4 m by default.")
+        float | None, typer.Option(help="Largest distance from the triangle; 1.4 m by default.")
     ] = None,
     no_mirror: Annotated[
-        bool, typer.Option("--no-mirror", help="Do not test points at their mirror images.")
+        bool, typer.Option("--no-mirror", help="Do not test mirror images of points.")
     ] = False,
     edge: Annotated[
         float | None,
-        typer.Option(help="Triangles with shorter edges get no points; 1 m by default."),
+        typer.Option(help="Insert no points into triangles with shorter edges; 1 m by default."),
     ] = None,
     thickness: Annotated[
-        float | None, typer.Option(help="Noise of heights of the ground; 0.1 m by default.")
+        float | None, typer.Option(help="Noise in the heights of the ground; 0.1 m by default.")
     ] = None,
     low: Annotated[
         float | None, typer.Option(help="Gap above low outliers; 1 m by default.")
@@ -68,9 +68,9 @@ def find_ground(
 ) -> None:
     """Find the ground among lidar points, and write their classes.
 
-    Ground becomes class 2 and outliers below become class 7. Other points that had class 2 get
-    class 1, and all else keeps its class. Points of the classes 7 and 18, which are noise, and
-    withheld points are not changed.
+    Ground points get class 2, and outliers below the ground get class 7. Other points that had
+    class 2 get class 1, and all others keep their class. Points of the noise classes 7 and 18, and
+    withheld points, are not changed.
     """
     require_known(crs)
     for path in (source, *([] if output is None else [output])):

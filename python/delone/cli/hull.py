@@ -1,4 +1,4 @@
-"""The command ``hull``: the outline of the points in a file, convex, concave or of circles."""
+"""The command ``hull``: a convex or concave hull, or an alpha shape, of the points in a file."""
 
 from __future__ import annotations
 
@@ -52,7 +52,9 @@ def hull(
     ] = None,
     ratio: Annotated[
         float | None,
-        typer.Option(help="concave: from 0, remove all, to 1, keep the convex hull."),
+        typer.Option(
+            help="concave: from 0 (remove as much as possible) to 1 (keep the convex hull)."
+        ),
     ] = None,
     holes: Annotated[bool, typer.Option("--holes", help="concave: carve holes, too.")] = False,
     alpha: Annotated[
@@ -136,7 +138,7 @@ def _require_matching(
     ratio: float | None,
     alpha: float | str | None,
 ) -> None:
-    """Refuse options that contradict each other."""
+    """Reject options that contradict each other."""
     has_limit = max_edge is not None or ratio is not None
     if concave and ((max_edge is None) == (ratio is None)):
         raise Failure("--concave needs either --max-edge or --ratio", Exit.USAGE)

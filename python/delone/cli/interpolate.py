@@ -43,7 +43,10 @@ Duplicates = Annotated[
     ),
 ]
 Nan = Annotated[
-    str, typer.Option(help="Values that are NaN: raise (an error), drop or (no raster) propagate.")
+    str,
+    typer.Option(
+        help="NaN among the values: raise (an error), drop or (not for rasters) propagate."
+    ),
 ]
 Gradients = Annotated[
     str | None, typer.Option(help="Gradients of the smooth methods: global, local or plane.")
@@ -60,10 +63,11 @@ def interpolate(
     value: Value = None,
     method: Annotated[str, typer.Option(help=f"Method: {_NAMES}.")] = "sibson",
     size: Annotated[
-        str | None, typer.Option("--grid", help="Columns and rows of the raster: 500x400.")
+        str | None, typer.Option("--grid", help="Columns and rows of the raster, such as 500x400.")
     ] = None,
     resolution: Annotated[
-        str | None, typer.Option(help="Size of a cell in units of the points: 0.01 or 0.02,0.01.")
+        str | None,
+        typer.Option(help="Size of a cell in units of the points, such as 0.01 or 0.02,0.01."),
     ] = None,
     bounds: Annotated[
         str | None,
@@ -79,7 +83,7 @@ def interpolate(
     ] = 0.0,
     max_distance: Annotated[
         float | None,
-        typer.Option(help="No value farther than this from the nearest point."),
+        typer.Option(help="No value at more than this distance from the nearest point."),
     ] = None,
     duplicates: Duplicates = "raise",
     nan: Nan = "raise",
@@ -90,7 +94,7 @@ def interpolate(
     workers: Workers = None,
     crs: Crs = None,
     units: Annotated[
-        str | None, typer.Option(help="Unit of the values, for GeoTIFF and NetCDF: m.")
+        str | None, typer.Option(help="Unit of the values, for GeoTIFF and NetCDF, such as m.")
     ] = None,
     planar: Planar = False,
     as_json: Json = False,
@@ -139,7 +143,8 @@ def crossval(
         list[str] | None,
         typer.Option(
             "--method",
-            help=f"Methods to compare, with commas or repeated options; by default {_COMPARED}. "
+            help=f"Methods to compare, separated by commas or as repeated options; by default "
+            f"{_COMPARED}. "
             f"Available: {_NAMES}.",
         ),
     ] = None,
@@ -299,7 +304,7 @@ def _figures(
 
 
 def _why_none(figures: dict[str, Any]) -> str:
-    """Return why cells have no value."""
+    """Say why cells have no value."""
     limit = figures["max_distance"]
     beyond = "" if limit is None else f" or farther than {limit:.6g} from any point"
     return f"outside the hull{beyond}"

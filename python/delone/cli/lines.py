@@ -1,4 +1,4 @@
-"""The lines of a text file where an error names rows."""
+"""The lines of a text file for the rows that an error names."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["naming_lines"]
 
 Given = ParamSpec("Given")
-# Number of pairs of rows whose lines are named; for single rows errors list ten.
+# Number of pairs of rows whose lines are named; for single rows, errors list ten.
 _FIRST = 10
 
 
@@ -43,7 +43,7 @@ def naming_lines(command: Callable[Given, None]) -> Callable[Given, None]:
             files = given if isinstance(given, list | tuple) else [given]
             rows = np.ravel(error.rows[:_FIRST]).tolist()
             if rows and len(files) == 1 and isinstance(files[0], str | Path) and is_text(files[0]):
-                # The message is also correct without lines.
+                # The message is correct without lines, too.
                 with suppress(FileFormatError, OSError):
                     lines = ", ".join(map(str, line_numbers(files[0], rows)))
                     noun = agreed(len(rows), "line", "lines")

@@ -50,7 +50,7 @@ def make_mesh(
     max_points: Annotated[
         int | None, typer.Option(help="Maximum number of added points; by default 5,000,000.")
     ] = None,
-    smooth: Annotated[int, typer.Option(help="Rounds of smoothing after refinement.")] = 0,
+    smooth: Annotated[int, typer.Option(help="Number of smoothing rounds after refinement.")] = 0,
     delaunay: Annotated[
         bool, typer.Option("--delaunay", help="Make triangles Delaunay across segments as well.")
     ] = False,
@@ -65,7 +65,7 @@ def make_mesh(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Mesh polygons, or what closed lines enclose, with triangles without small angles.
+    """Mesh polygons, or areas enclosed by lines, with triangles that have no small angles.
 
     Plots show the mesh and the histogram of its angles.
     """

@@ -1,4 +1,4 @@
-"""Notes on standard error: what the user should know though the command goes on."""
+"""Notes on standard error: what the user should know although the command continues."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def note(message: str | None, *, quiet: bool = False) -> None:
 def noting(*, quiet: bool = False) -> Iterator[None]:
     """Print warnings about units, reference systems and what is left out as notes.
 
-    So are those without a class of their own; all others are passed on.
+    A plain ``UserWarning`` becomes a note, too; all others are passed on.
     """
     kinds = (UnitsWarning, CRSWarning, LeftOutWarning)
     with warnings.catch_warnings(record=True) as caught:

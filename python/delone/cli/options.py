@@ -1,4 +1,4 @@
-"""Options that several commands have, and the lists that they take."""
+"""Options shared by several commands, and the parsing of their lists."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ __all__ = [
 
 
 def outputs(what: str, suffixes: Iterable[str]) -> Any:
-    """Return the option --output of a command that writes files of one kind."""
+    """Return the option --output for a command that writes files of one kind."""
     text = f"{what}, once or more: " + " ".join(suffixes)
     return typer.Option("--output", "-o", metavar="OUTPUT", help=text)
 
@@ -55,7 +55,9 @@ Input = Annotated[
 ]
 Chord = Annotated[
     float | None,
-    typer.Option(help="DXF, LandXML alignments: how far chords may be from arcs and other curves."),
+    typer.Option(
+        help="DXF, LandXML alignments: maximum distance of chords from arcs and other curves."
+    ),
 ]
 Columns = Annotated[
     str | None,
@@ -70,21 +72,21 @@ PlaneColumns = Annotated[
     str | None, typer.Option(help="Columns of x and y, by name or by number from 0.")
 ]
 Classes = Annotated[
-    str | None, typer.Option(help="Keep the points of these classes (LAS, LAZ): 2 or 2,6.")
+    str | None, typer.Option(help="Keep only points of these classes (LAS, LAZ), such as 2 or 2,6.")
 ]
-Layer = Annotated[str | None, typer.Option(help="Layer of a file that has several.")]
+Layer = Annotated[str | None, typer.Option(help="Layer, if the file has several.")]
 MeshOutput = Annotated[list[Path] | None, outputs("File to write", output_suffixes())]
 Order = Annotated[
     int, typer.Option(help="Order of the elements in files: 1, or 2 with a node on each edge.")
 ]
 Workers = Annotated[int | None, typer.Option(help="Threads; by default one per core.")]
-# Two options, since of a pair of switches the last one counts without a word.
+# Two options, because a pair of switches would silently use the last one given.
 Solid = Annotated[bool, typer.Option("--3d", help="Treat points as 3-D, with z as a coordinate.")]
 Flat = Annotated[
     bool,
     typer.Option(
         "--2d",
-        help="Take points as 2-D. By default, PLY files that contain only points are 3-D point "
+        help="Treat points as 2-D. By default, PLY files that contain only points are 3-D point "
         "clouds.",
     ),
 ]
@@ -115,7 +117,7 @@ def space_or_plane(solid: bool, flat: bool) -> bool | None:
 def require_own(
     option: str, chosen: str, given: Mapping[str, Any], own: Mapping[str, Sequence[str]]
 ) -> None:
-    """Refuse options that are given though they belong to other choices of an option."""
+    """Reject options that are given although they belong to other choices of an option."""
     for name, value in given.items():
         if value is not None and chosen not in own[name]:
             raise Failure(

@@ -1,4 +1,4 @@
-"""The files that a command writes: checked before any work, complete before they replace others."""
+"""Files that a command writes: checked before any work, and complete before they replace others."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["ready", "write_all"]
 
 
 def ready(path: Path, *, space: bool = False, order: int = 1) -> Callable[..., None]:
-    """Return what writes a mesh to a file, after checking that it can be written."""
+    """Return the function that writes a mesh to a file, after checking that it can be written."""
     write = writer(path, space=space, order=order)
     check_target(path)
     return write

@@ -1,7 +1,7 @@
 """A page of pictures and numbers in one HTML file that loads nothing.
 
-Every text is escaped, since names of files and reference systems come from elsewhere, and the page
-forbids scripts and everything that is not in it.
+Every text is escaped, because names of files and reference systems are not under our control, and
+the page forbids scripts and everything that is not part of it.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 
 
 class Section(NamedTuple):
-    """A part of a page: numbers, a picture with its text, and files beside the page."""
+    """A part of a page: numbers, a picture with its alt text, and files next to the page."""
 
     title: str
     rows: Sequence[tuple[str, str]]
@@ -41,7 +41,7 @@ class Section(NamedTuple):
 
 
 def page(title: str, sections: Sequence[Section], foot: str) -> str:
-    """Return the page as text that UTF-8 can encode."""
+    """Return the page as text that can be encoded in UTF-8."""
     parts = [
         "<!doctype html>",
         '<html lang="en">',
@@ -79,7 +79,7 @@ def _section(section: Section) -> list[str]:
 
 
 def _plain(text: str) -> str:
-    """Replace what is not Unicode, such as bytes of names of files."""
+    """Replace what is not Unicode, such as bytes in file names."""
     return text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 
 

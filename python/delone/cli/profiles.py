@@ -40,7 +40,7 @@ PROFILE_SUFFIXES = (".csv", ".dxf", *_PICTURES)
 
 @dataclass(frozen=True, kw_only=True)
 class SectionOptions:
-    """What is computed along a line, and how it is drawn."""
+    """What to compute along a line, and how to draw it."""
 
     interval: float | None
     left: float | None
@@ -76,14 +76,14 @@ class SectionOptions:
 
 
 def name_of(path: Path, layer: str | None = None) -> str:
-    """Return the name of the surface of a file: that of its layer or, without one, of the file."""
+    """Return the name of the surface in a file: that of its layer or, without one, of the file."""
     return layer or path.stem
 
 
 def named_files(
     source: Path, others: Sequence[Path], layers: Sequence[str]
 ) -> Iterator[tuple[str, Path, str | None]]:
-    """Yield the other surfaces with a name of their own, their files and layers."""
+    """Yield unique names of the other surfaces, with their files and layers."""
     if layers and len(layers) != len(others):
         raise Failure("give --other-layer once for each --other, or not at all", Exit.USAGE)
     taken = {name_of(source)}
@@ -91,7 +91,7 @@ def named_files(
         layer = layers[k] if layers else None
         plain = name = name_of(path, layer)
         number = 2
-        # Ends, since the names are finitely many.
+        # Terminates, because there are finitely many names.
         while name in taken:
             name, number = f"{plain} {number}", number + 1
         taken.add(name)
@@ -152,7 +152,7 @@ def _write_csv(found: Found, target: Path) -> None:
 
 
 def _quoted(name: str) -> str:
-    """Return the name of a column as CSV has it."""
+    """Return the name of a column as it is written in CSV."""
     return '"' + name.replace('"', '""') + '"' if set(name) & set(',"\n\r') else name
 
 

@@ -37,7 +37,7 @@ __all__ = [
 ROW_SUFFIXES = (".csv", *TABLE_SUFFIXES)
 _SUMS = ("cut", "fill", "net", "cut_area", "fill_area", "area")
 _NUMBERS = (*_SUMS, "region_area", "coverage")
-# Rows that are printed; all are in the table.
+# The number of rows that are printed; the table contains all.
 _SHOWN = 20
 
 
@@ -65,7 +65,7 @@ def write_rows(
     columns = {}
     for name, values in lots.attributes.items():
         free = name
-        # Ends, since the names are finitely many.
+        # Terminates, because there are finitely many names.
         while free in columns or free in (*_NUMBERS, "geometry"):
             free = f"layer_{free}"
         if free != name:
@@ -84,7 +84,7 @@ def write_rows(
 
 
 def volume_figures(found: Volume | Volumes) -> dict[str, Any]:
-    """Return the figures of one volume, or the sums of several and each of them."""
+    """Return the figures of one volume, or of several volumes with their sums."""
     units = {"volume_units": found.volume_units, "area_units": found.area_units}
     if not isinstance(found, Volumes):
         return {name: getattr(found, name) for name in _SUMS} | units
@@ -103,7 +103,7 @@ def _known(number: float) -> float | None:
 
 
 def volume_rows(found: Volume | Volumes, lots: GeometrySet | None) -> list[tuple[str, str]]:
-    """Return rows to print: the units that are unknown, and the first polygons."""
+    """Return rows to print: unknown units, and the first polygons."""
     unknown = []
     if found.units is None:
         unknown.append("of heights: --units")

@@ -44,7 +44,7 @@ Survey = TypeVar("Survey", bound=PointSet | GeometrySet | SurfaceFile)
 
 
 def require_known(crs: str | None) -> None:
-    """Reject a --crs that pyproj does not know before any work is done."""
+    """Reject a --crs that pyproj does not recognize, before any work is done."""
     if crs is not None and not is_known(crs):
         raise Failure(f"--crs {crs}: not a reference system known to pyproj", Exit.USAGE)
 

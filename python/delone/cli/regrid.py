@@ -84,7 +84,7 @@ def regrid(
     weights: Annotated[
         Path | None,
         typer.Option(
-            help="Map file of ESMF or SCRIP with the weights, which also decides the method."
+            help="ESMF or SCRIP map file with the weights, which also determines the method."
         ),
     ] = None,
     save_weights: Annotated[
@@ -99,7 +99,9 @@ def regrid(
     ] = False,
     min_fraction: Annotated[
         float,
-        typer.Option(help="Smallest fraction of a target cell with values; others are missing."),
+        typer.Option(
+            help="Target cells with values on a smaller fraction of their area are missing."
+        ),
     ] = 0.0,
     fill: Annotated[
         float | None, typer.Option(help="The value of missing cells; by default NaN.")
@@ -119,7 +121,9 @@ def regrid(
     ] = False,
     cells: Annotated[
         str | None,
-        typer.Option(help="Of meshes of UGRID and FESOM: fields of INPUT are at nodes or faces."),
+        typer.Option(
+            help="For UGRID and FESOM meshes: whether fields of INPUT are at nodes or faces."
+        ),
     ] = None,
     degrees: Annotated[
         bool | None,
@@ -131,10 +135,10 @@ def regrid(
 ) -> None:
     """Regrid the fields of a NetCDF file by the areas that cells share, exactly.
 
-    The grids are those of CF, UGRID, SCRIP, ESMF, MPAS, ICON, FESOM, Exodus, OASIS, GEOS-CS and
-    HEALPix. Times, levels, attributes and float32 are kept; variables with only some of the
-    dimensions of cells are left out with a note. Images show the first field on both grids, and
-    the difference from the nearest source cells.
+    Grids can be CF, UGRID, SCRIP, ESMF, MPAS, ICON, FESOM, Exodus, OASIS, GEOS-CS or HEALPix.
+    Times, levels, attributes and float32 are kept; variables with only some of the grid's
+    dimensions are left out with a note. Images show the first field on both grids, and the
+    difference from the nearest source cells.
     """
     outputs = output or []
     written = [*outputs, *([save_weights] if save_weights else [])]
@@ -225,7 +229,7 @@ def _pair(text: str) -> tuple[str, str]:
 
 
 def _opened(path: Path) -> Any:
-    """Return the dataset of a file; times remain the numbers that they are."""
+    """Return the dataset of a file; times remain numbers."""
     xarray = require("xarray", extra="xarray", what="reading NetCDF files")
     require("netCDF4", extra="xarray", what="reading NetCDF files")
     if not path.exists():
@@ -237,7 +241,7 @@ def _opened(path: Path) -> Any:
 
 
 def _chosen(fields: Any, names: list[str] | None, source: Path) -> Any:
-    """Return the dataset with some of its fields only."""
+    """Return the dataset with only some of its fields."""
     for name in names or ():
         if name not in fields.data_vars:
             known = ", ".join(map(str, fields.data_vars))
@@ -246,7 +250,7 @@ def _chosen(fields: Any, names: list[str] | None, source: Path) -> Any:
 
 
 def _noted(regridder: Any, fields: Any, options: dict[str, Any], *, quiet: bool) -> Any:
-    """Return the fields on the target, with a note of those that are left out."""
+    """Return the fields on the target, with a note about those that are left out."""
     from delone.xarray import VariableWarning
 
     with warnings.catch_warnings(record=True) as caught:
@@ -258,7 +262,7 @@ def _noted(regridder: Any, fields: Any, options: dict[str, Any], *, quiet: bool)
 
 
 def _draw(path: Path, regridder: Any, fields: Any, found: Any) -> None:
-    """Draw the first field, at the first of its other dimensions, on both grids.
+    """Draw the first field, at index 0 of its other dimensions, on both grids.
 
     A third map shows what regridding changes: the result without the value of the nearest cell.
     Amounts and categories have no such difference.
@@ -299,7 +303,7 @@ def _draw_change(ax: Any, regridder: Any, shown: list[Any], name: str) -> None:
     drawn = regridder.target.plot(
         ax, values=change, sides=False, coast=datasets.land(), cmap="RdBu_r", title=title
     )
-    # Without a change, cells are white.
+    # Cells without a change are white.
     drawn.images[0].set_clim(-most, most)
 
 

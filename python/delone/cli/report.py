@@ -1,8 +1,8 @@
 """The figures of a triangulation, as plain numbers for JSON.
 
 Counts are taken from the arrays, not from formulas, so that comparing them with 2n - h - 2 and 3n -
-h - 3 is meaningful. Triangles are processed in blocks, so that the memory beyond the triangulation
-stays small whatever its size.
+h - 3 is meaningful. Triangles are processed in blocks, so that little memory is needed in addition
+to the triangulation, whatever its size.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Stopwatch:
         self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
 
     def rows(self, points: int, *, others: Mapping[str, int] | None = None) -> list[dict[str, Any]]:
-        """Return seconds and points per second by stage; `others` have other numbers of points."""
+        """Return seconds and points per second by stage; `others` gives other numbers of points."""
         counts = dict.fromkeys(self.seconds, points) | dict(others or {})
         return [
             {
@@ -67,7 +67,7 @@ class Stopwatch:
         *,
         others: Mapping[str, int] | None = None,
     ) -> dict[str, Any]:
-        """Return what the figures of a command end with: stages, outputs and memory."""
+        """Return the last figures of a command: stages, outputs and memory."""
         return {
             "stages": self.rows(points, others=others),
             "outputs": [str(path) for path in outputs or ()],
@@ -78,7 +78,7 @@ class Stopwatch:
 def summary(triangulation: Mesh) -> dict[str, Any]:
     """Return counts, those expected from Euler's formula, duplicates, and measures.
 
-    If triangles have been removed, no numbers are expected.
+    If triangles have been removed, there are no expected numbers.
     """
     n, m = triangulation.npoints, triangulation.nsimplex
     distinct = n - len(triangulation.coplanar)

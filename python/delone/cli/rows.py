@@ -1,7 +1,7 @@
-"""The rows of a file of points with all their columns, as commands write them again.
+"""The rows of a file of points with all their columns, as commands write them back.
 
 Columns that a command adds keep their names. A column of the file with the same name, or one that
-the format keeps for itself, is written as ``input_`` and its name, of which a note tells.
+the format reserves, is written as ``input_`` and its name, and a note says so.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ if TYPE_CHECKING:
 __all__ = ["ROW_SUFFIXES", "carried", "read_rows", "ready_rows", "renaming", "write_rows"]
 
 ROW_SUFFIXES = (*TABLE_SUFFIXES, ".csv")
-# Columns that GeoPackage or GeoPandas keep for themselves.
+# Columns that GeoPackage or GeoPandas reserve.
 _OF_TABLES = ("fid", "geom", "geometry")
 
 
 def read_rows(
     source: Path, which: Mapping[str, str | None], crs: str | None, *, planar: bool, quiet: bool
 ) -> PointSet:
-    """Read points with all their columns, by the options of a command.
+    """Read points with all their columns, according to the options of a command.
 
-    `which` has the options ``columns``, ``classes`` and ``layer``.
+    `which` contains the options ``columns``, ``classes`` and ``layer``.
     """
     survey = read_points(
         source,
@@ -62,7 +62,7 @@ def ready_rows(path: Path, what: str) -> None:
 
 
 def carried(survey: PointSet, own: Sequence[str]) -> tuple[dict[str, NDArray[Any]], dict[str, str]]:
-    """Return the columns of a survey to be written beside `own`, and which names are others.
+    """Return the columns of a survey to be written in addition to `own`, and which were renamed.
 
     Values with several numbers in each row, such as normals, become several columns.
     """
@@ -73,7 +73,7 @@ def carried(survey: PointSet, own: Sequence[str]) -> tuple[dict[str, NDArray[Any
         else:
             parts = values.reshape(len(values), -1).T
             flat |= {_free(f"{name}_{i}", flat): part for i, part in enumerate(parts)}
-    # SQLite does not distinguish cases.
+    # SQLite ignores case.
     kept = {name.casefold() for name in (*own, *_coordinates(survey), *_OF_TABLES)}
     found: dict[str, NDArray[Any]] = {}
     renamed = {}
@@ -90,7 +90,7 @@ def carried(survey: PointSet, own: Sequence[str]) -> tuple[dict[str, NDArray[Any
 
 
 def renaming(renamed: Mapping[str, str]) -> str | None:
-    """Return the note about columns with other names, if there are some."""
+    """Return the note about renamed columns, if there are any."""
     if not renamed:
         return None
     pairs = ", ".join(f"{old!r:.60} as {new!r:.70}" for old, new in renamed.items())
@@ -99,15 +99,15 @@ def renaming(renamed: Mapping[str, str]) -> str | None:
 
 
 def _free(name: str, taken: Sequence[str] | Mapping[str, Any]) -> str:
-    """Return a name that is not taken, in any case."""
+    """Return a name that is not taken, ignoring case."""
     used = {other.casefold() for other in taken}
-    while name.casefold() in used:  # ends: the name grows, and the taken ones are finitely many
+    while name.casefold() in used:  # terminates: the name grows, and finitely many names are taken
         name += "_"
     return name
 
 
 def _coordinates(survey: PointSet) -> list[str]:
-    """The names of the columns of coordinates in a table: those of the file, if it has names."""
+    """The names of the coordinate columns in a table: those in the file, if it has names."""
     names = list("xy" if survey.z is None else "xyz")
     called = list(survey.columns)
     if len(called) == len(names) and len({name.casefold() for name in called}) == len(names):
@@ -140,7 +140,7 @@ def write_rows(
 
 
 def _plain(values: NDArray[Any]) -> list[Any]:
-    """Return values as Python's numbers and words; booleans are 0 and 1, times those of ISO."""
+    """Return values as Python numbers and text; booleans become 0 and 1, and times ISO strings."""
     if values.dtype.kind == "M":
         return list(np.datetime_as_string(values).tolist())
     found: list[Any] = (values * 1 if values.dtype.kind == "b" else values).tolist()
@@ -148,7 +148,7 @@ def _plain(values: NDArray[Any]) -> list[Any]:
 
 
 def _field(value: Any) -> str:
-    """Write a value so that it is read as the same: numbers with all digits, words in quotes."""
+    """Write a value so that reading returns the same: numbers with all digits, text in quotes."""
     if isinstance(value, int | float):
         return repr(value)
     if value is None:

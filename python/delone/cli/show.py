@@ -51,7 +51,7 @@ def print_rows(title: str, rows: list[Row]) -> None:
 
 
 def print_report(title: str, rows: list[Row], figures: dict[str, Any]) -> None:
-    """Print rows, and what the figures of a command tell of memory, outputs and stages."""
+    """Print rows, and what the figures of a command say about memory, outputs and stages."""
     peak = ("peak memory", memory_text(figures["peak_memory_bytes"]))
     print_rows(title, [*rows, peak, *(("written", path) for path in figures["outputs"])])
     _print_stages(figures["stages"])
@@ -65,7 +65,7 @@ def show_figures(
     as_json: bool,
     quiet: bool,
 ) -> None:
-    """Print the figures of a command as JSON, or as rows with a title, unless it is quiet."""
+    """Print the figures of a command as JSON, or as rows with a title unless it is quiet."""
     if as_json:
         print_json(figures)
     elif not quiet:

@@ -55,9 +55,9 @@ def simplify(
     output: Annotated[list[Path] | None, outputs("Mesh to write", (".ply", ".xml", "..."))] = None,
     options: SurfaceOptions,
 ) -> None:
-    """Leave out points of a surface, with a bound on the error at each of them.
+    """Simplify a surface, with a bound on the error at each point that is left out.
 
-    Lines and the outline stay.
+    Lines and the outline are kept.
     """
     if (max_error is None) == (max_triangles is None):
         raise Failure("give one of --max-error and --max-triangles", Exit.USAGE)
@@ -132,4 +132,4 @@ def _tiles(
 def _require(found: list[Deviations]) -> None:
     bad = [each for each in found if not each]
     if bad:
-        raise InternalError(f"the error of the surface does not hold: {bad[0]}")
+        raise InternalError(f"the bound on the error does not hold: {bad[0]}")

@@ -1,4 +1,4 @@
-"""The command ``terrain``: several products of one surface in a folder, with a page about them."""
+"""The command ``terrain``: several products from one surface in a folder, with a page."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ _NO_SECTIONS = SectionOptions(
 
 @dataclass
 class _Product:
-    """A product: what is written, what is told of it, and how it is drawn."""
+    """A product: what is written, what is reported, and how it is drawn."""
 
     name: str
     files: list[Path]
@@ -88,28 +88,30 @@ def terrain(
         float | None, typer.Option(help="A raster of heights with cells of this size: dem.tif")
     ] = None,
     hillshade: Annotated[
-        bool, typer.Option("--hillshade", help="Brightness on the cells of --dem: hillshade.tif")
+        bool, typer.Option("--hillshade", help="Brightness, with the cells of --dem: hillshade.tif")
     ] = False,
     slope: Annotated[
-        bool, typer.Option("--slope", help="Slope in degrees on the cells of --dem: slope.tif")
+        bool, typer.Option("--slope", help="Slope in degrees, with the cells of --dem: slope.tif")
     ] = False,
     aspect: Annotated[
-        bool, typer.Option("--aspect", help="Aspect on the cells of --dem: aspect.tif")
+        bool, typer.Option("--aspect", help="Aspect, with the cells of --dem: aspect.tif")
     ] = False,
     profile: Annotated[
         list[Path] | None,
-        typer.Option(help="File of one line, once or more: profile-NAME.csv, with its picture."),
+        typer.Option(help="File with one line, once or more: profile-NAME.csv, with a picture."),
     ] = None,
     volume: Annotated[
         float | None, typer.Option(help="Volumes above and below this height, on the page.")
     ] = None,
     smooth: Annotated[int, typer.Option(help="As for contours.")] = 0,
     min_length: Annotated[float, typer.Option(help="As for contours.")] = 0.0,
-    min_area: Annotated[float, typer.Option(help="As for contours, of lines and polygons.")] = 0.0,
+    min_area: Annotated[
+        float, typer.Option(help="As for the command contours, for lines and polygons.")
+    ] = 0.0,
     simplify: Annotated[float, typer.Option(help="As for contours.")] = 0.0,
     options: SurfaceOptions,
 ) -> None:
-    """Make several products of one surface, and a page of pictures and numbers about them.
+    """Make several products from one surface, and a page with pictures and numbers.
 
     The input is read and triangulated once. The files are the same as those of the commands
     contours, dem and profile with the same options.
@@ -161,7 +163,7 @@ def _write_page(
 
 
 def _wanted(folder: Path, given: dict[str, Any], shades: list[str]) -> list[_Product]:
-    """Return the products that are asked for, in the order in which they are computed."""
+    """Return the requested products, in the order in which they are computed."""
     found = [
         _Product(name, [folder / f"{name}.gpkg"])
         for name in ("contours", "bands")
@@ -172,7 +174,7 @@ def _wanted(folder: Path, given: dict[str, Any], shades: list[str]) -> list[_Pro
     names: list[str] = []
     for path in given["profile"] or []:
         name, number = path.stem, 2
-        # Ends, since the names are finitely many.
+        # Terminates, because there are finitely many names.
         while name in names:
             name, number = f"{path.stem} {number}", number + 1
         names.append(name)
@@ -199,7 +201,7 @@ def _folder(folder: Path, products: Sequence[_Product], inputs: list[Path]) -> I
         _check(folder, products, inputs)
         yield
     finally:
-        # Nothing is left of a run that fails before its first file.
+        # A run that fails before its first file leaves nothing behind.
         if new and not any(folder.iterdir()):
             folder.rmdir()
 
@@ -239,7 +241,7 @@ def _computed(
 
 
 def _write(product: _Product, tin: TIN, watch: Stopwatch, say: Callable[[str], None]) -> None:
-    """Write the file of a product as the command of its own does, and keep its figures."""
+    """Write the file of a product as its separate command does, and keep its figures."""
     found, name = product.found, product.name
     if name in ("contours", "bands"):
         write_lines(found, product.files, watch, name)
@@ -296,7 +298,7 @@ def _rows(figures: dict[str, Any], before: str = "") -> list[tuple[str, str]]:
 
 
 def _overview(source: Path, tin: TIN, figures: dict[str, Any]) -> Section:
-    """Return the section of the surface itself: a map in colors of heights, shaded."""
+    """Return the section on the surface itself: a shaded map, colored by height."""
     low, high = float(tin.z.min()), float(tin.z.max())
     told = {key: value for key, value in figures.items() if key not in _NOT_TOLD}
     bounds = np.stack((tin.min_bound, tin.max_bound)).T.tolist()
@@ -324,7 +326,7 @@ def _cell(tin: TIN) -> float:
 
 
 def _section(tin: TIN, product: _Product) -> Section:
-    """Return the section of a product."""
+    """Return the section on a product."""
     found, name = product.found, product.name
     files, rows = [path.name for path in product.files], _rows(product.figures)
     title = {"dem": "DEM"}.get(name, name[:1].upper() + name[1:])

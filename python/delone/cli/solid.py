@@ -1,8 +1,8 @@
 """3-D input of the command: detection, triangulation and figures.
 
 Heights are values at 2-D points unless requested otherwise, because surveys of the ground also have
-them. A PLY file that contains only points is a 3-D point cloud; any other file is one with
-``--3d``.
+them. A PLY file that contains only points is read as a 3-D point cloud, and so is any other file if
+``--3d`` is given.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ __all__ = [
     "triangulated_space",
 ]
 
-# Defaults of the command line for the goal in degrees and the maximum number of passes.
+# Defaults of the command for the goal, in degrees, and for the maximum number of passes.
 _GOAL = 20.0
 _PASSES = 30
-# Formats of 3-D Delaunay triangulations, not of other tetrahedra.
+# Formats for 3-D Delaunay triangulations, not for other tetrahedra.
 _DELAUNAY_ONLY = (".npz",)
 
 
@@ -88,7 +88,9 @@ def improved(
     """
     for path in outputs:
         if path.suffix.lower() in _DELAUNAY_ONLY:
-            raise Failure(f"{path}: --improve writes no such files; use .vtu or .msh", Exit.USAGE)
+            raise Failure(
+                f"{path}: --improve cannot write this format; use .vtu or .msh", Exit.USAGE
+            )
     most = _PASSES if passes is None else passes
     say("improving")
 
@@ -136,11 +138,13 @@ def _ended(figures: dict[str, Any]) -> list[Row]:
     """Return a note if the limit on passes stopped an improvement that was still progressing."""
     if not figures["exhausted"]:
         return []
-    return [("stopped by", f"the limit on passes, {figures['passes']}: more may improve further")]
+    return [
+        ("stopped by", f"the limit on passes ({figures['passes']}); more may improve the result")
+    ]
 
 
 def space_summary(mesh: Delaunay) -> dict[str, Any]:
-    """Return counts, that expected from Euler's formula, duplicates, and measures."""
+    """Return counts, the count expected from Euler's formula, duplicates, and measures."""
     n, m, edges, faces = mesh.npoints, mesh.nsimplex, len(mesh.edges), len(mesh.faces)
     distinct = n - len(mesh.coplanar)
     with np.errstate(over="ignore"):

@@ -72,7 +72,8 @@ def globe(
         str | None,
         typer.Option(
             metavar="LON,LAT",
-            help="Images: the place in the center, in degrees; by default the mean direction.",
+            help="Images: longitude and latitude of the center, in degrees; by default the mean "
+            "direction.",
         ),
     ] = None,
     workers: Workers = None,
@@ -83,8 +84,8 @@ def globe(
     """Triangulate longitudes and latitudes on the sphere, report, and write meshes.
 
     The points of a mesh are on the unit sphere, in the order of the file. Heights are values at the
-    points, in .vtu, .ply and .msh. Images show the globe with the coast; triangles have the colors
-    of their mean heights.
+    points, in .vtu, .ply and .msh. Images show the globe with the coast; triangles are colored by
+    their mean heights.
     """
     require_known(crs)
     center = _view(view)
@@ -122,7 +123,7 @@ def globe(
 
 
 def _view(text: str | None) -> tuple[float, float] | None:
-    """The place in the center of an image."""
+    """The longitude and latitude of the center of an image."""
     if text is None:
         return None
     try:
@@ -159,7 +160,7 @@ def _draw(
     attributes: dict[str, Any] | None,
     edges: bool,
 ) -> None:
-    """Draw the front half of the globe; in colors of heights, unless only edges are wanted."""
+    """Draw the front half of the globe, colored by height unless only edges are wanted."""
     name, heights = next(iter((attributes or {}).items()), ("", None))
     values = None if heights is None or edges else heights[mesh.simplices].mean(axis=1)
     figure = figures.Figure(figsize=(8.0, 8.0), dpi=160, layout="constrained")
@@ -191,7 +192,7 @@ def _require_angles(survey: PointSet, crs: str | None) -> None:
 def _triangulated(
     survey: PointSet, *, radians: bool, workers: int | None, quiet: bool
 ) -> sphere.Delaunay:
-    """Triangulate, with a note in place of the warning that conventions are mixed."""
+    """Triangulate, with a note instead of the warning about mixed conventions."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", sphere.LongitudeWarning)
         mesh = sphere.Delaunay(lonlat=survey.points, degrees=not radians, workers=workers)
@@ -201,7 +202,7 @@ def _triangulated(
 
 
 def _values(survey: PointSet) -> dict[str, Any]:
-    """The heights by the name of their column."""
+    """The heights, keyed by the name of their column."""
     if survey.z is None:
         return {}
     return {survey.columns[2] if len(survey.columns) > 2 else "z": survey.z}
@@ -212,7 +213,7 @@ def _held(path: Path, values: dict[str, Any], *, edges: bool) -> dict[str, Any] 
 
 
 def _measures(mesh: sphere.Delaunay) -> dict[str, Any]:
-    """Counts, those expected from Euler's formula, duplicates, and the area."""
+    """Counts, the counts expected from Euler's formula, duplicates, and the area."""
     distinct = mesh.npoints - len(mesh.duplicates)
     whole, hull = mesh.covers_sphere, len(mesh.boundary)
     # Euler: vertices - edges + triangles is 2 on the sphere, and 1 for a hull.

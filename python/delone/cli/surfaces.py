@@ -1,4 +1,4 @@
-"""Surfaces of points and lines in files: the options and the reading that commands share."""
+"""Surfaces through points and lines in files: the options and the reading that commands share."""
 
 from __future__ import annotations
 
@@ -60,13 +60,13 @@ Columns = Annotated[
     str | None, typer.Option(help="Columns of x, y and z, by name or by number from 0.")
 ]
 Breaklines = Annotated[
-    Path | None, typer.Option(help="File of lines that edges follow, with or without heights.")
+    Path | None, typer.Option(help="File of breaklines, with or without heights.")
 ]
 SoftBreaklines = Annotated[
     Path | None,
-    typer.Option(help="File of lines that edges follow and at which smoothing cuts corners."),
+    typer.Option(help="File of soft breaklines, where --smooth may round contour lines."),
 ]
-Boundary = Annotated[Path | None, typer.Option(help="File of polygons where the surface ends.")]
+Boundary = Annotated[Path | None, typer.Option(help="File of polygons that bound the surface.")]
 MaxEdge = Annotated[
     float | None, typer.Option(help="Remove outer triangles with a longer outer edge.")
 ]
@@ -84,23 +84,25 @@ Crossing = Annotated[
 ]
 Tolerance = Annotated[
     float,
-    typer.Option(help="Heights at one place that differ by at most this are equal."),
+    typer.Option(help="Heights at one position that differ by at most this count as equal."),
 ]
 Snap = Annotated[
     float,
-    typer.Option(help="Merge points that are nearer than this to a line or to each other."),
+    typer.Option(help="Merge points that are closer than this to a line or to each other."),
 ]
 Level = Annotated[
     Path | None,
     typer.Option(help="File of polygons in which the surface is level, such as lakes."),
 ]
 Units = Annotated[
-    str | None, typer.Option(help="The unit of heights, if the file does not say it: m, ft, us-ft.")
+    str | None,
+    typer.Option(help="The unit of heights, if the file does not declare it: m, ft, us-ft."),
 ]
 Retriangulate = Annotated[
     bool,
     typer.Option(
-        "--retriangulate", help="Triangulate points and lines of LandXML or DXF, not its faces."
+        "--retriangulate",
+        help="Triangulate the points and lines of a LandXML or DXF file, not its faces.",
     ),
 ]
 Step = Annotated[
@@ -108,22 +110,25 @@ Step = Annotated[
 ]
 Nodata = Annotated[
     float | None,
-    typer.Option(help="Rasters: the value of cells without a height; nan if there is none."),
+    typer.Option(help="Rasters: the value of cells without a height; nan if no value marks them."),
 ]
 Window = Annotated[
     str | None,
     typer.Option(
-        help="Rasters, LAS, LAZ: read only what is inside left,bottom,right,top; quick for COPC."
+        help="Rasters, LAS, LAZ: read only what is inside left,bottom,right,top; fast for COPC."
     ),
 ]
 EastingFirst = Annotated[
-    bool, typer.Option("--easting-first", help="Take the first number of LandXML as the easting.")
+    bool,
+    typer.Option(
+        "--easting-first", help="Read the first number of LandXML coordinates as the easting."
+    ),
 ]
 
 
 @dataclass(frozen=True, kw_only=True)
 class SurfaceOptions:
-    """How a surface is made of files, and what is printed: each field is an option of commands."""
+    """How to make a surface from files, and what to print: each field is an option of commands."""
 
     breaklines: Breaklines = None
     soft_breaklines: SoftBreaklines = None
@@ -163,7 +168,7 @@ class SurfaceOptions:
 
 
 def with_surface(command: Callable[..., None]) -> Callable[..., None]:
-    """Give a command the options of surfaces, which it takes together as `options`."""
+    """Give a command the surface options, which it receives together as `options`."""
     hints = get_type_hints(SurfaceOptions, include_extras=True)
     shared = {
         each.name: inspect.Parameter(
@@ -190,9 +195,9 @@ def with_surface(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def curves_of(path: Path, chord: float | None, *, aligned: bool = False) -> dict[str, Any]:
-    """Return --chord as an option of readers for a DXF file, which has curves; none for others.
+    """Return --chord as a reader option for DXF files, which have curves; nothing for others.
 
-    LandXML has curves where it is read for its alignments.
+    LandXML files have curves if their alignments are read.
     """
     return {"chord": chord} if _is_drawing(path) or (aligned and is_landxml(path)) else {}
 
@@ -217,7 +222,7 @@ def surface(
 ) -> TIN:
     """Read points and lines, or a surface, and triangulate them.
 
-    Options for formats may be for `others`, which will be read with them, too; `aligned` says that
+    Format options may be meant for `others`, which will be read with them, too; `aligned` says that
     one of these has alignments with curves.
     """
     say(f"reading {source.name}")
@@ -269,7 +274,7 @@ def surface(
 def other_surface(
     file: Path, options: SurfaceOptions, watch: Stopwatch, say: Callable[[str], None]
 ) -> TIN:
-    """Read a surface that is compared with the first one; lines of other files are not for it."""
+    """Read a surface to compare with the first one; lines in other files do not apply to it."""
     own: dict[str, Any] = {"chord": options.chord if _is_drawing(file) else None}
     if not is_raster(file):
         own |= {"step": 1, "nodata": None}
@@ -301,7 +306,7 @@ def _read_raster(source: Path, options: SurfaceOptions) -> PointSet:
 
 
 def band_of(path: Path, layer: str | None) -> int | str | None:
-    """Return the number of a band, or the name of a variable of NetCDF."""
+    """Return the number of a band, or the name of a NetCDF variable."""
     if layer is None or is_netcdf(path):
         return layer
     if not layer.isdecimal():
@@ -310,7 +315,7 @@ def band_of(path: Path, layer: str | None) -> int | str | None:
 
 
 def height_of(text: str) -> float | None:
-    """Return a number; None for a file."""
+    """Return a number, or None for a file."""
     if Path(text).exists():
         return None
     try:
@@ -343,7 +348,7 @@ def _lines(path: Path, options: SurfaceOptions) -> GeometrySet:
 
 
 def figures_of(source: Path, tin: TIN | TiledDelaunay, output: list[Path] | None) -> dict[str, Any]:
-    """Return what commands report of a surface and of the files written."""
+    """Return what commands report about a surface and the files written."""
     return {
         "delone": __version__,
         "input": str(source),
@@ -359,7 +364,7 @@ def figures_of(source: Path, tin: TIN | TiledDelaunay, output: list[Path] | None
 
 
 def _adjustments_of(tin: TIN) -> dict[str, Any]:
-    """Return what --snap and --level have changed of the input."""
+    """Return what --snap and --level have changed in the input."""
     found = tin.adjustments
     if found is None:
         return {}
@@ -381,7 +386,7 @@ def print_figures(
     of: Mapping[str, str | None] | None = None,
     more: Sequence[tuple[str, str]] = (),
 ) -> None:
-    """Print figures as a table with the units `of` some of them and `more` rows, or as JSON."""
+    """Print figures as a table, some of them with units (`of`), and `more` rows, or as JSON."""
     if as_json:
         print_json(figures)
         return

@@ -26,9 +26,9 @@ _DRIVERS = {
     ".mif": "MapInfo File",
 }
 TABLE_SUFFIXES = (*_DRIVERS, ".parquet")
-# Formats in which rows can be added to a file.
+# Formats that allow adding rows to a file.
 APPENDED = (".gpkg", ".shp", ".sqlite")
-# Characters of the name of a column in a Shapefile.
+# Maximum length of a column name in a Shapefile.
 _SHORT = 10
 
 
@@ -51,8 +51,8 @@ def write_table(
 ) -> None:
     """Write a GeoDataFrame in place; the suffix determines the format.
 
-    `multi`: single geometries may be among parts of several. `append`: the file has rows already,
-    for a suffix of `APPENDED`.
+    `multi`: the table may contain both single and multipart geometries. `append`: the file already
+    has rows; for suffixes in `APPENDED`.
     """
     suffix = path.suffix.lower()
     if suffix == ".parquet":
@@ -68,7 +68,8 @@ def write_table(
             )
         table = table.to_crs(4326)
     elif suffix == ".shp":
-        # The layer has the name of the file; GDAL would write further rows to another file.
+        # The layer is named after the file; otherwise GDAL would write further rows to another
+        # file.
         table, layer = _with_short_names(table), path.stem
     if suffix == ".fgb" and (table.geometry.isna() | table.geometry.is_empty).any():
         # The index of FlatGeobuf cannot contain empty geometries.
@@ -81,7 +82,7 @@ def _with_short_names(table: Any) -> Any:
     names: dict[str, str] = {}
     for name in map(str, table.columns.drop(table.geometry.name)):
         short, number = name[:_SHORT], 1
-        # Ends, since the names are finitely many.
+        # Terminates, because there are finitely many names.
         while short in names.values():
             number += 1
             short = f"{name[: _SHORT - len(str(number))]}{number}"

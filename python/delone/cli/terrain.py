@@ -69,26 +69,26 @@ def contours(
     *,
     interval: Annotated[float | None, typer.Option(help="Difference between levels.")] = None,
     levels: Annotated[
-        str | None, typer.Option(help="Levels, instead of an interval: 10,12.5,15.")
+        str | None, typer.Option(help="Levels, instead of an interval, such as 10,12.5,15.")
     ] = None,
     base: Annotated[float, typer.Option(help="Level from which intervals are counted.")] = 0.0,
     index: Annotated[int, typer.Option(help="Mark every n-th level as an index contour.")] = 5,
-    smooth: Annotated[int, typer.Option(help="Rounds of corner cutting, 0 to 5.")] = 0,
+    smooth: Annotated[int, typer.Option(help="Number of corner-cutting rounds, 0 to 5.")] = 0,
     min_length: Annotated[
         float, typer.Option(help="Leave out lines shorter than this, in units of the points.")
     ] = 0.0,
     min_area: Annotated[
         float,
         typer.Option(
-            help="Leave out closed lines that enclose less than this; polygons become part of the "
-            "one around them."
+            help="Leave out closed lines that enclose less than this; such polygons become part "
+            "of the polygon around them."
         ),
     ] = 0.0,
     simplify: Annotated[
         float,
         typer.Option(
             help="Leave out points of lines that are within this distance of the rest; lines stay "
-            "on the same side of each other, and polygons share what remains."
+            "on the same side of each other, and adjacent polygons keep the same border."
         ),
     ] = 0.0,
     bands: Annotated[
@@ -105,7 +105,7 @@ def contours(
         float | None, typer.Option(help="Length of a label, in units of the points.")
     ] = None,
     max_points: Annotated[
-        int, typer.Option(help="Maximum number of points of all contours.")
+        int, typer.Option(help="Maximum total number of points of all contours.")
     ] = MOST,
     output: Annotated[
         list[Path] | None, outputs("File to write", [*TABLE_SUFFIXES, ".dxf"])
@@ -174,7 +174,7 @@ def contours(
 
 
 class _Drawn(NamedTuple):
-    """What is reported of contours or bands."""
+    """What is reported about contours or bands."""
 
     number: int = 0
     levels: frozenset[float] = frozenset()
@@ -203,7 +203,7 @@ class _Drawn(NamedTuple):
         )
 
     def plus(self, part: Contours) -> Self:
-        """Return the figures of more lines; triangles are left out of all parts."""
+        """Return the sums with the figures of more lines; `left_out` of a part covers all parts."""
         more = self.of(part)
         return self._replace(
             number=self.number + more.number,
@@ -230,20 +230,20 @@ def profile(
     ] = None,
     interval: Annotated[
         float | None,
-        typer.Option(help="Cross sections at this distance along the line, and at its end."),
+        typer.Option(help="Cross sections at this interval along the line, and at its end."),
     ] = None,
     left: Annotated[
         float | None, typer.Option(help="How far cross sections reach to the left of the line.")
     ] = None,
     right: Annotated[
-        float | None, typer.Option(help="How far to the right; by default as to the left.")
+        float | None, typer.Option(help="How far to the right; by default as far as to the left.")
     ] = None,
     start: Annotated[float, typer.Option(help="Station at the start of the line.")] = 0.0,
     exaggeration: Annotated[
-        float | None, typer.Option(help="Factor of heights in DXF drawings; by default 1.")
+        float | None, typer.Option(help="Factor for heights in DXF drawings; by default 1.")
     ] = None,
     text_height: Annotated[
-        float | None, typer.Option(help="Height of texts in DXF drawings, in their units.")
+        float | None, typer.Option(help="Height of text in DXF drawings, in drawing units.")
     ] = None,
     output: Annotated[list[Path] | None, outputs("File to write", PROFILE_SUFFIXES)] = None,
     options: SurfaceOptions,
@@ -290,10 +290,10 @@ def volume(
     ],
     *,
     region: Annotated[
-        Path | None, typer.Option(help="File of polygons to which the volume is limited.")
+        Path | None, typer.Option(help="File of polygons that limit the volume.")
     ] = None,
     regions: Annotated[
-        Path | None, typer.Option(help="File of polygons, for each of which there is a row.")
+        Path | None, typer.Option(help="File of polygons; the output has a row for each.")
     ] = None,
     regions_layer: Annotated[
         str | None, typer.Option(help="Layer of the file of --regions, if it has several.")
@@ -371,7 +371,7 @@ def _check(output: list[Path], source: Path, options: SurfaceOptions, *, bands: 
 def _goal(
     other: str, options: SurfaceOptions, watch: Stopwatch, say: Callable[[str], None]
 ) -> float | TIN | TiledDelaunay:
-    """Return the height or surface that is to be reached."""
+    """Return the height or surface to reach."""
     if (height := height_of(other)) is not None:
         return height
     if Path(other).is_dir():
@@ -388,7 +388,7 @@ def _appended(output: list[Path]) -> bool:
 def _write_parts(
     parts: Iterable[Contours], output: list[Path], watch: Stopwatch, say: Callable[[str], None]
 ) -> _Drawn:
-    """Write contours as they are drawn, so that only a part of them is in memory."""
+    """Write contours as they are computed, so that only some of them are in memory at a time."""
     found, begun = _Drawn(), False
     waiting = iter(parts)
     with ExitStack() as stack:

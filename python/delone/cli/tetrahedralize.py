@@ -71,24 +71,23 @@ def fill(
     inside: Annotated[
         str | None,
         typer.Option(
-            help="What is filled: winding (numbers other than 0), parity (odd) or enclosed (all); "
-            "by default winding, and enclosed for .smesh, .poly and .face."
+            help="What to fill: winding (winding numbers other than 0), parity (odd numbers) or "
+            "enclosed (all regions); by default winding, but enclosed for .smesh, .poly and .face."
         ),
     ] = None,
     boundary: Annotated[
         str,
-        typer.Option(help="What is kept: faces, or surface (triangles in one plane are replaced)."),
+        typer.Option(help="What to keep: faces, or surface (triangles in one plane are replaced)."),
     ] = "faces",
     imprint: Annotated[
         bool,
-        typer.Option(
-            "--imprint", help="Cut triangles that cross, overlap or touch at each other first."
-        ),
+        typer.Option("--imprint", help="First cut triangles where they cross, overlap or touch."),
     ] = False,
     tolerance: Annotated[
         float | None,
         typer.Option(
-            help="Join what is nearer than this, in the unit of the file; with --imprint."
+            help="Join vertices, edges and faces that are closer than this, in the unit of the "
+            "file; with --imprint."
         ),
     ] = None,
     hole: Annotated[
@@ -114,23 +113,25 @@ def fill(
     ] = None,
     radius_edge: Annotated[
         float | None,
-        typer.Option(help="Largest circumradius divided by the shortest edge; with sizes 2."),
+        typer.Option(help="Maximum ratio of circumradius to shortest edge; 2 if sizes are given."),
     ] = None,
     min_angle: Annotated[
         float | None,
-        typer.Option(help="Goal for the smallest dihedral angle in degrees; with sizes 20."),
+        typer.Option(
+            help="Goal for the smallest dihedral angle in degrees; 20 if sizes are given."
+        ),
     ] = None,
     max_points: Annotated[
         int | None,
         typer.Option(
-            help="Maximum number of added points; by default a million, or ten per face if that is "
-            "more, and two million for sizes and angles."
+            help="Maximum number of added points; by default a million for filling, or ten per "
+            "face if that is more, and two million for sizes and angles."
         ),
     ] = None,
     better: Annotated[
         bool,
         typer.Option(
-            "--improve", help="Remove slivers; all triangles are kept. Sizes and angles imply it."
+            "--improve", help="Remove slivers; all triangles are kept. Implied by sizes and angles."
         ),
     ] = False,
     order: Order = 1,
@@ -140,13 +141,14 @@ def fill(
 ) -> None:
     """Fill a closed surface with tetrahedra; its triangles are kept exactly.
 
-    Holes, regions and markers of faces in .smesh and .poly are used.
+    Holes, regions and face markers in .smesh and .poly files are used.
 
     With ``--boundary surface``, triangles in one plane are replaced, which adds fewer points, and
-    divided where sizes require it. Sizes, ``--radius-edge`` and ``--min-angle`` add points inside.
+    they are divided where sizes require it. Sizes, ``--radius-edge`` and ``--min-angle`` add points
+    inside.
 
-    With ``--imprint``, bodies may overlap or be in contact: their triangles are cut at each other,
-    at rounded points.
+    With ``--imprint``, bodies may overlap or be in contact: their triangles are cut where they
+    meet, at rounded points.
 
     A PNG file shows the tetrahedra behind a cut.
     """
@@ -157,7 +159,7 @@ def fill(
         "boundary": boundary,
         "imprint": imprint,
         "tolerance": tolerance,
-        # Faces of TetGen's files have any orientation.
+        # Faces in TetGen files can have any orientation.
         "inside": inside or ("enclosed" if source.suffix.lower() in _UNORIENTED else "winding"),
         "holes": _numbers(hole, "--hole", 3),
         "regions": _numbers(region, "--region", 4),
@@ -176,7 +178,7 @@ def fill(
             faces = given.simplices
         options["face_markers"] = given.markers
         for name in ("holes", "regions"):
-            # Those of the command line replace those of the file, as in Python.
+            # Seeds on the command line replace those in the file, as in Python.
             if options[name] is None:
                 options[name] = getattr(given, name)
         with watch.stage("tetrahedralize"):

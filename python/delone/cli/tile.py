@@ -47,12 +47,12 @@ def tile(
             "--output",
             "-o",
             metavar="FOLDER",
-            help="New folder, or that of an interrupted run to resume.",
+            help="New folder, or the folder of an interrupted run to resume.",
         ),
     ] = None,
-    tile_points: Annotated[int, typer.Option(help="Points in a tile, on average.")] = 2_000_000,
+    tile_points: Annotated[int, typer.Option(help="Points per tile, on average.")] = 2_000_000,
     workers: Annotated[
-        int, typer.Option(help="Processes on this machine; 1: only this one, with all cores.")
+        int, typer.Option(help="Processes on this machine; 1 means only this one, with all cores.")
     ] = 1,
     scheduler: Annotated[
         str | None, typer.Option(help="Address of a Dask scheduler: tcp://host:8786.")
@@ -71,12 +71,12 @@ def tile(
     crs: Crs = None,
     planar: Planar = False,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Print the required resources, and do nothing.")
+        bool, typer.Option("--dry-run", help="Print the required resources, and do nothing else.")
     ] = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Triangulate more points than fit into memory, in tiles that form one triangulation."""
+    """Triangulate more points than fit in memory, in tiles that form one triangulation."""
     options: dict[str, Any] = {
         "tile_points": tile_points,
         "columns": split(columns),
@@ -103,7 +103,7 @@ def tile(
                 nan=nan,
                 progress=tell,
                 crs=crs,
-                # A note below takes the place of the warning.
+                # A note below replaces the warning.
                 planar=True,
                 **options,
             )
@@ -131,7 +131,7 @@ def _executor(scheduler: str | None, workers: int) -> Iterator[Any]:
         yield Processes(workers) if workers > 1 else "serial"
         return
     library = require("distributed", extra="dask", what="--scheduler")
-    # Problems of the scheduler are reported in one line, not in a traceback.
+    # Problems with the scheduler are reported in one line, not in a traceback.
     for name in ("distributed", "distributed.client"):
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
@@ -205,7 +205,7 @@ def _words(progress: Progress) -> tuple[str, str]:
 
 
 def _blamed(error: OSError, output: Path) -> BaseException:
-    """Distinguish errors of input and output by the file."""
+    """Distinguish errors in the input from errors in the output, by the file."""
     if isinstance(error, OutputError):
         return Failure(os_message(error), Exit.OUTPUT)
     if isinstance(error, DeloneError):

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 __all__ = ["refuse_for_tiles", "surface_or_tiles"]
 
-# What may be given with tiles.
+# Options that are allowed with tiles.
 _PRINTING = ("planar", "as_json", "quiet", "chord", "crs", "workers")
-# What is for files beside the tiles, too.
+# Options that also apply to other files used with the tiles.
 _OTHERS = ("layer", "step", "nodata", "window", "columns", "classes", "units")
 
 
@@ -50,7 +50,7 @@ def surface_or_tiles(
 
 
 def refuse_for_tiles(given: dict[str, Any], allowed: Sequence[str] = _PRINTING) -> None:
-    """Refuse options that change how a surface is made: tiles are made already."""
+    """Reject options that change how a surface is made, because tiles exist already."""
     plain = {each.name: each.default for each in fields(SurfaceOptions)} | {"bounds": None}
     set_ = [
         name

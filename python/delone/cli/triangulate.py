@@ -82,8 +82,8 @@ def triangulate(
     max_points: Annotated[
         int | None,
         typer.Option(
-            help="Maximum number of vertices added to lines and polygons, or by --improve, where "
-            "it is 0 by default."
+            help="Maximum number of vertices added to lines and polygons, or by --improve, for "
+            "which the default is 0."
         ),
     ] = None,
     in_space: Solid = False,
@@ -95,7 +95,8 @@ def triangulate(
     min_angle: Annotated[
         float | None,
         typer.Option(
-            metavar="DEGREES", help="Goal of --improve for dihedral angles; 20 by default."
+            metavar="DEGREES",
+            help="Goal of --improve for dihedral angles, in degrees; 20 by default.",
         ),
     ] = None,
     crs: Crs = None,

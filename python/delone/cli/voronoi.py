@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = ["voronoi"]
 
-_AREAS = (3, 6)  # shapely's numbers of Polygon and MultiPolygon
+_AREAS = (3, 6)  # shapely's type numbers of Polygon and MultiPolygon
 
 
 def voronoi(
@@ -48,7 +48,7 @@ def voronoi(
     ] = None,
     attributes: Annotated[
         str | None,
-        typer.Option(help="Columns to keep; by default all of a file of geometries."),
+        typer.Option(help="Columns to keep; by default all columns, for a file of geometries."),
     ] = None,
     columns: PlaneColumns = None,
     layer: Layer = None,

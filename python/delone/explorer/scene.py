@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 __all__ = ["QUALITIES", "Scene", "as_explorable", "packed", "scene_of"]
 
-# What triangles can be colored by, and the range of the colors; None for that of the triangles.
+# What triangles can be colored by, with the range of the colors; None for the range of the values.
 QUALITIES: dict[str, tuple[float, float] | None] = {
     "smallest_angle": (0.0, 60.0),
     "largest_angle": (60.0, 180.0),
@@ -42,7 +42,7 @@ QUALITIES: dict[str, tuple[float, float] | None] = {
     "radius_ratio": None,
     "edge_ratio": None,
 }
-# With more sites, the edges of the Voronoi diagram would double what is computed and sent.
+# With more sites, Voronoi edges would double the amount of data that is computed and sent.
 _MOST_SITES = 200_000
 _CLASSES = "Delaunay, ConstrainedDelaunay, Mesh, RegularTriangulation, PeriodicDelaunay or Voronoi"
 
@@ -60,7 +60,7 @@ class Scene(NamedTuple):
 
 
 def as_explorable(mesh: Any) -> Explorable:
-    """Return an object that can be explored, triangulating points; errors name what is possible."""
+    """Return an object that can be explored, triangulating points; errors say what is supported."""
     kinds = (
         *(Delaunay, ConstrainedDelaunay, Mesh),
         *(RegularTriangulation, PeriodicDelaunay, Voronoi),
@@ -150,7 +150,7 @@ def _of_voronoi(diagram: Voronoi, values: Floats | None, quality: str) -> Scene:
 
 
 def _edges_of_cells(diagram: Voronoi) -> Floats:
-    """The edges of all cells, (e, 4): of clipped cells, or with rays that reach beyond the view."""
+    """The edges of all cells, (e, 4), clipped or with rays that extend beyond the view."""
     if diagram.clip is not None or diagram.periods is not None:
         starts, corners, _ = diagram._left.simple()
         after = np.arange(1, len(corners) + 1)
@@ -161,7 +161,7 @@ def _edges_of_cells(diagram: Voronoi) -> Floats:
     ends = ends[(ends >= 0).all(axis=1)]
     rays = diagram.rays
     points = diagram.points
-    # Long enough to leave a view of the points, wherever the ray begins.
+    # Long enough to end outside a view of the points, wherever the ray begins.
     extent = float(np.ptp(points, axis=0).max()) or 1.0
     away = np.abs(rays.origin - points.mean(axis=0)).max(axis=1, initial=0.0)
     tips = rays.origin + (100.0 * (extent + away))[:, None] * rays.direction

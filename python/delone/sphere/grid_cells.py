@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["GridCells"]
 
-# Faults of cells by the core's numbers, each with what to do.
+# Faults of cells by the core's numbers, and what to do about each.
 _FAULTS = {
     2: ("a side that joins opposite directions", "add a corner between them"),
     LARGE: (
@@ -38,13 +38,13 @@ _FAULTS = {
 # Cells overlap if they share more of the smaller one than this; less is a rounding error.
 _SHARED = 1e-12
 _NONE = np.zeros(0, dtype=np.int64)
-# Names of arrays in files: of rows of cells, and of polygons.
+# Names of arrays in files: for rows of cells, and for polygons.
 _ROWS = "places", "starts", "meridians", "numbers"
 _RINGS = "places", "rings", "cells", "holes"
 
 
 class GridCells(Stored):
-    """Cells on the sphere, however they were made; see `Grid`."""
+    """Cells on the sphere of any origin; see `Grid`."""
 
     __slots__ = (
         "_arrays", "_bounds", "_centers", "_checked", "_edges", "_made", "_mask", "_merged",
@@ -112,7 +112,7 @@ class GridCells(Stored):
         mask: Bools | None,
         centers: Floats | None = None,
     ) -> Self:
-        """Return a pickled grid."""
+        """Restore a pickled grid."""
         edges, arrays, *rest = parts
         if len(arrays) != 4 + (edges == "parallel"):
             raise ShapeError("a pickled Grid is incomplete")
@@ -207,7 +207,7 @@ class GridCells(Stored):
     @property
     @kept
     def report(self) -> GridReport:
-        """The changes to corners, and which cells are special."""
+        """Which corners were changed, and which cells are special."""
         known = self._checked
         return GridReport(
             merged=self._merged,
@@ -236,10 +236,11 @@ class GridCells(Stored):
     @property
     @kept
     def centers_lonlat(self) -> Floats:
-        """Longitudes and latitudes of a place in the middle of each cell, (ncells, 2), in degrees.
+        """Longitude and latitude of a point in the middle of each cell, (ncells, 2), in degrees.
 
-        Those of a dataset, or nodes with cells around them. Otherwise halfway between bounds in
-        rows and columns, or the mean direction of the corners; NaN for cells without corners.
+        The centers in the dataset, or the nodes if cells are built around nodes. Otherwise the
+        middle between the bounds of rows and columns, or the mean direction of the corners; NaN for
+        cells without corners.
         """
         if self._centers is not None:
             return self._centers
@@ -266,7 +267,7 @@ class GridCells(Stored):
 
         Notes
         -----
-        Computes the overlaps of the grid with itself. Gaps are not faults: `covered` is the
+        This computes the overlaps of the grid with itself. Gaps are not faults: `covered` is the
         fraction of the sphere that the cells cover.
 
         Examples
@@ -285,7 +286,7 @@ class GridCells(Stored):
         return GridFaults(overlapping=pairs[wrong], covered=float(self.areas.sum() / (4 * np.pi)))
 
     def to_geopandas(self, data: Any = None, *, crs: Any = None, step: float = 1.0) -> Any:
-        """Convert the cells to a table of geopandas (extra ``geo``).
+        """Convert the cells to a GeoDataFrame (extra ``geo``).
 
         Parameters
         ----------
@@ -346,17 +347,17 @@ class GridCells(Stored):
             Where to draw; by default on a new one.
         values : array_like, optional
             A value for each cell, in the shape of the grid or (ncells,), shown as colors. Each
-            pixel has the mean over its area, by the areas that it shares with cells.
+            pixel has the mean of the cells in it, weighted by shared area.
         bounds : sequence of float, optional
             Left, bottom, right and top of the map in degrees; by default those of the cells. The
             left one may exceed the right one, across the date line.
         resolution : float, optional
-            Degrees of a pixel; by default 600 pixels fit across.
+            Degrees per pixel; by default, the map is 600 pixels wide.
         sides : bool, optional
-            Whether to draw the sides of cells. By default if there are no values, or 5,000 cells
-            at most.
+            Whether to draw the sides of cells. By default, they are drawn if there are no values or
+            at most 5,000 cells.
         coast : dict, optional
-            A MultiPolygon of GeoJSON, drawn as lines, such as `delone.datasets.land()`.
+            A GeoJSON MultiPolygon, drawn as lines, such as `delone.datasets.land()`.
         cmap, colorbar, title
             As usual in matplotlib.
 

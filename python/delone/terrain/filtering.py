@@ -1,4 +1,4 @@
-"""Ground points of lidar: progressive densification of a triangulation (P. Axelsson, 2000).
+"""Ground points in lidar: progressive densification of a triangulation (P. Axelsson, 2000).
 
 A coarse triangulation of the lowest points of cells is below buildings and trees. Each pass inserts
 points that are close to their triangle and form a small angle with it at its corners: of those that

@@ -34,8 +34,8 @@ def check_surface(
     faces : array_like of int, shape (m, 3)
         The vertices of each triangle, rows of `points`.
     limit : int, optional
-        The maximum number of pairs of faces that are listed, those that cross before others; all
-        are counted. None lists all.
+        The maximum number of pairs of faces to list, crossing pairs first; all are counted. None
+        lists all.
     workers : int, optional
         Number of threads; by default one per core. The result does not depend on it.
 
