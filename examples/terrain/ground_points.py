@@ -1,5 +1,5 @@
 """
-Ground points of lidar
+Ground points in lidar
 ======================
 
 Roofs and trees are removed from a lidar survey, using only positions and heights. The picture shows the ground points,
