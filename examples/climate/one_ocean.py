@@ -40,7 +40,7 @@ assert np.isclose(ocean.areas.sum() + land.areas.sum(), 4 * np.pi, rtol=1e-14)
 
 # %%
 # A sea surface temperature on cells of 5 degrees, and its mean over the ocean. Cells whose centers are at sea, a common
-# shortcut, give another one.
+# shortcut, give a different mean.
 
 grid = sphere.Grid.from_lonlat(np.arange(-180, 181, 5), np.arange(-90, 91, 5))
 lon, lat = np.radians(grid.centers_lonlat.T)

@@ -1,5 +1,5 @@
 """
-Interpolate an engine map: a table with four columns, also with missing entries
+Interpolate an engine map: a table with four columns, even with missing entries
 ===============================================================================
 
 The torque of an engine is tabulated by speed, load, mixture and spark advance, with uneven steps. A complete table is

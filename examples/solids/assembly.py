@@ -3,7 +3,7 @@ Heat through an assembly
 ========================
 
 A chip heats a plate with round pins. The bodies are triangulated separately, and their contact faces share only
-a plane. ``imprint=True`` cuts the faces at each other, so one mesh conforms to all bodies, and heat flows
+a plane. ``imprint=True`` cuts the faces where they meet, so one mesh conforms to all bodies, and heat flows
 from one to the next.
 
 Install: ``pip install "delone[fem,pyvista]"``.

@@ -17,8 +17,8 @@ directions = np.random.default_rng(0).normal(size=(400, 3))
 shell = delone.Delaunay(directions / np.linalg.norm(directions, axis=1)[:, None])
 
 # %%
-# Flips and moves keep the points. ``max_points`` allows more of them: first near the worst tetrahedra, and only where
-# the new tetrahedra are better, which is proven for each point.
+# Flips and moves keep the number of points. ``max_points`` allows additional points: first near the worst tetrahedra,
+# and only where the new tetrahedra are better, which is proven for each point.
 
 kept = delone.improve(shell)
 finer = delone.improve(shell, max_points=2000)

@@ -32,8 +32,8 @@ print(level, level.adjustments)
 print(f"water at {level.heights((15, 40)):.2f} m; without level {rough.heights((15, 40)):.2f} m")
 
 # %%
-# Points a few centimeters from the line form thin triangles next to it. With ``snap=0.1``, points nearer than 10 cm to
-# the line become points of the line, and points nearer than 10 cm to each other become one. No point moves farther than
+# Points a few centimeters from the line form thin triangles next to it. With ``snap=0.1``, points closer than 10 cm to
+# the line become points of the line, and points closer than 10 cm to each other become one. No point moves farther than
 # that, and only x and y change.
 
 snapped = TIN.from_points(

@@ -2,8 +2,8 @@
 A raster as a few hundred triangles
 ===================================
 
-An elevation model of 40,000 cells becomes a surface of a few hundred triangles. A breakline stays, and at no cell does the
-surface differ from the raster by more than the bound.
+An elevation model of 40,000 cells becomes a surface of a few hundred triangles. A breakline is kept, and at no cell
+does the surface differ from the raster by more than the bound.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -27,7 +27,7 @@ crest = [(0.5, 100.05, 9), (199.5, 119.95, 9)]
 
 # %%
 # The bound of ``simplify`` holds at every point of the original surface, which are the centers of cells here.
-# Breaklines stay, so the crest of the dike remains sharp.
+# Breaklines are kept, so the crest of the dike remains sharp.
 
 tin = TIN.from_raster(model, breaklines=[crest])
 coarse = tin.simplify(max_error=0.25)
@@ -35,8 +35,8 @@ print(tin)
 print(coarse, f"{coarse.nsimplex / tin.nsimplex:.2%} of the triangles")
 
 # %%
-# ``max_triangles`` gives the number of triangles instead of the error. With ``keep="boundary"``, lines inside need
-# not stay. Here, the surface then needs more triangles.
+# ``max_triangles`` gives the number of triangles instead of the error. With ``keep="boundary"``, lines inside may be
+# removed. Here, the surface then needs more triangles.
 
 few = tin.simplify(max_triangles=300)
 loose = tin.simplify(max_error=0.25, keep="boundary")

@@ -1,4 +1,4 @@
-"""Triangulations of directions: geographic points, and others on a sphere.
+"""Triangulations of directions: geographic points, and other points on a sphere.
 
 >>> from delone import sphere
 >>> sphere.Delaunay(lonlat=[(0, 90), (0, 0), (90, 0), (180, 0), (270, 0), (0, -90)])

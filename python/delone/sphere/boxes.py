@@ -62,15 +62,15 @@ class _Listed(NamedTuple):
     number: Rows
 
     def taken(self, order: Rows) -> _Listed:
-        """Return the cells in another order."""
+        """Return the cells in a different order."""
         return _Listed._make(array[order] for array in self)
 
 
 def rows_of(boxes: Floats, merge: tuple[float, float]) -> tuple[tuple[Any, ...], int]:
-    """Return the arrays of the core, and how many bounds moved to those of their neighbors.
+    """Return the arrays for the core, and how many bounds were moved to those of their neighbors.
 
-    Meridians and parallels closer than `merge`, in degrees, become one. In grids with cells that
-    small, the limit is a quarter of the smallest cell.
+    Meridians and parallels closer than `merge`, in degrees, become one. In grids with smaller
+    cells, the limit is a quarter of the smallest cell.
     """
     near, close = (
         min(limit, float((boxes[:, k + 1] - boxes[:, k]).min()) / 4)
@@ -88,7 +88,7 @@ def rows_of(boxes: Floats, merge: tuple[float, float]) -> tuple[tuple[Any, ...],
     joined = np.zeros(len(row), dtype=bool)
     joined[1:] = (row[1:] == row[:-1]) & (np.abs(start[1:] - end[:-1]) <= near)
     moved += int((joined[1:] & ((boxes[1:, 0] - boxes[:-1, 1]) % _TURN != 0)).sum())
-    # Rows that go all the way around end where they began.
+    # Rows that go all the way around end where they begin.
     first = np.flatnonzero(np.append(True, row[1:] != row[:-1]))
     last = np.append(first[1:], len(row)) - 1
     around = np.abs(end[last] - start[first] - _TURN) <= near
@@ -98,7 +98,7 @@ def rows_of(boxes: Floats, merge: tuple[float, float]) -> tuple[tuple[Any, ...],
 
 
 def _merged(parallels: Floats, near: float) -> tuple[Floats, int]:
-    """Return latitudes moved to the next smaller one if it is within `near`, and how many moved."""
+    """Return latitudes moved to the next smaller one within `near`, and how many were moved."""
     values, at = np.unique(parallels, return_inverse=True)
     first = np.append(True, np.diff(values) > near)
     kept = values[first][np.cumsum(first) - 1]

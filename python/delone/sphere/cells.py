@@ -82,10 +82,9 @@ def _dual_cells(vectors: Floats, simplices: Indices, neighbors: Indices, workers
 def lunes(chain: Indices, points: Floats, axis: Floats, simplices: int) -> Cells:
     """Return the cells of at least two sites on one circle: lunes from pole to pole.
 
-    `chain` has the rows of the sites, counter-clockwise around the axis, a unit vector, of two
-    sites the shorter way first, and
-    `points` the unit vectors of all rows. The axis is vertex 0 and the opposite direction vertex 1.
-    All `simplices` triangles are around vertex 0.
+    `chain` has the rows of the sites, counter-clockwise around the axis, a unit vector, for two
+    sites the shorter way first, and `points` the unit vectors of all rows. The axis is vertex 0 and
+    the opposite direction vertex 1. All `simplices` triangles are around vertex 0.
     """
     count = len(chain)
     after = np.roll(chain, -1)
@@ -119,7 +118,7 @@ def _middles(tails: Floats, heads: Floats, axis: Floats) -> Floats:
     """Return the unit vectors halfway from each site on a circle to the next one.
 
     They lie in the plane through the axis that is perpendicular to the chord. For close sites, the
-    sum gives that plane, because their difference may be nothing but rounding errors.
+    sum gives that plane, because their difference may consist only of rounding errors.
     """
     chords = heads - tails
     # Seen along the axis, from the middle of the circle.

@@ -1,4 +1,4 @@
-"""Pictures of grids on maps of longitudes and latitudes.
+"""Plots of grids on maps of longitudes and latitudes.
 
 Each pixel shows a mean weighted by the areas that it shares with cells, so no cell is missed and
 none is drawn too large.
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_grid"]
 
-# The width of a map in pixels, and the degrees between points of a curved side.
+# The width of a map in pixels, and the distance between points of a curved side, in degrees.
 _PIXELS = 600
 _STEP = 2.0
 _MOST_SIDES = 5000
@@ -120,7 +120,7 @@ def _box(grid: Any, bounds: Sequence[float] | None) -> tuple[float, float, float
     places = lonlat_of(vectors) if len(vectors) else np.zeros((0, 2))
     low, high = places.min(axis=0, initial=180.0), places.max(axis=0, initial=-180.0)
     wide, tall = (high - low).tolist()
-    # Cells at a pole or at the date line are on a map of the whole globe.
+    # Cells at a pole or at the date line need a map of the whole globe.
     if not 0 < wide <= 180 or not 0 < tall <= 90:
         return -180.0, -90.0, 180.0, 90.0
     margin = 0.03 * max(wide, tall)
@@ -144,7 +144,7 @@ def _parallels(grid: Any) -> list[Floats]:
 
 
 def _arcs(grid: Any) -> list[Floats]:
-    """Return sides as chains of places, in groups of one length.
+    """Return sides as chains of places, in groups of equal length.
 
     Those between two triangles of one cell are left out.
     """

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["cells_of_few", "first_rows", "nearest_of_few"]
 
-# Bounds the error of cosines of rounded unit vectors: three products of numbers off by 2**-54.
+# A bound on the error of cosines of rounded unit vectors: three products of numbers off by 2**-54.
 _DOUBT = 2.0**-48
 # Number of cosines computed at a time.
 _AT_ONCE = 1 << 20
@@ -87,7 +87,7 @@ def _rounded(vector: Vector) -> Floats:
 
 
 def nearest_of_few(chain: Indices, vectors: Floats, points: Floats, queries: Floats) -> Indices:
-    """Return the nearest of sites to queries, unit vectors, exactly; the smallest of several rows.
+    """Return the nearest site to each query, a unit vector, exactly; of several, the smallest row.
 
     Queries that are NaN or of length zero get -1. Cosines of rounded unit vectors decide if they
     differ by more than their errors; otherwise integers do.

@@ -122,7 +122,7 @@ class Clipped:
     def ridges(self) -> tuple[NDArray[np.int64], Floats]:
         """Return the pairs of cells that share a border, (r, 2), and its length on the unit sphere.
 
-        Borders no longer than rounding errors are left out.
+        Borders not longer than rounding errors are left out.
         """
         mesh = self.mesh
         t, k = np.nonzero(self.border)
@@ -230,7 +230,7 @@ def clipped(whole: Whole, region: Region, workers: int | None) -> Clipped:
 
 
 def _without_slivers(mesh: ConstrainedDelaunay, component: Indices, cell: Indices) -> Indices:
-    """Give parts no wider than rounding errors to the cells along their longest sides."""
+    """Assign parts not wider than rounding errors to the cells along their longest sides."""
     count = len(cell)
     t, k = np.nonzero(mesh.constrained & (mesh.neighbors >= 0))
     tails, heads = (mesh.points[each] for each in half_edges(mesh.simplices, t, k))
@@ -286,7 +286,7 @@ def whole_rings(
 ) -> list[list[list[Floats]]]:
     """Return for each row the rings of its whole cell as unit vectors, with arcs below half a turn.
 
-    Long ridges have their middles as corners.
+    Long ridges have their midpoints as corners.
     """
     long, middles = _middles(cells, lengths, points)
     # Sorted by the site to the left of a ridge and by its first vertex.

@@ -1,6 +1,6 @@
-"""Longitudes and latitudes, or vectors of any length, as the vectors that mean directions.
+"""Longitudes and latitudes, or vectors of any length, as the vectors that represent directions.
 
-The core converts angles with sines and cosines of its own, so that all platforms agree. Degrees are
+The core converts angles with its own sines and cosines, so that all platforms agree. Degrees are
 reduced exactly; the doubles nearest to pi / 2 and pi are the poles and the date line in radians.
 """
 
@@ -41,7 +41,7 @@ __all__ = [
     "units_of",
 ]
 
-# Longitudes of more turns are a mistake, such as a wrong unit.
+# Longitudes beyond this many turns are a mistake, such as a wrong unit.
 _TURNS = 3
 
 
@@ -110,14 +110,14 @@ def queries_of(xi: ArrayLike, *, degrees: bool, workers: int | None) -> Floats:
 
 
 def numbers_of(given: Any, name: str) -> Any:
-    """Return points of shapely and tables of them as longitudes and latitudes; others as given."""
+    """Return shapely points and tables of them as longitudes and latitudes; others as given."""
     _refuse_projected(given, name)
     array = as_plain_array(given, name)
     return as_vectors(given, 2, name=name) if array.dtype.kind == "O" else given
 
 
 def _refuse_projected(given: Any, name: str) -> None:
-    """Refuse what declares a reference system whose coordinates are not angles."""
+    """Reject input that declares a reference system whose coordinates are not angles."""
     system = None if type(given) is np.ndarray else crs_of(given)
     known = None if system is None else parsed(system)
     if known is not None and not known.is_geographic:
@@ -179,7 +179,7 @@ def _refuse_angles(angles: Floats, *, degrees: bool, name: str) -> None:
 
 
 def _refusal(rows: Bools, message: str) -> DirectionError:
-    """Return the error of rows, whose count and first number complete the message."""
+    """Return the error about rows, whose count and first number complete the message."""
     found = np.flatnonzero(rows)
     count = len(found)
     subject = f"{counted(count, 'row')} {agreed(count, 'has', 'have')}"

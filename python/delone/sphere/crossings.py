@@ -1,4 +1,4 @@
-"""Arcs that cross, split: each crossing becomes a direction of its own.
+"""Splitting of arcs that cross: each crossing becomes a new direction.
 
 The crossing of two arcs is computed in integers from the given vectors, and each coordinate is
 rounded once, relative to the largest. The parts of the arcs pass through the rounded direction, so
@@ -104,7 +104,7 @@ def _crossings(
 ) -> list[tuple[float, ...]]:
     """Return where the parts of each pair cross: coordinates over the largest one, rounded.
 
-    All is computed in integers; each vector and each normal is converted once.
+    Everything is computed in integers; each vector and each normal is converted once.
     """
     ends = {part: tuple(rows[part].tolist()) for part in np.unique(pairs).tolist()}
     used = sorted({v for pair in ends.values() for v in pair})
@@ -206,7 +206,7 @@ def _without_repeats(
 def _of_rows(
     made: _core.ConstrainedTriangulation, parts: _Parts, count: int
 ) -> _core.ConstrainedTriangulation:
-    """Return the triangulation with the rows of arcs in place of those of their parts."""
+    """Return the triangulation with the rows of arcs instead of those of their parts."""
     start, source = made.source_start, parts.owner[made.source]
     piece = np.repeat(np.arange(len(start) - 1), np.diff(start))
     # A bent row may contain a subsegment twice.

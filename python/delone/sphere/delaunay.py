@@ -216,7 +216,7 @@ class Delaunay(OnGlobe):
         return f"{self._counts()}: {counted(self.nsimplex, 'triangle')}{whole}"
 
     def _counts(self) -> str:
-        """What is triangulated, for the representation."""
+        """What is triangulated, for ``repr``."""
         points = counted(self.npoints, "direction")
         if duplicates := len(self._duplicates):
             points += f" ({counted(duplicates, 'duplicate')})"
@@ -275,7 +275,7 @@ class Delaunay(OnGlobe):
     @property
     @kept
     def areas(self) -> Floats:
-        """The areas of the triangles on the unit sphere (steradians), (m,), also of slivers.
+        """The areas of the triangles in steradians, (m,), accurate even for slivers.
 
         The whole sphere has 4 pi. Multiply by the square of the radius, which is 6371.0088 km for
         the Earth.
@@ -304,13 +304,13 @@ class Delaunay(OnGlobe):
         xi : array_like, shape (..., 2) or (..., 3)
             Longitudes and latitudes, in the unit of the constructor, or vectors of any length.
         tolerance : float, optional
-            Directions outside a hull, at most this angle from its boundary, are in the nearest
+            Directions outside a hull, at most this angle from its boundary, count as in the nearest
             triangle; in the unit of the constructor.
 
         Returns
         -------
         ndarray of int32, shape (...)
-            The triangle of each, boundaries included; on an edge or a vertex the triangle with the
+            The triangle of each, boundaries included; on an edge or a vertex, the triangle with the
             smallest number. -1 outside a hull, and for NaN and vectors of length zero.
 
         Raises
@@ -379,7 +379,7 @@ class Delaunay(OnGlobe):
 
         Notes
         -----
-        Exact, square roots included; a walk to the triangle, and from vertex to nearer vertex.
+        Exact, square roots included: a walk to the triangle, and then from vertex to nearer vertex.
         Beyond a hull, the points of its boundary are compared.
 
         Examples
@@ -405,7 +405,7 @@ class Delaunay(OnGlobe):
         -----
         Exact for the given vectors, square roots included. Signs that rounded determinants do not
         prove, such as those of points a meter apart or exact ties, are computed with integers in
-        Python. This takes some 20 microseconds each, or a minute for a million triangles a
+        Python. This takes about 20 microseconds per sign, or a minute for a million triangles a
         centimeter wide.
 
         Examples

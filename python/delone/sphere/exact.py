@@ -1,4 +1,4 @@
-"""Exact signs of directions: rounded where an error bound allows it, by integers elsewhere.
+"""Exact signs for directions: in floating point where an error bound allows it, else in integers.
 
 The core decides while it triangulates. These signs check what it returned, and the arrays in files.
 """
@@ -97,8 +97,8 @@ def circles(vectors: Floats, units: Floats, rows: Indices) -> tuple[Signs, Signs
 def _rounded(units: Floats, rows: Indices) -> tuple[Floats, Floats]:
     """Return determinants of the differences from the last of four units, and bounds of errors.
 
-    Coordinates of units are off by u / 2. The bounds in the core are 3 u and 10 u; these leave room
-    for other orders of summation.
+    Coordinates of units are off by u / 2. The bounds in the core are 3 u and 10 u; these allow for
+    different orders of summation.
     """
     p, q, r = (units[rows[:, k]] - units[rows[:, 3]] for k in range(3))
     s, t, w = (np.abs(each).sum(axis=1) for each in (p, q, r))
@@ -120,8 +120,8 @@ def _circle(four: list[Vector]) -> int:
 def _sign_of_roots(squares: list[int], signs: list[int]) -> int:
     """Return the sign of a sum of four square roots of integers with signs.
 
-    Let M be the sum of the roots. The product of all conjugate sums, with other signs, is an
-    integer. There are at most 16 of them, none above M in size, so a nonzero sum is at least 1 /
+    Let M be the sum of the roots. The product of all conjugate sums, which have different signs, is
+    an integer. There are at most 16 of them, none above M in size, so a nonzero sum is at least 1 /
     M**15.
     """
     size = max(n.bit_length() for n in squares) // 2 + 3
@@ -142,7 +142,7 @@ def _tie(four: list[Vector]) -> int:
 
 
 def _order(vector: Vector) -> tuple[int, list[Fraction]]:
-    """Return a key that orders directions: the plane that a ray meets, and its place there."""
+    """Return a key that orders directions: the plane that a ray meets, and its position there."""
     k = next(k for k in range(3) if vector[k])
     return (k if vector[k] < 0 else 5 - k), [Fraction(x, abs(vector[k])) for x in vector]
 

@@ -1,4 +1,4 @@
-"""Meshes of FESOM in text files, and cells around the nodes of meshes: the median dual."""
+"""FESOM meshes in text files, and cells around the nodes of meshes: the median dual."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def median_dual(
     """Return the arrays of the core for cells around the nodes of polygons.
 
     Polygons are rows of `corners`, as compressed rows, with the `report` of a grid of them: some
-    run clockwise, and some have no area and take no part. The corners of a cell are the middles of
+    run clockwise, and some have no area and are left out. The corners of a cell are the middles of
     the polygons and of the edges around its node, and at the boundary the node itself.
     """
     places = units_of(vectors, None)

@@ -1,4 +1,4 @@
-"""Polygons on the sphere as polygons of a map of longitudes and latitudes.
+"""Polygons on the sphere as polygons on a map of longitudes and latitudes.
 
 Sides are arcs of great circles, which a map shows as chains of short lines. Exact signs decide
 whether an arc goes east or west or through a pole, and on which side of the date line it ends. A
@@ -121,7 +121,7 @@ def _closed(path: Floats, turns: int) -> Floats:
 def _moved(places: Floats, turn: int, seam: float) -> Floats:
     """Move points west by some turns, and those where a path was opened to exactly the same place.
 
-    Otherwise a rounding would leave a gap that the union of parts does not close.
+    Otherwise, rounding would leave a gap that the union of the parts does not close.
     """
     found = places - (360.0 * turn, 0.0)
     near = np.abs(found[:, 0] - seam) < _SEAM

@@ -39,10 +39,10 @@ def from_geometry(
     Parameters
     ----------
     geometries : geometry or iterable of geometries
-        As for `delone.from_geometry`: shapely geometries, GeoDataFrames, mappings in the form of
-        GeoJSON, or iterables of these. Each row of a table and each feature of a collection is a
-        geometry. Longitudes come first. Projected coordinates are transformed (extra ``geo``);
-        without a reference system, coordinates are treated as longitudes and latitudes.
+        As for `delone.from_geometry`: shapely geometries, GeoDataFrames, GeoJSON-like mappings, or
+        iterables of these. Each row of a table and each feature of a collection is a geometry.
+        Longitudes come first. Projected coordinates are transformed (extra ``geo``); without a
+        reference system, coordinates are treated as longitudes and latitudes.
     winding : {"smaller", "ccw", "cw"}, optional
         Which side of its outer rings is inside a polygon: the side that makes the geometry the
         smaller part of the sphere, whatever the direction of its rings (the default); the left one,

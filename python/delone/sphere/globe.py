@@ -72,14 +72,13 @@ class OnGlobe(Stored):
         values : array_like, shape (k,), optional
             A number for each triangle or each cell, which colors it.
         view : tuple of two floats, optional
-            Longitude and latitude in degrees of the place in the center; by default the mean
-            direction.
+            Longitude and latitude of the center, in degrees; by default the mean direction.
         cmap : str or matplotlib Colormap, optional
             The colors of values.
         colorbar : bool, optional
             Whether to add the color bar of values.
         coast : mapping, optional
-            Land whose coasts are drawn: a multipolygon in the form of GeoJSON, such as that of
+            Land whose coasts are drawn: a GeoJSON multipolygon, such as that of
             `delone.datasets.land`.
         points : bool, optional
             Whether to draw the points or sites; by default up to 2000.

@@ -43,9 +43,9 @@ class Grid(GridCells):
     - `from_mesh`: any polygons, by their corners
     - `from_polygons`: shapely geometries and GeoDataFrames
     - `from_voronoi`: the cells of a `delone.sphere.Voronoi` diagram
-    - `from_healpix`: the pixels of HEALPix
+    - `from_healpix`: HEALPix pixels
     - `from_gaussian`: a Gaussian grid, full or reduced
-    - `from_fesom`: a mesh of FESOM in text files
+    - `from_fesom`: a FESOM mesh in text files
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Grid(GridCells):
         Edges between columns and between rows, in degrees, of cells between meridians and parallels
         in rows and columns.
     report : GridReport
-        The changes to corners, with counts and rows.
+        Which corners were changed, and which cells are special.
 
     Notes
     -----
@@ -121,8 +121,8 @@ class Grid(GridCells):
         ----------
         ds : xarray.Dataset, xarray.DataArray or uxarray.Grid
             With longitudes, latitudes and bounds of the CF conventions, or a mesh in the convention
-            of UGRID, SCRIP, ESMF, MPAS, ICON, FESOM, Exodus, OASIS, GEOS-CS or HEALPix. Of uxarray,
-            also objects with ``uxgrid``.
+            of UGRID, SCRIP, ESMF, MPAS, ICON, FESOM, Exodus, OASIS, GEOS-CS or HEALPix. For
+            uxarray, also objects with ``uxgrid``.
         name : str, optional
             Selects one of several grids: a UGRID mesh, an OASIS grid, or a variable with values.
         coords : pair of str, optional
@@ -136,8 +136,8 @@ class Grid(GridCells):
         infer_bounds : bool, optional
             Whether to infer missing bounds from centers; see Notes.
         cells : {"nodes", "faces"}, optional
-            For meshes of UGRID and FESOM: where fields are. Around nodes, a cell has its corners in
-            the middle of faces and edges: the median dual. By default the nodes of FESOM, and
+            For UGRID and FESOM meshes: where fields are. Around nodes, a cell has its corners in
+            the middle of faces and edges: the median dual. By default nodes for FESOM, and
             otherwise faces, or the ``location`` of the variable `name`.
         merge : float, optional
             Corners closer than this, in radians, are merged; 0 merges none.
@@ -197,7 +197,7 @@ class Grid(GridCells):
 
     @classmethod
     def _of_cells(cls, cells: Cells, merge: float, workers: int | None) -> Self:
-        """Return the grid of the result of a reader."""
+        """Return the grid from the result of a reader."""
         if cells.columns is not None and cells.rows is not None:
             columns = as_bounds(cells.columns, name="lon", degrees=True)
             rows = as_bounds(cells.rows, name="lat", degrees=True)
@@ -542,7 +542,7 @@ class Grid(GridCells):
         InputError
             The diagram is clipped: make the grid from `Voronoi.to_geopandas`.
         DirectionError
-            A cell is larger than a hemisphere, as those of few sites are.
+            A cell is larger than a hemisphere, as happens with few sites.
 
         Examples
         --------
@@ -561,7 +561,7 @@ class Grid(GridCells):
 
     @classmethod
     def from_healpix(cls, nside: int, order: str = "ring", *, workers: int | None = None) -> Self:
-        """Return the pixels of HEALPix.
+        """Return HEALPix pixels.
 
         Parameters
         ----------
@@ -576,8 +576,8 @@ class Grid(GridCells):
         Returns
         -------
         Grid
-            Quadrilaterals. The true sides of pixels are not arcs of great circles; here they are,
-            so their areas differ slightly from each other.
+            Quadrilaterals. The true sides of pixels are not arcs of great circles. Here, arcs
+            replace them, so the areas of pixels differ slightly.
 
         Raises
         ------
@@ -604,7 +604,7 @@ class Grid(GridCells):
     def from_fesom(
         cls, folder: str | os.PathLike[str], cells: str = "nodes", *, workers: int | None = None
     ) -> Self:
-        r"""Return the cells of a mesh of FESOM by its text files.
+        r"""Return the cells of a FESOM mesh from its text files.
 
         Parameters
         ----------
@@ -632,8 +632,9 @@ class Grid(GridCells):
 
         Notes
         -----
-        FESOM computes with angles in a plane around each triangle, so its own areas differ by the
-        square of the size of triangles. Coordinates of a rotated mesh are used as they are.
+        FESOM computes with angles in a plane around each triangle, so FESOM's own areas differ by
+        an amount proportional to the square of the triangle size. Coordinates of a rotated mesh are
+        used unchanged.
 
         Examples
         --------

@@ -18,7 +18,7 @@ __all__ = ["GridFaults", "GridReport"]
 @renamed(turned="reversed")
 @dataclass(frozen=True, repr=False, eq=False)
 class GridReport(ReadOnly):
-    """The changes to the corners of a grid, and its special cells.
+    """Which corners of a grid were changed, and which cells are special.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Corners of the pixels of HEALPix, from integers, so that pixels share them exactly.
+"""Corners of HEALPix pixels, from integers, so that pixels share them exactly.
 
 K. M. Górski et al., "HEALPix: a framework for high-resolution discretization and fast analysis of
 data distributed on the sphere", The Astrophysical Journal 622 (2005).

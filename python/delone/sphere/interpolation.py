@@ -627,7 +627,7 @@ class NaturalNeighbor(_Continuous):
 
 
 class Nearest(_Interpolator):
-    """Interpolation by the value of the nearest site, at the smallest angle.
+    """Interpolation by the value of the nearest site, the one at the smallest angle.
 
     Parameters
     ----------

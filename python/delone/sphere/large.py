@@ -1,7 +1,7 @@
 """Cells that no hemisphere contains, as parts that the core can use.
 
 Each cell of the core lies within a hemisphere. A larger one is the union of its parts: the outer
-rings of a multipolygon, each with its holes; or, if the rings alone do not tell which side is
+rings of a multipolygon, each with its holes; or, if the rings alone do not determine which side is
 meant, triangles between the corners and a few added points. No corner moves, so parts meet exactly.
 """
 

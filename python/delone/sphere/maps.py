@@ -1,4 +1,4 @@
-"""Map files: weights in the layouts of ESMF, of SCRIP and of YAC."""
+"""Map files: weights in the layouts of ESMF, SCRIP and YAC."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _ESMF = {
 } | dict.fromkeys(("sibson", "laplace", "inverse_distance"), "Interpolation")
 # Sums of weights that differ by less than this agree.
 _NEAR = 1e-9
-# YAC's files have the names of SCRIP, and more.
+# YAC's files use SCRIP's names, and some more.
 _ROW = {"esmf": "row", "scrip": "dst_address", "yac": "dst_address"}
 # The kind of sides, in files that contain the grids.
 _EDGES = ("delone_source_edges", "delone_target_edges")
@@ -172,7 +172,7 @@ def _write_cells(
 
 
 def _write_locations(file: Any, links: int) -> None:
-    """Write that there is one source field, and that values are those of cells, as YAC requires."""
+    """Write that there is one source field, and that values belong to cells, as YAC requires."""
     file.createDimension("num_src_fields", 1)
     file.createDimension("max_loc_str_len", _LOCATION)
     numbers = file.createVariable("num_links_per_src_field", "i4", ("num_src_fields",))
@@ -353,7 +353,7 @@ def _read_cells(
 def _shape(file: Any, names: dict[str, str], count: int) -> tuple[int, ...]:
     """Return the shape of fields; files list the fastest dimension first.
 
-    Some programs write two dimensions in the opposite order. The centers tell them apart: in rows
+    Some programs write two dimensions in the opposite order. The centers distinguish them: in rows
     and columns, latitudes are constant along one axis and longitudes along the other.
     """
     if names["dims"] not in file.variables:

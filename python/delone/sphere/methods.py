@@ -58,6 +58,6 @@ def vector_weights(
     *,
     degrees: bool,
 ) -> Vectors:
-    """Return the table for vectors at longitudes and latitudes, from that for numbers."""
+    """Return the table for vectors at longitudes and latitudes, from the table for numbers."""
     longitudes = np.radians(lonlat[..., 0]) if degrees else lonlat[..., 0]
     return made._transports(directions(lonlat, degrees=degrees), table, longitudes.ravel())

@@ -102,7 +102,7 @@ def _sums(rows: Rows, values: Floats, count: int) -> Floats:
 
 
 def _ragged(starts: Rows, counts: Rows) -> Rows:
-    """Return starts, starts + 1, ... for each run, one after the other."""
+    """Return starts, starts + 1, ... for each run, one run after another."""
     within = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
     found: Rows = np.repeat(starts, counts) + within
     return found

@@ -1,4 +1,4 @@
-"""The nearest boundary points of a hull on the sphere, for directions outside of it."""
+"""The nearest boundary points of a hull on the sphere, for directions outside it."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def _squares(points: Floats, arcs: Indices, queries: Floats) -> Floats:
 
 
 def _normals(a: Floats, b: Floats) -> Floats:
-    """The unit normals of the planes of arcs, from differences for the sake of short arcs."""
+    """The unit normals of the planes of arcs, from differences, accurate for short arcs."""
     normal = np.cross(a, b - a)
     length = np.sqrt(_dots(normal, normal))[:, None]
     found: Floats = normal / np.where(length > 0, length, 1.0)

@@ -141,15 +141,15 @@ class Overlaps(SharedAreas[Weights], Stored):
               files). This preserves the sum of values times areas. A partly covered cell gets
               proportionally less.
             - "normalized": means over the covered part ("fracarea"). A constant stays constant.
-            - "sum": amounts, such as numbers of inhabitants: each source cell gives its value to
-              target cells by the share of its area.
+            - "sum": amounts, such as numbers of inhabitants: each source cell divides its value
+              among target cells in proportion to shared area.
             - "majority": categories: the value that covers most of the target cell.
         source_mask, target_mask : array_like of bool, optional
             True, or 1, for the cells to use, as in files; in the shape of fields or of cells. By
             default all.
         order : {1, 2}, optional
-            1 takes source cells as constant. 2 gives them slopes, for "conservative" and
-            "normalized": errors of smooth fields decrease with the square of the size of cells.
+            1 treats source cells as constant. 2 gives them slopes, for "conservative" and
+            "normalized": errors for smooth fields decrease with the square of the cell size.
         limiter : bool, optional
             For ``order=2``, whether slopes are limited so that results are within the range of the
             source cells and their neighbors. By default results can exceed it a little near jumps.
@@ -165,7 +165,7 @@ class Overlaps(SharedAreas[Weights], Stored):
             `method` or `order` is unknown; ``order=2`` is used with a different method, with areas
             loaded from a file, or with a single source cell; or `limiter` with ``order=1``.
         ShapeError, DtypeError
-            A mask has another shape, or is not boolean.
+            A mask has a different shape, or is not boolean.
 
         Notes
         -----
@@ -175,10 +175,10 @@ class Overlaps(SharedAreas[Weights], Stored):
         With ``order=2``, a source cell has the slope that fits its neighbors in the Delaunay
         triangulation of the centroids of the source cells, by least squares. Target cells get the
         mean of that plane over the part that they share. Slopes cancel over a source cell, so the
-        sum of values times areas is preserved as with ``order=1``, with the limiter, too. A source
-        cell that is covered in part gives the integral of its plane over that part. Neighbors that
-        are masked or missing give no slope. The moments of the parts take some 30 microseconds a
-        pair.
+        sum of values times areas is preserved as with ``order=1``, even with the limiter. A partly
+        covered source cell contributes the integral of its plane over the covered part. Masked or
+        missing neighbors do not contribute to slopes. Computing the moments of the parts takes
+        about 30 microseconds per pair.
 
         Examples
         --------
@@ -195,7 +195,7 @@ class Overlaps(SharedAreas[Weights], Stored):
         sum [[12.0, 3.0]]
         majority [[6.0, 3.0]]
 
-        Of second order:
+        Second order:
 
         >>> coarse = sphere.Grid.from_healpix(8)
         >>> fine = sphere.Grid.from_lonlat(np.arange(0, 361, 5), np.arange(-90, 91, 5))

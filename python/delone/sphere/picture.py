@@ -1,4 +1,4 @@
-"""Arcs and polygons of triangulations and diagrams of directions, for pictures."""
+"""Arcs and polygons of triangulations and diagrams of directions, for plots."""
 
 from __future__ import annotations
 

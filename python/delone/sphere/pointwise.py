@@ -205,7 +205,7 @@ def _bilinear(pair: _Pair, used: Bools | None) -> Entries:
     if len(lat) > 1 and lat[0] > lat[-1]:
         lat, at = lat[::-1], at[::-1]
     if whole:
-        # Repeat the first column one turn further east.
+        # Repeat the first column one turn farther east.
         lon, at = np.append(lon, lon[0] + 360), np.column_stack((at, at[:, 0]))
     x, y = pair.target.centers_lonlat[pair.targets].T
     x = lon[0] + (x - lon[0]) % 360

@@ -122,7 +122,7 @@ def _pieces(source: Grid, used: Bools | None, workers: int | None) -> _Pieces:
 def _around(source: Grid, used: Bools | None) -> tuple[Floats, Rows, Rows]:
     """Return the corners with cells on all sides, and these cells, counterclockwise.
 
-    Of cells with the same corners, as in the rows and columns that ocean grids repeat, only the
+    If cells have the same corners, as in the rows and columns that ocean grids repeat, only the
     first used one counts.
     """
     cell, node, before, after, vectors = _corners(source, used)
@@ -190,7 +190,7 @@ def _corners(source: Grid, used: Bools | None) -> tuple[Rows, Rows, Rows, Rows, 
 
 
 def _distinct(rows: NDArray[Any]) -> tuple[Rows, Rows]:
-    """Return the first of each group of equal rows, and the number of the group of each row."""
+    """Return the first of each group of equal rows, and the group number of each row."""
     order = np.lexsort(rows.T[::-1])
     lined = rows[order]
     new = np.ones(len(rows), dtype=bool)
@@ -233,7 +233,7 @@ def _repeated(cell: Rows, node: Rows, count: int, used: Bools | None) -> Bools:
 
 
 def _candidates(pieces: _Pieces, queries: Floats, workers: int | None) -> tuple[Rows, Rows]:
-    """Return queries and pieces that may contain them: they share area with a small triangle."""
+    """Return queries and pieces that may contain them, which share area with a small triangle."""
     corners = pieces.corners
     sizes = np.where(corners[:, 3] < 0, 3, 4)
     flat = corners[np.arange(4) < sizes[:, None]]
@@ -351,7 +351,7 @@ def _halves(
 ) -> tuple[Bools, Floats]:
     """Return the same, but linear in the triangles on both sides of a diagonal.
 
-    It is that of corners 0 and 2, or the `other` one.
+    It joins corners 0 and 2, or it is the `other` one.
     """
     inside = np.zeros(len(corners), dtype=bool)
     weights = np.zeros((len(corners), 4))

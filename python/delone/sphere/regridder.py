@@ -41,11 +41,11 @@ class Regridder(Immutable):
     Parameters
     ----------
     source : xarray.Dataset, xarray.DataArray, uxarray.Grid, Grid or str
-        Where fields are: what `Grid.from_dataset` takes, a grid, or its name: "1x1" in degrees of
+        Where fields are: what `Grid.from_dataset` accepts, a grid, or its name: "1x1" in degrees of
         longitude and latitude, "healpix:64", "healpix:64:nested", "n80" and "o80" for Gaussian
         grids, full and octahedral.
     target : xarray.Dataset, xarray.DataArray, uxarray.Grid, Grid or str
-        Where they are wanted; as `source`.
+        Where fields are wanted; like `source`.
     method : {"conservative", "normalized", "sum", "majority"} or str, optional
         As for `Overlaps.to_weights`; or for `Weights.between`: "linear", "bilinear", "sibson",
         "laplace", "nearest", "binned", "inverse_distance".
@@ -55,11 +55,12 @@ class Regridder(Immutable):
         True for the cells to use. By default the masks of the datasets, if they have any.
     dims : sequence of str, optional
         Dimensions of fields on the source, in the order of its shape. By default those of the
-        dataset; of a `Grid`, the last dimensions of each field that have its shape.
+        dataset; for a `Grid`, the last dimensions of each field that have its shape.
     extrapolate, power, neighbors : optional
         As for `Weights.between`, for its methods.
     weights : Weights, str or path-like, optional
-        Use these, or those of a map file, instead of computing them. `method` and masks are theirs.
+        Use these weights, or those in a map file, instead of computing them. They determine
+        `method` and masks.
     coords, degrees, infer_bounds, cells, merge, workers
         As for `Grid.from_dataset`; `coords` and `cells` are those of the source.
 
@@ -77,7 +78,7 @@ class Regridder(Immutable):
     Raises
     ------
     InputError, DirectionError, ShapeError, DtypeError
-        As for `Grid.from_dataset` and `Overlaps.to_weights`; or `weights` have other sizes.
+        As for `Grid.from_dataset` and `Overlaps.to_weights`; or `weights` have different sizes.
     MissingExtraError
         xarray is not installed.
 
@@ -241,8 +242,8 @@ class Regridder(Immutable):
         xarray.Dataset or xarray.DataArray
             The dimensions of the source are replaced by those of the target, at the place of the
             first of them; names, attributes, other dimensions and float32 are unchanged. Variables
-            of a dataset without dimensions of the source are as they were. What describes the
-            source, such as bounds, is replaced by what describes the target.
+            of a dataset without dimensions of the source are unchanged. Variables that describe the
+            source, such as bounds, are replaced by those that describe the target.
 
         Raises
         ------
@@ -256,13 +257,13 @@ class Regridder(Immutable):
         Warns
         -----
         delone.xarray.VariableWarning
-            Variables have some dimensions of the source only, and are not in the result.
+            Variables have only some of the dimensions of the source, and are not in the result.
         """
         xarray = require("xarray", extra="xarray", what="regridding datasets")
         options = {"skipna": skipna, "min_fraction": min_fraction, "fill": fill}
         if isinstance(data, xarray.Dataset):
             if type(data) is not xarray.Dataset:
-                # An array of uxarray has a grid of its own, which is not that of the result.
+                # A uxarray array has its own grid, which is not that of the result.
                 parts = [
                     {name: data.variables[name] for name in names}
                     for names in (data.data_vars, data.coords)
@@ -438,7 +439,7 @@ def _last(
 
 
 def _require_fit(weights: Weights, grids: tuple[Grid, Grid]) -> None:
-    """Reject weights that belong to other grids."""
+    """Reject weights that belong to different grids."""
     if not isinstance(weights, Weights):
         raise DtypeError(f"weights must be sphere.Weights, got {type(weights).__name__}")
     counts = len(weights.source_fractions), len(weights.fractions)

@@ -39,7 +39,7 @@ __all__ = [
 
 # Latitudes beyond a pole by a rounding error of float32 mean the pole.
 BEYOND = 1 + 2.0**-22
-# Wider columns are cut, because directions do not show whole turns.
+# Wider columns are cut, because directions do not represent whole turns.
 WIDE = 90.0
 
 
@@ -382,7 +382,7 @@ def shapes(arrays: tuple[Any, ...], areas: Floats, step: float) -> NDArray[np.ob
 
 
 def _distinct(ring: Floats) -> Floats:
-    """Return a ring without corners that repeat the one before."""
+    """Return a ring without corners that repeat the previous one."""
     kept = (ring != np.roll(ring, 1, axis=0)).any(axis=1)
     found: Floats = ring[kept]
     return found

@@ -1,4 +1,4 @@
-"""Conservative weights of second order: values of cells with gradients, and their limiter.
+"""Second-order conservative weights: values of cells with gradients, and their limiter.
 
 In each source cell, the field is a plane that has the mean of the cell at its centroid, so a target
 cell gets the plane's value at the centroid of the part that they share (Jones, "First- and
@@ -33,12 +33,12 @@ __all__ = ["SecondOrderWeights", "second_order"]
 
 # Cells count as whole if only rounding errors of corners are not covered.
 _ROUNDING = 1e-9
-# Neighbors on a line determine no slope across it.
+# Neighbors on a line do not determine a slope across it.
 _FLAT = 1e-9
 
 
 class _Slopes(NamedTuple):
-    """The terms that slopes add to weights of first order."""
+    """The terms that slopes add to first-order weights."""
 
     # For each first-order entry: the offset of its centroid from that of the cell, by weight.
     offsets: Floats
@@ -50,7 +50,7 @@ class _Slopes(NamedTuple):
 
 
 class SecondOrderWeights(Weights):
-    """Weights of second order; see `Overlaps.to_weights`.
+    """Second-order weights; see `Overlaps.to_weights`.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class SecondOrderWeights(Weights):
 
     @classmethod
     def _with(cls, first: Weights, slopes: _Slopes) -> Self:
-        """Return second-order weights from those of first order."""
+        """Return second-order weights from first-order weights."""
         held = [sealed(a) for a in slopes[:4]]
         slopes = _Slopes(held[0], held[1], held[2], held[3], slopes.limited)
         a, b, c = (sealed(x) for x in _expanded(first, slopes))
@@ -127,7 +127,7 @@ class SecondOrderWeights(Weights):
         found = np.empty((len(part), len(indptr) - 1))
         for one, field in zip(found, part, strict=True):
             rise = field[neighbors] - field[cell]
-            # Missing neighbors give no slope.
+            # Missing neighbors do not contribute to slopes.
             rise[~np.isfinite(rise)] = 0.0
             slope: Floats = np.stack(
                 [np.bincount(cell, rise * slopes[:, k], len(field)) for k in range(3)], axis=1
@@ -148,7 +148,7 @@ class SecondOrderWeights(Weights):
 
 
 def _expanded(first: Weights, slopes: _Slopes) -> tuple[Rows, NDArray[np.int32], Floats]:
-    """Return the sum of weights of first order and of slopes, as compressed rows."""
+    """Return the sum of first-order weights and slopes, as compressed rows."""
     indptr, indices, values = first._rows
     row = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
     counts = np.diff(slopes.starts)[indices]
@@ -172,7 +172,7 @@ def second_order(
     limited: bool,
     workers: int | None,
 ) -> SecondOrderWeights:
-    """Return weights of second order of those of first order between the same cells."""
+    """Return second-order weights from first-order weights between the same cells."""
     source, target = grids
     indptr, indices, values = first._rows
     row = np.repeat(np.arange(target.ncells), np.diff(indptr))

@@ -1,4 +1,4 @@
-"""Sides of polygons in longitudes and latitudes: as arcs, or as straight lines of a map.
+"""Sides of polygons in longitudes and latitudes: arcs, or straight lines on a map.
 
 Two points have one shorter arc, unless they are opposite. On a map, more sides are defined: a side
 from pole to pole runs along its meridian, one from -180 to 180 along its parallel, and a rectangle

@@ -41,7 +41,7 @@ class Side(NamedTuple):
 
 
 def side_of(given: Any, choices: Choices, name: str) -> Side:
-    """Return the grid of a `Grid`, of its name, or of a dataset."""
+    """Return the side of a `Grid`, of a grid with a name, or of a dataset."""
     if isinstance(given, str):
         given = named_grid(given, workers=choices.workers)
     if isinstance(given, Grid):
@@ -108,6 +108,6 @@ def _centers(grid: Grid, dims: tuple[Any, ...]) -> dict[Any, Any]:
 
 
 def dataset_of(side: Side) -> Any:
-    """Return a dataset of the coordinates and bounds of a side."""
+    """Return a dataset with the coordinates and bounds of a side."""
     xarray = require("xarray", extra="xarray", what="a dataset of a grid")
     return xarray.Dataset(side.others, coords=side.coords)

@@ -2,7 +2,7 @@
 
 East at a site is not east at a query: near a pole, directions rotate with the longitude. A vector
 is moved to the query along the great circle between them, by parallel transport. This rotates its
-components by an angle that depends on the two places alone, so a table of weights becomes two: the
+components by an angle that depends only on the two places, so a table of weights becomes two: the
 weights times the cosines, and times the sines. Every interpolant with such a table moves vectors.
 """
 
@@ -67,7 +67,7 @@ def polar_rows(lonlat: ArrayLike, vectors: Floats, degrees: bool) -> Polar | Non
 
 
 def longitudes_of(xi: ArrayLike, degrees: bool) -> Floats | None:
-    """Return the longitudes of queries in radians, flattened; None for queries as vectors."""
+    """Return the longitudes of queries in radians, flattened; None for queries given as vectors."""
     array = as_plain_array(numbers_of(xi, "xi"), "xi")
     if array.shape[-1] != 2:
         return None
@@ -190,8 +190,8 @@ def shape_of(values: ArrayLike) -> tuple[tuple[int, ...], bool]:
 def paired(values: ArrayLike, count: int, polar: Polar | None) -> Complexes:
     """Components, (n, 2, ...), as numbers east + north i, (n, k); rows at a pole on one meridian.
 
-    Complex components are two vectors, one of real and one of imaginary parts. A vector of which a
-    part is not finite is NaN in all.
+    Complex components are two vectors, one of real and one of imaginary parts. A vector with a part
+    that is not finite is NaN in all its parts.
     """
     field = as_field(values, count)
     if not field.trailing or field.trailing[0] != 2:
@@ -226,7 +226,7 @@ def unpaired(found: Complexes, trailing: tuple[int, ...], is_complex: bool) -> N
 
 
 class VectorInterpolation:
-    """Interpolation of vectors with the weights of a subclass; the base of its public classes."""
+    """Interpolation of vectors with the weights of a subclass; the base of the public classes."""
 
     _all: Delaunay
     _degrees: bool
@@ -273,13 +273,14 @@ class VectorInterpolation:
         -----
         Each vector is moved from its site p to the query q by parallel transport along the great
         circle between them, v - (q·v) / (1 + p·q) (p + q), and the moved vectors are combined with
-        the weights. Components as two fields are wrong near the poles, where east rotates with the
-        longitude; here errors are the same everywhere. Sites opposite a query have no weight.
+        the weights. Interpolating components as two fields is wrong near the poles, where east
+        rotates with the longitude; here errors are the same everywhere. Sites opposite a query have
+        no weight.
 
-        At a pole, east and north are those of the meridian of the row's longitude, of sites and of
-        queries given as longitudes and latitudes. Of a pole given as a vector, and of one in a
-        `sphere.Delaunay`, the longitude is 0. So all rows of a grid at a pole may represent one
-        vector; they are duplicates, and ``duplicates="mean"`` is their mean as vectors.
+        At a pole, east and north are those of the meridian of the row's longitude, for sites and
+        for queries given as longitudes and latitudes. For a pole given as a vector, and for one in
+        a `sphere.Delaunay`, the longitude is 0. So all rows of a grid at a pole may represent one
+        vector; they are duplicates, and ``duplicates="mean"`` averages them as vectors.
 
         A vector is missing, for the policy of ``nan``, if one of its components is.
 
@@ -319,7 +320,7 @@ class VectorInterpolation:
     def _transports(
         self, xi: ArrayLike, table: Weights | None = None, longitudes: Floats | None = None
     ) -> Vectors:
-        """The table for vectors, from that for numbers if it is known.
+        """The table for vectors, from the table for numbers if that is known.
 
         `longitudes` are those of queries as vectors, in radians.
         """

@@ -132,11 +132,11 @@ class Voronoi(OnGlobe):
 
     With a `clip`, areas, neighbors and `polygons` are those of the clipped cells; the attributes
     listed above remain those of the whole diagram. Ridges, between their rounded vertices, and the
-    sides of the region are arcs of one `ConstrainedDelaunay` with split crossings. These take some
-    20 microseconds each, in addition to two triangulations of all arcs. A side may pass through a
-    vertex or run along a ridge: parts of cells that are narrower than 2e-15 (13 nanometers on the
-    Earth) are attributed to rounding, and join the adjacent cell. The areas of the clipped cells
-    sum to that of the region.
+    sides of the region are arcs of one `ConstrainedDelaunay` with split crossings. Each crossing
+    takes about 20 microseconds, in addition to two triangulations of all arcs. A side may pass
+    through a vertex or run along a ridge: parts of cells that are narrower than 2e-15 (13
+    nanometers on the Earth) are attributed to rounding, and are merged into the adjacent cell. The
+    areas of the clipped cells sum to that of the region.
 
     See Also
     --------
@@ -289,7 +289,7 @@ class Voronoi(OnGlobe):
             workers=workers,
         )
         if region is not None:
-            # Errors of the clip are those of the constructor.
+            # Errors about the clip are those of the constructor.
             _ = self._left
 
     @classmethod
@@ -475,10 +475,10 @@ class Voronoi(OnGlobe):
 
         Notes
         -----
-        Without a clip each cell is one ring, its region; where all sites are on one circle, so that
-        ridges are half circles, also the middles of these. The cell of one site, the whole sphere,
-        is a part without rings. Longitudes are from -180 to 180; a ring that crosses the date line
-        jumps there. Rows with the same direction have the same cell.
+        Without a clip, each cell is one ring, its region; if all sites are on one circle, so that
+        ridges are half circles, the ring also contains their midpoints. The cell of one site, the
+        whole sphere, is a part without rings. Longitudes are from -180 to 180; a ring that crosses
+        the date line jumps there. Rows with the same direction have the same cell.
 
         Examples
         --------
@@ -560,13 +560,13 @@ class Voronoi(OnGlobe):
         return beside(shapes[self.duplicate_of], data, "EPSG:4326" if crs is None else crs)
 
     def _rings(self) -> list[list[list[Floats]]]:
-        """Return parts of whole cells as rings of unit vectors; that of a single site has none."""
+        """Return parts of whole cells as rings of unit vectors; a single site has no ring."""
         if not len(self.ridge_points):
             return [[[]] if cell >= 0 else [] for cell in self._cells.cell.tolist()]
         return whole_rings(self._cells, self._spans[0], self.points, self.regions)
 
     def _nearest(self, places: Floats) -> Indices:
-        """Return the sites nearest to vectors, also if all sites are on one great circle."""
+        """Return the sites nearest to vectors, even if all sites are on one great circle."""
         if self._mesh is not None:
             return self._mesh._ask(places, self._mesh._locator.nearest)
         sites = np.flatnonzero(self._cells.cell >= 0).astype(np.int32)
@@ -616,8 +616,8 @@ class Voronoi(OnGlobe):
         Returns
         -------
         SphereReport
-            That of `triangulation`: truthy if it is correct. Empty, so truthy, if all sites are on
-            one great circle, whose order is exact.
+            The report of `triangulation`, truthy if it is correct. If all sites are on one great
+            circle, whose order is exact, the report is empty and therefore truthy.
 
         Examples
         --------

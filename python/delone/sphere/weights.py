@@ -27,7 +27,7 @@ class Weights(AreaWeights):
     """The contribution of each source cell to each target cell.
 
     Made by `Overlaps.to_weights`, by `between` for interpolation between centers, or by
-    `from_netcdf` from a map file of another program.
+    `from_netcdf` from another program's map file.
 
     Attributes
     ----------
@@ -152,8 +152,8 @@ class Weights(AreaWeights):
         Raises
         ------
         InputError
-            An option is unknown, `power` or `neighbors` is not positive, `neighbors` is given for
-            another method, or the source of "bilinear" has cells without common corners.
+            An option is unknown, `power` or `neighbors` is not positive, `neighbors` is given for a
+            different method, or the source of "bilinear" has cells without common corners.
         ShapeError, DtypeError
             A mask has the wrong shape, or is not boolean.
 
@@ -163,10 +163,10 @@ class Weights(AreaWeights):
         centers of the cells around each corner. In a quadrilateral, the weighted mean of the
         centers, as vectors, points to the target; Newton's method finds its coordinates in at most
         30 steps. If it does not, and in concave quadrilaterals, weights are linear in the triangles
-        on both sides of a diagonal inside. Triangles have linear weights, and a corner of more than
-        four cells has their mean. Exact signs decide which polygon contains a target; at a center,
-        its cell has the weight 1. Outside the polygons, and in those whose sides cross, there is no
-        value. The time is some 10 microseconds a cell.
+        on both sides of a diagonal inside. Weights in triangles are linear, and a corner of more
+        than four cells has the mean of their values. Exact signs decide which polygon contains a
+        target; at a center, its cell has the weight 1. Outside the polygons, and in those whose
+        sides cross, there is no value. This takes about 10 microseconds per cell.
 
         See Also
         --------
@@ -235,18 +235,19 @@ class Weights(AreaWeights):
         path : str or path-like
             The file; written atomically.
         layout : {"esmf", "scrip", "yac"}, optional
-            Names of dimensions and variables: those of ESMF, of SCRIP and CDO, or of YAC.
+            The names of dimensions and variables: those of ESMF, of SCRIP and CDO, or of YAC.
         source, target : Grid, optional
             The grids, whose centers and corners are then also written. NCO and CDO need them.
         grid_names : (str, str), optional
-            What the file calls the grids. YAC refuses a file unless its own grids have these names.
+            The names of the grids in the file. YAC rejects a file unless its own grids have these
+            names.
         format : {"NETCDF4", "NETCDF3_64BIT_DATA"}, optional
             NetCDF-4, or CDF-5.
 
         Raises
         ------
         InputError
-            `layout` or `format` is unknown, the weights are those of "majority" or limited, or a
+            `layout` or `format` is unknown, the weights are limited or those of "majority", or a
             grid has the wrong number of cells.
         MissingExtraError
             netCDF4 is not installed.
@@ -276,15 +277,15 @@ class Weights(AreaWeights):
         source: Grid | None = None,
         target: Grid | None = None,
     ) -> Weights:
-        """Read a map file of ESMF, TempestRemap, SCRIP, CDO or YAC (extra ``xarray``).
+        """Read a map file written by ESMF, TempestRemap, SCRIP, CDO or YAC (extra ``xarray``).
 
         Parameters
         ----------
         path : str or path-like
             The file.
         source, target : Grid, optional
-            The grids. Files that do not say how many cells these have, such as some of YAC, need
-            them. Fields then have their shapes.
+            The grids. Files that do not say how many cells these have, such as some written by YAC,
+            need them. Fields then have the shapes of the grids.
 
         Returns
         -------
@@ -294,24 +295,24 @@ class Weights(AreaWeights):
         Raises
         ------
         FileFormatError
-            The file is not a map, does not have the number of cells, a cell's number is out of
-            range, or it has weights of second order with gradients.
+            The file is not a map, does not contain the numbers of cells, a cell's number is out of
+            range, or it has second-order weights with gradients.
         InputError
-            A grid does not have the number of cells or the sides of the file.
+            A grid does not have the number of cells or the kind of sides that the file states.
         MissingExtraError
             netCDF4 is not installed.
 
         Notes
         -----
         Cells are numbered from 1 unless ``start_index`` or ``first_index`` says otherwise; the
-        numbers themselves are never used to guess. Entries of one pair are added. Weights of SCRIP
-        with the normalization "none" are areas, and become "conservative". Results are always sums
-        of the weights times the values: fractions that a file lacks, or that contradict the sums of
-        weights, are replaced by these. If a file lists its dimensions in a different order from
-        ESMF, the centers show which one varies fastest.
+        numbers themselves are never used to guess. Several entries for one pair are added. SCRIP
+        weights with the normalization "none" are areas, and become "conservative". Results are
+        always sums of the weights times the values: fractions that a file lacks, or that contradict
+        the sums of weights, are replaced by the sums. If a file lists its dimensions in a different
+        order from ESMF, the centers show which one varies fastest.
 
-        Weights of second order, and those with negative entries, have `order` 2: they are not
-        areas, and with ``skipna=True`` missing values raise an error.
+        Second-order weights, and those with negative entries, have `order` 2: they are not areas,
+        and with ``skipna=True``, missing values raise an error.
 
         Examples
         --------
@@ -335,7 +336,7 @@ class Weights(AreaWeights):
 
 
 class SlopedWeights(Weights):
-    """Weights of a map file of second order, which does not tell areas from slopes.
+    """Second-order weights from a map file, which does not distinguish areas from slopes.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Grids of models in xarray datasets: the convention that a dataset follows, and its cells.
+"""Model grids in xarray datasets: the convention that a dataset follows, and its cells.
 
 Each file reads a family of conventions; `reading` recognizes them. Nothing is guessed: units, first
-indices and fill values are what a dataset states or its convention defines.
+indices and fill values are those that a dataset states or its convention defines.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ __all__ = ["Cells", "Choices", "flags_of"]
 class Choices(NamedTuple):
     """The options of the caller."""
 
-    # Selects one of several grids: a topology, a grid of OASIS, or a variable with values.
+    # Selects one of several grids: a topology, an OASIS grid, or a variable with values.
     name: str | None = None
     # The longitude and the latitude of centers.
     coords: tuple[str, str] | None = None
@@ -59,7 +59,7 @@ class Cells(NamedTuple):
     coords: tuple[Any, Any] | None = None
     # "node" if fields are at the nodes of a mesh and these cells are its faces.
     location: str = "face"
-    # Longitudes and latitudes of the centers in degrees, (n, 2), if they are known.
+    # Longitudes and latitudes of the centers in degrees, (n, 2), if known.
     centers: Floats | None = None
 
 

@@ -56,7 +56,7 @@ def scrip_names(variables: Variables) -> tuple[str, str] | None:
 
 
 def read_scrip(variables: Variables, choices: Choices) -> Cells:
-    """Read a grid of SCRIP."""
+    """Read a SCRIP grid."""
     names = "grid_corner_lon", "grid_corner_lat"
     lon, lat = (numbers(variables[name], name) for name in names)
     if lon.ndim != 2:
@@ -109,13 +109,13 @@ def _boxes(lon: NDArray[Any], lat: NDArray[Any], shape: tuple[int, ...]) -> dict
 
 
 def oasis_grids(variables: Variables) -> list[str]:
-    """Return the names of the grids of OASIS."""
+    """Return the names of the OASIS grids."""
     names = [name[:-4] for name in variables if name.endswith(".clo")]
     return [name for name in names if f"{name}.cla" in variables]
 
 
 def read_oasis(variables: Variables, choices: Choices) -> Cells:
-    """Read one of the grids of a file of OASIS; angles are in degrees."""
+    """Read one of the grids in an OASIS file; angles are in degrees."""
     known = oasis_grids(variables)
     name = choices.name
     if name is None and len(known) == 1:
@@ -149,7 +149,7 @@ def read_oasis(variables: Variables, choices: Choices) -> Cells:
 
 
 def read_geos(variables: Variables, choices: Choices) -> Cells:
-    """Read the cubed sphere of GEOS: corners of faces, (6, j + 1, i + 1), in degrees."""
+    """Read a GEOS cubed sphere: corners of faces, (6, j + 1, i + 1), in degrees."""
     names = "corner_lons", "corner_lats"
     lon, lat = (numbers(variables[name], name) for name in names)
     if lon.ndim != 3 or min(lon.shape[1:]) < 2:
@@ -176,7 +176,7 @@ def read_geos(variables: Variables, choices: Choices) -> Cells:
 
 
 def read_icon_corners(variables: Variables, choices: Choices) -> Cells:
-    """Read cells of ICON by their corners, (cell, 3), in radians unless units say otherwise."""
+    """Read ICON cells by their corners, (cell, 3), in radians unless units say otherwise."""
     names = "clon_vertices", "clat_vertices"
     lon, lat = (numbers(variables[name], name) for name in names)
     if lon.ndim != 2:

@@ -28,7 +28,7 @@ _NAMES = {
     "Exodus": r"coord[xyz]?|coor_names|connect\d+|e(b|l)_.*|edge_type\d+|ebepecnt\d+|"
     r"global_id\d*|time_whole|info_records|qa_records",
 }
-# Attributes of a mesh of UGRID that name variables.
+# Attributes of a UGRID mesh that name variables.
 _TOPOLOGY = re.compile(r".*_(connectivity|coordinates)")
 
 
@@ -62,7 +62,7 @@ def describing(variables: Variables, cells: Cells) -> set[str]:
 
 
 def kept_of_target(variables: Variables, cells: Cells) -> tuple[set[str], dict[str, str]]:
-    """Return the variables of a target that belong in results, and attributes for fields."""
+    """Return the variables of a target that belong in results, and the attributes for fields."""
     if cells.format == "HEALPix":
         mapping = healpix_mapping(variables)
         return describing(variables, cells), {"grid_mapping": str(mapping)}

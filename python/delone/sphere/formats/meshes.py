@@ -62,7 +62,7 @@ def _cells(
 
 
 def topologies(variables: Variables) -> list[str]:
-    """Return the names of the meshes of UGRID that have faces."""
+    """Return the names of the UGRID meshes that have faces."""
     return [
         name
         for name, part in variables.items()
@@ -71,7 +71,7 @@ def topologies(variables: Variables) -> list[str]:
 
 
 def read_ugrid(variables: Variables, choices: Choices) -> Cells:
-    """Read the faces of a mesh of UGRID."""
+    """Read the faces of a UGRID mesh."""
     known = topologies(variables)
     name, location = choices.name, "face"
     if name is not None and name not in known and name in variables:
@@ -162,7 +162,7 @@ def _ordered(variables: Variables, names: list[str]) -> tuple[str, str] | None:
 
 
 def read_esmf(variables: Variables, choices: Choices) -> Cells:
-    """Read a mesh in the format of ESMF; numbers of nodes start at 1."""
+    """Read a mesh in the ESMF format; node numbers start at 1."""
     given = variables["nodeCoords"]
     both = numbers(given, "nodeCoords")
     if both.ndim != 2 or both.shape[1] != 2:
@@ -186,7 +186,7 @@ def read_esmf(variables: Variables, choices: Choices) -> Cells:
 
 
 def read_mpas(variables: Variables, choices: Choices, attributes: dict[str, Any]) -> Cells:
-    """Read the cells of MPAS: numbers start at 1, and angles are in radians."""
+    """Read MPAS cells: numbers start at 1, and angles are in radians."""
     if str(attributes.get("on_a_sphere", "YES")).strip().upper() not in {"YES", "Y"}:
         raise InputError("the mesh of MPAS is planar (on_a_sphere is not YES)")
     axes = "xVertex", "yVertex", "zVertex"
@@ -204,7 +204,7 @@ def read_mpas(variables: Variables, choices: Choices, attributes: dict[str, Any]
 
 
 def read_icon(variables: Variables, choices: Choices) -> Cells:
-    """Read the triangles of ICON: (3, cell), numbers from 1, angles in radians."""
+    """Read ICON triangles: (3, cell), numbers from 1, angles in radians."""
     vectors = _nodes(variables, ("vlon", "vlat"), choices, fixed=False)
     table = variables["vertex_of_cell"]
     centers = variables.get("clon")
@@ -219,7 +219,7 @@ def read_icon(variables: Variables, choices: Choices) -> Cells:
 
 
 def read_fesom(variables: Variables, choices: Choices) -> Cells:
-    """Read a mesh of FESOM: numbers from 1, angles in degrees; fields are at nodes."""
+    """Read a FESOM mesh: numbers from 1, angles in degrees; fields are at nodes."""
     names = "lon", "lat"
     vectors = _nodes(variables, names, choices, fixed=True)
     cells, dims = _three(variables, "triag_nodes", len(vectors))
@@ -299,7 +299,7 @@ def read_exodus(variables: Variables, choices: Choices) -> Cells:
 
 
 def _exodus_nodes(variables: Variables) -> Floats:
-    """Return the nodes of Exodus, which are vectors."""
+    """Return the nodes of an Exodus file, which are vectors."""
     if "coord" in variables:
         found = numbers(variables["coord"], "coord").T
     else:
@@ -314,7 +314,7 @@ def _exodus_nodes(variables: Variables) -> Floats:
 
 
 def read_uxarray(given: Any, choices: Choices) -> Cells:
-    """Read a grid of uxarray by its attributes; its longitudes are in degrees."""
+    """Read a uxarray grid by its attributes; its longitudes are in degrees."""
     table = given.face_node_connectivity
     lon, lat = given.node_lon, given.node_lat
     variables = {"node_lon": lon, "node_lat": lat}

@@ -91,7 +91,7 @@ _LAST = (
 
 
 def read_cells(given: Any, choices: Choices) -> Cells:
-    """Return the cells of an xarray dataset, or of a grid of uxarray."""
+    """Return the cells of an xarray dataset, or of a uxarray grid."""
     found = _read(given, choices)
     if choices.cells is not None and found.format not in {"UGRID", "FESOM"}:
         raise InputError(

@@ -147,7 +147,7 @@ def _halfway(values: NDArray[Any], name: str, axis: int, degrees: bool) -> Float
 
 
 def _met(bounds: NDArray[Any], degrees: bool, choices: Choices) -> tuple[Floats, int]:
-    """Return bounds with those that differ by rounding errors made equal, and how many moved."""
+    """Make bounds that differ by rounding errors equal; return them, and how many were moved."""
     found = bounds.astype(np.float64)
     if bounds.ndim != 2 or bounds.shape[1] != 2 or len(bounds) < 2:
         return found, 0
@@ -313,7 +313,7 @@ def _between(variables: Variables, names: Pair, choices: Choices) -> dict[str, A
 
 
 def healpix_mapping(variables: Variables) -> str | None:
-    """Return the name of the variable that describes HEALPix."""
+    """Return the name of the variable that describes the HEALPix grid."""
     for name, part in variables.items():
         if str(part.attrs.get("grid_mapping_name", "")).casefold() == "healpix":
             return name
@@ -321,7 +321,7 @@ def healpix_mapping(variables: Variables) -> str | None:
 
 
 def read_healpix(variables: Variables, choices: Choices) -> Cells:
-    """Read the pixels of HEALPix: all, or those that a coordinate numbers."""
+    """Read HEALPix pixels: all, or those whose numbers a coordinate lists."""
     name = healpix_mapping(variables)
     assert name is not None
     attrs = variables[name].attrs

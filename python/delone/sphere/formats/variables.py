@@ -1,4 +1,4 @@
-"""Variables of datasets: units, coordinates of corners, and numbers of nodes."""
+"""Variables of datasets: units, coordinates of corners, and node numbers."""
 
 from __future__ import annotations
 
