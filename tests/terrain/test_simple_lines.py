@@ -218,6 +218,19 @@ def bay(seed):
     return TIN.from_points(np.column_stack((xy, z)), boundary=[outline], holes=[hole])
 
 
+def cliff(seed):
+    """A wall between neighboring doubles: of the three levels in it, two have the same line."""
+    random = np.random.default_rng(seed)
+    y = np.arange(41.0)
+    foot = 64.0 + random.integers(0, 4, len(y))
+    wall = [(foot, 0.5), (np.nextafter(foot, np.inf), 3.5)]
+    xy = random.random((400, 2)) * [128, 40]
+    xy = xy[np.abs(xy[:, 0] - 66) > 6]
+    z = np.where(xy[:, 0] < 66, 0.5, 3.5) + 1.5 * np.sin(xy[:, 0] / 5) * np.cos(xy[:, 1] / 4)
+    edges = [np.column_stack((x, y, np.full(len(y), height))) for x, height in wall]
+    return TIN.from_points(np.column_stack((xy, z)), breaklines=edges)
+
+
 def sides_of(lines):
     """Return how often there is each side of lines, whatever its direction."""
     return Counter(frozenset(map(tuple, side.tolist())) for side in pieces(lines))
@@ -233,7 +246,7 @@ def area(ring):
     return sum(a * d - b * c for (a, b), (c, d) in pairwise(points))
 
 
-SURFACES = {"hills": lambda seed: hills(seed, 1200), "lattice": lattice, "bay": bay}
+SURFACES = {"hills": lambda seed: hills(seed, 1200), "lattice": lattice, "bay": bay, "cliff": cliff}
 
 
 @pytest.mark.parametrize("kind", SURFACES)
@@ -260,6 +273,32 @@ def test_bands_have_the_borders_of_contours(kind, seed, tolerance):
     assert sum(map(area, rings_of(few))) == sum(map(area, rings_of(every)))
     assert len(few) + few.flattened == len(every)
     assert shapely.is_valid(few.to_shapely()).all()
+
+
+def heights_beside(found):
+    """Return the lowest heights of the polygons on both sides of each border."""
+    polygon = np.repeat(np.arange(len(found)), np.diff(found.polygon_starts))
+    beside = {}
+    for ring, low in zip(rings_of(found), found.low[polygon].tolist(), strict=True):
+        for border in sides_of([ring]):
+            beside.setdefault(border, []).append(low)
+    return {border: lows for border, lows in beside.items() if len(lows) == 2}
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_borders_of_bands_two_levels_apart_stay(seed):
+    tin = cliff(seed)
+    levels = [0.0, 1.0, 2.0, 3.0, 4.0]
+    every, few = tin.bands(levels), tin.bands(levels, simplify=1e3)
+    steep = {side for side, lows in heights_beside(every).items() if abs(lows[0] - lows[1]) == 2}
+    assert len(steep) > 40
+    # Contours of both levels pass there, and keep the points in which they touch.
+    lines = sides_of(lines_of(tin.contours(levels, simplify=1e3)))
+    assert all(lines[side] == 2 for side in steep)
+    after = heights_beside(few)
+    assert steep <= after.keys()
+    assert steep == {side for side, lows in after.items() if abs(lows[0] - lows[1]) == 2}
+    assert few.straightened > 0
 
 
 def test_a_polygon_that_becomes_flat_is_counted():
