@@ -458,6 +458,12 @@ class Bands(ReadOnly, Filed, Layer):
         MissingExtraError
             shapely is not installed.
 
+        Notes
+        -----
+        Polygons share their vertices and do not overlap. `shapely.coverage_is_valid` may be False
+        nevertheless: it examines the rings of a polygon one by one, so at a vertex where a hole
+        touches its outer ring, it takes what is beside the polygon for a part of it.
+
         Examples
         --------
         >>> from delone.terrain import TIN
@@ -696,12 +702,14 @@ def _within(
 def bands(tin: Surface, levels: Floats, min_area: float, simplify: float, max_points: int) -> Bands:
     """Return the polygons between contours of a surface."""
     from delone.terrain.borders import simplified_borders
+    from delone.terrain.holes import with_holes_inside
 
     smallest, tolerance = _least(min_area, "min_area"), _least(simplify, "simplify")
     made, _, left_out = _within(_core.contour_bands2, tin, levels, max_points, 1)
     used = tin.z[on_surface(tin)]
     ends = np.concatenate(([used.min()], levels, [used.max()]))
-    found, rows = Rings(made.points, made.rings, made.polygons), np.arange(len(made.bands))
+    drawing = Rings(made.points, made.rings, made.polygons)
+    found, rows = with_holes_inside(drawing, made.bands), np.arange(len(made.bands))
     if smallest:
         found, rows = without_small(found, smallest)
     small, straightened, flattened = len(made.bands) - len(rows), 0, 0
