@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from delone.io import GeometrySet
-from delone.io.registry import output_suffixes
+from delone.io.writing import output_suffixes
 
 pytest.importorskip("pyproj")
 geopandas = pytest.importorskip("geopandas")

@@ -73,7 +73,7 @@ ALLOWED: dict[str, dict[str, str]] = {
         "length > 0": EXACT,
     },
     "io/landxml_survey.py": {"np.hypot(*away) <= max(_GAP, _SAME * length)": CHECK},
-    "io/registry.py": {"distance > 0": CHECK},
+    "io/reading.py": {"distance > 0": CHECK},
     "_tiling/location.py": {
         "distance + error <= limit": FILTER,
         "distance - error > limit": FILTER,

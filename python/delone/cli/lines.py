@@ -16,7 +16,8 @@ from delone.errors import (
     FileFormatError,
     NonFiniteError,
 )
-from delone.io.registry import is_text, line_numbers
+from delone.io.reading import line_numbers
+from delone.io.registry import is_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -20,7 +20,7 @@ from delone.cli.report import Stopwatch, summary
 from delone.cli.show import print_json, print_report
 from delone.errors import CrossingSegmentsError, NonFiniteError
 from delone.io import read_geometries
-from delone.io.registry import WITH_CRS
+from delone.io.writing import WITH_CRS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from delone._base.atomic import check_target, replacing
 from delone.cli.exits import writing
-from delone.io.registry import writer
+from delone.io.writing import writer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

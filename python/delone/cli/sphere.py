@@ -32,7 +32,7 @@ from delone.cli.referenced import Crs, require_known
 from delone.cli.report import Stopwatch
 from delone.cli.show import show_figures, spinner
 from delone.io import input_suffixes, read_points
-from delone.io.registry import writer
+from delone.io.writing import writer
 
 if TYPE_CHECKING:
     from collections.abc import Callable

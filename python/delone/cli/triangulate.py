@@ -39,7 +39,7 @@ from delone.cli.solid import (
     triangulated_space,
 )
 from delone.io import GeometrySet, PointSet
-from delone.io.registry import WITH_CRS, writer
+from delone.io.writing import WITH_CRS, writer
 
 if TYPE_CHECKING:
     from delone import TetMesh

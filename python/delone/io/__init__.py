@@ -11,18 +11,17 @@ from delone.io.meshfile import MeshFile
 from delone.io.pointset import PointSet
 from delone.io.quantized_mesh import write_quantized_mesh
 from delone.io.raster import raster_suffixes, write_raster
-from delone.io.registry import (
-    input_suffixes,
+from delone.io.reading import (
     line_numbers,
-    output_suffixes,
     read_geometries,
     read_mesh,
     read_points,
     read_surface,
-    write_mesh,
 )
+from delone.io.registry import input_suffixes
 from delone.io.surfacefile import LeftOutWarning, SurfaceFile
 from delone.io.tileset import write_tileset
+from delone.io.writing import output_suffixes, write_mesh
 
 __all__ = [
     "GeometrySet",
