@@ -91,7 +91,7 @@ def test_surfaces_of_a_part(survey: Path) -> None:
         read_points(survey, bounds=(3, 0, 1, 1))
     table = survey.with_name("table.csv")
     table.write_text("x,y,z\n0,0,0\n1,0,0\n0,1,0\n", encoding="utf-8")
-    with pytest.raises(FileFormatError, match="bounds are for LAS and LAZ files"):
+    with pytest.raises(FileFormatError, match="bounds are for LAS, LAZ and EPT"):
         read_points(table, bounds=(0, 0, 1, 1))
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.counting import agreed
+from delone._base.counting import agreed, counted
 from delone.cli.constraints import read_input
 from delone.cli.exits import reading
 from delone.cli.options import (
@@ -28,6 +28,7 @@ from delone.cli.report import finite_or_none
 from delone.cli.show import print_json, print_rows, spinner
 from delone.cli.solid import is_space
 from delone.io import GeometrySet
+from delone.io.registry import is_lidar, is_point_tiles
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -99,23 +100,24 @@ def _described(
 
     Points are 3-D (`space`) by default as `delone.cli.solid.is_space` decides.
     """
-    las = source.suffix.lower() in (".las", ".laz")
     with reading():
+        tiles = _header(source) if is_point_tiles(source) and source.exists() else None
+        classified = is_lidar(source) if tiles is None else "classification" in tiles["dimensions"]
         survey = read_input(
             source,
             columns=columns,
             classes=classes,
             layer=layer,
-            attributes=("classification",) if las else (),
+            attributes=("classification",) if classified else (),
         )
-        header = _las_header(source) if las else {}
+        header = tiles or (_header(source) if is_lidar(source) else {})
         solid = is_space(source, space, survey)
     survey = referenced(survey, crs, planar=True, quiet=False)
     if isinstance(survey, GeometrySet):
         figures = _figures(survey.all_points()) | _of_geometries(survey)
     else:
         figures = _figures(survey, solid=solid) | header
-    figures["file_bytes"] = source.stat().st_size
+    figures.setdefault("file_bytes", source.stat().st_size)
     return figures, _rows(figures)
 
 
@@ -124,10 +126,10 @@ def _of_geometries(survey: GeometrySet) -> dict[str, Any]:
     return {"features": len(survey), "kinds": dict(Counter(kinds).most_common())}
 
 
-def _las_header(source: Path) -> dict[str, Any]:
-    from delone.io.las import describe as header
+def _header(source: Path) -> dict[str, Any]:
+    from delone.io import ept, las
 
-    return header(source)
+    return ept.describe(source) if is_point_tiles(source) else las.describe(source)
 
 
 def _figures(survey: PointSet, *, solid: bool = False) -> dict[str, Any]:
@@ -192,6 +194,10 @@ def _rows(figures: dict[str, Any]) -> list[Row]:
         rows.append(
             ("LAS", f"version {figures['las_version']}, point format {figures['point_format']}")
         )
+    if "ept_data" in figures:
+        nodes = counted(figures["ept_nodes"], "node")
+        rows.append(("EPT", f"{nodes} of type {figures['ept_data']}"))
+    if "dimensions" in figures:
         rows.append(("dimensions", ", ".join(figures["dimensions"])))
     return rows
 

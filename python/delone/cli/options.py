@@ -72,7 +72,8 @@ PlaneColumns = Annotated[
     str | None, typer.Option(help="Columns of x and y, by name or by number from 0.")
 ]
 Classes = Annotated[
-    str | None, typer.Option(help="Keep only points of these classes (LAS, LAZ), such as 2 or 2,6.")
+    str | None,
+    typer.Option(help="Keep only points of these classes (LAS, LAZ, EPT), such as 2 or 2,6."),
 ]
 Layer = Annotated[str | None, typer.Option(help="Layer, if the file has several.")]
 MeshOutput = Annotated[list[Path] | None, outputs("File to write", output_suffixes())]

@@ -29,7 +29,7 @@ from delone.io import (
 )
 from delone.io.dem import is_raster
 from delone.io.netcdf import is_netcdf
-from delone.io.registry import holds_surface
+from delone.io.registry import holds_surface, is_lidar
 from delone.terrain import TIN
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ Nodata = Annotated[
 Window = Annotated[
     str | None,
     typer.Option(
-        help="Rasters, LAS, LAZ: read only what is inside left,bottom,right,top; fast for COPC."
+        help="Rasters, lidar: read only what is inside left,bottom,right,top; fast for COPC, EPT."
     ),
 ]
 EastingFirst = Annotated[
@@ -236,7 +236,7 @@ def surface(
             raise Failure(f"{source}: {option} is for rasters: .tif .tiff .asc .nc", Exit.USAGE)
     if options.window is not None and not any(map(_has_window, (source, *others))):
         raise Failure(
-            f"{source}: --window is for rasters, LAS and LAZ: .tif .tiff .asc .nc .las .laz",
+            f"{source}: --window is for rasters and lidar: .tif .tiff .asc .nc .las .laz ept.json",
             Exit.USAGE,
         )
     if options.voids and options.max_edge is None:
@@ -254,7 +254,7 @@ def surface(
                 columns=split(options.columns),
                 classes=class_numbers(options.classes),
                 layer=options.layer,
-                bounds=four_of(options.window) if options.window and _is_las(source) else None,
+                bounds=four_of(options.window) if options.window and is_lidar(source) else None,
             )
         for name in ("breaklines", "soft_breaklines", "boundary", "level"):
             path = getattr(options, name)
@@ -285,12 +285,8 @@ def other_surface(
     return surface(file, alone, watch, say)
 
 
-def _is_las(file: Path) -> bool:
-    return file.suffix.lower() in (".las", ".laz")
-
-
 def _has_window(file: Path) -> bool:
-    return is_raster(file) or _is_las(file)
+    return is_raster(file) or is_lidar(file)
 
 
 def _read_raster(source: Path, options: SurfaceOptions) -> PointSet:

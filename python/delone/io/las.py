@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 Box = tuple[float, float, float, float]
 
-__all__ = ["describe", "look", "read_points", "read_range"]
+__all__ = ["describe", "look", "read_points", "read_range", "read_within", "require_some"]
 
 _BLOCK = 1 << 19
 # Writers put 50,000 points into a chunk; the decoder allocates memory for all of them.
@@ -60,24 +60,46 @@ def read_points(
         raise FileFormatError(
             f"{path}: LAS files always have the coordinates x, y and z; columns cannot be chosen"
         )
+    found = read_within(path, attributes, classes, box, everything=everything)
+    require_some(path, len(found), classes, box)
+    return found
+
+
+def read_within(
+    path: Path,
+    attributes: Sequence[str],
+    classes: Sequence[int] | None,
+    box: Box | None,
+    *,
+    everything: bool = False,
+    count: int | None = None,
+) -> PointSet:
+    """Read the points of some classes in a box, perhaps none, of a file with `count` points."""
     laspy = _laspy(path)
     _check_records(path)
     with _corrupt_is_an_error(path), laspy.open(path) as file:
         _check_claim(path, file)
+        has = int(file.header.point_count)
+        if count not in (None, has):
+            raise FileFormatError(f"{path} has {has} points, and the octree says {count}")
         if everything:
             names = file.header.point_format.dimension_names
             attributes = [name for name in names if name not in ("X", "Y", "Z")]
         _check_names(path, file.header, attributes)
         points, z, further = _read(_source(path, file, box), classes, attributes, box)
         crs = _crs(path, file.header)
-    if not len(points) and box is not None:
+    return PointSet(points=points, z=z, attributes=further, crs=crs, source=str(path))
+
+
+def require_some(path: Path, count: int, classes: Sequence[int] | None, box: Box | None) -> None:
+    """Reject a choice that leaves none of the points of a file."""
+    if not count and box is not None:
         raise FileFormatError(f"{path} contains no points inside of bounds={box}" + _of(classes))
-    if not len(points) and classes is not None:
+    if not count and classes is not None:
         wanted = ", ".join(map(str, classes))
         raise FileFormatError(
             f"{path} contains no points of class {wanted}; delone info lists its classes"
         )
-    return PointSet(points=points, z=z, attributes=further, crs=crs, source=str(path))
 
 
 def describe(path: Path) -> dict[str, Any]:

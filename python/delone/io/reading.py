@@ -15,8 +15,11 @@ from delone.io.registry import (
     READERS,
     SHEETS,
     existing,
+    is_lidar,
+    is_point_tiles,
     is_text,
     module_of,
+    reader_of,
     suffix_of,
 )
 
@@ -53,14 +56,15 @@ def read_points(
     path : str or path-like
         CSV, TSV, TXT, XYZ, PTS, DAT or GeoJSON (these also .gz, .xz, .bz2), npy, npz, LAS, LAZ,
         GeoPackage, Shapefile, FlatGeobuf, Parquet, GeoParquet, Arrow, Feather, LandXML, DXF, the
-        cells of GeoTIFF, ESRI ASCII grids and NetCDF (`read_raster`), or the vertices of a mesh.
+        cells of GeoTIFF, ESRI ASCII grids and NetCDF (`read_raster`), the vertices of a mesh, or
+        the file ``ept.json`` of Entwine Point Tiles (EPT).
     columns : sequence of str or int, optional
         Columns of x, y and (optionally) z, by name or by number from 0. By default columns are
         recognized by their names; without names the first two or three are used, unless the first
         looks like point numbers, which is an error. For files of geometries: the one attribute
         that is z.
     classes : sequence of int, optional
-        Keep the points of these classes (LAS and LAZ).
+        Keep the points of these classes (LAS, LAZ and EPT).
     layer : str, optional
         The layer, for files that have several; the array of an npz file; the surface of LandXML,
         or ``"CgPoints"`` for its survey points; the band of a raster.
@@ -68,11 +72,12 @@ def read_points(
         Further columns to read. "all" means all that are not coordinates: those of text files are
         numbers if every field is one, otherwise strings; the number of the column is appended to
         repeated names. Survey points of LandXML have ``name``, ``code`` and ``desc``; DXF and OFF
-        have none.
+        have none. Dimensions of EPT have the names of LAS, such as ``classification``.
     chord : float, optional
         The maximum distance of chords from the curves of a DXF file; see `read_surface`.
     bounds : sequence of four float, optional
-        Left, bottom, right, top: only points inside or on the border (LAS and LAZ; quick for COPC).
+        Left, bottom, right, top: only points inside or on the border (LAS, LAZ and EPT; quick for
+        COPC and EPT, where points outside are not decoded).
 
     Returns
     -------
@@ -99,10 +104,11 @@ def read_points(
     Integers beyond 2**53 and, in tables, decimals with more digits than a double can distinguish
     are rejected. No memory is allocated for what a header declares before the size of the file
     confirms it. Nothing that a file refers to is opened, except the parts of a Shapefile, the
-    journals of a GeoPackage, and the NODE file next to ELE and POLY. Files beside a file that are
-    links to others are rejected. Compressed files that contain more than 64 MiB (text and JSON:
-    8 MiB) and more than 200 times their size are rejected; decompress them first. Lines of text
-    longer than 16 MiB are rejected as well.
+    journals of a GeoPackage, the NODE file next to ELE and POLY, and the nodes of EPT, whose order
+    is that of their levels and positions. Files beside a file that are links to others are
+    rejected. Compressed files that contain more than 64 MiB (text and JSON: 8 MiB) and more than
+    200 times their size are rejected; decompress them first. Lines of text longer than 16 MiB are
+    rejected as well.
 
     Examples
     --------
@@ -120,19 +126,18 @@ def read_points(
     array([-3., -7.])
     """
     file = existing(path)
-    suffix = suffix_of(file)
-    module = module_of(READERS, suffix, file, "read")
-    if classes is not None and suffix not in (".las", ".laz"):
-        raise FileFormatError(f"{file}: only LAS and LAZ files have classes")
+    module = reader_of(file)
+    if classes is not None and not is_lidar(file):
+        raise FileFormatError(f"{file}: only LAS, LAZ and EPT have classes")
     options = {"columns": columns} | _chord(file, chord) | _attributes(attributes, module)
-    if module.__name__.endswith(".las"):
+    if is_lidar(file):
         options |= {"classes": classes, "bounds": bounds}
     elif bounds is not None:
-        raise FileFormatError(f"{file}: bounds are for LAS and LAZ files, and for read_raster")
+        raise FileFormatError(f"{file}: bounds are for LAS, LAZ and EPT, and for read_raster")
     if module.__name__.endswith((".vector", ".arrays", ".landxml", ".dxf", ".dem")):
         options["layer"] = layer
     elif layer is not None:
-        raise FileFormatError(f"{file}: {suffix} files have no layers")
+        raise FileFormatError(f"{file}: {file.suffix.lower()} files have no layers")
     read: Callable[..., PointSet] = module.read_points
     return read(file, **options)
 
@@ -234,6 +239,8 @@ def read_geometries(
     array([<LINESTRING (0 0, 4 4)>], dtype=object)
     """
     file = existing(path)
+    if is_point_tiles(file):
+        raise FileFormatError(f"{file} describes points, not geometries: use read_points")
     modules = {suffix: name for suffix, name in READERS.items() if name in GEOMETRIES}
     module = module_of(modules, suffix_of(file), file, "read geometries from")
     read: Callable[..., GeometrySet] = module.read_geometries

@@ -31,9 +31,12 @@ __all__ = [
     "holds_geometries",
     "holds_surface",
     "input_suffixes",
+    "is_lidar",
+    "is_point_tiles",
     "is_text",
     "mesh_suffixes",
     "module_of",
+    "reader_of",
     "suffix_of",
 ]
 
@@ -59,6 +62,8 @@ READERS = {
     ".off": "off",
     **dict.fromkeys((".tif", ".tiff", ".asc", ".nc"), "dem"),
 }
+# The file that describes an octree of lidar points, whatever its folder.
+_POINT_TILES = "ept.json"
 SHEETS = ("landxml", "dxf")
 GEOMETRIES = ("vector", "parquet", *SHEETS)
 MESH_READERS = {
@@ -108,13 +113,23 @@ def holds_geometries(path: str | os.PathLike[str]) -> bool:
     file = existing(path)
     module = READERS.get(suffix_of(file))
     if module != "parquet":
-        return module == "vector"
+        return module == "vector" and not is_point_tiles(file)
     return bool(importlib.import_module("delone.io.parquet").holds_geometries(file))
 
 
 def holds_surface(path: str | os.PathLike[str]) -> bool:
     """Return whether the suffix is that of a file which `read_surface` reads."""
     return READERS.get(Path(path).suffix.lower()) in SHEETS
+
+
+def is_point_tiles(path: str | os.PathLike[str]) -> bool:
+    """Return whether the name is that of the file which describes Entwine Point Tiles."""
+    return Path(path).name == _POINT_TILES
+
+
+def is_lidar(path: str | os.PathLike[str]) -> bool:
+    """Return whether a file has points with classes: LAS, LAZ or Entwine Point Tiles."""
+    return READERS.get(Path(path).suffix.lower()) == "las" or is_point_tiles(path)
 
 
 def suffix_of(file: Path) -> str:
@@ -137,6 +152,13 @@ def module_of(modules: Mapping[str, str], suffix: str, file: Path, verb: str) ->
             f"{file}: cannot {verb} {what}; known suffixes are {' '.join(modules)}"
         )
     return importlib.import_module(f"delone.io.{modules[suffix]}")
+
+
+def reader_of(file: Path) -> Any:
+    """Return the module that reads the points of a file."""
+    if is_point_tiles(file):
+        return importlib.import_module("delone.io.ept")
+    return module_of(READERS, suffix_of(file), file, "read")
 
 
 def existing(path: str | os.PathLike[str]) -> Path:

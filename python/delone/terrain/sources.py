@@ -136,7 +136,7 @@ class Sources(HullTiling):
         bounds: Sequence[float] | None = None,
         **options: Any,
     ) -> Self:
-        r"""Create a surface from a file: LandXML, DXF, or points in LAS, LAZ, CSV and others.
+        r"""Create a surface from a file: LandXML, DXF, or points in LAS, LAZ, EPT, CSV and others.
 
         Parameters
         ----------
@@ -150,7 +150,7 @@ class Sources(HullTiling):
         chord : float, optional
             For curves in DXF, as for `delone.io.read_surface`.
         bounds : sequence of four float, optional
-            The part of a LAS or LAZ file to read, as for `delone.io.read_points`.
+            The part of LAS, LAZ or EPT to read, as for `delone.io.read_points`.
         **options
             Options of `from_surface` for LandXML and DXF, else of `from_points`.
 
@@ -182,7 +182,7 @@ class Sources(HullTiling):
             if columns is not None:
                 raise InputError(f"{path}: surfaces have x, y and z, and no columns")
             if bounds is not None:
-                raise InputError(f"{path}: bounds are for LAS and LAZ files")
+                raise InputError(f"{path}: bounds are for LAS, LAZ and EPT")
             found = io.read_surface(path, layer=layer, order=order, chord=chord)
             return cls.from_surface(found, **options)
         if chord is not None:
