@@ -229,14 +229,25 @@ def test_a_point_moves_to_its_target(method: str) -> None:
     assert np.array_equal(mesh.smooth(0, method).points, mesh.points)
 
 
-def test_a_point_moves_part_of_the_way() -> None:
-    # The target would turn tetrahedra over: half of the way, or a quarter, does not.
-    points = np.array(
-        [(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4), (0.1, 0.1, 0.1), (0.4, 0.4, 0.4)]
-    )
-    mesh = delone.improve((points, delone.Delaunay(points).simplices), min_angle=0, max_iter=0)
-    better = mesh.smooth(1, "laplace", min_angle=70)
-    assert better.quality().smallest_dihedral.min() >= mesh.quality().smallest_dihedral.min()
+def test_a_point_moves_all_or_part_of_the_way() -> None:
+    cloud = delone.Delaunay(np.random.default_rng(8).random((60, 3)))
+    mesh = delone.improve(cloud, min_angle=0)
+    ends = np.concatenate((mesh.edges, mesh.edges[:, ::-1]))
+    inside = np.setdiff1d(np.arange(60), mesh.boundary)
+    shares = []
+    for v in inside.tolist():
+        target = mesh.points[ends[ends[:, 0] == v, 1]].mean(axis=0)
+        others = np.arange(60) != v
+        moved = mesh.smooth(1, "laplace", fixed=others, min_angle=70)
+        assert np.array_equal(moved.points[others], mesh.points[others])
+        step = np.linalg.norm(moved.points[v] - mesh.points[v])
+        shares.append(step / np.linalg.norm(target - mesh.points[v]))
+        # The angles around the point are all below the bound: none becomes smaller.
+        near = (mesh.simplices == v).any(axis=1)
+        before, after = (each.quality().smallest_dihedral for each in (mesh, moved))
+        assert after[(moved.simplices == v).any(axis=1)].min() >= before[near].min()
+    found = {round(float(np.log2(share)), 6) for share in shares if share}
+    assert found <= {0, -1, -2, -3, -4} and len(found) > 2
 
 
 @pytest.mark.parametrize("method", ["coarsen", *METHODS])
