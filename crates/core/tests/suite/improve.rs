@@ -511,6 +511,92 @@ fn a_vertex_is_removed_only_if_it_may_be() {
     ));
 }
 
+/// The smallest sine of a dihedral angle, where those of obtuse angles count twice.
+fn quality(p: [Point3; 4]) -> f64 {
+    let minus = |a: Point3, b: Point3| [0, 1, 2].map(|k| a[k] - b[k]);
+    let cross =
+        |a: Point3, b: Point3| [(1, 2), (2, 0), (0, 1)].map(|(i, j)| a[i] * b[j] - a[j] * b[i]);
+    let dot = |a: Point3, b: Point3| (0..3).map(|k| a[k] * b[k]).sum::<f64>();
+    // The faces opposite each corner, inward.
+    let faces = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
+    let n = faces.map(|[a, b, c]: [usize; 3]| cross(minus(p[b], p[a]), minus(p[c], p[a])));
+    let mut worst = f64::INFINITY;
+    for i in 0..4 {
+        for j in 0..i {
+            let cosine = -dot(n[i], n[j]) / (dot(n[i], n[i]) * dot(n[j], n[j])).sqrt();
+            let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+            worst = worst.min(if cosine < 0.0 { 2.0 * sine } else { sine });
+        }
+    }
+    worst
+}
+
+#[test]
+fn a_vertex_goes_to_its_best_neighbor() {
+    let (points, simplices) = shaken(4, 0.5);
+    let places = |v: &[i32; 4]| v.map(|v| points[v as usize]);
+    let mut choices = 0;
+    for v in 0..points.len() as i32 {
+        if !points[v as usize].iter().all(|x| (0.6..3.4).contains(x)) {
+            continue;
+        }
+        let removable: Vec<bool> = (0..points.len() as i32).map(|w| w == v).collect();
+        let given = Task {
+            min_angle: 1.0,
+            removable: &removable,
+            ..task(&points, &simplices)
+        };
+        let made = coarsen(given, &Watch::idle()).unwrap();
+        // The worst new tetrahedron for each neighbor, if all are positive.
+        let star: Vec<[i32; 4]> = simplices
+            .iter()
+            .filter(|t| t.contains(&v))
+            .copied()
+            .collect();
+        let neighbors: BTreeSet<i32> = star.as_flattened().iter().copied().collect();
+        let worst = |u: i32| {
+            let others = star.iter().filter(|t| !t.contains(&u));
+            let new = others.map(|t| t.map(|w| if w == v { u } else { w }));
+            let positive = |t: &[i32; 4]| {
+                let [a, b, c, d] = places(t);
+                orient3d(a, b, c, d) == Sign::Positive
+            };
+            let value = |t: [i32; 4]| {
+                if positive(&t) {
+                    quality(places(&t))
+                } else {
+                    0.0
+                }
+            };
+            new.map(value).fold(f64::INFINITY, f64::min)
+        };
+        let all: Vec<f64> = neighbors
+            .iter()
+            .filter(|&&u| u != v)
+            .map(|&u| worst(u))
+            .collect();
+        let best = all.iter().copied().fold(0.0, f64::max);
+        let old: BTreeSet<[i32; 4]> = simplices.iter().map(|t| sorted(*t)).collect();
+        let new = made
+            .simplices
+            .iter()
+            .filter(|t| !old.contains(&sorted(**t)));
+        let found = new
+            .map(|t| quality(places(t)))
+            .fold(f64::INFINITY, f64::min);
+        if made.counts.removed == 1 {
+            assert!((found - best).abs() < 1e-9, "{v}: {found} {best}");
+            choices += usize::from(all.iter().filter(|&&q| q > 0.02).count() > 1);
+        }
+    }
+    assert!(choices > 3, "{choices}");
+}
+
+fn sorted(mut t: [i32; 4]) -> [i32; 4] {
+    t.sort_unstable();
+    t
+}
+
 #[test]
 fn an_interruption_ends_other_changes() {
     let (points, simplices) = shaken(14, 0.6);

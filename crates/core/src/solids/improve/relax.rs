@@ -208,6 +208,25 @@ mod tests {
     const CORNER: [Vector; 3] = [[0.0, 2.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 2.0]];
 
     #[test]
+    fn both_measures_are_kept() {
+        let bounds = |least: f64, acute: f64| Bounds {
+            least: [least; 2],
+            acute: [acute; 2],
+        };
+        let before = bounds(0.2, 0.3);
+        for (least, acute, kept) in [
+            (0.2, 0.3, true),
+            (0.19, 0.3, false),
+            (0.2, 0.25, false),
+            (0.5, 0.5, true),
+        ] {
+            assert_eq!(bounds(least, acute).keep(before, 0.4), kept);
+        }
+        // Above the bound anything goes.
+        assert!(bounds(0.1, 0.1).keep(before, 0.1));
+    }
+
+    #[test]
     fn a_circumcenter_is_multiplied_by_the_volume() {
         let (volume, moment) = centered(CORNER);
         assert_eq!((volume, moment), (8.0, [8.0; 3]));
