@@ -1,6 +1,6 @@
-"""Convex hulls, and 3-D point location, side by side with SciPy.
+"""Convex hulls, intersections of half-spaces, and 3-D point location, side by side with SciPy.
 
-One thread for SciPy, which has no more; delone's hull works on one, its location on one and on all.
+One thread for SciPy, which has no more; delone's hulls work on one, its location on one and on all.
 Medians of warm calls, which take turns. ``python benchmarks/hull.py --help`` has options.
 """
 
@@ -12,6 +12,7 @@ import scipy.spatial
 from rounds import alternate
 
 from delone import ConvexHull, Delaunay, datasets
+from delone.compat.scipy import HalfspaceIntersection
 
 
 def line(name: str, ours: float, theirs: float) -> None:
@@ -41,6 +42,25 @@ def ball(n: int) -> Any:
     rng = np.random.default_rng(0)
     ways = rng.normal(size=(n, 3))
     return ways * (rng.random(n) ** (1 / 3) / np.linalg.norm(ways, axis=1))[:, None]
+
+
+def halfspaces(runs: int) -> None:
+    """Half-spaces around a ball: all touch it, or most are redundant; corners and dual facets."""
+    sizes = [(d, n) for d in (2, 3) for n in (100, 1_000, 10_000)] + [(4, 500), (5, 200), (6, 100)]
+    for name, far in (("tangent", 1.0), ("redundant", 2.0)):
+        for d, n in sizes:
+            rng = np.random.default_rng(n + d)
+            normals = rng.normal(size=(n, d))
+            normals /= np.linalg.norm(normals, axis=1)[:, None]
+            rows = np.column_stack((normals, -rng.uniform(1.0, far, n)))
+            point = rng.uniform(-0.2, 0.2, d)
+            kinds = {"delone": HalfspaceIntersection, "SciPy": scipy.spatial.HalfspaceIntersection}
+            # The lists of facets are part of the work.
+            calls = {
+                label: lambda kind=kind, rows=rows, point=point: kind(rows, point).dual_facets
+                for label, kind in kinds.items()
+            }
+            line(f"half-spaces, {name}, {d}-D, {n:,}", *alternate(calls, runs).values())
 
 
 def location(n: int, runs: int) -> None:
@@ -74,6 +94,7 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=3, help="warm calls of each")
     options = parser.parse_known_args()[0]
     print(f"{'':38} {'delone s':>10} {'SciPy s':>10} {'times delone':>12}")
+    halfspaces(options.runs)
     hulls(options.n, options.runs)
     location(options.n, options.runs)
 

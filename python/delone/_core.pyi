@@ -29,6 +29,7 @@ __all__ = [
     "FacePairs",
     "Faults",
     "FlippedTriangulation",
+    "Halfspaces",
     "Hull3",
     "HullN",
     "ImprovedMesh",
@@ -104,6 +105,7 @@ __all__ = [
     "gradients_local2",
     "gradients_local3",
     "graph_components",
+    "halfspaces",
     "hull2",
     "hull3",
     "hull_n",
@@ -739,6 +741,32 @@ class FlippedTriangulation:
         """The vertices of each flip, (flips, 4); None if they were not recorded."""
 
 @final
+class Halfspaces:
+    """The intersection of half-spaces around a point."""
+
+    @property
+    def dual_points(self) -> NDArray[np.float64]:
+        """The dual point of each half-space, (n, d)."""
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Half-spaces of the simplices of the dual hull, sorted, (m, d)."""
+    @property
+    def corner_of(self) -> NDArray[np.int32]:
+        """The corner of each simplex, (m,)."""
+    @property
+    def facets(self) -> NDArray[np.int32]:
+        """Half-spaces that meet in each corner, one corner after another, (k,)."""
+    @property
+    def starts(self) -> NDArray[np.int32]:
+        """Start of the half-spaces of each corner, and the end, (c + 1,)."""
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The corners, infinite where there is none, (c, d)."""
+    @property
+    def equations(self) -> NDArray[np.float64]:
+        """Outer unit normals and offsets of the dual points of each corner, (c, d + 1)."""
+
+@final
 class Hull3:
     """The convex hull of 3-D points."""
 
@@ -763,7 +791,7 @@ class Hull3:
 
 @final
 class HullN:
-    """The convex hull of points with four to nine coordinates."""
+    """The convex hull of points with four to eight coordinates."""
 
     @property
     def simplices(self) -> NDArray[np.int32]:
@@ -1933,6 +1961,14 @@ def gradients_local3(
 def graph_components(edges: NDArray[np.int32], npoints: int) -> NDArray[np.int32]:
     """The number of the connected component of each row."""
 
+def halfspaces(
+    rows: NDArray[np.float64], point: NDArray[np.float64]
+) -> tuple[Halfspaces | None, str, NDArray[np.int32]]:
+    """The intersection of half-spaces `a x + b <= 0` around a point, in two to eight
+    dimensions. Without corners: "not inside" or "too close", with the row of a half-
+    space, or "flat", with those that span all.
+    """
+
 def hull2(points: NDArray[np.float64]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """The extreme points in 2-D, counter-clockwise, and the rows that repeat them."""
 
@@ -1940,9 +1976,7 @@ def hull3(points: NDArray[np.float64]) -> Hull3 | None:
     """The hull of 3-D points; None if they span no volume."""
 
 def hull_n(points: NDArray[np.float64]) -> HullN:
-    """The convex hull of points with four to nine coordinates: 8-D half-spaces are vectors
-    in 9-D.
-    """
+    """The convex hull of points with four to eight coordinates."""
 
 def imprint_surface3(
     points: NDArray[np.float64], faces: NDArray[np.int32], tolerance: float, workers: int

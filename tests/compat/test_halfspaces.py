@@ -302,26 +302,126 @@ def test_without_an_end() -> None:
         HalfspaceIntersection(prism, np.array([0.5, 0.5, 0]))
 
 
-def test_half_spaces_are_added() -> None:
-    rows, point = tangents(60, 3, seed=1)
-    found = HalfspaceIntersection(rows[:30], point, incremental=True)
+def same(found: Any, other: Any) -> None:
+    """Whether two intersections of the same half-spaces are equal."""
+    assert found.dual_facets == other.dual_facets
+    for name in ("halfspaces", "dual_points", "dual_vertices", "intersections", "dual_equations"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(other, name))
+    assert found.dual_volume == pytest.approx(other.dual_volume, rel=1e-12)
+    assert found.dual_area == pytest.approx(other.dual_area, rel=1e-12)
+
+
+@pytest.mark.parametrize("options", ["", "Qt"])
+@pytest.mark.parametrize("d", [2, 3, 4])
+def test_half_spaces_are_added(d: int, options: str) -> None:
+    rows, point = tangents(60, d, seed=1)
+    # Some of the first half-spaces are multiples of later ones, and some become redundant.
+    rows[3], rows[50:54] = 2 * rows[40], rows[10:14] * np.r_[d * [1.0], 0.6]
+    found = HalfspaceIntersection(rows[:30], point, incremental=True, qhull_options=options)
     before = found.dual_vertices
-    found.add_halfspaces(rows[30:])
-    whole = HalfspaceIntersection(rows, point)
-    np.testing.assert_array_equal(found.intersections, whole.intersections)
-    assert found.dual_facets == whole.dual_facets
-    np.testing.assert_array_equal(found.dual_vertices, whole.dual_vertices)
-    assert len(before) < len(found.dual_vertices)
-    with pytest.raises(QhullError, match="half-space 60"):
-        found.add_halfspaces([(1, 0, 0, 50)])
+    for start, end in ((30, 31), (31, 31), (31, 50), (50, 60)):
+        found.add_halfspaces(rows[start:end].reshape(-1, d + 1))
+        same(found, HalfspaceIntersection(rows[:end], point, qhull_options=options))
+    whole = HalfspaceIntersection(rows, point, qhull_options=options)
+    assert not {*before.tolist()} <= {*found.dual_vertices.tolist()}
+    outside = np.r_[np.eye(d)[0], 50]
+    for more in (outside, np.vstack((rows[:2], outside, outside))):
+        with pytest.raises(QhullError, match=f"half-space {60 + 2 * (more.ndim - 1)}, "):
+            found.add_halfspaces(more)
     with pytest.raises(ValueError, match="shape"):
-        found.add_halfspaces([(1, 0, 0)])
-    assert found.nineq == 60 and len(found.halfspaces) == 60
-    np.testing.assert_array_equal(found.intersections, whole.intersections)
+        found.add_halfspaces([np.ones(d)])
+    assert found.nineq == 60
+    same(found, whole)
     found.close()
     for closed in (found, whole):
         with pytest.raises(RuntimeError):
             closed.add_halfspaces(rows)
+
+
+@pytest.mark.parametrize("d", [2, 3, 4, 6])
+def test_corners_and_planes_are_rounded_once(d: int) -> None:
+    for seed, far in enumerate((0.0, 500.0, 5e6)):
+        rows, point = tangents(8 * d if d < 6 else 20, d, seed, far)
+        found = HalfspaceIntersection(rows, point)
+        inside = [*map(Fraction, point.tolist())]
+        for facet, corner, plane in zip(
+            found.dual_facets, found.intersections, found.dual_equations, strict=True
+        ):
+            exact = solved([[*map(Fraction, row[:d]), -Fraction(row[d])]
+                            for row in rows[facet].tolist()])  # fmt: skip
+            assert exact is not None
+            step = [x - p for x, p in zip(exact, inside, strict=True)]
+            if np.isfinite(corner).all():
+                # Not all corners that two roundings change by a unit are excluded by the bound.
+                assert np.abs(corner - [*map(float, exact)]).max() <= np.spacing(abs(corner)).max()
+                assert (corner == [*map(float, exact)]).mean() > 0.9
+            length = math.sqrt(sum(x * x for x in step))
+            sign = 1 if np.isfinite(corner).all() else -1
+            expected = [*(float(sign * x) / length for x in step), -sign / length]
+            np.testing.assert_allclose(plane, expected, rtol=1e-14, atol=1e-15)
+
+
+@pytest.mark.parametrize("d", [2, 3, 5])
+def test_nothing_depends_on_rows_and_units(d: int) -> None:
+    rng = np.random.default_rng(d)
+    sides = np.column_stack((signs(d), np.full(2**d, -1.0)))
+    # Many boundaries through the corners of a cross-polytope, and some that cut one off.
+    rows = np.vstack((sides, [[*np.eye(d)[0], -0.5]], rng.integers(1, 4, (6, d + 1)) * -1.0))
+    point = rng.uniform(-0.4, 0.1, d) / d
+    for options in ("", "Qt"):
+        found = HalfspaceIntersection(rows, point, qhull_options=options)
+        facets = {frozenset(facet) for facet in found.dual_facets}
+        order = rng.permutation(len(rows))
+        mixed = HalfspaceIntersection(rows[order], point, qhull_options=options)
+        assert {frozenset(order[facet].tolist()) for facet in mixed.dual_facets} == facets
+        powers = 2.0 ** rng.integers(-200, 200, (len(rows), 1))
+        same_units = HalfspaceIntersection(rows * powers, point, qhull_options=options)
+        assert same_units.dual_facets == found.dual_facets
+        np.testing.assert_array_equal(same_units.intersections, found.intersections)
+        np.testing.assert_array_equal(same_units.dual_points, found.dual_points)
+        # The whole space times a power of two.
+        unit = 2.0**70
+        scaled = HalfspaceIntersection(rows * np.r_[np.ones(d), unit], point * unit,
+                                       qhull_options=options)  # fmt: skip
+        assert scaled.dual_facets == found.dual_facets
+        np.testing.assert_array_equal(scaled.intersections, found.intersections * unit)
+
+
+def test_numbers_of_any_size() -> None:
+    # The box from -1e-160 to 1e160 in both coordinates, which products of doubles do not reach.
+    rows = np.array(
+        [(1e-150, 0, -1e10), (-1e150, 0, -1e-10), (0, 1e-200, -1e-40), (0, -1, -1e-160)]
+    )
+    found = HalfspaceIntersection(rows, np.zeros(2))
+    expected = np.array([(x, y) for x in (-1e-160, 1e160) for y in (-1e-160, 1e160)])
+    places = {tuple(corner) for corner in found.intersections}
+    assert len(places) == 4
+    for corner in expected:
+        assert any(np.allclose(corner, place, rtol=1e-15, atol=0) for place in places)
+    assert [*map(len, found.dual_facets)] == 4 * [2]
+    with pytest.raises(QhullError, match="too close to the boundary of half-space 1"):
+        HalfspaceIntersection([(1, 0, -1), (-1e200, 0, -1e-200), (0, 1, -1)], [0, 0])
+
+
+def test_what_holds_everywhere_is_redundant() -> None:
+    # 0 x - 1 <= 0: its boundary is at infinity.
+    everywhere = np.vstack((SQUARE, [(0, 0, -1)]))
+    found = HalfspaceIntersection(everywhere, np.array([0.3, 0.6]))
+    assert found.dual_vertices.tolist() == [0, 1, 2, 3]
+    assert found.dual_points[4].tolist() == [0, 0]
+    # Without an end, its boundary takes the place of infinity.
+    found = HalfspaceIntersection(everywhere[[0, 2, 4]], np.array([0.3, 0.6]))
+    assert found.dual_facets == [[0, 1], [2, 0], [1, 2]]
+    assert np.isinf(found.intersections).all(axis=1).tolist() == [False, True, True]
+    with pytest.raises(QhullError, match="half-space 4, "):
+        HalfspaceIntersection(np.vstack((SQUARE, [(0, 0, 0)])), np.array([0.3, 0.6]))
+
+
+def test_a_cone_has_no_dual_volume() -> None:
+    with pytest.raises(QhullError, match=r"all boundaries meet in \[2\.0, 3\.0\]"):
+        HalfspaceIntersection([(-1, 0, 2), (0, -1, 3), (-1, -1, 5)], [5, 5])
+    with pytest.raises(QhullError, match="no corner"):
+        HalfspaceIntersection(np.empty((0, 3)), [5, 5])
 
 
 @pytest.mark.parametrize("name", ["outside", "on a side", "nan point", "infinite"])

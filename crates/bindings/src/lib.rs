@@ -104,7 +104,9 @@ mod _core {
         qualities, sizes, transforms,
     };
     #[pymodule_export]
-    use super::ndim::{HullN, LazyN, LocatorN, hull_n, orientations_n, triangulate_n};
+    use super::ndim::{
+        Halfspaces, HullN, LazyN, LocatorN, halfspaces, hull_n, orientations_n, triangulate_n,
+    };
     #[pymodule_export]
     use super::overlap::{CellGrid, CheckedCells, PlaneCells, SharedCells};
     #[pymodule_export]

@@ -1,13 +1,16 @@
 //! Triangulations in four to eight dimensions as arrays, and point location in them.
 
 use delone_core::base::arrays::Arrays;
+use delone_core::base::error::Error;
 use delone_core::locate::find;
+use delone_core::ndim::halfspaces::{Trouble, intersect};
 use delone_core::ndim::{self, Hyper, Lazy, Weighed};
-use numpy::PyReadonlyArray2;
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{
-    Column, Table, column, columns, flattened, in_many, number_rows, numbers, rows, shaped,
+    Column, Table, column, columns, flat, flattened, in_many, number_rows, numbers, rows, shaped,
+    table,
 };
 use crate::errors::Outcome;
 use crate::given::simplices_of;
@@ -30,7 +33,7 @@ pub fn triangulate_n(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> Outco
     })
 }
 
-/// The convex hull of points with four to nine coordinates.
+/// The convex hull of points with four to eight coordinates.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct HullN {
     /// Vertices of the facets, positively oriented behind a point inside, (m, d).
@@ -45,29 +48,92 @@ pub struct HullN {
     pub duplicates: Table<i32>,
 }
 
-/// The convex hull of points with four to nine coordinates: 8-D half-spaces are vectors in 9-D.
+/// The convex hull of points with four to eight coordinates.
 #[pyfunction]
 pub fn hull_n(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> Outcome<HullN> {
-    if columns(&points) == 9 {
-        return faceted::<9, 10, 16>(py, &points);
-    }
-    in_many!(columns(&points), D, N, P => faceted::<D, N, P>(py, &points))
+    in_many!(columns(&points), D, N, P => {
+        let points: &[[f64; D]] = rows(&points, "points")?;
+        let found = watched(py, |watch| ndim::hull::<D, N, P>(points, watch))?;
+        Ok(HullN {
+            simplices: number_rows(py, &found.simplices)?,
+            neighbors: number_rows(py, &found.neighbors)?,
+            facet_of: numbers(py, found.plane),
+            inside: numbers(py, found.inside),
+            duplicates: number_rows(py, &found.duplicates)?,
+        })
+    })
 }
 
-/// The hull of points with `D` coordinates.
-fn faceted<const D: usize, const V: usize, const P: usize>(
+/// The intersection of half-spaces around a point.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct Halfspaces {
+    /// The dual point of each half-space, (n, d).
+    pub dual_points: Table<f64>,
+    /// Half-spaces of the simplices of the dual hull, sorted, (m, d).
+    pub simplices: Table<i32>,
+    /// The corner of each simplex, (m,).
+    pub corner_of: Column<i32>,
+    /// Half-spaces that meet in each corner, one corner after another, (k,).
+    pub facets: Column<i32>,
+    /// Start of the half-spaces of each corner, and the end, (c + 1,).
+    pub starts: Column<i32>,
+    /// The corners, infinite where there is none, (c, d).
+    pub points: Table<f64>,
+    /// Outer unit normals and offsets of the dual points of each corner, (c, d + 1).
+    pub equations: Table<f64>,
+}
+
+/// An intersection, or None and why there is none, with rows.
+type Intersected = (Option<Halfspaces>, &'static str, Column<i32>);
+
+/// The intersection of half-spaces `a x + b <= 0` around a point, in two to eight dimensions. Without
+/// corners: "not inside" or "too close", with the row of a half-space, or "flat", with those that span all.
+#[pyfunction]
+pub fn halfspaces(
     py: Python<'_>,
-    points: &PyReadonlyArray2<'_, f64>,
-) -> Outcome<HullN> {
-    let points: &[[f64; D]] = rows(points, "points")?;
-    let found = watched(py, |watch| ndim::hull::<D, V, P>(points, watch))?;
-    Ok(HullN {
-        simplices: number_rows(py, &found.simplices)?,
-        neighbors: number_rows(py, &found.neighbors)?,
-        facet_of: numbers(py, found.plane),
-        inside: numbers(py, found.inside),
-        duplicates: number_rows(py, &found.duplicates)?,
-    })
+    rows: PyReadonlyArray2<'_, f64>,
+    point: PyReadonlyArray1<'_, f64>,
+) -> Outcome<Intersected> {
+    match columns(&rows) {
+        3 => intersected::<2, 3, 4>(py, &rows, &point),
+        4 => intersected::<3, 4, 4>(py, &rows, &point),
+        5 => intersected::<4, 5, 4>(py, &rows, &point),
+        6 => intersected::<5, 6, 8>(py, &rows, &point),
+        7 => intersected::<6, 7, 8>(py, &rows, &point),
+        8 => intersected::<7, 8, 8>(py, &rows, &point),
+        9 => intersected::<8, 9, 8>(py, &rows, &point),
+        other => Err(Error::Shape(format!("half-spaces have {other} columns, not 3 to 9")).into()),
+    }
+}
+
+/// The intersection of half-spaces with `D` coordinates.
+fn intersected<const D: usize, const V: usize, const P: usize>(
+    py: Python<'_>,
+    halfspaces: &PyReadonlyArray2<'_, f64>,
+    point: &PyReadonlyArray1<'_, f64>,
+) -> Outcome<Intersected> {
+    let halfspaces: &[[f64; V]] = rows(halfspaces, "halfspaces")?;
+    let wrong = |_| Error::Shape(format!("the interior point does not have {D} coordinates"));
+    let point: [f64; D] = flat(point, "interior_point")?.try_into().map_err(wrong)?;
+    let found = watched(py, |watch| intersect::<D, V, P>(halfspaces, point, watch))?;
+    let (reason, trouble) = match found {
+        Ok(corners) => {
+            let found = Halfspaces {
+                dual_points: table(py, corners.dual)?,
+                simplices: number_rows(py, &corners.simplices)?,
+                corner_of: numbers(py, corners.corner),
+                facets: numbers(py, corners.facets),
+                starts: numbers(py, corners.starts),
+                points: table(py, corners.points)?,
+                equations: table(py, corners.equations)?,
+            };
+            return Ok((Some(found), "", numbers(py, Vec::new())));
+        }
+        Err(Trouble::NotInside(row)) => ("not inside", vec![row]),
+        Err(Trouble::TooClose(row)) => ("too close", vec![row]),
+        Err(Trouble::Flat(rows)) => ("flat", rows),
+    };
+    Ok((None, reason, numbers(py, trouble)))
 }
 
 /// The orientations of simplices in four to eight dimensions: 1, 0 or -1, exactly.

@@ -8,8 +8,8 @@
 [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]
 
 A half-space ``a x + b <= 0`` that contains the interior point p corresponds to the dual point ``-a
-/ (a p + b)``, and corners of the intersection to facets of the convex hull of the dual points. Here
-the facets are those of the cone of the vectors (a, b), which are not rounded (`dual_facets`).
+/ (a p + b)``, and corners of the intersection to facets of the convex hull of the dual points. The
+core decides with the given numbers, not with dual points, which would have to be rounded.
 Differences from SciPy:
 
 * Facets and corners ascend by their half-spaces. In 2-D and 3-D the vertices of a dual facet are in
@@ -18,37 +18,38 @@ order around it, counter-clockwise as seen from outside; in more dimensions they
 rounding errors, there are several corners, which SciPy merges within a tolerance. * If the
 intersection is unbounded, the dual facet that represents this has an infinite intersection. SciPy
 returns a point outside the intersection there. * Corners are computed from the half-spaces, not
-from the dual hull, and are more accurate. * Points with more than eight coordinates are rejected. *
-`add_halfspaces` recomputes everything.
+from the dual hull, and are correctly rounded, but for rare cases near the middle of two doubles. *
+Points with more than eight coordinates are rejected. * `add_halfspaces` computes the intersection
+of the new half-spaces and of those that are not redundant.
 """
 
 from __future__ import annotations
 
 from fractions import Fraction
 from functools import cached_property
+from itertools import pairwise
+from math import factorial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import hull
+from delone import _core
 from delone._base.masks import is_masked
 from delone._tiling.higher.dimension import MOST
-from delone.compat import dual_facets as duals
-from delone.compat.qhull import DimensionError, QhullError, read_options, told_as_qhull_does
+from delone._tiling.higher.rational import kernel
+from delone.compat.qhull import DimensionError, QhullError, read_options
 from delone.compat.qhull_options import HALFSPACES
 from delone.errors import DtypeError, NonFiniteError, ShapeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._base.types import Floats
+    from delone._base.types import Floats, Indices, Rows
 
 __all__ = ["HalfspaceIntersection"]
 
 # The fewest columns: two coordinates and an offset.
 _FEWEST = 3
-# Sums with more cancellation than this are computed exactly.
-_CANCELED = 0.1
 
 
 class HalfspaceIntersection:
@@ -103,8 +104,13 @@ class HalfspaceIntersection:
     Whether the point is inside, which half-spaces are redundant, which boundaries meet in one
     point, and whether the intersection is bounded are decided exactly, for the given doubles; among
     half-spaces that are multiples of each other, the first one counts. Corners, dual points and
-    measures are rounded. The time is that of a convex hull with one more dimension, several times
-    that of Qhull.
+    measures are rounded. The time is that of a convex hull of the dual points: expected O(n log n)
+    in 2-D and 3-D, and O(n^(ndim // 2)) in more dimensions.
+
+    Dual points are quotients, and most of them are not doubles. A point is outside of a dual facet
+    if the determinant of the rows of its half-spaces has a certain sign, and these rows are given.
+    Rounded dual points decide most signs, with a bound that covers their errors; integers decide
+    the others.
 
     Examples
     --------
@@ -117,6 +123,9 @@ class HalfspaceIntersection:
     ([3, 3, 3, 3, 4], [0, 1, 2, 3, 4])
     """
 
+    dual_points: Floats
+    nineq: int
+
     def __init__(
         self,
         halfspaces: ArrayLike,
@@ -128,7 +137,7 @@ class HalfspaceIntersection:
         text = "" if qhull_options is None else qhull_options
         self._options = read_options(text, incremental=self._open, what=HALFSPACES)
         rows = _as_rows(halfspaces)
-        point = np.asarray(interior_point, dtype=np.float64)
+        point = np.ascontiguousarray(interior_point, dtype=np.float64)
         if point.shape != (rows.shape[1] - 1,):
             raise ShapeError(
                 f"interior_point must have shape ({rows.shape[1] - 1},), got {point.shape}"
@@ -136,50 +145,70 @@ class HalfspaceIntersection:
         self.interior_point = point
         self._set(rows)
 
-    def _set(self, rows: Floats) -> None:
-        """Compute the results for the half-spaces; nothing changes if that fails."""
-        slack = _slack(rows, self.interior_point)
-        with np.errstate(over="ignore", divide="ignore"):
-            points = rows[:, :-1] / -slack[:, None]
-        if not np.isfinite(points).all():
-            row = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
-            raise QhullError(f"interior_point is too close to the boundary of half-space {row}")
-        with told_as_qhull_does(points, "corner of the half-spaces"):
-            facets = duals.cone_facets(rows, slack, triangulated=self._options.triangulated)
-        found = duals.corners(rows, self.interior_point, slack, facets)
-        self.halfspaces, self._facets = rows, facets
-        self.dual_points, self.ndim, self.nineq = points, rows.shape[1] - 1, len(rows)
-        self.intersections, self.dual_equations = found.points, found.equations
-        for name in ("dual_vertices", "_dual_hull"):
+    def _set(self, rows: Floats, kept: Rows | None = None) -> None:
+        """Compute the results for the half-spaces; nothing changes if that fails.
+
+        All but those that are `kept`, ascending, are redundant, and their dual points are known.
+        """
+        point = self.interior_point
+        if not (np.isfinite(rows).all() and np.isfinite(point).all()):
+            raise QhullError("halfspaces and interior_point must be finite")
+        made, why, named = _core.halfspaces(rows if kept is None else rows[kept], point)
+        if made is None:
+            raise QhullError(_reason(why, rows, named if kept is None else kept[named]))
+        dual: Floats = made.dual_points
+        facets: Indices | Rows = made.facets
+        simplices: Indices | Rows = made.simplices
+        if kept is not None:
+            dual = np.empty((len(rows), len(point)))
+            dual[: self.nineq], dual[kept] = self.dual_points, made.dual_points
+            facets, simplices = kept[facets], kept[simplices]
+        self.dual_points, self._facets, self._simplices = dual, facets, simplices
+        self.halfspaces, self._made = rows, made
+        self.ndim, self.nineq = len(point), len(rows)
+        self.intersections, self.dual_equations = made.points, made.equations
+        if self._options.triangulated:
+            self.intersections = made.points[made.corner_of]
+            self.dual_equations = made.equations[made.corner_of]
+        for name in ("dual_facets", "dual_vertices", "_dual_measures"):
             self.__dict__.pop(name, None)
 
-    @property
+    @cached_property
     def dual_facets(self) -> list[list[int]]:
         """The half-spaces that meet in each corner."""
-        return [list(facet) for facet in self._facets.vertices]
-
-    @property
-    def dual_area(self) -> float:
-        """Surface area of the dual hull; in 2-D its perimeter."""
-        return self._dual_hull.area
-
-    @property
-    def dual_volume(self) -> float:
-        """Volume of the dual hull; in 2-D its area."""
-        return self._dual_hull.volume
-
-    @cached_property
-    def _dual_hull(self) -> hull.ConvexHull:
-        """The hull of the rounded dual points, for its measures."""
-        return hull.ConvexHull(self.dual_points[self.dual_vertices])
+        simplices: list[list[int]] = self._simplices.tolist()
+        if self._options.triangulated or len(simplices) == len(self._made.points):
+            return simplices
+        rows, starts = self._facets.tolist(), self._made.starts.tolist()
+        return [rows[start:end] for start, end in pairwise(starts)]
 
     @cached_property
     def dual_vertices(self) -> NDArray[np.signedinteger[Any]]:
         """The half-spaces that are not redundant."""
-        return np.unique(np.concatenate(self._facets.vertices))
+        return np.unique(self._facets).astype(np.int_)
+
+    @property
+    def dual_area(self) -> float:
+        """Surface area of the dual hull; in 2-D its perimeter."""
+        return self._dual_measures[0]
+
+    @property
+    def dual_volume(self) -> float:
+        """Volume of the dual hull; in 2-D its area."""
+        return self._dual_measures[1]
+
+    @cached_property
+    def _dual_measures(self) -> tuple[float, float]:
+        """Area and volume of the dual hull: sums over the pyramids from its middle to simplices."""
+        middle = self.dual_points[self.dual_vertices].mean(axis=0)
+        volumes = np.abs(np.linalg.det(self.dual_points[self._simplices] - middle))
+        volumes /= factorial(self.ndim)
+        equations = self._made.equations
+        heights = -(equations[:, :-1] @ middle + equations[:, -1])[self._made.corner_of]
+        return float((self.ndim * volumes / heights).sum()), float(volumes.sum())
 
     def add_halfspaces(self, halfspaces: ArrayLike, restart: bool = False) -> None:
-        """Add half-spaces, and recompute everything.
+        """Add half-spaces.
 
         Parameters
         ----------
@@ -210,7 +239,9 @@ class HalfspaceIntersection:
         more = _as_rows(np.atleast_2d(np.asanyarray(halfspaces)))
         if more.shape[1] != self.ndim + 1:
             raise ShapeError(f"halfspaces must have shape (k, {self.ndim + 1}), got {more.shape}")
-        self._set(np.concatenate((self.halfspaces, more)))
+        rows = np.concatenate((self.halfspaces, more))
+        # What is redundant stays so.
+        self._set(rows, np.concatenate((self.dual_vertices, np.arange(self.nineq, len(rows)))))
 
     def close(self) -> None:
         """End incremental mode; `add_halfspaces` raises from then on."""
@@ -244,24 +275,26 @@ def _as_rows(halfspaces: ArrayLike) -> Floats:
     return rows
 
 
-def _slack(rows: Floats, point: Floats) -> Floats:
-    """Return ``a @ p + b`` of each half-space, with its exact sign, which must be negative."""
-    if not (np.isfinite(rows).all() and np.isfinite(point).all()):
-        raise QhullError("halfspaces and interior_point must be finite")
-    with np.errstate(over="ignore", invalid="ignore"):
-        terms = np.column_stack((rows[:, :-1] * point, rows[:, -1]))
-        slack: Floats = terms.sum(axis=1)
-        doubtful = ~(np.abs(slack) > _CANCELED * np.abs(terms).sum(axis=1))
-    place = [*map(Fraction, point.tolist()), Fraction(1)]
-    outside = slack >= 0
-    for i in np.flatnonzero(doubtful | ~np.isfinite(slack)).tolist():
-        exact = sum(Fraction(a) * x for a, x in zip(rows[i].tolist(), place, strict=True))
-        outside[i] = exact >= 0
-        slack[i] = duals.rounded(Fraction(exact))
-    if outside.any():
-        row = int(np.flatnonzero(outside)[0])
-        raise QhullError(
-            f"interior_point is not a feasible point: it is not strictly inside half-space {row}, "
-            f"{rows[row].tolist()}"
-        )
-    return slack
+def _reason(why: str, rows: Floats, named: Indices | Rows) -> str:
+    """Why there is no intersection with corners."""
+    if why == "flat":
+        meeting = _common_point(rows[named])
+        if meeting is None:
+            return "there is no corner of the half-spaces: their boundaries are parallel to a line"
+        return f"all boundaries meet in {meeting}, so the dual points span no volume"
+    row = int(named[0])
+    if why == "too close":
+        return f"interior_point is too close to the boundary of half-space {row}"
+    return (
+        f"interior_point is not a feasible point: it is not strictly inside half-space {row}, "
+        f"{rows[row].tolist()}"
+    )
+
+
+def _common_point(rows: Floats) -> list[float] | None:
+    """The point in which the boundaries of independent half-spaces meet, if it is the only one."""
+    count, width = rows.shape
+    if count != width - 1:
+        return None
+    *point, end = kernel([[*map(Fraction, row)] for row in rows.tolist()])
+    return [float(x / end) for x in point] if end else None

@@ -105,6 +105,64 @@ pub fn invert<const D: usize, const P: usize>(a: &Matrix<D, P>) -> Inverse<D, P>
             }
         }
     }
+    judged(a, b)
+}
+
+/// The same for small matrices by cofactors, without branches: less accurate for thin simplices, which
+/// the bounds say.
+#[inline(always)]
+pub fn invert_small<const D: usize, const P: usize>(a: &Matrix<D, P>) -> Inverse<D, P> {
+    let mut b = [[0.0; P]; D];
+    if D == 2 {
+        b[0][0] = a[1][1];
+        b[0][1] = -a[0][1];
+        b[1][0] = -a[1][0];
+        b[1][1] = a[0][0];
+    } else if D == 3 {
+        for i in 0..3 {
+            let (p, q) = (&a[(i + 1) % 3], &a[(i + 2) % 3]);
+            for k in 0..3 {
+                let (l, m) = ((k + 1) % 3, (k + 2) % 3);
+                b[k][i] = p[l] * q[m] - p[m] * q[l];
+            }
+        }
+    } else if D == 4 {
+        // Pairs of rows by pairs of columns; a cofactor is a sum of three of them.
+        let minor = |i: usize, k: usize, l: usize| a[i][k] * a[i + 1][l] - a[i][l] * a[i + 1][k];
+        let pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+        let (low, high) = (
+            pairs.map(|(k, l)| minor(0, k, l)),
+            pairs.map(|(k, l)| minor(2, k, l)),
+        );
+        let at = |k: usize, l: usize| k * (7 - k) / 2 + l - k - 1;
+        for i in 0..4 {
+            let (row, of) = (&a[i ^ 1], if i < 2 { &high } else { &low });
+            for k in 0..4 {
+                let mut rest = [0; 3];
+                for (n, l) in (0..4).filter(|&l| l != k).enumerate() {
+                    rest[n] = l;
+                }
+                let [l, m, n] = rest;
+                let sum = row[l] * of[at(m, n)] - row[m] * of[at(l, n)] + row[n] * of[at(l, m)];
+                b[k][i] = if (i + k) % 2 == 0 { sum } else { -sum };
+            }
+        }
+    } else {
+        return invert(a);
+    }
+    let determinant: f64 = (0..D).map(|k| a[0][k] * b[k][0]).sum();
+    let f = 1.0 / determinant;
+    for row in &mut b {
+        for x in row {
+            *x *= f;
+        }
+    }
+    judged(a, b)
+}
+
+/// An approximate inverse with what is proven about it.
+#[inline(always)]
+fn judged<const D: usize, const P: usize>(a: &Matrix<D, P>, b: Matrix<D, P>) -> Inverse<D, P> {
     let (norm, defect) = proven(a, &b);
     Inverse { b, norm, defect }
 }

@@ -42,6 +42,7 @@ mod decide;
 mod filter;
 mod fine;
 mod frame;
+pub mod halfspaces;
 mod hull;
 mod lazy;
 mod location;

@@ -12,8 +12,8 @@ const BITS: u32 = 61;
 /// The most primes that are tried: integers are faster than more.
 const MOST: usize = 40;
 
-/// The most rows of a determinant: those of a simplex in 9-D, where hulls are found, and a point.
-pub const ROWS: usize = 10;
+/// The most rows of a determinant: those of a simplex in 8-D and a point.
+pub const ROWS: usize = 9;
 
 /// A prime between 2^61 and 2^62, and what Montgomery's multiplication needs.
 #[derive(Clone, Copy)]

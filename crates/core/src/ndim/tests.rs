@@ -5,7 +5,7 @@ mod brute;
 mod hulls;
 mod lazily;
 mod regular;
-mod sets;
+pub(super) mod sets;
 mod simplices;
 
 use std::collections::BTreeSet;

@@ -1,0 +1,104 @@
+//! Facets by rounded dual points, with proven bounds.
+//!
+//! Let c be inside of the hull, g*_i = q_i - c the true vectors of the vertices, G* the matrix with these
+//! rows, and g_i the rounded ones: |g_i - g*_i| <= 6 u |g_i| + s, as `sites` describes. The plane of the
+//! facet is y* g* = 1, where G* y* = (1, ..., 1), and w is outside if y* g*_w > 1, for c is inside.
+//!
+//! By the proof of `ndim::filter`: let B be an approximate inverse, |I - G B| <= defect, where the bound
+//! also covers its roundings, and n >= |B|. Then |I - G* B| <= e = defect + |G - G*| n, and if e < 1/2,
+//! |G*^-1| <= n / (1 - e). For any vector y, |y - y*| is at most |G*^-1| times the length of
+//! 1 - G* y; a component of that, computed with g_i, errs by at most (D + 3) u (sum |g_ik y_k| + 1)
+//! and (6 u |g_i| + s) |y|.
+//!
+//! The value y g_w - 1 errs by |y - y*| |g*_w| + |y| (6 u |g_w| + s) for what it is made of, and by
+//! (D + 2) u |y| |g_w| + u for roundings: at most q0 + q1 |g_w| with
+//! q1 = |y - y*| + (D + 10) u |y| and q0 = s (|y| + |y - y*|) + 2 u.
+
+use super::sites::Sites;
+use crate::ndim::filter::{LEAST_RESIDUAL, LEAST_VALUE, Matrix, ROUNDED, U, dot, invert_small};
+
+/// What points are tested with: they are outside if y g > 1, certainly if that differs by more than
+/// q0 + q1 |g|.
+#[derive(Clone, Copy)]
+pub struct Plane<const D: usize> {
+    pub y: [f64; D],
+    pub q0: f64,
+    pub q1: f64,
+}
+
+impl<const D: usize> Plane<D> {
+    /// A plane that decides nothing.
+    pub const UNKNOWN: Self = Self {
+        y: [0.0; D],
+        q0: f64::INFINITY,
+        q1: 0.0,
+    };
+
+    /// The plane through sites.
+    #[inline(always)]
+    pub fn new<const V: usize, const P: usize>(
+        sites: &Sites<'_, D, V, P>,
+        vertices: &[u32; D],
+    ) -> Self {
+        let g: Matrix<D, P> = vertices.map(|v| sites.seen[v as usize]);
+        let reach = vertices.map(|v| sites.reach[v as usize]);
+        let inverse = invert_small(&g);
+        let all: f64 = reach.iter().sum();
+        let apart = ROUNDED * (6.0 * U * all + D as f64 * sites.slack);
+        let e = ROUNDED * (inverse.defect + apart * inverse.norm);
+        if e.is_nan() || e >= 0.5 {
+            return Self::UNKNOWN;
+        }
+        let norm = ROUNDED * inverse.norm / (1.0 - e);
+        let mut y = [0.0; P];
+        for k in 0..D {
+            y[k] = inverse.b[k][..D].iter().sum();
+        }
+        // A step of refinement, for inverses by cofactors.
+        let r: [f64; D] = std::array::from_fn(|i| 1.0 - dot(&g[i], &y));
+        for k in 0..D {
+            y[k] += (0..D).map(|i| inverse.b[k][i] * r[i]).sum::<f64>();
+        }
+        let size = ROUNDED * dot(&y, &y).sqrt();
+        let mut squares = 0.0;
+        for i in 0..D {
+            let (mut sum, mut magnitude) = (1.0, 1.0);
+            for k in 0..D {
+                let product = g[i][k] * y[k];
+                sum -= product;
+                magnitude += product.abs();
+            }
+            let rounding =
+                (D + 4) as f64 * U * magnitude + (6.0 * U * reach[i] + sites.slack) * size;
+            let residual: f64 = sum.abs() + ROUNDED * rounding + LEAST_RESIDUAL;
+            squares += residual * residual;
+        }
+        let error = ROUNDED * norm * squares.sqrt();
+        let q1 = ROUNDED * (error + (D + 10) as f64 * U * size);
+        let q0 = ROUNDED * sites.slack * (size + error) + 3.0 * U + LEAST_VALUE;
+        if q0.is_finite() && q1.is_finite() {
+            Self {
+                y: std::array::from_fn(|k| y[k]),
+                q0,
+                q1,
+            }
+        } else {
+            Self::UNKNOWN
+        }
+    }
+
+    /// The value of a site, positive outside, and the bound of its error.
+    #[inline(always)]
+    pub fn value<const V: usize, const P: usize>(
+        &self,
+        sites: &Sites<'_, D, V, P>,
+        w: u32,
+    ) -> (f64, f64) {
+        let g = &sites.seen[w as usize];
+        let mut sum = -1.0;
+        for k in 0..D {
+            sum += self.y[k] * g[k];
+        }
+        (sum, self.q0 + self.q1 * sites.reach[w as usize])
+    }
+}
