@@ -25,6 +25,7 @@ where
 {
 }
 
+impl Number for i64 {}
 impl Number for i128 {}
 impl Number for BigInt {}
 
@@ -42,7 +43,11 @@ impl<const V: usize> Normal<V> {
         vertices: &[u32; D],
         odd: bool,
     ) -> Option<Self> {
-        if let Some(small) = machine(sites) {
+        if let Some(small) = machine(sites, i64::BITS) {
+            let rows = vertices.map(|v| small[v as usize]);
+            return Some(Self::Small(across(rows, odd)?.map(i128::from)));
+        }
+        if let Some(small) = machine(sites, i128::BITS) {
             let rows = vertices.map(|v| small[v as usize].map(i128::from));
             return Some(Self::Small(across(rows, odd)?));
         }
@@ -76,53 +81,45 @@ impl<const V: usize> Normal<V> {
 
     /// The sign of coefficient `i` of a vector in the span of the vectors of the facet: that of the
     /// determinant with the vector in its place, over the determinant, of all coordinates but one for
-    /// which the normal is not zero.
+    /// which the normal, whose components are such determinants, is not zero.
     pub fn share<const D: usize, const P: usize>(
         &self,
         sites: &Sites<'_, D, V, P>,
         vertices: &[u32; D],
+        odd: bool,
         i: usize,
         w: u32,
     ) -> i32 {
-        let skip = match self {
-            Self::Small(y) => y.iter().position(|x| *x != 0),
-            Self::Wide(y) => y.iter().position(|x| *x != BigInt::ZERO),
+        let signs: [i32; V] = match self {
+            Self::Small(y) => y.map(|x| x.signum() as i32),
+            Self::Wide(y) => std::array::from_fn(|k| y[k].cmp(&BigInt::ZERO) as i32),
         };
+        let skip = signs.iter().position(|sign| *sign != 0).unwrap_or(0);
+        let turned = odd != ((D + skip) % 2 == 1);
+        let whole = if turned { -signs[skip] } else { signs[skip] };
         let mut with = *vertices;
         with[i] = w;
-        let k = skip.unwrap_or(0);
-        if let Some(small) = machine(sites) {
-            let at = |v: u32, j: usize| i128::from(small[v as usize][j]);
-            return without(vertices, k, at) * without(&with, k, at);
+        let columns: [usize; D] = std::array::from_fn(|j| j + usize::from(j >= skip));
+        if let Some(small) = machine(sites, i64::BITS) {
+            return whole * turn(with.map(|v| columns.map(|j| small[v as usize][j])));
         }
-        let rows = vertices.map(|v| sites.integers(v));
-        let new = sites.integers(w);
-        let place = |v: u32| vertices.iter().position(|u| *u == v);
-        let at = |v: u32, j: usize| place(v).map_or(&new, |row| &rows[row])[j].clone();
-        without(vertices, k, at) * without(&with, k, at)
+        if let Some(small) = machine(sites, i128::BITS) {
+            let at = |v: u32, j: usize| i128::from(small[v as usize][j]);
+            return whole * turn(with.map(|v| columns.map(|j| at(v, j))));
+        }
+        let rows = with.map(|v| sites.integers(v));
+        whole * turn(rows.map(|row| columns.map(|j| row[j].clone())))
     }
 }
 
-/// The rows as machine integers, if all that elimination computes fits 127 bits.
+/// The rows as machine integers, if all that elimination computes fits integers of so many bits.
 fn machine<'a, const D: usize, const V: usize, const P: usize>(
     sites: &'a Sites<'_, D, V, P>,
+    width: u32,
 ) -> Option<&'a Vec<[i64; V]>> {
     // A step computes the difference of two products of minors.
-    let fits = 2 * minor_bits(D as u32, sites.bits) + 1 < 127;
+    let fits = 2 * minor_bits(D as u32, sites.bits) + 2 < width;
     sites.small.as_ref().filter(|_| fits)
-}
-
-/// The sign of the determinant of rows without column `skip`.
-fn without<T: Number, const D: usize>(
-    rows: &[u32; D],
-    skip: usize,
-    at: impl Fn(u32, usize) -> T,
-) -> i32
-where
-    for<'a> &'a T: Mul<&'a T, Output = T> + Sub<&'a T, Output = T> + Div<&'a T, Output = T>,
-{
-    let columns: [usize; D] = std::array::from_fn(|j| j + usize::from(j >= skip));
-    turn(rows.map(|v| columns.map(|j| at(v, j))))
 }
 
 /// The sign of a determinant.

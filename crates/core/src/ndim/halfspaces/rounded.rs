@@ -10,12 +10,74 @@
 //! 1 - G* y; a component of that, computed with g_i, errs by at most (D + 3) u (sum |g_ik y_k| + 1)
 //! and (6 u |g_i| + s) |y|.
 //!
+//! Coefficients of w with G* are l* = g*_w G*^-1, and l = g_w B differs from them by at most
+//! |G*^-1| (6 u |g_w| + s) for g_w, by |g_w| |G*^-1| e for B, and by (D + 2) u |B| |g_w| for roundings, where
+//! |B| < 2 |G*^-1|.
+//!
 //! The value y g_w - 1 errs by |y - y*| |g*_w| + |y| (6 u |g_w| + s) for what it is made of, and by
 //! (D + 2) u |y| |g_w| + u for roundings: at most q0 + q1 |g_w| with
 //! q1 = |y - y*| + (D + 10) u |y| and q0 = s (|y| + |y - y*|) + 2 u.
 
 use super::sites::Sites;
 use crate::ndim::filter::{LEAST_RESIDUAL, LEAST_VALUE, Matrix, ROUNDED, U, dot, invert_small};
+
+/// What is seen of the vertices of a facet, and an approximate inverse.
+struct Seen<const D: usize, const P: usize> {
+    g: Matrix<D, P>,
+    b: Matrix<D, P>,
+    /// Bounds of |I - G* B| and of |G*^-1|.
+    defect: f64,
+    norm: f64,
+}
+
+impl<const D: usize, const P: usize> Seen<D, P> {
+    /// `None` if nothing is proven.
+    #[inline(always)]
+    fn new<const V: usize>(sites: &Sites<'_, D, V, P>, vertices: &[u32; D]) -> Option<Self> {
+        let g: Matrix<D, P> = vertices.map(|v| sites.seen[v as usize]);
+        let all: f64 = vertices.iter().map(|&v| sites.reach[v as usize]).sum();
+        let inverse = invert_small(&g);
+        let apart = ROUNDED * (6.0 * U * all + D as f64 * sites.slack);
+        let defect = ROUNDED * (inverse.defect + apart * inverse.norm);
+        // A comparison that NaN fails.
+        (defect < 0.5).then(|| Self {
+            g,
+            b: inverse.b,
+            defect,
+            norm: ROUNDED * inverse.norm / (1.0 - defect),
+        })
+    }
+}
+
+/// Coefficients of points with the vertices of a facet.
+pub struct Shares<const D: usize, const P: usize> {
+    b: Matrix<D, P>,
+    q0: f64,
+    q1: f64,
+}
+
+impl<const D: usize, const P: usize> Shares<D, P> {
+    pub fn new<const V: usize>(sites: &Sites<'_, D, V, P>, vertices: &[u32; D]) -> Option<Self> {
+        let Seen {
+            b, defect, norm, ..
+        } = Seen::new(sites, vertices)?;
+        let q1 = ROUNDED * norm * (defect + (2 * D + 16) as f64 * U);
+        let q0 = ROUNDED * norm * sites.slack + LEAST_VALUE;
+        Some(Self { b, q0, q1 })
+    }
+
+    /// A coefficient, and the bound of its error.
+    pub fn value<const V: usize>(
+        &self,
+        sites: &Sites<'_, D, V, P>,
+        i: usize,
+        w: u32,
+    ) -> (f64, f64) {
+        let g = &sites.seen[w as usize];
+        let sum = (0..D).map(|k| g[k] * self.b[k][i]).sum();
+        (sum, self.q0 + self.q1 * sites.reach[w as usize])
+    }
+}
 
 /// What points are tested with: they are outside if y g > 1, certainly if that differs by more than
 /// q0 + q1 |g|.
@@ -40,24 +102,18 @@ impl<const D: usize> Plane<D> {
         sites: &Sites<'_, D, V, P>,
         vertices: &[u32; D],
     ) -> Self {
-        let g: Matrix<D, P> = vertices.map(|v| sites.seen[v as usize]);
-        let reach = vertices.map(|v| sites.reach[v as usize]);
-        let inverse = invert_small(&g);
-        let all: f64 = reach.iter().sum();
-        let apart = ROUNDED * (6.0 * U * all + D as f64 * sites.slack);
-        let e = ROUNDED * (inverse.defect + apart * inverse.norm);
-        if e.is_nan() || e >= 0.5 {
+        let Some(Seen { g, b, norm, .. }) = Seen::new(sites, vertices) else {
             return Self::UNKNOWN;
-        }
-        let norm = ROUNDED * inverse.norm / (1.0 - e);
+        };
+        let reach = vertices.map(|v| sites.reach[v as usize]);
         let mut y = [0.0; P];
         for k in 0..D {
-            y[k] = inverse.b[k][..D].iter().sum();
+            y[k] = b[k][..D].iter().sum();
         }
         // A step of refinement, for inverses by cofactors.
         let r: [f64; D] = std::array::from_fn(|i| 1.0 - dot(&g[i], &y));
         for k in 0..D {
-            y[k] += (0..D).map(|i| inverse.b[k][i] * r[i]).sum::<f64>();
+            y[k] += (0..D).map(|i| b[k][i] * r[i]).sum::<f64>();
         }
         let size = ROUNDED * dot(&y, &y).sqrt();
         let mut squares = 0.0;

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::normal::Normal;
-use super::rounded::Plane;
+use super::rounded::{Plane, Shares};
 use super::sites::Sites;
 use crate::base::error::{Error, Result};
 use crate::base::memory::{self, filled, push};
@@ -33,6 +33,13 @@ pub struct Facet<const D: usize> {
     farthest: (f64, u32),
 }
 
+/// What decides where rounding does not.
+struct Exact<const D: usize, const V: usize, const P: usize> {
+    normal: Normal<V>,
+    /// For ties.
+    shares: Option<Shares<D, P>>,
+}
+
 /// A ridge that one new facet has: its hash, `16 c + k`, and the insertion.
 type Ridge = (u64, u32, u32);
 
@@ -40,8 +47,8 @@ type Ridge = (u64, u32, u32);
 pub struct Hull<'a, const D: usize, const V: usize, const P: usize> {
     pub sites: Sites<'a, D, V, P>,
     pub facets: Vec<Facet<D>>,
-    /// Normals of facets that rounding did not decide.
-    normals: Vec<Option<Box<Normal<V>>>>,
+    /// What is needed for facets that rounding did not decide.
+    normals: Vec<Option<Box<Exact<D, V, P>>>>,
     free: Vec<u32>,
     /// The point after each in the list of its facet.
     next: Vec<u32>,
@@ -165,21 +172,25 @@ impl<'a, const D: usize, const V: usize, const P: usize> Hull<'a, D, V, P> {
     pub fn exact_side(&mut self, c: u32, w: u32) -> i32 {
         // The vectors of a facet are independent.
         self.ensure_normal(c);
-        let normal = self.normals[c as usize].as_ref();
-        normal.map_or(0, |normal| normal.side(&self.sites, w))
+        let exact = self.normals[c as usize].as_ref();
+        exact.map_or(0, |exact| exact.normal.side(&self.sites, w))
     }
 
     /// The normal of a facet.
     pub fn normal(&mut self, c: u32) -> Option<&Normal<V>> {
         self.ensure_normal(c);
-        self.normals[c as usize].as_deref()
+        self.normals[c as usize]
+            .as_deref()
+            .map(|exact| &exact.normal)
     }
 
     fn ensure_normal(&mut self, c: u32) {
         if self.normals[c as usize].is_none() {
             let facet = &self.facets[c as usize];
             let normal = Normal::new(&self.sites, &facet.vertices, facet.odd);
-            self.normals[c as usize] = normal.map(Box::new);
+            let shares = Shares::new(&self.sites, &facet.vertices);
+            let exact = normal.map(|normal| Exact { normal, shares });
+            self.normals[c as usize] = exact.map(Box::new);
         }
     }
 
@@ -201,13 +212,27 @@ impl<'a, const D: usize, const V: usize, const P: usize> Hull<'a, D, V, P> {
                 Ordering::Greater => break,
                 Ordering::Less => {}
             }
-            let normal = self.normals[c as usize].as_ref();
-            let share = normal.map_or(0, |n| n.share(&self.sites, &vertices, i, w));
+            let share = self.share(c, i, w);
             if share != 0 {
                 return share < 0;
             }
         }
         true
+    }
+
+    /// The sign of the coefficient of vertex `i` at a point on the plane of a facet.
+    fn share(&self, c: u32, i: usize, w: u32) -> i32 {
+        let Some(Exact { normal, shares }) = self.normals[c as usize].as_deref() else {
+            return 0;
+        };
+        if let Some(shares) = shares {
+            let (value, bound) = shares.value(&self.sites, i, w);
+            if value.abs() > bound {
+                return if value > 0.0 { 1 } else { -1 };
+            }
+        }
+        let Facet { vertices, odd, .. } = &self.facets[c as usize];
+        normal.share(&self.sites, vertices, *odd, i, w)
     }
 
     /// Keeps a point with the first of some facets that it is outside of, if there is one.
