@@ -83,9 +83,9 @@ def test_only_nodes_that_meet_the_box_are_decoded(
 def test_surfaces_of_a_part(survey: Path) -> None:
     tin = TIN.from_file(survey, bounds=(10, 10, 40, 40), duplicates="min")
     assert tin.min_bound.min() >= 10 and tin.max_bound.max() <= 40 and tin.npoints > 200
-    with pytest.raises(FileFormatError, match=r"no points inside of bounds=\(200.0, .* of class 7"):
+    with pytest.raises(FileFormatError, match=r"no points inside bounds=\(200.0, .* of class 7"):
         read_points(survey, bounds=(200, 0, 300, 1), classes=[7])
-    with pytest.raises(FileFormatError, match="no points inside of bounds"):
+    with pytest.raises(FileFormatError, match="no points inside bounds"):
         read_points(survey, bounds=(200, 0, 300, 1))
     with pytest.raises(InputError, match="in this order"):
         read_points(survey, bounds=(3, 0, 1, 1))

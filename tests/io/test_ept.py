@@ -258,7 +258,7 @@ def test_refused_requests(tmp_path: Path) -> None:
     file = write(tmp_path / "tiles", survey(count=300), "binary")
     for options, message in (
         ({"columns": ["X", "Y"]}, "columns cannot be chosen"),
-        ({"bounds": (200, 200, 300, 300)}, r"no points inside of bounds=\(200"),
+        ({"bounds": (200, 200, 300, 300)}, r"no points inside bounds=\(200"),
         ({"classes": [7]}, "no points of class 7"),
         ({"attributes": ["red"]}, "has no 'red'; it has X, Y, Z, classification"),
         ({"layer": "a"}, "have no layers"),

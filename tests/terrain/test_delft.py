@@ -24,7 +24,7 @@ def ground():
 
 @pytest.fixture(scope="module")
 def borders():
-    """The borders of roads inside of the crop, without heights."""
+    """The borders of roads inside the crop, without heights."""
     geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
     roads = geopandas.read_file(DELFT / "bgt_wegdeel.sqlite")
     lines = shapely.intersection(roads.boundary.values, shapely.box(*CROP))

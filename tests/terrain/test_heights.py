@@ -102,5 +102,5 @@ def test_tolerance_is_for_points_and_for_lines_at_points():
 
 def test_a_boundary_with_some_heights_does_not_lose_them():
     ring = np.array([(1, 1, 5), (3, 1, 5), (6, 6, np.nan)])
-    with pytest.raises(InputError, match=r"outside of the points at \(6, 6\): give it heights"):
+    with pytest.raises(InputError, match=r"outside the points at \(6, 6\): give it heights"):
         TIN.from_points(SQUARE, boundary=[ring])

@@ -43,7 +43,7 @@ def test_a_profile_has_a_gap_at_a_hole_between_triangles_that_share_a_corner():
     # Where the line meets the sides (4, 4)-(5, 5) and (5, 5)-(6, 4).
     assert left == pytest.approx([14 / 3, 14 / 3]) and right == pytest.approx([5.5, 4.5])
     shapely = pytest.importorskip("shapely")
-    with pytest.raises(InputError, match="is outside of the surface"):
+    with pytest.raises(InputError, match="is outside the surface"):
         tin.drape(shapely.LineString(line))
 
 
@@ -60,7 +60,7 @@ def test_a_gap_shorter_than_roundings_is_a_gap(end, backward):
     assert found.points[gap - 1 : gap + 2] == pytest.approx(np.ones((3, 2)), abs=1e-15)
     assert found.z[[gap - 1, gap + 1]] == pytest.approx([1.5, 1.5])
     shapely = pytest.importorskip("shapely")
-    with pytest.raises(InputError, match="is outside of the surface"):
+    with pytest.raises(InputError, match="is outside the surface"):
         tin.drape(shapely.LineString([(0, 0), (3, end)]))
 
 
@@ -217,7 +217,7 @@ def test_a_line_that_touches_peaks_has_their_heights():
     assert found.points[[0, 2, 4]].tolist() == [[0, 2], [2, 2], [4, 2]]
     back = comb(100).profile([(4, 2), (0, 2)])
     np.testing.assert_array_equal(back.distances[::2], 4 - found.distances[::-2])
-    # From outside of the hull, and along the way through a corner of it.
+    # From outside the hull, and along the way through a corner of it.
     square = TIN.from_points([(0, 0, 5), (4, 0, 1), (4, 4, 2), (0, 4, 3)])
     for line, heights in (
         ([(-1, 1), (1, -1)], [5]),
@@ -244,7 +244,7 @@ def test_draped_lines_lose_no_part_that_is_outside():
         [(0, 2), (4, 2), (3, 0.5)],
         [(0, 2), (2, 2)],
     ):
-        with pytest.raises(InputError, match=r"between \(.*\) and \(.*\) is outside of the surf"):
+        with pytest.raises(InputError, match=r"between \(.*\) and \(.*\) is outside the surf"):
             tin.drape(shapely.LineString(line))
     whole = tin.drape(shapely.LineString([(0, 2), (1, 1), (2, 2)]))
     assert shapely.get_coordinates(whole, include_z=True).tolist() == [

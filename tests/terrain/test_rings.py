@@ -142,7 +142,7 @@ def test_a_boundary_that_leaves_the_points(degrees):
 
 def test_a_boundary_between_lines_that_leave_the_points_needs_heights():
     line = [(11, 5, 1), (20, 5, 1)]
-    with pytest.raises(InputError, match=r"outside of the points at \(13, 4\.5\)"):
+    with pytest.raises(InputError, match=r"outside the points at \(13, 4\.5\)"):
         TIN.from_points(BOX, breaklines=[line], boundary=[[(0, 4), (13, 4.5), (13, 5.25), (0, 6)]])
 
 

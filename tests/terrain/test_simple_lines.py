@@ -58,7 +58,7 @@ def require_no_crossing(lines):
 
 
 def around(lines, closed):
-    """Return pairs of a closed line and another line inside of it."""
+    """Return pairs of a closed line and another line inside it."""
     polygons = [
         shapely.Polygon(line) if ring else None for line, ring in zip(lines, closed, strict=True)
     ]

@@ -14,7 +14,7 @@ from delone.terrain import TIN
 
 
 def distance(point, corners):
-    """The exact vertical distance of a point from a triangle; None outside of it."""
+    """The exact vertical distance of a point from a triangle; None outside it."""
     p = [Fraction(v) for v in point]
     a, b, c = ([Fraction(v) for v in corner] for corner in corners)
 

@@ -56,7 +56,7 @@ def test_polygons_tile_the_surface_as_before(seed, least):
     for polygon, low in zip(before, every.low, strict=True):
         (row,) = tree.query(polygon.representative_point(), predicate="within")
         assert shapely.relate_pattern(polygon, after[row], "T*F**F***")
-        # What has another range is inside of a hole that was small.
+        # What has another range is inside a hole that was small.
         if some.low[row] != low:
             assert polygon.area < least
 

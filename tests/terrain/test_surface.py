@@ -30,7 +30,7 @@ def test_breaklines_are_edges_with_their_heights():
 def test_lines_without_heights_are_on_the_points():
     tin = TIN.from_points(SQUARE, breaklines=[np.array([(1.0, 1), (3.0, 3)])])
     assert tin.heights([(1, 1), (2, 2), (3, 3)]).tolist() == [2, 4, 6]
-    with pytest.raises(InputError, match=r"without heights is outside of the points at \("):
+    with pytest.raises(InputError, match=r"without heights is outside the points at \("):
         TIN.from_points(SQUARE, breaklines=[[(1, 1), (5, 1)]])
 
 
@@ -252,7 +252,7 @@ def test_geometries_on_the_surface():
     assert all(z == 2 * y for _, y, z in ring.exterior.coords)
     both = shapely.GeometryCollection([shapely.Point(1, 2), shapely.LineString([(0, 0), (4, 0)])])
     assert shapely.get_coordinates(tin.drape(both), include_z=True)[:, 2].tolist()[0] == 4
-    with pytest.raises(InputError, match=r"\(5, 1\) is outside of the surface"):
+    with pytest.raises(InputError, match=r"\(5, 1\) is outside the surface"):
         tin.drape(shapely.LineString([(1, 1), (5, 1)]))
 
 

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 __all__ = ["is_constrained", "read_mesh", "read_points", "write_mesh"]
 
-# Why a file of a class is not read as a mesh.
+# Why a file of this class is not read as a mesh.
 _WITHOUT = {
     "delone.PeriodicDelaunay": (
         "is a PeriodicDelaunay: its triangles continue across the periods, so points and rows of "
@@ -107,7 +107,7 @@ def read_mesh(path: Path) -> MeshFile:
 
 
 def _numbers(archive: zipfile.ZipFile, name: str, count: int) -> NDArray[np.int32]:
-    """Read a number for each of so many cells."""
+    """Read one number for each of `count` cells."""
     values = _member(archive, name)
     if values.shape != (count,) or values.dtype.kind not in "iu":
         raise FileFormatError(
@@ -118,7 +118,7 @@ def _numbers(archive: zipfile.ZipFile, name: str, count: int) -> NDArray[np.int3
 
 
 def _computed(archive: zipfile.ZipFile, path: Path) -> MeshFile:
-    """Read the triangles of a class whose file has its input only."""
+    """Read the triangles of a class whose file contains only its input."""
     names = _names(archive)
     # As in "delone.ConvexHull 3-D".
     kind = str(_member(archive, "format")).split()[0] if "format" in names else ""
@@ -171,7 +171,7 @@ def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     own: set[str] = set()
     saved: Any = triangulation
     if hasattr(saved, "_with_crs"):
-        # It writes its own.
+        # It has its own writer.
         saved, crs, own = saved._with_crs(crs), None, {"crs"}
     saved.save(path)
     if heights is not None:
@@ -309,7 +309,7 @@ def _from_archive(
 def _as_long(
     archive: zipfile.ZipFile, rows: int, *, without: Sequence[str]
 ) -> dict[str, NDArray[Any]]:
-    """Return the arrays with a number for each row of points."""
+    """Return the arrays with one number for each point."""
     names = [name for name in _ordered_names(archive) if name not in without]
     found = {name: _member(archive, name) for name in names}
     return {name: array for name, array in found.items() if array.shape == (rows,)}

@@ -1,4 +1,4 @@
-"""The points and cells of a mesh file, before it is decided which of them are wanted."""
+"""The points and cells of a mesh file, before it is decided which of them are needed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["POLYGONS", "SOLIDS", "Cells", "ReadMesh", "grouped", "name_of_polygo
 
 # Types of cells that are polygons, which have markers.
 POLYGONS = ("triangle", "quad", "polygon")
-# Those that have regions.
+# Types of cells that have regions.
 SOLIDS = ("tetra",)
 
 
@@ -29,7 +29,7 @@ class Cells(NamedTuple):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ReadMesh:
-    """Points, cells in the order of the file, values of points, and numbers of cells.
+    """Points, cells in the order of the file, point values, and cell numbers.
 
     Markers are those of polygons, regions those of tetrahedra, in the order of their cells.
     """
@@ -42,7 +42,7 @@ class ReadMesh:
 
 
 def grouped(polygons: Sequence[Sequence[int]]) -> list[Cells]:
-    """Return polygons as cells; successive ones with the same number of corners are one block."""
+    """Return polygons as cells; consecutive ones with the same number of corners form one block."""
     found: list[Cells] = []
     start = 0
     for end in range(1, len(polygons) + 1):
@@ -55,5 +55,5 @@ def grouped(polygons: Sequence[Sequence[int]]) -> list[Cells]:
 
 
 def name_of_polygon(count: int) -> str:
-    """Return the name of a cell with so many corners in one plane."""
+    """Return the name of a planar cell with this number of corners."""
     return {1: "vertex", 2: "line", 3: "triangle", 4: "quad"}.get(count, "polygon")

@@ -1,6 +1,6 @@
 """CityJSON 2.0: a surface with heights as the relief of a terrain (TINRelief).
 
-Coordinates of CityJSON are integers with a scale and a translation. The scale is the largest of
+CityJSON coordinates are integers with a scale and a translation. The scale is the largest of
 0.001, 0.0001 and so on, in the unit of the points, at which no two points become one and no
 triangle flips over or loses its area, which is decided exactly. So each coordinate is off by at
 most half of the scale. The format is that of https://www.cityjson.org.
@@ -31,11 +31,11 @@ if TYPE_CHECKING:
 
 __all__ = ["write_mesh"]
 
-# The first is what surveys are accurate to; further ones are tried where points are closer.
+# The first is the accuracy of surveys; smaller ones are tried if points are closer.
 _DIGITS = range(3, 16)
-# Integers that readers hold in doubles.
+# The largest integers that readers can store in doubles.
 _LARGEST = 2.0**53
-# Triangles and points that become text at once.
+# Number of triangles or points that become text at a time.
 _BLOCK = 1 << 16
 
 
@@ -74,8 +74,8 @@ def _rounded(points: Floats, rows: Indices) -> tuple[int, Floats, NDArray[np.int
         if (orient2d(a, b, c) > 0).all():
             return digits, origin, scaled.astype(np.int64)
     raise FileFormatError(
-        "triangles are so thin that coordinates of CityJSON, whole numbers of up to 53 "
-        "bits, turn some over: simplify the surface, or merge near points with snap"
+        "triangles are so thin that CityJSON coordinates, integers of up to 53 bits, flip some of "
+        "them over: simplify the surface, or merge close points with snap"
     )
 
 
@@ -97,7 +97,7 @@ def _head(points: Floats, crs: str | None, digits: int, origin: Floats) -> str:
 
 
 def _lists(array: NDArray[Any]) -> Iterator[str]:
-    """Yield the rows of an array as lists of JSON, with commas between them."""
+    """Yield the rows of an array as JSON lists, with commas between them."""
     for start in range(0, len(array), _BLOCK):
         text = json.dumps(array[start : start + _BLOCK].tolist(), separators=(",", ":"))
         yield ("" if start == 0 else ",\n") + text[1:-1]

@@ -1,7 +1,7 @@
-"""Files that are read beside a named one: of the same name, in the same folder, and no links away.
+"""Files that are read with a named one: same name, same folder, and not links to elsewhere.
 
-The user names one file. What lies beside it may come from somebody else, and a symbolic link there
-would lead to any file.
+The user names one file. Other files in its folder may come from somebody else, and a symbolic link
+there could lead anywhere.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ __all__ = ["require_companion", "require_companions"]
 
 
 def require_companions(path: Path, endings: Sequence[str]) -> None:
-    """Reject links beside a file; an ending is a suffix (".dbf") or follows the name ("-wal")."""
+    """Reject companions that are links; an ending is a suffix (".dbf") or is appended ("-wal")."""
     for ending in endings:
         beside = _beside(path, ending)
         if beside.is_symlink():
@@ -28,7 +28,7 @@ def require_companions(path: Path, endings: Sequence[str]) -> None:
 def require_companion(path: Path, beside: Path) -> None:
     """Reject a companion that is a link to anything but the companion of the file itself.
 
-    A file that is a link may have companions that are links to the files beside its target.
+    A file that is a link may have companions that are links to those of its target.
     """
     if not beside.is_symlink():
         return

@@ -33,10 +33,10 @@ def opened(path: Path) -> IO[bytes]:
 
 
 class Bounded(io.RawIOBase):
-    """A file, closed with this one, that raises if it contains far more than its size makes likely.
+    """A file, closed with this one, that raises if it contains far more than its size suggests.
 
-    That is a line of more than `longest_line` bytes; or in a compressed file more than 8 MiB and
-    200 times its size.
+    That is, a line of more than `longest_line` bytes or, in a compressed file, more than 8 MiB and
+    more than 200 times its size.
     """
 
     def __init__(self, file: IO[bytes], path: Path, *, longest_line: int | None = None) -> None:
@@ -78,21 +78,21 @@ class Bounded(io.RawIOBase):
 
 
 def require_expansion(path: Path) -> None:
-    """Refuse a compressed file that contains far more than its size makes likely.
+    """Reject a compressed file that contains far more than its size suggests.
 
-    All of it is decompressed and nothing is parsed, which takes a hundred times longer.
+    All of it is decompressed, but not parsed, because parsing takes a hundred times longer.
     """
     if path.suffix.lower() in SUFFIXES:
         with Bounded(opened(path), path) as file:
             buffer = bytearray(_PIECE)
-            # Ends with the file, or with an error at the limit.
+            # Terminates at the end of the file, or with an error at the limit.
             while file.readinto(buffer):
                 pass
 
 
 @contextmanager
 def corrupt_is_an_error(source: str) -> Iterator[None]:
-    """Convert errors of decompression to `FileFormatError`."""
+    """Convert decompression errors to `FileFormatError`."""
     try:
         yield
     except _TORN as error:

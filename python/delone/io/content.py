@@ -1,4 +1,4 @@
-"""What goes into a file: the parts of a mesh, with heights and values that a caller gives."""
+"""What is written to a file: the parts of a mesh, with the heights and values of the caller."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ __all__ = ["Content", "Wanted", "content", "require_finite_heights"]
 
 
 class Wanted(NamedTuple):
-    """What a file is to contain beside a mesh, as `write_mesh` is told."""
+    """What a file must contain besides a mesh, as passed to `write_mesh`."""
 
     z: ArrayLike | None = None
     crs: str | None = None
@@ -34,7 +34,7 @@ class Wanted(NamedTuple):
     version: str | None = None
 
     def refuse(self, files: str, *names: str, use: str = ".vtu") -> None:
-        """Raise an error if something is wanted that these files cannot store."""
+        """Raise an error if something is requested that these files cannot store."""
         for name in names:
             if getattr(self, name):
                 raise FileFormatError(f"{files} cannot store {name}; use {use}")
@@ -52,7 +52,7 @@ def require_finite_heights(points: Floats, files: str) -> None:
 
 
 class Content(NamedTuple):
-    """The parts of a mesh, and beside them what a caller gives."""
+    """The parts of a mesh, and the values that the caller adds."""
 
     own: Parts  # with the values that the mesh has
     heights: NDArray[np.float64] | None  # (n,), the third coordinate of points in 2-D
@@ -63,14 +63,14 @@ class Content(NamedTuple):
 
     @property
     def given(self) -> bool:
-        """Whether there are values that were given."""
+        """Whether the caller added values."""
         return bool(self.of_points or self.of_simplices or self.of_nodes)
 
     def whole(self) -> Parts:
-        """Return everything, given values in place of own ones with the same name.
+        """Return everything; the caller's values replace the mesh's own values of the same name.
 
-        Segments without values are left out: they are among the edges of the mesh, and libraries
-        read no values of simplices from some files with several kinds of cells.
+        Segments without values are left out: they are among the edges of the mesh, and libraries do
+        not read simplex values from some files with several kinds of cells.
         """
         found = self.own if self.own.of_segments else self.own._replace(segments=None)
         found = self._lifted(found)._replace(
@@ -80,7 +80,7 @@ class Content(NamedTuple):
         return of_order(found, self.order, self.of_nodes)
 
     def bare(self) -> Parts:
-        """Return points and simplices with the given values alone."""
+        """Return points and simplices with only the caller's values."""
         return self._lifted(Parts(self.own.points, self.own.simplices))._replace(
             of_points=self.of_points, of_simplices=self.of_simplices
         )
@@ -101,9 +101,9 @@ def content(
     attributes: Mapping[str, ArrayLike] | None = None,
     order: int = 1,
 ) -> Content:
-    """Return what goes into a file; with `edges`, edges in place of simplices.
+    """Return what is written to a file; with `edges`, edges instead of simplices.
 
-    With ``order=2``, simplices of second order, and values of all their nodes or of points alone.
+    With ``order=2``, second-order simplices, with values at all nodes or only at points.
 
     These have ``segment``, 1 for parts of one, where the mesh has segments. Where a mesh has points
     of its own for each simplex, heights and values of points are those of their rows.
@@ -127,7 +127,7 @@ def content(
 
 
 def _edges(parts: Parts, mesh: Any) -> Parts:
-    """The edges of a mesh in place of its simplices."""
+    """The edges of a mesh instead of its simplices."""
     edges: NDArray[np.int32] = mesh.edges
     found = Parts(parts.points, edges)
     if parts.segments is None or parts.segments.shape[1] != edges.shape[1]:

@@ -27,7 +27,7 @@ _DEEPEST = 50
 
 
 def is_copc(header: Any) -> bool:
-    """Return whether a file has an octree: if so, its first record describes it."""
+    """Return whether a file has an octree, which its first record then describes."""
     return bool(header.vlrs) and type(header.vlrs[0]).__name__ == "CopcInfoVlr"
 
 

@@ -1,4 +1,4 @@
-"""Counts that a file declares, rejected if no file can contain so many items."""
+"""Counts that a file declares, rejected if no file can contain that many items."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from delone.errors import FileFormatError
 
 __all__ = ["announced"]
 
-# Every count of items or bytes has fewer digits. Python also refuses to parse very long numbers,
+# Every count of items or bytes has fewer digits. Python also rejects very long numbers,
 # with an error that does not name the file.
 _DIGITS = 18
 

@@ -1,8 +1,8 @@
 """Rasters of heights as points: GeoTIFF and ESRI ASCII grids with rasterio, NetCDF with xarray.
 
 Each cell with a height becomes a point at its center; GDAL converts rasters whose pixels are
-points. Only the driver for the suffix may open a file, and no file beside it is read except the
-.prj file of an ASCII grid. Rows are read one after another, and sizes are checked before that.
+points. Only the driver for the suffix may open a file, and no other file is read except the .prj
+file of an ASCII grid. Sizes are checked first, and then rows are read one after another.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ if TYPE_CHECKING:
 __all__ = ["as_bounds", "is_raster", "read_cells", "read_points", "read_raster"]
 
 _DRIVERS = {".tif": "GTiff", ".tiff": "GTiff", ".asc": "AAIGrid"}
-# A triangulation of so many points takes some 10 GB.
+# A triangulation of this many points takes about 10 GB.
 MOST_POINTS = 50_000_000
-# Bytes of a block, or of a row, which GDAL holds in memory whatever is read of it.
+# Bytes of a block, or of a row, which GDAL keeps in memory whatever part of it is read.
 _LARGEST_BLOCK = 1 << 30
 # Bytes of a .prj file.
 _LONGEST_SYSTEM = 1 << 16
@@ -49,7 +49,7 @@ _OPTIONS = {
 
 
 def is_raster(path: Path) -> bool:
-    """Return whether the suffix is that of a raster which `read_raster` reads."""
+    """Return whether `read_raster` reads files with this suffix."""
     return path.suffix.lower() in _DRIVERS or is_netcdf(path)
 
 
@@ -161,7 +161,7 @@ def read_raster(
     check_system(crs, str(file))
     if not len(points):
         if box is not None and not empty:
-            raise InputError(f"{file}: no center of a cell is inside of bounds={box}")
+            raise InputError(f"{file}: no center of a cell is inside bounds={box}")
         raise FileFormatError(f"{file}: no cell has a height")
     _tell_empty(file, empty)
     return PointSet(points=points, z=z, crs=crs, source=str(file))
@@ -201,7 +201,7 @@ def read_cells(
             )
         window = _window(raster, box, step)
         if not (len(window.rows) and len(window.columns)):
-            raise InputError(f"{path}: no center of a cell is inside of bounds={box}")
+            raise InputError(f"{path}: no center of a cell is inside bounds={box}")
         _check_size(raster, number, window, max_points, path)
         values = _values(raster, number, window, empty)
         crs = None if raster.crs is None else str(raster.crs.to_string())
@@ -288,7 +288,7 @@ def _opened(path: Path) -> Iterator[Any]:
 
 
 def _check_beside(path: Path, driver: str) -> None:
-    """Check the file that GDAL reads beside an ASCII grid."""
+    """Check the file that GDAL reads together with an ASCII grid."""
     if driver != "AAIGrid":
         return
     for suffix in (".prj", ".PRJ"):
@@ -339,18 +339,19 @@ class _Window(NamedTuple):
 
 
 def _window(raster: Any, box: tuple[float, ...] | None, step: int) -> _Window:
-    """Return the rows and columns in which centers can be inside of a box."""
+    """Return the rows and columns in which centers can be inside a box."""
     shape = raster.height, raster.width
     if box is None:
         return _Window(*(range(0, count, step) for count in shape))
     left, bottom, right, top = box
     a, b, c, d, e, f = (~raster.transform)[:6]
     corners = [(x, y) for x in (left, right) for y in (bottom, top)]
-    # The places of the corners of the box, along rows and columns.
+    # The positions of the corners of the box, along rows and columns.
     along = [d * x + e * y + f for x, y in corners], [a * x + b * y + c for x, y in corners]
     found = []
     for count, places in zip(shape, along, strict=True):
-        # One more on each side: the centers decide. Numbers are cut before they become integers.
+        # One more on each side: the centers decide. Numbers are clipped before they become
+        # integers.
         first, last = (min(max(each, -2.0), count + 2.0) for each in (min(places), max(places)))
         start, stop = max(0, int(first) - 1), max(0, min(count, int(last) + 2))
         # The rows and columns of a window are some of those that are read without one.
@@ -371,13 +372,13 @@ def _inside(numbers: range, size: float, origin: float, low: float, high: float)
 
 
 def _check_size(raster: Any, band: int, window: _Window, most: int, path: Path) -> None:
-    """Reject what would not fit into memory, before anything is read."""
+    """Reject rasters that would not fit into memory, before anything is read."""
     step = window.rows.step
     rows, columns = (step * len(each) for each in window)
     count = len(window.rows) * len(window.columns)
     if count > most:
         least = max(step, int((rows * columns / most) ** 0.5))
-        while -(-rows // least) * -(-columns // least) > most:  # ends: one cell is few enough
+        while -(-rows // least) * -(-columns // least) > most:  # ends at one cell
             least += 1 + least // 1000
         raise FileFormatError(
             f"{path} has {raster.width} x {raster.height} cells, {count} to read, and at most "

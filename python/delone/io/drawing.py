@@ -1,8 +1,8 @@
 """DXF drawings of surfaces, contours, points, profiles and cross sections, with ezdxf.
 
-Each kind of thing is on its own layers. Maps are at their coordinates, heights as z; profiles and
-sections are drawn in the plane, distances to the right and heights upward. Numbers are written with
-all digits, so what is read again has the same doubles.
+Each kind of thing is on its own layers. Maps are drawn at their coordinates, with heights as z;
+profiles and sections are drawn in a plane, with distances to the right and heights upward. Numbers
+are written with all digits, so reading returns the same doubles.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ __all__ = ["write_drawing"]
 
 # $INSUNITS.
 _UNITS = {"in": 1, "ft": 2, "mi": 3, "mm": 4, "cm": 5, "m": 6, "km": 7, "us-ft": 21}
-# Colors of AutoCAD: those of surfaces in profiles are taken in turn.
+# AutoCAD colors; the surfaces in profiles use them in turn.
 _GRAY, _WHITE, _GREEN, _BROWN = 8, 7, 94, 34
 _TURN = (34, 1, 5, 3, 6, 4)
-# Text is by default this part of the length of a profile, or of the extent of points.
+# The default text height, as a fraction of the length of a profile or of the extent of points.
 _TEXT = 1 / 120
-# Heights and distances that a profile is labeled with, about.
+# The approximate number of labeled heights and distances in a profile.
 _TICKS = 8
 
 
@@ -59,15 +59,15 @@ def write_drawing(
         ``CONTOURS_INDEX``, with a `text_height` also labels, of index contours if there are any, on
         ``CONTOURS_TEXT``; points as POINT on ``POINTS``, with their heights as text on
         ``POINTS_TEXT``; profiles and cross sections as polylines on ``PROFILE_`` and the name of
-        the surface, with a frame, texts and stations on ``PROFILE_FRAME`` and ``PROFILE_TEXT``.
-        Layers of a second thing of one kind end in ``_2``.
+        the surface, with a frame, text and stations on ``PROFILE_FRAME`` and ``PROFILE_TEXT``.
+        The layers of a second object of the same kind end in ``_2``.
     text_height : float, optional
-        The height of texts in drawing units; by default a readable one.
+        The height of text in drawing units; by default a readable one.
     exaggeration : float, optional
-        The factor of heights in profiles; labels have the heights themselves.
+        The factor for heights in profiles; labels show the true heights.
     units : str, optional
-        The unit of the drawing, as ``"m"``; by default that of the reference system of `things`,
-        or that of their heights. If unknown, the drawing has none.
+        The unit of the drawing, such as ``"m"``; by default that of the reference system of
+        `things`, or that of their heights. If unknown, the drawing has none.
 
     Raises
     ------
@@ -193,7 +193,7 @@ class _Sheet:
             color = 32 if contours.index[k] else _BROWN
             on = self._layer(f"{name}{end}", color)
             self._polyline(np.column_stack((points, np.full(len(points), contours.level[k]))), on)
-        # Labels are written where a height of texts is given.
+        # Labels are written if a text height is given.
         if self._text is None:
             return
         labels = contours.labels(length=4 * self._text, index=bool(contours.index.any()))
@@ -254,7 +254,7 @@ class _Sheet:
         low, high = float(known.min()), float(known.max())
         length = float(distances[-1]) - start
         size = size or self._text or length * _TEXT or 1.0
-        # Labels of heights do not overlap.
+        # Height labels must not overlap.
         step = _nice(max((high - low) / _TICKS, 1.6 * size / self._factor))
         base = math.floor(low / step) * step
         for k, name in enumerate(names):
@@ -282,7 +282,7 @@ class _Sheet:
 
 
 def chains(edges: Rows) -> Iterator[list[int]]:
-    """Yield chains of vertices that have each edge once; they end where not two edges meet."""
+    """Yield chains of vertices with each edge once; they end where not exactly two edges meet."""
     beside: dict[int, list[int]] = {}
     for u, v in edges.tolist():
         beside.setdefault(u, []).append(v)
@@ -296,7 +296,7 @@ def chains(edges: Rows) -> Iterator[list[int]]:
                 continue
             chain = [vertex, other]
             left.remove((min(vertex, other), max(vertex, other)))
-            # Each step removes an edge, so this ends.
+            # Each step removes an edge, so this terminates.
             while len(beside[chain[-1]]) == 2 and chain[-1] != vertex:
                 a, b = beside[chain[-1]]
                 after = b if a == chain[-2] else a
@@ -306,7 +306,7 @@ def chains(edges: Rows) -> Iterator[list[int]]:
 
 
 def _runs(z: Floats) -> list[NDArray[np.int64]]:
-    """Return the rows of each part between gaps that has two points or more."""
+    """Return the rows of each part between gaps that has at least two points."""
     rows = np.split(np.arange(len(z)), np.flatnonzero(np.isnan(z)))
     found = [part[~np.isnan(z[part])] for part in rows]
     return [part for part in found if len(part) > 1]
@@ -326,6 +326,6 @@ def _nice(step: float) -> float:
 
 
 def _ticks(low: float, high: float, step: float) -> list[float]:
-    """Return the multiples of a step from a number to another one."""
+    """Return the multiples of a step from one number to another."""
     first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
     return [round(k * step, 12) for k in range(first, last + 1)]

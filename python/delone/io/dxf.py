@@ -73,7 +73,7 @@ def _refuse_columns(
 def read_surface(
     path: Path, *, name: str | None, order: str, chord: float | None = None
 ) -> SurfaceFile:
-    """Read faces, points and lines; `name` has layers, separated by commas."""
+    """Read faces, points and lines; `name` contains layers, separated by commas."""
     if order != "enz":
         raise FileFormatError(f"{path}: DXF files have the easting first; order is for LandXML")
     drawing = _drawing(path)
@@ -129,7 +129,7 @@ def _drawing(path: Path) -> Any:
 
 
 def _layers(drawing: Any, space: Any, name: str | None, source: str) -> set[str] | None:
-    """The layers to be read, in lower case; None for all."""
+    """The layers to read, in lower case; None for all."""
     if name is None:
         return None
     inside = [block for block in drawing.blocks if not block.is_any_layout]

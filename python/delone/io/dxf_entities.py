@@ -1,4 +1,4 @@
-"""The entities of a DXF drawing that are seen, with blocks expanded, as faces, points and lines.
+"""The visible entities of a DXF drawing, with blocks expanded, as faces, points and lines.
 
 Entities on hidden layers, and entities that cannot be part of a surface, are counted by type.
 """
@@ -23,22 +23,22 @@ __all__ = ["KINDS", "Drawn"]
 
 _CURVES = ("ARC", "CIRCLE", "ELLIPSE", "SPLINE", "HELIX")
 KINDS = ("3DFACE", "POINT", "LINE", "LWPOLYLINE", "POLYLINE", "MESH", *_CURVES)
-# Entities to which blocks may expand, or one for each 16 bytes of a larger file.
+# The number of entities to which blocks may expand; for larger files, one for each 16 bytes.
 _ALWAYS, _BYTES = 1 << 18, 16
-# Chords to which curves may become, in proportion to the same.
+# The number of chords that curves may become, by the same rule.
 _VERTICES = 1 << 22
-# The part of the extent of a curve that its chords may be away from it, if nothing is said.
+# The default distance of chords from a curve, as a fraction of its extent.
 _RELATIVE = 1e-3
 # Vertices of a polyline that are control points of a curve and not drawn.
 _FRAME = 16
-# Chords within this part of the extent of a curve number a million.
+# Chords within this fraction of the extent of a curve would number a million.
 _FINEST = 1e-12
 # Corners of a 3DFACE, at most.
 _FACE = 4
 
 
 class Drawn:
-    """What a drawing shows: corners of triangles, points, lines, and counts of all else."""
+    """What a drawing shows: corners of triangles, points, lines, and counts of everything else."""
 
     def __init__(self, drawing: Any, source: str, size: int, chord: float | None) -> None:
         self.faces: list[Floats] = []
@@ -50,7 +50,7 @@ class Drawn:
         self._left, self._vertices = max(_ALWAYS, size // _BYTES), max(_VERTICES, size)
 
     def add(self, space: Any, layers: set[str] | None) -> None:
-        """Read all entities of a layout that are on these layers; on all that are not hidden."""
+        """Read all entities of a layout on these layers; by default, on all that are not hidden."""
         for entity, layer, hidden in self._expanded(space, "0", False, ()):
             if layers is not None and layer.casefold() not in layers:
                 continue
@@ -68,8 +68,8 @@ class Drawn:
             self._left -= 1
             if self._left < 0:
                 raise FileFormatError(
-                    f"{self._source}: its blocks contain far more than its size makes likely; "
-                    "explode them first"
+                    f"{self._source}: its blocks contain far more than its size suggests; explode "
+                    f"them first"
                 )
             # In blocks, layer 0 is that of the reference.
             own = str(entity.dxf.layer)
@@ -90,7 +90,7 @@ class Drawn:
         if name.casefold() in blocks:
             raise FileFormatError(f"{self._source}: block {name!r:.40} contains itself")
         self.left_out["ATTRIB"] += len(insert.attribs)
-        # A layer that is off hides its own entities only, one that is frozen all of the block.
+        # A layer that is off hides only its own entities; a frozen one hides the whole block.
         gone = hidden or self._is_hidden(layer, frozen=True) or bool(insert.dxf.get("invisible", 0))
         inner = (*blocks, name.casefold())
 
@@ -101,7 +101,7 @@ class Drawn:
             raise FileFormatError(
                 f"{self._source}: {_named(insert)} repeats block {name!r:.40} {insert.mcount} times"
             )
-        # As many as are left, which was just compared.
+        # Their number is within what is left, which was just compared.
         for one in insert.multi_insert() if insert.mcount > 1 else (insert,):
             found = one.virtual_entities(skipped_entity_callback=skipped)
             yield from self._expanded(found, layer, gone, inner)
@@ -114,7 +114,7 @@ class Drawn:
         return bool(layer.is_frozen() or (not frozen and layer.is_off()))
 
     def _take(self, entity: Any) -> None:
-        """Sort an entity by its type."""
+        """Store an entity according to its type."""
         kind = entity.dxftype()
         if kind == "3DFACE":
             self._take_face([tuple(each) for each in entity.wcs_vertices()])
@@ -168,12 +168,12 @@ class Drawn:
             self.faces += [places[triangle] for triangle in made_of]
 
     def _chords(self, entity: Any) -> Floats:
-        """Return a curve as chords that are within the distance of it."""
+        """Return a curve as chords within the given distance of it."""
         self.curves += 1
         kind = entity.dxftype()
         if kind in ("ARC", "CIRCLE"):
             radius = abs(float(entity.dxf.radius))
-            # Three chords at least make a circle.
+            # A circle needs at least three chords.
             chord, extent = self._distance(radius, entity), radius
             chord = min(chord, radius / 2)
         else:
@@ -201,7 +201,7 @@ class Drawn:
         return chord
 
     def _counted(self, places: Any, entity: Any) -> Iterator[Any]:
-        """Yield places, as many as the size of the file allows."""
+        """Yield places, at most as many as the size of the file allows."""
         for place in places:
             self._vertices -= 1
             if self._vertices < 0:
@@ -258,7 +258,7 @@ def _named(entity: Any) -> str:
 
 
 def _is_whole(entity: Any) -> bool:
-    """Whether an ellipse is whole, as ezdxf decides it."""
+    """Whether an ellipse is complete, as ezdxf decides it."""
     if entity.dxftype() != "ELLIPSE":
         return False
     span = float(entity.construction_tool().param_span)
@@ -270,7 +270,7 @@ def _is_mesh(entity: Any) -> bool:
 
 
 def _triangles(corners: list[tuple[float, ...]]) -> list[Floats]:
-    """The one or two triangles of a face; a fourth corner that repeats one is none."""
+    """The one or two triangles of a face; a fourth corner that repeats another does not count."""
     distinct = list(dict.fromkeys(corners))
     if len(distinct) < 3:
         return []

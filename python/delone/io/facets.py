@@ -1,7 +1,7 @@
-"""Triangles of polygons in 3-D, with the corners of these as their only vertices.
+"""Triangulation of 3-D polygons, with their corners as the only vertices.
 
 A polygon is triangulated in the plane of the two coordinates in which it is largest. Its corners
-need not be in one plane exactly; triangles have them as they are.
+need not be exactly in one plane; triangles use them unchanged.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ def facet_triangles(
 ) -> list[list[int]]:
     """Return the triangles of a facet, oriented as its first polygon.
 
-    A facet has polygons, of which those of one or two corners are points and segments inside, and
-    seeds of holes, (k, 3).
+    A facet consists of polygons, of which those with one or two corners are points and segments
+    inside, and of seeds of holes, (k, 3).
     """
     first = polygons[0]
     if len(polygons) == 1 and len(first) == 3:
@@ -57,7 +57,7 @@ def facet_triangles(
 def normal_axis(corners: Floats) -> tuple[int, bool]:
     """Return the axis nearest to the normal of a polygon.
 
-    With it, whether the polygon is clockwise in the other two coordinates, in their order.
+    Also return whether the polygon is clockwise in the other two coordinates, in their order.
     """
     with np.errstate(all="ignore"):
         offset = corners - corners[0]

@@ -1,8 +1,8 @@
 """Meshes for solvers: XDMF, MED, INP, VTK and Medit by meshio (extra ``mesh``), and SU2.
 
 Triangles or tetrahedra are written, and the segments of a mesh with their markers: as named parts
-of the boundary in SU2, as values in XDMF, as groups in MED, which has regions as well, and as sets
-of nodes and surfaces in INP.
+of the boundary in SU2, as values in XDMF, as groups in MED, which also stores regions, and as node
+sets and surfaces in INP.
 """
 
 from __future__ import annotations
@@ -34,23 +34,23 @@ __all__ = ["require_libraries", "write_mesh"]
 _MODULES = {
     ".xdmf": "xdmf", ".med": "med", ".inp": "abaqus", ".vtk": "vtk", ".mesh": "medit",
 }  # fmt: skip
-# Those with values of points and cells.
+# Formats with point and cell values.
 _VALUED = (".xdmf", ".vtk")
-# The sides of elements of Abaqus by the local numbers of their nodes, in the order S1, S2, ...
+# The sides of Abaqus elements by the local numbers of their nodes, in the order S1, S2, ...
 _ABAQUS_SIDES = {
     3: ((0, 1), (1, 2), (2, 0)),
     4: ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)),
 }
-# The nodes of tetrahedra in MED files, whose first face is seen from outside, in the order of VTK.
+# The nodes of tetrahedra in MED files, whose first face is seen from outside, in VTK's order.
 _MED_ORDERS = {"tetra": (0, 2, 1, 3), "tetra10": (0, 2, 1, 3, 6, 5, 4, 7, 9, 8)}
-# The types of elements that Gmsh writes as well, by those of meshio.
+# The element types that Gmsh writes as well, by meshio's names.
 _ABAQUS_TYPES = {"R3D3": "CPS3", "C3D10MH": "C3D10"}
-# Those of surfaces in 3-D.
+# The element types of surfaces in 3-D.
 _SHELLS = {"R3D3": "S3", "CPE6": "STRI65"}
-# Characters of a number in an INP file.
+# The maximum length of a number in an INP file.
 _CHARACTERS = 20
 _ELEMENT = re.compile(r"^(\*ELEMENT, TYPE=)(\w+)$", re.MULTILINE)
-# The numbers that SU2 has for cells, those of VTK.
+# SU2's numbers for cell types, which are VTK's.
 _LINE, _TRIANGLE, _TETRAHEDRON = 3, 5, 10
 
 
@@ -58,12 +58,12 @@ def require_libraries(suffix: str) -> None:
     """Import what writing needs."""
     require("meshio", extra="mesh", what="writing meshes")
     if suffix in (".xdmf", ".med"):
-        # meshio imports it for XDMF files that have all data in their text, too.
+        # meshio imports it even for XDMF files that contain all data as text.
         require("h5py", extra="mesh", what=f"writing {suffix[1:].upper()} files")
 
 
 def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
-    """Write triangles or tetrahedra, and of a mesh its segments."""
+    """Write triangles or tetrahedra and, for a mesh, its segments."""
     suffix = path.suffix.lower()
     wanted.refuse(f"{suffix} files", "edges", use=".vtu, .msh or .gpkg")
     if suffix not in _VALUED:
@@ -81,13 +81,13 @@ def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
 
 def _write_xdmf(path: Path, mesh: Any, module: Any) -> None:
     _drop(mesh, *TAGS)
-    # Everything in the one file: no second one beside it.
+    # Everything in one file, without a second one for the data.
     module.write(path, mesh, data_format="XML")
 
 
 def _write_vtk(path: Path, mesh: Any, module: Any) -> None:
     _drop(mesh, *TAGS)
-    # meshio names integers of 32 bits as VTK does not.
+    # meshio's name for 32-bit integers differs from VTK's.
     mesh.cell_data = {name: [_wide(own) for own in each] for name, each in mesh.cell_data.items()}
     mesh.point_data = {name: _wide(values) for name, values in mesh.point_data.items()}
     module.write(path, mesh)
@@ -114,9 +114,9 @@ def _write_med(path: Path, mesh: Any, module: Any) -> None:
 
 
 def _write_inp(path: Path, mesh: Any, module: Any) -> None:
-    """Write elements with sets of regions, and facets as surfaces and sets of nodes.
+    """Write elements with element sets for regions, and facets as surfaces and node sets.
 
-    Facets are not elements: solvers refuse elements without a section.
+    Facets are not elements: solvers reject elements without a section.
     """
     surfaces = _surfaces(mesh)
     mesh.cell_sets, mesh.point_sets = _sets(mesh), _node_sets(mesh)
@@ -129,17 +129,17 @@ def _write_inp(path: Path, mesh: Any, module: Any) -> None:
     nodes = [
         ", ".join([str(i), *map(_fitted, place)]) for i, place in enumerate(mesh.points.tolist(), 1)
     ]
-    # meshio writes types of rigid bodies, beams and incompressible solids.
+    # meshio writes element types for rigid bodies, beams and incompressible solids.
     types = {**_ABAQUS_TYPES, **(_SHELLS if mesh.points[:, 2].any() else {})}
     rest = _ELEMENT.sub(lambda line: line[1] + types.get(line[2], line[2]), rest)
     path.write_text("\n".join([f"{head}*NODE", *nodes, rest]) + surfaces, encoding="utf-8")
 
 
 def _fitted(number: float) -> str:
-    """Return a number in 20 characters, as long as the format allows: with 13 digits or more."""
+    """Return a number in 20 characters, the maximum of the format, with 13 digits or more."""
     text = repr(number)
     digits = 17
-    while len(text) > _CHARACTERS:  # ends: a digit less each time
+    while len(text) > _CHARACTERS:  # terminates: one digit less each time
         digits -= 1
         mantissa, _, exponent = f"{number:.{digits - 1}e}".partition("e")
         text = f"{mantissa}e{int(exponent)}"
@@ -161,7 +161,7 @@ _OWN_WRITERS: dict[str, Callable[[Path, Any, Any], None]] = {
 
 
 def _families(mesh: Any) -> tuple[dict[str, list[NDArray[np.int64]]], dict[int, list[str]]]:
-    """The groups of an MED file: regions of cells and markers of lines, each by a negative number.
+    """The groups of an MED file: regions of cells and markers of lines, with negative numbers.
 
     Where there is no region, or the marker is 0, the number is 0: no group.
     """
@@ -180,7 +180,7 @@ def _families(mesh: Any) -> tuple[dict[str, list[NDArray[np.int64]]], dict[int, 
 def _references(mesh: Any) -> dict[str, list[NDArray[np.int64]]]:
     """The references of a Medit file: regions of cells and markers of facets.
 
-    No region is 0; where there is a region 0 as well, each number of a region is one greater.
+    0 stands for no region; if there is a region 0, all region numbers are one greater.
     """
     found = [np.zeros(len(block.data), dtype=np.int64) for block in mesh.cells]
     if "region" in mesh.cell_data:
@@ -193,7 +193,7 @@ def _references(mesh: Any) -> dict[str, list[NDArray[np.int64]]]:
 
 
 def _sets(mesh: Any) -> dict[str, list[NDArray[np.int64]]]:
-    """The sets of elements of an INP file: regions, by name."""
+    """The element sets of an INP file: regions, by name."""
     region = np.asarray(mesh.cell_data.get("region", [np.empty(0)])[0])
     return {
         f"region_{own}": [np.flatnonzero(region == own)]
@@ -202,7 +202,7 @@ def _sets(mesh: Any) -> dict[str, list[NDArray[np.int64]]]:
 
 
 def _node_sets(mesh: Any) -> dict[str, NDArray[np.int64]]:
-    """The sets of nodes of an INP file: those of facets by their markers."""
+    """The node sets of an INP file: the nodes of facets, by marker."""
     if "marker" not in mesh.cell_data or len(mesh.cells) < 2:
         return {}
     marker, facets = np.asarray(mesh.cell_data["marker"][1]), mesh.cells[1].data
@@ -213,7 +213,7 @@ def _node_sets(mesh: Any) -> dict[str, NDArray[np.int64]]:
 
 
 def _surfaces(mesh: Any) -> str:
-    """The surfaces of an INP file: the sides of elements that are the facets of each marker.
+    """The surfaces of an INP file: for each marker, the element sides that are its facets.
 
     A wall between two elements is a side of the first one.
     """
@@ -222,7 +222,7 @@ def _surfaces(mesh: Any) -> str:
     simplices, facets = (np.asarray(block.data) for block in mesh.cells[:2])
     sides = _ABAQUS_SIDES[4 if mesh.cells[0].type.startswith("tetra") else 3]
     corners = np.concatenate([simplices[:, side] for side in sides])
-    # Nodes in the middle of edges are behind the corners.
+    # Nodes in the middle of edges follow the corners.
     both = np.sort(np.concatenate((corners, facets[:, : len(sides[0])])), axis=1)
     # The first row of each facet: np.unique returns first occurrences.
     _, first, place = np.unique(both, axis=0, return_index=True, return_inverse=True)

@@ -1,7 +1,7 @@
 """Safe opening of files with GDAL: only the given file, only with the driver of its suffix.
 
 GDAL chooses a driver by the contents of a file. Some drivers read virtual datasets, pipelines and
-descriptions of services, which open other files and send requests, and pyogrio has no option to
+service descriptions, which open other files and send requests, and pyogrio has no option to
 restrict the drivers. Therefore a binary file must begin as its suffix says, in a way that no other
 driver accepts, and JSON is opened with a prefix that leaves GDAL one driver. References that
 GeoJSON and GeoPackage themselves can contain are checked before GDAL opens the file.
@@ -55,7 +55,7 @@ _USUAL = re.compile(
     rb'\s*:\s*\{\s*"name"\s*:\s*"(?P<name>[^"\\]*)"\s*\}\s*\}))'
 )
 _KINDS = ("name", "epsg", "ogc")
-# Files beside a file, of the same name, that GDAL and SQLite read.
+# Files with the same name in the same folder that GDAL and SQLite read.
 _COMPANIONS = {
     "GPKG": ("-wal", "-shm", "-journal"),
     "ESRI Shapefile": (
@@ -63,15 +63,15 @@ _COMPANIONS = {
         *(".SHX", ".DBF", ".PRJ", ".CPG", ".QIX", ".SBN", ".SBX", ".IDM", ".IND"),
     ),
 }
-# The action of SQLite's authorizer for a call of a function, which sqlite3 names from 3.12 on.
+# The action of SQLite's authorizer for a function call, which sqlite3 names from Python 3.12 on.
 _FUNCTION = 31
 _UNSTEADY = {
     *("random", "randomblob", "changes", "total_changes", "last_insert_rowid", "sqlite_version"),
     *("sqlite_source_id", "sqlite_compileoption_get", "sqlite_compileoption_used"),
 }
-# Steps of SQLite's machine between two looks at their number: some 10 microseconds.
+# Steps of SQLite's virtual machine between two checks of their number: about 10 microseconds.
 _STEPS = 1 << 10
-# LIKE takes time in proportion to the product of the lengths of pattern and text.
+# LIKE takes time proportional to the product of the lengths of pattern and text.
 _LONGEST_PATTERN = 1 << 10
 
 
@@ -167,7 +167,7 @@ def _check_beginning(path: Path) -> None:
 
 
 def _check_tables(path: Path) -> None:
-    """Reject a GeoPackage with tables or views that SQLite alone cannot read, or cannot end.
+    """Reject a GeoPackage with tables or views that SQLite alone cannot read, or cannot finish.
 
     GDAL's functions and virtual tables open files; SQLite here has none, so it rejects their use.
     """
@@ -202,10 +202,10 @@ def _quoted(name: Any) -> str:
 
 
 def _limit(base: sqlite3.Connection, path: Path) -> None:
-    """Bound what reading tables and views costs by the size of the file.
+    """Bound the cost of reading tables and views by the size of the file.
 
-    SQLite stops after so many steps and at so long a value. Functions whose value is another one
-    in GDAL's SQLite, or at the next call, are rejected: what is tested is what GDAL will read.
+    SQLite stops after a number of steps, and at long values. Functions whose value differs in
+    GDAL's SQLite, or from call to call, are rejected: what is tested must be what GDAL will read.
     """
     most, calls = largest(path.stat().st_size, text=True), 0
 
@@ -229,7 +229,7 @@ def _require_end(base: sqlite3.Connection, name: str, path: Path) -> None:
     most, seen = largest(path.stat().st_size, text=True), 0
     base.text_factory = bytes
     try:
-        # Ends with the rows, or after the steps that the progress handler allows.
+        # Terminates with the rows, or after the steps that the progress handler allows.
         for row in base.execute(f"SELECT * FROM {_quoted(name)}"):
             seen += sum(len(value) if isinstance(value, bytes) else 8 for value in row)
             if seen > most:

@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 __all__ = ["GeometrySet"]
 
-_POINTS = (0, 4)  # shapely's numbers of Point and MultiPoint
+_POINTS = (0, 4)  # shapely's type numbers of Point and MultiPoint
 _LINES = (1, 2, 5)  # LineString, LinearRing and MultiLineString
 _AREAS = (3, 6)  # Polygon and MultiPolygon
 _COLLECTION = 7
 
 
 class HasSegments(Protocol):
-    """A triangulation that stores the segments it was made of."""
+    """A triangulation that stores the segments it was made from."""
 
     @property
     def points(self) -> Floats:

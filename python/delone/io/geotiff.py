@@ -36,9 +36,10 @@ def write_geotiff(
     crs: str | None,
     units: str | None = None,
 ) -> None:
-    """Write doubles, (rows, columns), lowest row first, and compare what is in the file.
+    """Write doubles, (rows, columns), lowest row first, and compare them with the file's contents.
 
-    `corner` is the left and the upper edge; NaN marks no value. A memory map is read in parts.
+    `corner` is the left and the upper edge; NaN marks cells without a value. A memory map is read
+    in parts.
     """
     rasterio = require("rasterio", extra="raster", what="writing GeoTIFF files")
     profile = {

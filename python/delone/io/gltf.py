@@ -1,9 +1,10 @@
 """GLB, the binary form of glTF 2.0: triangles with normals for viewers and game engines.
 
-Coordinates of glTF have 32 bits and y upward: points are relative to a local origin, a corner of
-whole numbers below all of them, x stays, y is the height and -z north. The origin and the reference
-system are in ``extras`` of the node. Lengths of glTF are meters: other units that are known are the
-scale of the node. The format is that of the specification of Khronos, version 2.0.11.
+glTF coordinates have 32 bits, with y upward: points are relative to a local origin, an integer
+corner below all of them; x is unchanged, y is the height, and -z points north. The origin and the
+reference system are in ``extras`` of the node. Lengths in glTF are in meters; if another unit is
+known, it becomes the scale of the node. The format follows the Khronos specification, version
+2.0.11.
 """
 
 from __future__ import annotations
@@ -30,12 +31,12 @@ if TYPE_CHECKING:
 
 __all__ = ["write_local", "write_mesh"]
 
-# Numbers of the specification.
+# Constants of the specification.
 _FLOAT, _UINT = 5126, 5125
 _ARRAY, _ELEMENTS = 34962, 34963
 _LINES, _TRIANGLES = 1, 4
 _JSON, _BIN = 0x4E4F534A, 0x004E4942
-# Sizes of chunks have 32 bits.
+# Chunk sizes have 32 bits.
 _LARGEST = (1 << 32) - 1
 
 
@@ -75,14 +76,14 @@ def write_local(path: Path, points: Floats, simplices: Indices) -> None:
 
 
 def _upright(xyz: Floats) -> Floats:
-    """Turn z upward to y upward."""
+    """Convert from z upward to y upward."""
     return np.column_stack((xyz[:, 0], xyz[:, 2], -xyz[:, 1]))
 
 
 def _normals(points: Floats, rows: Indices) -> Floats:
-    """Return unit normals of vertices: the sum of those of their triangles, by area."""
+    """Return unit normals of vertices: area-weighted sums of the normals of their triangles."""
     a, b, c = (points[rows[:, k]] for k in range(3))
-    # Of the largest side 1: squares of tiny or large extents would leave the range of doubles.
+    # Scaled to a largest side of 1: squares of tiny or large extents would overflow or underflow.
     size = float(np.abs(points).max(initial=0)) or 1.0
     across = np.cross((b - a) / size, (c - a) / size)
     found = np.zeros_like(points)
@@ -114,7 +115,7 @@ def _write(
     blobs = []
     start = 0
     for name, values in (*arrays.items(), ("", rows.ravel())):
-        # Each has a multiple of four bytes, as the format needs.
+        # Each has a multiple of four bytes, as the format requires.
         data = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<")).tobytes()
         target = _ARRAY if name else _ELEMENTS
         views.append({"buffer": 0, "byteOffset": start, "byteLength": len(data), "target": target})

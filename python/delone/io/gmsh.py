@@ -1,8 +1,8 @@
-"""What meshio may see of an MSH file: the sections that are needed, with every count verified.
+"""The part of an MSH file that meshio gets: the needed sections, with every count verified.
 
-meshio sets memory aside for what a count declares, and loops as often, also where the file ends.
-So the other sections (periodic links, further views) are left out, and the blocks of nodes and
-elements are followed here first, in the versions 2, 4.0 and 4.1, text and binary. `gmsh_groups`
+meshio allocates memory for what a count declares, and loops that many times, even if the file ends
+before. So the other sections (periodic links, further views) are left out, and the blocks of nodes
+and elements are first traversed here, in versions 2, 4.0 and 4.1, text and binary. `gmsh_groups`
 reads the names of physical groups, and which entities are in them.
 """
 
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
 
 __all__ = ["Bytes", "Checked", "Words", "needed_sections", "spans"]
 
-# Nodes of an element by Gmsh's number of its type.
+# The number of nodes of an element, by Gmsh's type number.
 _NODES = {
     **{1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5, 8: 3, 9: 6, 10: 9, 11: 10, 12: 27, 13: 18},
     **{14: 14, 15: 1, 16: 8, 17: 20, 18: 15, 19: 13, 21: 10, 23: 15, 25: 21, 26: 4, 27: 5},
     **{28: 6, 29: 20, 30: 35, 31: 56, 36: 16, 37: 25, 38: 36, 42: 28, 92: 64, 93: 125},
 }
-# A node of a binary file of version 2 or 4.0.
+# A node in a binary file of version 2 or 4.0.
 _NODE = np.dtype([("number", "<i4"), ("place", "<f8", 3)])
 _LONGEST_COUNT = 1 << 8
 _COUNT = re.compile(rb"\s*(\d+)\s*")
@@ -43,9 +43,9 @@ _LINE = re.compile(rb"^\$([^\n]*)\n?", re.MULTILINE)
 
 @contextmanager
 def needed_sections(path: Path, attributes: Sequence[str] | None) -> Iterator[Path]:
-    """Yield a file with the needed sections of another: itself, or a temporary copy of these.
+    """Yield a file with the needed sections: the file itself, or a temporary copy of these.
 
-    Values of points are needed if `attributes` has their name, or is None.
+    Point values are needed if `attributes` contains their name, or is None.
     """
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         found = spans(content, path)
@@ -77,7 +77,7 @@ def needed_sections(path: Path, attributes: Sequence[str] | None) -> Iterator[Pa
 def spans(content: mmap.mmap, path: Path) -> list[tuple[str, int, int, int, int]]:
     """Return the name of each section, and where it, its body, its last line and the rest begin."""
     found, at = [], 0
-    # Each step moves on by a section or ends with an error.
+    # Each step advances by a section or ends with an error.
     while at < len(content):
         head = _LINE.search(content, at)
         if content[at : head.start() if head else len(content)].strip():
@@ -93,7 +93,7 @@ def spans(content: mmap.mmap, path: Path) -> list[tuple[str, int, int, int, int]
 def _end(content: mmap.mmap, name: str, at: int, path: Path) -> tuple[int, int]:
     """Return where the last line of a section begins and ends, as meshio finds it."""
     word = f"$End{name}"
-    # Each step moves on by a line.
+    # Each step advances by a line.
     while (found := content.find(word.encode(), at)) >= 0:
         start, end = content.rfind(b"\n", 0, found) + 1, content.find(b"\n", found) + 1
         at = end or len(content)
@@ -116,7 +116,7 @@ class Checked:
         self.binary, self.size = binary == "1", int(size)
 
     def section(self, name: str, body: bytes) -> None:
-        """Follow the blocks of a section to its end."""
+        """Traverse the blocks of a section to its end."""
         old = self.version.startswith("2")
         if old and not self.binary and name == "Elements":
             # Read line by line; a line that is missing ends it.
@@ -144,7 +144,7 @@ class Checked:
         return count, len(line) + 1
 
     def _numbers(self, numbers: NDArray[np.generic], size: int) -> None:
-        """Reject numbers of nodes for which there is no place in memory of the file's size."""
+        """Reject node numbers too large for an array as large as the file."""
         if numbers.size and not 0 <= numbers.max() <= max(size, 1 << 20):
             raise self.short(f"has a node with the number {int(numbers.max())}: renumber the nodes")
 
@@ -154,7 +154,7 @@ class Checked:
         self._numbers(np.frombuffer(body, _NODE, count, at)["number"], len(body))
 
     def _old_elements(self, body: bytes, count: int, at: int) -> None:
-        """Follow the blocks of elements of a binary file of version 2."""
+        """Traverse the blocks of elements in a binary file of version 2."""
         done = 0
         while done < count:  # each block has 12 bytes or more
             if at + 12 > len(body):
@@ -168,7 +168,7 @@ class Checked:
             done += some
 
     def _blocks(self, name: str, items: Words | Bytes) -> None:
-        """Follow the blocks of nodes or elements of version 4; or the nodes of version 2."""
+        """Traverse the blocks of nodes or elements of version 4, or the nodes of version 2."""
         if self.version.startswith("2"):
             (count,) = items.counts(1)
             self._numbers(items.records(count), items.size)
@@ -195,7 +195,7 @@ class Checked:
             raise self.short(f"declares {total} nodes and contains {held}")
 
     def view(self, body: bytes) -> str:
-        """Return the name of the values of nodes, after comparing their counts with the bytes."""
+        """Return the name of the node values, after comparing their counts with the bytes."""
         at, tags = 0, list[list[bytes]]()
         for _ in range(3):  # of strings, real numbers, integers
             count, length = self._first(body[at : at + _LONGEST_COUNT], room=len(body) - at)
@@ -216,7 +216,7 @@ class Checked:
 
 
 class Words:
-    """The numbers of a section of text, in order."""
+    """The numbers of a text section, in order."""
 
     def __init__(self, checked: Checked, body: bytes) -> None:
         self._checked, self.size, self._at = checked, len(body), 0
@@ -277,7 +277,7 @@ class Bytes:
         return np.frombuffer(self._body, kind, count, self._at - step)
 
     def integers(self, count: int) -> list[int]:
-        """Return the next integers of 32 bits."""
+        """Return the next 32-bit integers."""
         return [int(n) for n in self._take(count, "<i4").tolist()]
 
     def counts(self, count: int) -> list[int]:

@@ -1,4 +1,4 @@
-"""The physical groups of MSH files: which entities of version 4 are in them, and their names.
+"""The physical groups of MSH files: their names and, in version 4, which entities are in them.
 
 In version 2, elements have the numbers of their groups; in version 4, each block of elements is
 part of an entity, which lists its groups. meshio cannot read files where only some have one.
@@ -28,21 +28,21 @@ __all__ = ["group_name", "numbers", "physical_groups"]
 
 # A line of names: dimension, number, and the name in quotes.
 _NAMED = re.compile(rb'\s*(\d{1,9})\s+(-?\d{1,9})\s+"([^"]*)"\s*')
-# The names that delone writes, and the numbers that these stand for.
+# The names that delone writes, and the numbers in them.
 _OWN = re.compile(r"(?:marker|region) (-?\d{1,10})")
 # Numbers of a bounding box, for entities of each dimension: points have three in 4.1.
 _BOXES = {"4.0": (6, 6, 6, 6), "4.1": (3, 6, 6, 6)}
 
 
 class Groups(NamedTuple):
-    """The names of groups by dimension and number, and the first group of each entity of 4."""
+    """The names of groups by dimension and number, and the first group of each version-4 entity."""
 
     names: Mapping[tuple[int, int], str]
     entities: Mapping[tuple[int, int], int] | None  # None in version 2
 
 
 def group_name(kind: str, value: int) -> str:
-    """Return the name of a group of markers or regions, which `numbers` understands."""
+    """Return the name of a group for a marker or region, which `numbers` can parse."""
     return f"{kind} {value}"
 
 
@@ -63,7 +63,7 @@ def physical_groups(path: Path) -> Groups:
 
 
 def _names(body: bytes) -> dict[tuple[int, int], str]:
-    """Return names by dimension and number; lines that are none are passed over."""
+    """Return names by dimension and number; other lines are skipped."""
     found = map(_NAMED.fullmatch, body.splitlines())
     return {
         (int(line[1]), int(line[2])): line[3].decode("utf-8", errors="replace")
@@ -93,10 +93,10 @@ def _entities(checked: Checked, body: bytes) -> dict[tuple[int, int], int]:
 
 
 def numbers(mesh: Any, path: Path) -> tuple[NDArray[np.int32] | None, NDArray[np.int32] | None]:
-    """Return numbers for the polygons and for the tetrahedra of a mesh of meshio: their groups.
+    """Return numbers for the polygons and for the tetrahedra of a meshio mesh: their groups.
 
-    0 stands for no group. A name that delone writes, as "marker 7", gives the number in it. None if
-    there are no groups.
+    0 stands for no group. A name that delone writes, such as "marker 7", gives the number in it.
+    None if there are no groups.
     """
     groups = physical_groups(path)
     tags = mesh.cell_data.get("gmsh:physical" if groups.entities is None else "gmsh:geometrical")

@@ -1,4 +1,4 @@
-"""Values in files: heights as a third coordinate, values of points and of triangles."""
+"""Values in files: heights as a third coordinate, point values and triangle values."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["split_attributes"]
 def split_attributes(
     attributes: dict[str, NDArray[np.generic]], npoints: int, ncells: int, nnodes: int | None = None
 ) -> tuple[dict[str, NDArray[np.generic]], dict[str, NDArray[np.generic]]]:
-    """Split values into those of points and those of cells, by their number."""
+    """Split values into point values and cell values, by their number."""
     of_points, of_cells = {}, {}
     for name, values in attributes.items():
         if values.ndim == 1 and len(values) == npoints:

@@ -1,7 +1,7 @@
 """LandXML 1.0 to 1.2: surfaces, survey points and alignments, with lxml (extra ``landxml``).
 
-Coordinates are northing, easting and height, in this order. Document types are refused, so there
-are no entities; nothing else is opened; limits of libxml2 on depth and length of text hold.
+Coordinates are northing, easting and height, in this order. Document types are rejected, so there
+are no entities; nothing else is opened; libxml2's limits on depth and text length apply.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ if TYPE_CHECKING:
 
 __all__ = ["read_geometries", "read_points", "read_surface", "write_mesh"]
 
-# Elements that are done when they end: all others are small, and hold what belongs to these.
+# Elements that are processed when they end: all others are small, and belong to one of these.
 _LEAVES = ("P", "F", "PntList2D", "PntList3D")
 _SHOWN = 20
 # What selects survey points and alignments instead of a surface.
 _SURVEY, _ALIGNMENTS = "CgPoints", "Alignments"
-# Points, faces and lines that are dropped together.
+# Number of points, faces and lines that are dropped at a time.
 _AT_ONCE = 256
 
 
@@ -90,7 +90,7 @@ def read_geometries(
 
 def _has_no_surface(path: Path, name: str | None) -> bool:
     etree = require("lxml.etree", extra="landxml", what="reading LandXML")
-    # Of a name that no surface has, no content is read.
+    # With a name that no surface has, no content is read.
     names = [draft.name for draft in _drafts(etree, path, Head(str(path), ORDERS["nez"]), "\0")]
     return not names if name is None else name not in names
 
@@ -223,21 +223,21 @@ def _events(etree: Any, file: Any, encoding: str | None) -> Any:
 
 
 def _drop(element: Any) -> None:
-    """Drop what was read."""
+    """Drop the elements that have been read."""
     element.clear()
     while element.getprevious() is not None:
         del element.getparent()[0]
 
 
 def _drafts(etree: Any, path: Path, head: Head, wanted: str | None) -> Iterator[Draft]:
-    """Yield the surfaces, in the order of the file; those of other names have no content."""
+    """Yield the surfaces, in the order of the file; those with other names have no content."""
     with decoded(path) as (file, encoding):
         events = _events(etree, file, encoding)
         draft: Draft | None = None
         depth = leaves = 0
         names: dict[str, str] = {}
         for event, element in events:
-            # Of most files nearly all elements are points and faces: each step counts.
+            # In most files, nearly all elements are points and faces, so each step counts.
             whole = element.tag
             tag = names.get(whole)
             if tag is None:
@@ -264,7 +264,7 @@ def _drafts(etree: Any, path: Path, head: Head, wanted: str | None) -> Iterator[
                 leaves += 1
                 if leaves % _AT_ONCE:
                     continue
-            # What was read is dropped, some elements at a time.
+            # Elements that have been read are dropped, some at a time.
             _drop(element)
 
 

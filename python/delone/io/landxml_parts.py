@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ORDERS", "Draft", "Head"]
 
-# The places of x and y among the first two numbers of a point.
+# The positions of x and y among the first two numbers of a point.
 ORDERS = {"nez": (1, 0), "enz": (0, 1)}
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _POINT = re.compile(r"\s*{0}\s+{0}\s+{0}\s*".format(f"({_NUMBER.pattern.replace('(', '(?:')})"))
@@ -34,7 +34,7 @@ _HOLES = ("void", "hole", "hide", "inner")
 
 
 class Head:
-    """What is said before the surfaces: units and reference system."""
+    """What the file declares before the surfaces: units and reference system."""
 
     def __init__(self, source: str, order: tuple[int, int]) -> None:
         self.source, self.order = source, order
@@ -43,7 +43,7 @@ class Head:
         self.crs: str | None = None
 
     def begin(self, tag: str, element: Any) -> None:
-        """Take note of an element."""
+        """Record an element."""
         if tag in ("Metric", "Imperial"):
             self.lengths = self._unit(element, "linearUnit")
             self.units = self._unit(element, "elevationUnit") or self.lengths
@@ -86,7 +86,7 @@ class Head:
 
 
 class Draft:
-    """A surface while it is read."""
+    """A surface while it is being read."""
 
     def __init__(self, head: Head, name: str | None, line: int) -> None:
         self.head, self.name, self.line = head, name, line
@@ -100,12 +100,12 @@ class Draft:
         self._quads = 0
 
     def begin(self, tag: str, element: Any) -> None:
-        """Take note of an element that begins."""
+        """Record the beginning of an element."""
         if tag in _AROUND:
             self._around, self._kind = element, tag
             wall = (element.get("brkType") or "").strip().casefold() == "wall"
             if tag == "Breakline" and (wall or element.get("brkWallHt") is not None):
-                # The lower line of a wall is read; a surface has one height at each place.
+                # The lower line of a wall is read, because a surface has one height at each place.
                 self._left_out["upper line of a wall"] += 1
         elif tag in _LEFT_OUT:
             self._left_out[tag] += 1
@@ -113,7 +113,7 @@ class Draft:
             self._is_grid = (element.get("surfType") or "TIN").casefold() == "grid"
 
     def end(self, tag: str, element: Any) -> None:
-        """Read an element that ends."""
+        """Read an element at its end."""
         if tag == "P":
             self._point(element)
         elif tag == "F":

@@ -1,7 +1,7 @@
-"""Survey points (CgPoints) and alignments of LandXML; curves and spirals become chords.
+"""Survey points (CgPoints) and alignments in LandXML; curves and spirals become chords.
 
-Alignments are in plan: of lines, arcs, clothoids and irregular lines, each of which begins where
-the one before ends.
+Alignments are in plan: they consist of lines, arcs, clothoids and irregular lines, each of which
+begins where the previous one ends.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
 
 __all__ = ["Alignment", "Survey"]
 
-# Chords that the curves of a file may become.
+# The maximum number of chords that the curves of a file may become.
 _CHORDS = 1 << 22
-# The part of the radius that chords may be away from a curve, if nothing is said.
+# The default distance of chords from a curve, as a fraction of the radius.
 _RELATIVE = 1e-3
-# Programs write millimeters, rarely less: elements that are farther apart leave a gap.
+# Programs write millimeters, rarely more digits: elements that are farther apart leave a gap.
 _GAP = 0.01
-# What is said twice, such as a radius and a center, may differ by this part of the radius.
+# Redundant data, such as a radius and a center, may differ by this fraction of the radius.
 _SAME = 1e-3
 _ELEMENTS = ("Line", "Curve", "Spiral", "IrregularLine", "Chain")
-# What alignments have that is not read.
+# The parts of alignments that are not read.
 _LEFT_OUT = ("StaEquation", "Profile", "CrossSects", "Superelevation")
 _ELSEWHERE = ("Parcel", "PlanFeature", "Roadway", "PipeNetwork")
-# Points and weights of Gauss and Legendre: exact to rounding for chords of spirals.
+# Gauss-Legendre points and weights: exact up to rounding for chords of spirals.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
@@ -47,7 +47,7 @@ class Alignment(NamedTuple):
 
 
 class _Element(NamedTuple):
-    """An element of an alignment: its attributes, and places or names of points by their tags."""
+    """An element of an alignment: its attributes, and positions or names of its points, by tag."""
 
     tag: str
     given: dict[str, str]
@@ -56,7 +56,7 @@ class _Element(NamedTuple):
 
 
 class Survey:
-    """Points and alignments while they are read."""
+    """Points and alignments while they are being read."""
 
     def __init__(self, source: str, order: str = "nez") -> None:
         self.head = Head(source, ORDERS[order])
@@ -157,7 +157,7 @@ class Survey:
         return [name for name, *_ in self._drafts]
 
     def points(self) -> tuple[Floats, dict[str, Any]]:
-        """Return the points (n, 3), heights NaN without one, and their name, code and desc."""
+        """Return points, (n, 3), NaN for missing heights, and their name, code and desc."""
         places = np.array([place for place, *_ in self._rows]).reshape(-1, 3)
         words = zip(*(words for _, *words in self._rows), strict=True)
         columns = [np.array(column, dtype=object) for column in words] or [np.empty(0, object)] * 3
@@ -172,7 +172,7 @@ class Survey:
                 continue
             parts = []
             for element in elements:
-                # Coordinates near the limit of doubles leave it, and what follows is refused.
+                # Coordinates near the limit of doubles overflow, and the result is rejected.
                 with np.errstate(over="ignore", invalid="ignore"):
                     parts.append(self._part(element, chord, budget))
                 budget -= len(parts[-1])
@@ -183,7 +183,7 @@ class Survey:
         return found
 
     def _joined(self, parts: list[Floats], elements: Iterable[_Element], name: str) -> Floats:
-        """Put the elements of an alignment together."""
+        """Join the elements of an alignment."""
         rows = [parts[0]]
         for part, element in zip(parts[1:], list(elements)[1:], strict=True):
             with np.errstate(over="ignore"):
@@ -200,7 +200,7 @@ class Survey:
         return FileFormatError(f"{self.head.source}, line {element.line}: {what}")
 
     def _at(self, element: _Element, tag: str) -> Floats:
-        """Return a place of an element, (2,)."""
+        """Return a position of an element, (2,)."""
         place = element.places.get(tag)
         if isinstance(place, str):
             if place not in self._points:
@@ -276,7 +276,7 @@ class Survey:
             raise self._fault(
                 element, f"this spiral does not reach its end by {np.hypot(*away):.6g}"
             )
-        # What is rounded in the file is spread along the curve.
+        # The rounding error of the file is spread along the curve.
         found: Floats = start + line + away * (ends / length)[:, None]
         found[-1] = end
         return found

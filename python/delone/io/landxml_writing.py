@@ -140,7 +140,7 @@ def _list(points: Floats, rows: Iterable[int]) -> str:
 
 
 def _chains(edges: list[Any], *, directed: bool = False) -> Iterator[list[int]]:
-    """Join edges to lines that begin and end where not exactly two meet, and then to rings."""
+    """Join edges into lines, which end where not exactly two edges meet, and then into rings."""
     around: dict[int, list[int]] = {}
     for row, (a, b) in enumerate(edges):
         around.setdefault(a, []).append(row)
@@ -163,7 +163,7 @@ def _chain(  # noqa: PLR0917
     row: int,
     directed: bool,
 ) -> list[int]:
-    """Follow edges from a vertex, by one of its edges, as far as they go on unambiguously."""
+    """Follow edges from a vertex, starting with one of them, as long as that is unambiguous."""
     chain = [start]
     while True:
         free[row] = False

@@ -31,9 +31,9 @@ Box = tuple[float, float, float, float]
 __all__ = ["describe", "look", "read_points", "read_range", "read_within", "require_some"]
 
 _BLOCK = 1 << 19
-# Writers put 50,000 points into a chunk; the decoder allocates memory for all of them.
+# Writers put 50,000 points into a chunk; the decoder allocates memory for the whole chunk.
 _LONGEST_CHUNK = 10_000_000
-# Number of layers of the item types of LAZ for point formats 6 and later: points, colors, near
+# Number of layers of the LAZ item types for point formats 6 and later: points, colors, near
 # infrared, waveforms. Extra bytes have one layer each.
 _LAYERED = 3
 _LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
@@ -94,7 +94,7 @@ def read_within(
 def require_some(path: Path, count: int, classes: Sequence[int] | None, box: Box | None) -> None:
     """Reject a choice that leaves none of the points of a file."""
     if not count and box is not None:
-        raise FileFormatError(f"{path} contains no points inside of bounds={box}" + _of(classes))
+        raise FileFormatError(f"{path} contains no points inside bounds={box}" + _of(classes))
     if not count and classes is not None:
         wanted = ", ".join(map(str, classes))
         raise FileFormatError(
@@ -160,7 +160,7 @@ def _has_chunks_of_any_size(header: Any) -> bool:
 
 
 def _laz_record(header: Any) -> bytes:
-    """The record that tells how the points are compressed."""
+    """The record that describes how the points are compressed."""
     record: bytes = header.vlrs.get("LasZipVlr")[0].record_data
     return record
 
@@ -188,7 +188,7 @@ def _from_chunks(path: Path, header: Any, start: int, stop: int) -> Any:
 
 
 def _chunk_table(path: Path, header: Any) -> NDArray[np.int64]:
-    """Return the numbers of points and bytes of the chunks that have points, (k, 2)."""
+    """Return the numbers of points and bytes of the chunks that contain points, (k, 2)."""
     lazrs = require("lazrs", extra="las", what="reading LAZ")
     with path.open("rb") as file:
         file.seek(int(header.offset_to_point_data))
@@ -215,7 +215,7 @@ def _check_names(path: Path, header: Any, names: Sequence[str]) -> None:
 
 
 def _unnamed(path: Path) -> str:
-    """Return why extra bytes of a file have no names, if its record of them cannot be read."""
+    """Return why the extra bytes have no names, if the record about them is unreadable."""
     head = _head(path)
     (start,), (before, count) = (
         struct.unpack_from("<H", head, 94),
@@ -351,7 +351,7 @@ def _check_claim(path: Path, file: Any) -> None:
 
 
 def _compressed_records(path: Path, header: Any) -> tuple[int, int]:
-    """Return the least and the greatest number of records in the chunks of a LAZ file."""
+    """Return the smallest and the largest number of records in the chunks of a LAZ file."""
     lazrs = require("lazrs", extra="las", what="reading LAZ")
     record = _laz_record(header)
     vlr = lazrs.LazVlr(record)
@@ -416,7 +416,7 @@ def _of(classes: Sequence[int] | None) -> str:
 
 
 def _source(path: Path, file: Any, box: Box | None) -> _Source:
-    """Return the records of a file; of a COPC file only those of nodes that meet a box."""
+    """Return the records of a file; for a COPC file, only those of nodes that meet a box."""
     header = file.header
     if box is None or not is_copc(header):
         return _Source(int(header.point_count), file.chunk_iterator(_BLOCK))
@@ -434,7 +434,7 @@ def _read(
     attributes: Sequence[str],
     box: Box | None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], dict[str, NDArray[Any]]]:
-    # Unwritten pages of these arrays cost nothing, so no second copy is needed.
+    # Pages of these arrays that are never written cost nothing, so no second copy is needed.
     points, z = np.empty((source.most, 2)), np.empty(source.most)
     further: dict[str, list[NDArray[Any]]] = {name: [] for name in attributes}
     end = 0

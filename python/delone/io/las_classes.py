@@ -1,4 +1,4 @@
-"""LAS and LAZ files with other classes: all else of the points and of the header stays."""
+"""LAS and LAZ files with changed classes: everything else in points and header is kept."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 __all__ = ["write_classes"]
 
-# Points that are copied at once.
+# Number of points that are copied at a time.
 _BLOCK = 1 << 19
 
 
 def write_classes(source: Path, target: Path, classes: NDArray[np.uint8], *, packed: bool) -> None:
     """Copy a file that has been read, with these classes; `packed` for LAZ.
 
-    `target` may have another suffix, as a temporary file has.
+    `target` may have a different suffix, as temporary files do.
     """
     laspy = require("laspy", extra="las", what="writing LAS")
     if packed:

@@ -1,6 +1,6 @@
 """Safe XML in any common encoding: without a document type there are no entities.
 
-The parsers read UTF-8, UTF-16 and encodings of single bytes. UTF-32 and those that are common in
+The parsers read UTF-8, UTF-16 and single-byte encodings. UTF-32 and those that are common in
 East Asia are decoded here, so that every parser sees the same characters.
 """
 
@@ -22,8 +22,8 @@ __all__ = ["decoded", "refuse_document_type"]
 
 _BLOCK = 1 << 16
 _DECLARED = re.compile(rb"<\?xml[^>]*?encoding\s*=\s*[\"']([A-Za-z0-9._:-]{1,40})[\"']")
-# Encodings of several bytes, by Python's names. Files that declare the first of a family contain
-# characters of the last one as well: programs of Windows write these.
+# Multi-byte encodings, by Python's names. Files that declare the first of a family may also contain
+# characters of the last one: Windows programs write these.
 _SEVERAL_BYTES = {
     **dict.fromkeys(("gb2312", "gbk", "gb18030"), "gb18030"),
     **dict.fromkeys(("shift_jis", "cp932"), "cp932"),
@@ -31,7 +31,7 @@ _SEVERAL_BYTES = {
     **dict.fromkeys(("big5", "cp950"), "cp950"),
     **{"big5hkscs": "big5hkscs", "euc_jp": "euc_jp", "iso2022_jp": "iso2022_jp"},
 }
-# How files in UTF-32 begin, with a byte order mark or without one. The mark of UTF-16 is a part.
+# How files in UTF-32 begin, with a byte order mark or without one. The UTF-16 mark is a part of it.
 _FOUR_BYTES = {
     "utf_32": (codecs.BOM_UTF32_LE, codecs.BOM_UTF32_BE),
     "utf_32_le": ("<".encode("utf_32_le"),),
@@ -67,7 +67,7 @@ class _RootError(Exception):
 
 @contextmanager
 def decoded(path: Path) -> Iterator[tuple[IO[bytes], str | None]]:
-    """Open an XML file, and tell the encoding in which it is read if it is not the declared one."""
+    """Open an XML file; also return the encoding that is used if it is not the declared one."""
     with path.open("rb") as file:
         codec = _codec(file.read(1 << 8), path)
         file.seek(0)
@@ -75,7 +75,7 @@ def decoded(path: Path) -> Iterator[tuple[IO[bytes], str | None]]:
             yield file, None
             return
         try:
-            # Whatever it decodes is given out as UTF-8, and declared as such.
+            # Decoded text is passed on as UTF-8, and declared as such.
             recoded: Any = _Redeclared(codecs.EncodedFile(file, "utf-8", codec))
             yield recoded, "utf-8"
         except UnicodeDecodeError as error:
@@ -86,7 +86,7 @@ def decoded(path: Path) -> Iterator[tuple[IO[bytes], str | None]]:
 
 
 def _codec(head: bytes, path: Path) -> str | None:
-    """Return the codec of an encoding that parsers do not read, None for all others."""
+    """Return the codec for an encoding that parsers do not read, and None for all others."""
     for codec, beginnings in _FOUR_BYTES.items():
         if head.startswith(beginnings):
             return codec
@@ -126,7 +126,7 @@ def refuse_document_type(path: Path) -> None:
         except (DeloneError, UnicodeDecodeError):
             raise
         except (LookupError, ValueError) as error:
-            # Of a declaration that a parser cannot follow.
+            # The declaration names an encoding that the parser does not support.
             raise FileFormatError(
                 f"{path} is in an encoding that is not read ({error}): convert it to UTF-8"
             ) from error

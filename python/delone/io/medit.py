@@ -1,6 +1,6 @@
-"""Medit's MESH files as text: sections of a word, a count and rows of numbers, read by delone.
+"""Medit's MESH files as text: sections with a word, a count and rows of numbers, read by delone.
 
-Polygons and tetrahedra keep their references. Sections of other names are left out.
+Polygons and tetrahedra keep their references. Sections with other names are left out.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def read(path: Path) -> ReadMesh:
 
 
 def _rows(numbers: Floats, width: int, name: str, path: Path) -> Floats:
-    """Return the numbers after a count as rows, which must be as many."""
+    """Return the numbers after a count as rows, whose number must match it."""
     count = numbers[0] if len(numbers) else -1.0
     if count < 0 or count != len(numbers[1:]) / width:
         raise FileFormatError(

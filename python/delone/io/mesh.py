@@ -1,8 +1,8 @@
-"""Meshes: VTU, PLY, OBJ, STL and MSH, written and in part read by meshio (extra ``mesh``).
+"""Meshes: VTU, PLY, OBJ, STL and MSH, written and partly read by meshio (extra ``mesh``).
 
 Legacy VTK and Medit files are read here as well, and written by `fem`.
 
-What meshio would set memory aside for is compared with the size of the file first. Doubles stay
+What meshio would allocate memory for is first compared with the size of the file. Doubles stay
 doubles: a binary STL file has single precision only, so it is written where that is exact, and as
 text with all digits where it is not.
 """
@@ -43,10 +43,10 @@ __all__ = ["read_mesh", "read_points", "require_libraries", "write_mesh"]
 
 _MODULES = {".vtu": "vtu", ".ply": "ply", ".obj": "obj", ".stl": "stl", ".msh": "gmsh"}
 _DIMENSIONS = {"triangle": 2, "tetra": 3}
-# These hold triangles, and no lines or tetrahedra.
+# These can store triangles, but not lines or tetrahedra.
 _PLAIN = (".ply", ".obj", ".stl")
 _HEAD, _TAIL = 1 << 16, 1 << 12
-# Those that are read without meshio, which fails on properties and counts that are usual.
+# These are read without meshio, which fails on common properties and counts.
 _OWN = {
     **{".ply": ply.read, ".obj": obj.read, ".vtu": vtu.read, ".vtk": vtk.read, ".mesh": medit.read}
 }
@@ -130,8 +130,8 @@ def _simplices(mesh: ReadMesh, kind: str, npoints: int, path: Path) -> NDArray[n
         corners = np.concatenate(blocks).astype(np.int64)
         return as_simplices(corners, npoints, _DIMENSIONS[kind])
     except OverflowError as error:
-        # Of numbers that no integer of NumPy holds, meshio makes objects.
-        raise FileFormatError(f"{path} names points that there are not: {error}") from error
+        # meshio returns numbers that exceed NumPy's integers as objects.
+        raise FileFormatError(f"{path} refers to points that do not exist: {error}") from error
     except InputError as error:
         raise FileFormatError(f"{path}: {error}") from error
 
@@ -142,7 +142,7 @@ def _tetrahedra(mesh: ReadMesh, path: Path) -> MeshFile:
     others = {block.type for block in mesh.cells} - {"tetra", "triangle", "vertex", "line"}
     if others or z is None:
         found = ", ".join(sorted(others)) or "flat points"
-        raise FileFormatError(f"{path} contains {found} beside its tetrahedra")
+        raise FileFormatError(f"{path} contains {found} besides its tetrahedra")
     simplices = _simplices(mesh, "tetra", len(plane), path)
     points = np.ascontiguousarray(np.column_stack((plane, z)))
     marked = any(block.type == "triangle" for block in mesh.cells)
@@ -171,7 +171,7 @@ def _coordinates(
 
 
 def _read(path: Path, attributes: Sequence[str] | None = (), *, marked: bool = False) -> ReadMesh:
-    """Return the points and cells of a file, and values of points: all, or those of an MSH file.
+    """Return points, cells and point values of a file: all, or the named ones of an MSH file.
 
     None means all of an MSH file as well. With `marked`, triangles and tetrahedra of an MSH file
     have the numbers of their groups, as those of other files have them in any case.
@@ -184,7 +184,7 @@ def _read(path: Path, attributes: Sequence[str] | None = (), *, marked: bool = F
     module = importlib.import_module(f"meshio.{_MODULES[suffix]}")
     needed = _whole_stl(path) if suffix == ".stl" else needed_sections(path, attributes)
     try:
-        # meshio speaks to the user itself, by rich, where it should raise or warn.
+        # meshio prints messages with rich where it should raise or warn.
         quiet = io.StringIO()
         with (
             needed as part,
@@ -219,8 +219,8 @@ def _read(path: Path, attributes: Sequence[str] | None = (), *, marked: bool = F
 def _whole_stl(path: Path) -> Iterator[Path]:
     """Yield an STL file, unless it is truncated.
 
-    It is binary if it has the size that the number after its 80 bytes of header says, whatever
-    word that begins with; many programs write "solid" there.
+    It is binary if its size matches the number after its 80-byte header, whatever word the header
+    begins with; many programs write "solid" there.
     """
     size = path.stat().st_size
     with path.open("rb") as file:
@@ -260,7 +260,7 @@ def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     )
     made = to_meshio(found.bare() if suffix in _PLAIN else found.whole())
     if suffix == ".msh" and TAGS[0] in made.cell_data:
-        # meshio reads values of mixed cells in no version.
+        # meshio does not read values of mixed cells in any version.
         if found.of_simplices:
             raise FileFormatError(
                 ".msh files of meshes cannot store attributes of triangles; use .vtu"
@@ -286,9 +286,9 @@ def _write_tagged(
 ) -> None:
     """Write simplices and segments to an MSH file, with regions and markers as its groups.
 
-    Values of cells are those of simplices in a mesh without segments.
+    Cell values are those of simplices, in a mesh without segments.
     """
-    # Points have the markers of their segments; these are groups here.
+    # Points have the markers of their segments, which become groups here.
     mesh.point_data = {
         name: values
         for name, values in mesh.point_data.items()
@@ -309,8 +309,8 @@ def _write_tagged(
 def _groups(mesh: Any, *, unmarked: bool = True) -> list[msh.Group]:
     """Return the physical groups of a mesh: cells with the same region or marker.
 
-    Facets without a marker, whose number is 0, are a group with the number after the largest one,
-    or with ``unmarked=False`` none.
+    Facets without a marker, whose number is 0, form a group with the number after the largest one;
+    with ``unmarked=False``, they are not in any group.
     """
     found = []
     for name, block in (("region", 0), ("marker", 1))[: len(mesh.cells)]:

@@ -31,17 +31,17 @@ class MeshFile:
     source : str, optional
         The file.
     markers : ndarray of int32, shape (m,), optional
-        A number for each triangle of a surface: in TetGen's formats, the references of MESH, the
-        physical groups of MSH (the first one of a triangle; a name such as "marker 7" or "region 7"
-        gives 7), and values of cells of VTK and VTU that are called marker.
+        A number for each triangle of a surface: in TetGen's formats, the references in MESH, the
+        physical groups in MSH (the first one of a triangle; a name such as "marker 7" or "region 7"
+        gives 7), and VTK and VTU cell values named marker.
     holes : ndarray of float64, shape (k, 3), optional
         Points in holes, in .poly and .smesh.
     regions : ndarray of float64, shape (k, 4), optional
         Points in regions, and their numbers, in .poly and .smesh.
     region : ndarray of int32, shape (m,), optional
-        A number for each tetrahedron: values of cells of VTK and VTU that are called region, the
-        references of MESH, the physical groups of MSH (as for markers; 0 without a group), the
-        first attribute of TetGen's ELE if it has integers, and that of a `TetMesh` in npz.
+        A number for each tetrahedron: VTK and VTU cell values named region, the references in MESH,
+        the physical groups in MSH (as for markers; 0 without a group), the first attribute in
+        TetGen's ELE if it consists of integers, and that of a `TetMesh` in npz.
     faces : ndarray of int32, shape (f, 3), optional
         The triangles of a file of tetrahedra: faces of the input, or of the boundary.
     face_markers : ndarray of int32, shape (f,), optional

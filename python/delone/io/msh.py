@@ -1,7 +1,7 @@
 """MSH files of version 4.1 with physical groups, binary: names, entities, nodes, elements, values.
 
-meshio writes the entities of version 4 only where each has nodes of its own. Here each group of
-cells is an entity with its number, and nodes stay in their order, as part of the first one.
+meshio writes version-4 entities only if each has its own nodes. Here, each group of cells is an
+entity with its number, and nodes keep their order, as part of the first entity.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Group", "write"]
 
-# Gmsh's number of a type of elements, its dimension, and its nodes in the order of VTK.
+# Gmsh's number of an element type, its dimension, and its nodes in VTK's order.
 _KINDS: dict[str, tuple[int, int, tuple[int, ...]]] = {
     "line": (1, 1, (0, 1)),
     "line3": (8, 1, (0, 1, 2)),
@@ -32,7 +32,7 @@ _KINDS: dict[str, tuple[int, int, tuple[int, ...]]] = {
 
 
 class Group(NamedTuple):
-    """Cells of one kind that are one physical group, and an entity with the same number."""
+    """Cells of one kind that form one physical group, and an entity with the same number."""
 
     name: str
     number: int  # from 1 on
@@ -53,7 +53,7 @@ def write(
     of_points: Mapping[str, NDArray[Any]],
     of_cells: Mapping[str, NDArray[Any]],
 ) -> None:
-    """Write points, (n, 3), groups of cells, and values of points and, where of one kind, cells."""
+    """Write points, (n, 3), groups of cells, point values, and values of cells of one kind."""
     groups = sorted(
         (group for group in groups if len(group.cells)),
         key=lambda group: (group.ndim, group.number),
@@ -91,7 +91,7 @@ def write(
 
 
 def _entities(points: Floats, groups: list[Group]) -> bytes:
-    """The entities of each dimension: number, bounding box, its one group, and no sides."""
+    """The entities of each dimension: number, bounding box, its single group, and no sides."""
     found = [_sizes(*(sum(group.ndim == ndim for group in groups) for ndim in range(4)))]
     for group in groups:
         places = points[np.unique(group.cells)]

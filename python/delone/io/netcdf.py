@@ -1,7 +1,8 @@
 """Heights on the nodes of rectilinear grids in NetCDF files and xarray objects (CF conventions).
 
-The last two dimensions of a variable are its rows and columns, in either order; further ones must
-have one entry. Values are read as they are stored, so that fill values are compared exactly.
+The last two dimensions of a variable are its rows and columns, in either order; other dimensions
+must have a single entry. Values are read as they are stored, so that fill values are compared
+exactly.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ class Heights(NamedTuple):
 
 
 def is_netcdf(path: Path) -> bool:
-    """Return whether the suffix is that of NetCDF."""
+    """Return whether the suffix is a NetCDF suffix."""
     return path.suffix.lower() == ".nc"
 
 
@@ -51,7 +52,7 @@ def read_heights(  # noqa: PLR0917
     nodata: float | None,
     most: int,
 ) -> Heights:
-    """Read a variable of a file: every `step`-th row and column inside of a box."""
+    """Read a variable of a file: every `step`-th row and column inside a box."""
     xarray = require("xarray", extra="xarray", what="reading NetCDF")
     require("netCDF4", extra="xarray", what="reading NetCDF")
     if not path.exists():
@@ -88,7 +89,7 @@ def heights_of_array(
 
 
 def is_array(data: Any) -> bool:
-    """Return whether data are like an xarray.DataArray."""
+    """Return whether data look like an xarray.DataArray."""
     return all(hasattr(data, each) for each in ("dims", "coords", "isel", "attrs", "sizes"))
 
 
@@ -100,7 +101,7 @@ def _selected(  # noqa: PLR0917
     most: int | None,
     where: str,
 ) -> Heights:
-    """Return every `step`-th row and column inside of a box; nothing else is loaded."""
+    """Return every `step`-th row and column inside a box; nothing else is loaded."""
     across, up = _axes(variable, where)
     x, y = (np.asarray(variable[axis].values, dtype=np.float64) for axis in (across, up))
     columns, rows = np.arange(0, len(x), step), np.arange(0, len(y), step)
@@ -108,7 +109,7 @@ def _selected(  # noqa: PLR0917
         columns = columns[(x[columns] >= box[0]) & (x[columns] <= box[2])]
         rows = rows[(y[rows] >= box[1]) & (y[rows] <= box[3])]
         if not (len(columns) and len(rows)):
-            raise InputError(f"{where}: no node is inside of bounds={box}")
+            raise InputError(f"{where}: no node is inside bounds={box}")
     if most is not None and len(columns) * len(rows) > most:
         raise FileFormatError(
             f"{where} has {len(columns) * len(rows)} nodes to read, and at most {most} are read "
@@ -229,7 +230,7 @@ def _system(array: Any) -> str | None:
 
 
 def _short(text: str) -> str:
-    """Return the authority and code of a system in WKT, if pyproj is there and knows them."""
+    """Return authority and code of a system in WKT, if pyproj is installed and recognizes it."""
     try:
         import pyproj
     except ImportError:

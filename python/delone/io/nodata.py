@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["as_nodata", "is_nodata", "require_declared"]
 
-# What programs write: nines, the ends of the range of two bytes, and the largest floats.
+# What programs write: nines, the limits of two-byte integers, and the largest floats.
 _CUSTOMARY = (-9999.0, 9999.0, -99999.0, 99999.0, -32768.0, -32767.0, 32767.0)
 _LARGE = 1e30
 
@@ -39,9 +39,9 @@ def is_nodata(values: NDArray[Any], nodata: float | None) -> Bools:
 def require_declared(
     values: NDArray[Any], nodata: float | None, where: str, *, file: bool = True
 ) -> None:
-    """Refuse heights that are a customary nodata constant, far outside all others.
+    """Reject heights that are a customary nodata constant, far outside the range of all others.
 
-    Far means farther than the range of all others. NaN as `nodata` says that every value is a
+    Far means by more than the width of that range. NaN as `nodata` says that every value is a
     height.
     """
     if not len(values) or (nodata is not None and np.isnan(nodata)):

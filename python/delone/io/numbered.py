@@ -1,7 +1,7 @@
-"""Files of numbers with comments: how the formats of Triangle and TetGen name points and markers.
+"""Files of numbers with comments: how Triangle's and TetGen's formats number points and markers.
 
 Numbers of points start at 0 or 1 and follow each other. What a file declares is compared with what
-it contains before memory is set aside for it.
+it contains before memory is allocated.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def parsed(body: bytes, path: Path) -> Floats:
         return np.empty(0)
     try:
         with warnings.catch_warnings():
-            # NumPy warns, and stops, at what is not a number.
+            # NumPy warns and stops at text that is not a number.
             warnings.simplefilter("error", DeprecationWarning)
             found: Floats = np.fromstring(body, dtype=np.float64, sep=" ")
     except (DeprecationWarning, ValueError) as error:
@@ -97,12 +97,12 @@ class Numbers:
 
     @property
     def ended(self) -> bool:
-        """Whether all numbers are taken."""
+        """Whether all numbers have been read."""
         return self._at >= len(self._values)
 
 
 class Lines:
-    """The lines of a file, without its comments, where their lengths have a meaning."""
+    """The lines of a file, without its comments, for formats in which line breaks matter."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -111,7 +111,7 @@ class Lines:
 
     @property
     def ended(self) -> bool:
-        """Whether all lines are taken."""
+        """Whether all lines have been read."""
         return self._at >= len(self._lines)
 
     @property
@@ -125,7 +125,7 @@ class Lines:
             raise truncated(self.path)
 
     def word(self) -> str:
-        """Return the word that opens the file, with or without numbers behind it."""
+        """Return the word that opens the file, with or without numbers after it."""
         word, _, rest = (self._lines[0] if self._lines else "").partition(" ")
         self._lines[:1] = [rest] if rest.strip() else []
         return word
@@ -142,7 +142,7 @@ class Lines:
             ) from error
 
     def counts(self, least: int) -> list[int]:
-        """Return the integers of the next line, at least so many; the first ones are counts."""
+        """Return the integers of the next line, at least `least`; the first ones are counts."""
         found = self.numbers()
         whole = [int(n) for n in found if abs(n) < _LARGEST and n == int(n)]
         if len(whole) < max(least, len(found)) or min(whole[:least]) < 0:
@@ -150,7 +150,7 @@ class Lines:
         return whole
 
     def rows(self, count: int, columns: int) -> Floats:
-        """Return so many lines, (count, columns); further columns are left out."""
+        """Return the next `count` lines, (count, columns); further columns are left out."""
         self.require(count)
         rows = [self.numbers()[:columns] for _ in range(count)]
         if any(len(row) < columns for row in rows):
@@ -158,7 +158,7 @@ class Lines:
         return np.array(rows, dtype=np.float64).reshape(count, columns)
 
     def polygon(self) -> tuple[list[float], list[float]]:
-        """Return the corners of a polygon, also from several lines, and what follows them."""
+        """Return the corners of a polygon, which may span several lines, and what follows them."""
         head = self.numbers()
         if not head or not 1 <= head[0] < _LARGEST or head[0] != int(head[0]):
             raise FileFormatError(f"{self.path} has no number of corners where it is expected")
@@ -186,7 +186,7 @@ def first_number(numbers: Floats, path: Path) -> int:
 
 
 def as_markers(numbers: Floats, path: Path, what: str = "marker") -> NDArray[np.int32]:
-    """Return a column of markers, or of other numbers of parts, as integers."""
+    """Return a column of markers, or of similar numbers, as integers."""
     good = (np.abs(numbers) < _LARGEST) & (numbers == np.floor(numbers))
     if not good.all():
         row = int(np.flatnonzero(~good.all(axis=1))[0])
@@ -197,7 +197,7 @@ def as_markers(numbers: Floats, path: Path, what: str = "marker") -> NDArray[np.
 
 
 def as_rows(numbers: Floats, first: int, file: Path, n: int) -> NDArray[np.int32]:
-    """Return numbers of points as rows of n points."""
+    """Return point numbers as rows of n points."""
     rows = numbers - first
     if (rows != np.floor(rows)).any() or (rows < 0).any() or (rows >= n).any():
         raise FileFormatError(f"{file} refers to points that do not exist")

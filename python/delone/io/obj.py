@@ -22,7 +22,7 @@ __all__ = ["read"]
 _CURVED = ("curv", "curv2", "surf")
 # Rows have 32 bits.
 _LARGEST = 1 << 31
-# Numbers of a vertex: x, y, z; a weight or colors may follow.
+# The numbers of a vertex: x, y and z; a weight or colors may follow.
 _PLAIN, _WEIGHTED, _COLORED = (2, 3), 4, (6, 7)
 
 

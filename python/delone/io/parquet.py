@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 # Decimal digits that every double keeps, and the largest power of ten that is a double.
 _DIGITS, _LARGEST_EXACT_POWER = 15, 22
-# Digits that fit into 128 bits, and some more than fit into 256.
+# The number of digits that fit into 128 bits, and a bit more than fit into 256.
 _WIDEST, _DIGITS_OF_DECIMALS = 38, 100
 
 __all__ = ["holds_geometries", "look", "read_geometries", "read_points", "read_range"]
@@ -84,9 +84,9 @@ def read_geometries(
 def look(
     path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]
 ) -> tuple[int, bool]:
-    """Return the number of rows of a Parquet file without geometries, and if it has heights.
+    """Return the number of rows of a Parquet file without geometries, and whether it has heights.
 
-    Raises for columns that the file does not have.
+    Raise an error for columns that the file does not have.
     """
     with _corrupt_is_an_error(path):
         parquet = require("pyarrow.parquet", extra="geo", what="reading Parquet")
@@ -106,7 +106,7 @@ def read_range(
 ) -> PointSet:
     """Read the rows from `start` to before `stop` of a Parquet file without geometries.
 
-    At most one row group is in memory beside them.
+    In addition, at most one row group is in memory.
     """
     with _corrupt_is_an_error(path):
         arrow = require("pyarrow", extra="geo", what="reading Parquet")

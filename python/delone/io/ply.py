@@ -32,9 +32,9 @@ _TYPES = {
 _FORMATS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 _CORNERS = ("vertex_indices", "vertex_index")
 _HEAD = 1 << 16
-# Numbers of text are doubles, of which all integers below this one are exact.
+# Numbers in text are doubles, which represent all integers below this one exactly.
 _LARGEST = float(1 << 53)
-# Elements that are surfaces as well, in another form.
+# Elements that also represent surfaces, in another form.
 _STRIPS = ("tristrips", "multi_res_tristrips")
 
 
@@ -86,7 +86,7 @@ def _faces(columns: dict[str, Any], path: Path) -> list[list[int]]:
     corners = next((columns[name] for name in _CORNERS if name in columns), None)
     if not isinstance(corners, list):
         raise FileFormatError(f"{path} has faces without {_CORNERS[0]}")
-    # An empty polygon is none.
+    # Empty polygons do not count.
     return [row for row in corners if row]
 
 
@@ -121,13 +121,13 @@ def _header(content: bytes, path: Path) -> tuple[str, list[_Element], int]:
 
 
 class _Rows:
-    """The numbers of a file in order, of which items are taken."""
+    """The numbers of a file in order, from which items are read."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
 
     def short(self, element: _Element) -> FileFormatError:
-        """Return the error of a file that ends before its items do."""
+        """Return the error for a file that ends before its items do."""
         return FileFormatError(
             f"{self.path} declares {element.count} items of type {element.name!r:.40} and holds "
             "fewer: it is truncated"
@@ -149,7 +149,7 @@ class _Rows:
                 for column, (name, _, length) in zip(found, element.properties, strict=True)
             }
         columns: list[list[Any]] = [[] for _ in element.properties]
-        for _ in range(element.count):  # each row takes a number at least, or the file ends
+        for _ in range(element.count):  # each row reads at least one number, or the file ends
             for column, (_, kind, length) in zip(columns, element.properties, strict=True):
                 column.append(self._one(element, kind, length))
         return {
@@ -172,7 +172,7 @@ class _Rows:
         return numbers.astype(kind)
 
     def _lengths(self, element: _Element) -> list[int]:
-        """Return the lengths of the lists of the next item, which stays where it is."""
+        """Return the lengths of the lists of the next item, without reading it."""
         raise NotImplementedError
 
     def _alike(self, element: _Element, lengths: list[int]) -> Any:
@@ -235,7 +235,7 @@ class _Text(_Rows):
         return found.tolist() if length else found[0]
 
     def finish(self) -> None:
-        """Reject what follows the items that are declared."""
+        """Reject content after the declared items."""
         if self._at < len(self._values):
             raise FileFormatError(f"{self.path} is corrupt: it has more than it declares")
 
@@ -294,6 +294,6 @@ class _Binary(_Rows):
         return found.tolist() if length else found[0]
 
     def finish(self) -> None:
-        """Reject what follows the items that are declared."""
+        """Reject content after the declared items."""
         if self._content[self._at :].strip():
             raise FileFormatError(f"{self.path} is corrupt: it has more than it declares")

@@ -1,7 +1,7 @@
 """The contents of a file of points, and recognition of its coordinate columns.
 
-A column is recognized by the usual words of surveying and mapping. If a header contains none of
-them, nothing is guessed: two wrong columns would give a perfect triangulation of nonsense.
+A column is recognized by words that are common in surveying and mapping. If a header contains none
+of them, nothing is guessed: two wrong columns would give a perfect triangulation of nonsense.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _WORDS = {
         "topography", "zcoord", "coordz", "gpsalt", "gpsaltitude", "gpselevation",
     },
 }  # fmt: skip
-# Number of characters of a reference system that are shown.
+# Number of characters of a reference system to show.
 _SHORT = 40
 # A column number has fewer digits.
 _DIGITS = 9
@@ -112,7 +112,7 @@ class PointSet:
 
 
 def _span(column: NDArray[np.float64]) -> str:
-    """The least and the greatest number, ignoring NaN."""
+    """The smallest and the largest number, ignoring NaN."""
     low, high = (each.reduce(column) for each in (np.fmin, np.fmax))
     return "unknown" if np.isnan(low) else f"{low:.6g} to {high:.6g}"
 

@@ -1,4 +1,4 @@
-"""Quantized mesh: terrain tiles for globes, in levels of the tiles of EPSG:4326.
+"""Quantized mesh: terrain tiles for globes, in the levels of the EPSG:4326 tiling.
 
 Coordinates in a tile are integers from 0 to 32767, horizontally and vertically. So points are first
 moved onto this grid, and tiles are simplified on it. The error of a level is measured from the
@@ -74,8 +74,7 @@ def write_quantized_mesh(
         files with the same names are replaced.
     tin : TIN
         The surface, with a known reference system. Heights are in its `units`, or in meters if
-        these are unknown. They are taken as heights above the ellipsoid: nothing is shifted by a
-        geoid.
+        these are unknown. They are treated as heights above the ellipsoid: no geoid is applied.
     max_error : float
         The largest vertical distance in meters of a point from the finest level. It determines the
         number of levels: as Cesium expects, the error of level z is at most 77067 / 2^z meters.
@@ -114,9 +113,9 @@ def write_quantized_mesh(
     as edges, and gaps inside the hull, such as holes, are filled. Between the outline and the sides
     of a tile, triangles lead to the height `outside`. Adjacent tiles have the same points on the
     side between them, at exactly the same heights.
-    A normal is the sum of those of the triangles around the vertex, by area, in all tiles of the
-    level that share it, so no edge is seen between tiles. Each of its two numbers has 8 bits.
-    ``layer.json`` is written last.
+    A normal is the area-weighted sum of the normals of the triangles around the vertex, in all
+    tiles of the level that share it, so no edge is visible between tiles. Each of its two numbers
+    has 8 bits. ``layer.json`` is written last.
 
     Examples
     --------
@@ -240,7 +239,7 @@ class _Tile(NamedTuple):
 
 
 def _keep_in_sight(header: dict[str, Any]) -> None:
-    """Give a tile that is always visible, such as those of level 0, a point far above the horizon.
+    """Give a tile that is always visible, such as one of level 0, a point far above the horizon.
 
     Its coordinates are multiples of the radii of the earth.
     """
@@ -373,7 +372,7 @@ class _Sides:
         along = self.on.grid[:, 1 - axis] - start[1 - axis]
         own = (self.on.grid[:, axis] == start[axis]) & (along >= 0) & (along <= _STEPS)
         z = self.level.ground.heights(self.level.degrees(grid))
-        # Points of the surface come first, and of each place the first one is taken.
+        # Points of the surface come first, and the first point at each place is used.
         both = np.concatenate((self.on.grid[own], grid))
         places, first = np.unique(both, axis=0, return_index=True)
         return _Points(places, np.concatenate((self.on.z[own], z))[first])
@@ -420,7 +419,7 @@ def _simplified(sides: _Sides, tile: tuple[int, int], error: float) -> _Tile:
 
 
 def _thinned(line: _Points, axis: int, error: float, step: float) -> Floats:
-    """Return the points of a side that stay, with heights in steps."""
+    """Return the points of a side that are kept, with heights in steps."""
     z = np.rint(line.z / step)
     way = line.grid[:, 1 - axis].astype(np.float64)
     kept = thinned(way, z, np.zeros(len(z), dtype=bool), error / step)
@@ -454,7 +453,7 @@ def _normals(level: _Level, tiles: dict[tuple[int, int], _Tile]) -> dict[tuple[i
         around[tile] = np.zeros((len(grid), 3))
         for corner in simplices.T:
             np.add.at(around[tile], corner, faces)
-        # Vertices on sides are known by their column and row.
+        # Vertices on sides are identified by their column and row.
         rows = np.flatnonzero(((grid == 0) | (grid == _STEPS)).any(axis=1))
         keys = [(int(x), int(y)) for x, y in grid[rows] + np.multiply(tile, _STEPS)]
         sides[tile] = rows, keys

@@ -66,8 +66,8 @@ def read_points(
     classes : sequence of int, optional
         Keep the points of these classes (LAS, LAZ and EPT).
     layer : str, optional
-        The layer, for files that have several; the array of an npz file; the surface of LandXML,
-        or ``"CgPoints"`` for its survey points; the band of a raster.
+        The layer, for files that have several; the array in an npz file; the surface in LandXML, or
+        ``"CgPoints"`` for its survey points; the band of a raster.
     attributes : sequence of str or "all", optional
         Further columns to read. "all" means all that are not coordinates: those of text files are
         numbers if every field is one, otherwise strings; the number of the column is appended to
@@ -87,7 +87,7 @@ def read_points(
     Raises
     ------
     InputError
-        `attributes` is another string.
+        `attributes` is a string other than "all".
     FileNotFoundError
         There is no such file.
     FileFormatError
@@ -207,7 +207,7 @@ def read_geometries(
         The one attribute that is the height of each feature, as for contour lines. By default
         heights are those of the coordinates, if any.
     layer : str, optional
-        The layer, for files that have several; of LandXML a surface, an alignment, or
+        The layer, for files that have several; in LandXML, a surface, an alignment, or
         ``"Alignments"`` for all.
     attributes : sequence of str or "all", optional
         Further columns to read, as for `read_points`; alignments have ``name`` and ``start``.
@@ -294,8 +294,8 @@ def read_surface(
         There is no such file.
     FileFormatError
         The file is not what its suffix says, has no such surface or layer, contains something other
-        than finite numbers, or faces of unknown points; the message has the line. Northing and
-        easting are swapped, as the declared reference system shows (with pyproj).
+        than finite numbers, or faces that refer to unknown points; the message names the line. Or
+        northing and easting are swapped, as the declared reference system shows (with pyproj).
     InputError
         `order` is not one of its choices.
     MissingExtraError
@@ -308,9 +308,9 @@ def read_surface(
     two triangles. For walls, the lower line is read. Boundaries of the types void, hole, hide and
     inner are holes, island is an island in a hole; all others are boundaries. Contours are soft
     breaklines. For DXF, the model space is read: 3DFACE, MESH, POINT, LINE, LWPOLYLINE, POLYLINE
-    (including polyface and polygon meshes) and curves, also in blocks. Layers that are off or
-    frozen are left out unless `layer` names them; so are texts, hatches, solids and references to
-    other drawings.
+    (including polyface and polygon meshes) and curves, even in blocks. Layers that are off or
+    frozen are left out unless `layer` names them. Text, hatches, solids and references to other
+    drawings are left out.
 
     Examples
     --------
@@ -365,9 +365,9 @@ def read_mesh(path: str | os.PathLike[str], *, polygons: str | None = None) -> M
         with its NODE next to it. Tetrahedra, with regions and marked faces, are read from npz, VTU,
         VTK, MSH, MESH and TetGen's ELE (no faces); its FACE, SMESH and POLY have triangles in 3-D.
     polygons : {"raise", "split"}, optional
-        Whether faces with more than three corners are an error or become triangles. By default an
-        error in VTU, VTK, MSH and MESH, whose polygons may be the cells of a mesh, and triangles
-        in PLY and OBJ. In OFF, SMESH and POLY they always become triangles.
+        Whether faces with more than three corners are an error or become triangles. By default,
+        they are an error in VTU, VTK, MSH and MESH, whose polygons may be the cells of a mesh, and
+        become triangles in PLY and OBJ. In OFF, SMESH and POLY, they always become triangles.
 
     Returns
     -------

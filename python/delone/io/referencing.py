@@ -20,7 +20,7 @@ __all__ = ["cf_attributes", "left_out", "warn_if_left_out"]
 def left_out(path: str | os.PathLike[str], crs: str | None, known: Sequence[str]) -> str | None:
     """Return a warning that a file will not contain a reference system; None if nothing is lost.
 
-    `known` has the suffixes of formats that can store one.
+    `known` contains the suffixes of formats that can store one.
     """
     suffix = Path(path).suffix.lower()
     if crs is None or suffix in known:

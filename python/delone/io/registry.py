@@ -42,9 +42,9 @@ __all__ = [
 
 _JSON = (".geojson", ".json")
 MESHES = (".vtu", ".ply", ".obj", ".stl", ".msh")
-# Those that are read, and written with what solvers need.
+# Formats that are read, and written with what solvers need.
 READ_MESHES = (*MESHES, ".vtk", ".mesh")
-# Those of surfaces, where polygons are facets.
+# Formats of surfaces, in which polygons are facets.
 FACETS = (".ply", ".obj")
 TRIANGLE = (".node", ".ele", ".poly")
 TETGEN = (".smesh", ".face")
@@ -108,7 +108,7 @@ def is_text(path: str | os.PathLike[str]) -> bool:
 def holds_geometries(path: str | os.PathLike[str]) -> bool:
     """Return whether `read_geometries` can read a file; no error for an unknown suffix.
 
-    Parquet files are opened to see if they are GeoParquet.
+    Parquet files are opened to check whether they are GeoParquet.
     """
     file = existing(path)
     module = READERS.get(suffix_of(file))
@@ -118,7 +118,7 @@ def holds_geometries(path: str | os.PathLike[str]) -> bool:
 
 
 def holds_surface(path: str | os.PathLike[str]) -> bool:
-    """Return whether the suffix is that of a file which `read_surface` reads."""
+    """Return whether `read_surface` reads files with this suffix."""
     return READERS.get(Path(path).suffix.lower()) in SHEETS
 
 

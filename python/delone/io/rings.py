@@ -1,4 +1,4 @@
-"""Which ring of a GeoJSON file is not closed, for an error message."""
+"""Find the ring of a GeoJSON file that is not closed, for an error message."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def open_ring(path: Path) -> str:
                         "more, and ends where it begins"
                     )
     except (ValueError, AttributeError, TypeError, KeyError, RecursionError, OSError):
-        pass  # The error of the reader remains.
+        pass  # The error of the reader is raised.
     return ""
 
 

@@ -1,4 +1,4 @@
-"""The surface of a file: points with heights, faces, lines and units, as the file has them."""
+"""The surface in a file: points with heights, faces, lines and units, unchanged."""
 
 from __future__ import annotations
 
@@ -44,11 +44,12 @@ class SurfaceFile:
     faces : ndarray of int32, shape (m, 3)
         The visible faces as rows of `points`; empty if the file has none.
     breaklines, soft_breaklines : tuple of ndarray of float64, shape (k, 3), optional
-        The lines that edges follow; heights are NaN where the file has none.
+        The lines that must become edges; heights are NaN where the file has none.
     boundary, holes, islands : tuple of ndarray of float64, shape (k, 3), optional
         The rings where the surface ends; islands are parts of it in holes.
     units : str, optional
-        The unit of heights, as ``"m"``, ``"ft"`` or ``"us-ft"``; None if the file has none.
+        The unit of heights, such as ``"m"``, ``"ft"`` or ``"us-ft"``; None if the file does not
+        say.
     lengths : str, optional
         The unit of x and y.
     crs : str, optional
@@ -109,7 +110,7 @@ class SurfaceFile:
         Warns
         -----
         LeftOutWarning
-            Something is left out; the message counts it by its kind.
+            Something is left out; the message counts it by kind.
 
         Examples
         --------
@@ -123,7 +124,7 @@ class SurfaceFile:
             )
 
     def as_points(self) -> PointSet:
-        """Return the points with their heights, and the vertices of lines that have some.
+        """Return the points with their heights, and the vertices of lines that have heights.
 
         Returns
         -------
@@ -190,7 +191,7 @@ class SurfaceFile:
         """Reject swapped northings and eastings, if the reference system makes this evident.
 
         That is, if all points are outside the area of use, and would be inside if swapped.
-        Without pyproj nothing is evident. `order` is the one in which they were read.
+        Without pyproj, nothing is evident. `order` is the order in which they were read.
         """
         bounds = _area(self.crs)
         if bounds is None or not len(self.points):
@@ -206,12 +207,12 @@ class SurfaceFile:
 
 
 def _known(line: Floats) -> Any:
-    """A line without its heights if one is missing."""
+    """Return a line, without its heights if one is missing."""
     return line[:, :2] if np.isnan(line[:, 2]).any() else line
 
 
 def _area(crs: str | None) -> tuple[float, float, float, float] | None:
-    """The least and greatest x and y in the area of use of a projected system."""
+    """Return the smallest and largest x and y in the area of use of a projected system."""
     system = None if crs is None else parsed(crs)
     if system is None or not system.is_projected or system.area_of_use is None:
         return None

@@ -82,7 +82,7 @@ def _in_json(value: Any) -> bool:
 def plain_system(system: Any, source: str) -> Any:
     """Return a reference system unchanged if GDAL cannot mistake it for a file name, else raise.
 
-    Objects of other libraries are returned as they are.
+    Objects of other libraries are returned unchanged.
     """
     if not isinstance(system, str) or not system:
         return system

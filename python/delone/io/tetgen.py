@@ -1,8 +1,8 @@
-"""The formats of TetGen: 3-D points, tetrahedra, faces, and surfaces of polygons with holes.
+"""TetGen's formats: 3-D points, tetrahedra, faces, and surfaces of polygons with holes.
 
-A .node file has points, .ele tetrahedra, .face triangles with markers; .smesh and .poly have
-facets, points in holes, and points in regions with their numbers. A file without points takes them
-from the .node file next to it. Facets with more than three corners become triangles.
+A .node file contains points, .ele tetrahedra, .face triangles with markers; .smesh and .poly
+contain facets, points in holes, and points in regions with their numbers. A file without points
+takes them from the .node file next to it. Facets with more than three corners become triangles.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = ["SECOND", "is_solid", "read_mesh", "read_nodes", "write_mesh"]
 
-# The nodes of an element of second order, by their places in the order of VTK.
+# The nodes of a second-order element, by their positions in VTK's order.
 SECOND = (0, 1, 2, 3, 9, 7, 4, 5, 8, 6)
 
 
@@ -185,7 +185,7 @@ def _polygons(lines: Lines) -> tuple[list[list[float]], Floats, float]:
 
 
 def _seeds(lines: Lines, columns: int) -> Floats:
-    """Return numbered points, (k, columns), with a number of a region as the last of five."""
+    """Return numbered points, (k, columns), with a region number as the last of five columns."""
     (count, *_) = lines.counts(1)
     return lines.rows(count, columns)
 
@@ -244,7 +244,7 @@ def region_seeds(mesh: Any, points: Floats, faces: Indices) -> list[str]:
         free = np.array([tuple(side) not in walls for side in sides], dtype=bool)
         pairs.append(np.column_stack((t, neighbors[t, i]))[free])
     one, other = np.concatenate(pairs).T
-    while True:  # ends: numbers of parts only decrease
+    while True:  # terminates: part numbers only decrease
         least = np.minimum(part[one], part[other])
         before = part.copy()
         np.minimum.at(part, one, least)

@@ -43,7 +43,7 @@ _COMMENTS = ("#", "//", "%", "!")
 _SAMPLE_BYTES = 1 << 16
 _SAMPLE_ROWS = 50
 _BLOCK = 1 << 17
-# Bytes of a line: a row of numbers, and perhaps an outline in another column.
+# Maximum length of a line in bytes: a row of numbers, and perhaps an outline in another column.
 _LONGEST_LINE = 1 << 24
 
 
@@ -69,7 +69,7 @@ def read_points(
 ) -> PointSet:
     """Read points from a text file; see `delone.io.read_points`.
 
-    With `everything`, all other columns are attributes, also those of words.
+    With `everything`, all other columns are attributes, including text.
     """
     source = str(path)
     with _no_text_is_an_error(source):
@@ -106,7 +106,7 @@ def line_numbers(path: Path, rows: Sequence[int]) -> list[int]:
 
 
 def _line_numbers(path: Path, skip: int, rows: Sequence[int]) -> list[int]:
-    """Read the file again; lines are counted only when an error message needs them."""
+    """Read the file again; lines are counted only if an error message needs them."""
     found, last = {}, max(rows, default=-1)
     with _opened(path) as file:
         held = (n for n, line in enumerate(file, 1) if n > skip and _is_row(line))
@@ -219,7 +219,7 @@ def _fields(row: str, delimiter: str | None) -> list[str]:
 
 
 def _spelling(text: str) -> str:
-    """Return what to change in a number that NumPy does not read; empty for all others."""
+    """Return how to change a number that NumPy does not read; empty for all others."""
     if _THOUSANDS.fullmatch(text):
         return ": remove the separators of thousands"
     if _FORTRAN.fullmatch(text):
@@ -228,7 +228,7 @@ def _spelling(text: str) -> str:
 
 
 def _refuse_point_numbers(rows: list[list[str]], source: str) -> None:
-    """Refuse columns without names of which the first is probably the number of the point.
+    """Reject unnamed columns of which the first is probably a point number.
 
     That is, whole numbers that grow from row to row, before three columns with decimals.
     """
@@ -256,7 +256,7 @@ def _is_comment(line: str) -> bool:
 
 def _is_number(field: str, decimal: str) -> bool:
     if _spelling(field):
-        return True  # of which reading says what to change
+        return True  # reading says what to change
     if decimal != ".":
         field = field.replace(decimal, ".")
     try:
@@ -312,7 +312,7 @@ def _refuse_long_rows(lines: list[str], layout: _Layout, before: int, path: Path
         if delimiter is not None and line.count(delimiter) < width:
             continue
         fields = line.split(delimiter)
-        # A trailing delimiter makes an empty field; one in quotes makes none.
+        # A trailing delimiter adds an empty field, but a delimiter in quotes does not.
         if any(field.strip() for field in fields[width:]) and '"' not in line:
             place = _place(row, layout, path)
             raise FileFormatError(

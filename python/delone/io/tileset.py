@@ -1,9 +1,10 @@
 """3D Tiles 1.1: a surface for globes, in levels of detail that replace each other.
 
-Points are placed on the ellipsoid of WGS 84 (pyproj), so that a level is neither on a map nor on a
-plane, and each file has 32-bit coordinates around a local origin, east, north and up. What the map
-projection, curvature and rounding change is part of the error of a level: the largest distance of a
-point of the survey from the point of the level at its x and y. The format is that of OGC 22-025r4.
+Points are placed on the ellipsoid of WGS 84 (pyproj), so a level is neither on a map nor on a
+plane, and each file has 32-bit coordinates (east, north and up) around a local origin. The effects
+of map projection, curvature and rounding are part of the error of a level: the largest distance of
+a point of the survey from the point of the level at its x and y. The format is that of OGC
+22-025r4.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["placed", "write_tileset"]
 
-# Levels that a tileset may have.
+# The maximum number of levels in a tileset.
 _MOST = 32
 
 
@@ -45,9 +46,8 @@ def write_tileset(
         The folder of ``tileset.json`` and of one GLB file for each level. It is created if it does
         not exist; files with the same names are replaced.
     tin : TIN
-        The surface, with a known reference system. Heights are in its `units`, or in meters where
-        these are unknown, and are taken as heights above the ellipsoid: nothing is shifted by a
-        geoid.
+        The surface, with a known reference system. Heights are in its `units`, or in meters if
+        these are unknown, and are treated as heights above the ellipsoid: no geoid is applied.
     errors : array_like of float, shape (k,)
         For each level, the largest vertical distance of a point from its surface, coarsest first,
         as `max_error` of `TIN.simplify`; 0 for a level with all points that are not redundant.
@@ -101,7 +101,7 @@ def write_tileset(
     found = []
     for number, error in enumerate(wanted.tolist()):
         surface = levels.surface(max_error=error)
-        # Its points are among those of the survey, in another order.
+        # Its points are among those of the survey, in a different order.
         own = frame.local(placed(surface)[1]).astype(np.float32).astype(np.float64)
         found.append(_distance(tin, exact, surface, own))
         with replacing(target / f"level-{number}.glb") as temporary:
@@ -136,10 +136,10 @@ def placed(tin: Any) -> tuple[Floats, Floats]:
     pyproj = require("pyproj", extra="geo", what="placing a surface on the globe")
     if tin.crs is None:
         raise InputError(
-            "the reference system of the surface is unknown, so its place on the globe is, too: "
-            "give crs to TIN.from_points (--crs)"
+            "the reference system of the surface is unknown, so its position on the globe is "
+            "unknown, too: give crs to TIN.from_points (--crs)"
         )
-    # Without heights: also those of compound systems are not transformed.
+    # Without heights: even those of compound systems are not transformed.
     to_degrees = pyproj.Transformer.from_crs(tin.crs, "EPSG:4326", always_xy=True)
     degrees = np.column_stack(to_degrees.transform(*tin.points.T))
     to_space = pyproj.Transformer.from_crs("EPSG:4979", "EPSG:4978", always_xy=True)
@@ -179,11 +179,11 @@ class _Frame:
 
 
 def _distance(tin: Any, exact: Floats, surface: Any, own: Floats) -> float:
-    """Return the greatest distance of points from a level where it has their x and y."""
+    """Return the largest distance of points from a level where it has their x and y."""
     used = np.unique(tin.simplices)
     place = surface.locate(tin.points[used])
     inside = place.simplex >= 0
-    # On the outline, rounding may put a point outside of a coarser level.
+    # On the outline, rounding may put a point outside a coarser level.
     corners = np.where(inside[:, None], surface.simplices[place.simplex], place.facet[:, [0, 1, 1]])
     weights = np.where(inside[:, None], place.barycentric, np.pad(place.weights, ((0, 0), (0, 1))))
     there = (weights[..., None] * own[corners]).sum(axis=1)

@@ -1,6 +1,6 @@
-"""The formats of Triangle, .node, .ele and .poly, read and written without a library.
+"""Triangle's formats, .node, .ele and .poly, read and written without a library.
 
-Where points have three coordinates, they are those of TetGen (`delone.io.tetgen`).
+If points have three coordinates, the formats are TetGen's (`delone.io.tetgen`).
 
 Numbers that start at 1 become rows from 0. Files are written with rows from 0 and all digits of the
 coordinates. A .poly file without points takes them from the .node file next to it.
@@ -36,12 +36,12 @@ if TYPE_CHECKING:
 
 __all__ = ["read_mesh", "read_points", "read_triangle", "write_mesh"]
 
-# The nodes of a triangle of second order, by their places in the order of VTK.
+# The nodes of a second-order triangle, by their positions in VTK's order.
 _SECOND = (0, 1, 2, 4, 5, 3)
 
 
 def read_triangle(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
-    """Read a .node, .ele or .poly file of Triangle, with the .node file that it needs.
+    """Read a Triangle .node, .ele or .poly file, with the .node file that it needs.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def _points(found: dict[str, NDArray[Any]], path: Path) -> Floats:
 
 
 def read_mesh(path: Path) -> MeshFile:
-    """Read triangles, or the tetrahedra of TetGen; see `delone.io.read_mesh`."""
+    """Read triangles, or TetGen's tetrahedra; see `delone.io.read_mesh`."""
     if tetgen.is_solid(path):
         return tetgen.read_mesh(path)
     found = read_triangle(path)
@@ -196,7 +196,7 @@ def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
 
 
 def _elements(parts: Parts) -> str:
-    """Triangles, and the regions of those of a mesh."""
+    """Triangles and, for a mesh, their regions."""
     count, extra = len(parts.simplices), np.empty((len(parts.simplices), 0))
     if "marker" in parts.of_segments:
         extra = parts.of_simplices["region"][:, None]
@@ -220,7 +220,7 @@ def _nodes(found: Content) -> str:
 
 
 def _poly(parts: Parts) -> str:
-    """Segments and seeds of holes, none: what is outside triangles is not told."""
+    """Segments, and no seeds of holes: a triangulation does not say what is outside."""
     pairs = boundary(parts.simplices) if parts.segments is None else parts.segments
     markers = parts.of_segments.get("marker", np.zeros(len(pairs), dtype=np.int32))
     return table(f"{len(pairs)} 1", (pairs, markers[:, None])) + "0\n"

@@ -48,10 +48,10 @@ __all__ = [
 
 # Layers are written in parts, so that only the geometries of one part are in memory.
 _PART = 1 << 18
-# When GDAL closes files of these formats, it does not report whether the last part was written.
-# Therefore their bytes are written here. Seventeen digits would reproduce every double, but with up
-# to nineteen GDAL treats a run of 0 or 9 near the end as a rounding error: 0.19999999999999996
-# becomes 0.2.
+# When GDAL closes files of these formats, it does not report whether the last part was written, so
+# their bytes are written here. Seventeen digits would reproduce every double, but with up to
+# nineteen GDAL treats a run of 0 or 9 near the end as a rounding error: 0.19999999999999996 becomes
+# 0.2.
 _IN_MEMORY: dict[str, dict[str, Any]] = {
     "GeoJSON": {"SIGNIFICANT_FIGURES": 20},
     "FlatGeobuf": {},
@@ -159,7 +159,7 @@ def _attributes(frame: Any, wanted: Sequence[str] | None, source: str) -> dict[s
 
 
 def _values(column: Any) -> NDArray[Any]:
-    """Return a column as an array; geometries beside those that are read become text."""
+    """Return a column as an array; further geometries become text."""
     if str(column.dtype) != "geometry":
         return np.asarray(column)
     shapely = require("shapely", extra="geo", what="reading geometries")
@@ -174,9 +174,9 @@ def geometries_of(
     source: str,
     attributes: Sequence[str] | None = (),
 ) -> GeometrySet:
-    """Extract the geometries of a GeoDataFrame; `columns` has the one column that is z, if any.
+    """Extract the geometries of a GeoDataFrame; `columns` names the one column that is z, if any.
 
-    Of attributes None means all.
+    For attributes, None means all.
     """
     if not hasattr(frame, "geometry") or not len(frame):
         raise FileFormatError(f"{source} contains no points")
@@ -224,7 +224,7 @@ def _layer(pyogrio: Any, name: str, layer: str | None, path: Path) -> str | None
 def _corrupt_is_an_error(source: str) -> Iterator[None]:
     try:
         with warnings.catch_warnings():
-            # Warnings of GDAL do not matter for reading points.
+            # GDAL's warnings do not matter for reading points.
             warnings.filterwarnings("ignore", category=RuntimeWarning, module="pyogrio")
             # NaN is rejected where it is used, with the number of its feature.
             warnings.filterwarnings("ignore", category=RuntimeWarning, module="shapely")

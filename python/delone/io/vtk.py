@@ -1,7 +1,7 @@
-"""Legacy VTK files, as text or binary: points, cells, values of points, markers and regions.
+"""Legacy VTK files, text or binary: points, cells, point values, markers and regions.
 
 PolyData and unstructured grids are read, in the layout before version 5 and in that of 5.1. What a
-file declares is compared with the bytes that follow before memory is set aside.
+file declares is compared with the bytes that follow before memory is allocated.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _TYPES = {
     **{"double": ">f8", "float": ">f4", "long": ">i8", "unsigned_long": ">u8", "int": ">i4"},
     **{"unsigned_int": ">u4", "short": ">i2", "unsigned_short": ">u2", "char": ">i1"},
     **{"unsigned_char": ">u1", "vtkidtype": ">i4"},
-    # What writers of version 5 name by the bits.
+    # Version 5 names these types by their number of bits.
     **{f"vtktypeint{bits}": f">i{bits // 8}" for bits in (8, 16, 32, 64)},
     **{f"vtktypeuint{bits}": f">u{bits // 8}" for bits in (8, 16, 32, 64)},
 }
@@ -38,10 +38,10 @@ _HEAD = re.compile(
     rb"# vtk DataFile Version [^\n]*\n[^\n]*\n\s*(ASCII|BINARY)\s+DATASET\s+(\w+)", re.IGNORECASE
 )
 _WORD = re.compile(rb"\s*(\S+)")
-# A line of letters ends numbers that are text.
+# A line of letters ends text numbers.
 _LETTERS = re.compile(rb"\n\s*(?!nan\b|inf)[A-Za-z]", re.IGNORECASE)
 _BLANK = re.compile(rb"\n\s*\n|\Z")
-# The types of the cells of PolyData: lines of any length are lines.
+# The cell types of PolyData: lines of any length are lines.
 _POLYDATA = {"VERTICES": 1, "LINES": 3, "POLYGONS": POLYGON, "TRIANGLE_STRIPS": 6}
 # Values with a fixed number of components.
 _VECTORS = {"VECTORS": 3, "NORMALS": 3, "TENSORS": 9}
@@ -60,7 +60,7 @@ def read(path: Path) -> ReadMesh:
 
 
 class _Reader:
-    """A file, and how far it has been read."""
+    """A file, and the position up to which it has been read."""
 
     def __init__(self, path: Path) -> None:
         self._path, self._content = path, path.read_bytes()
@@ -101,7 +101,7 @@ class _Reader:
         if grid is not None:
             cells = cells_of(grid.corners, grid.ends, types, self._path)
         if any(len(each) != len(points) for each in values["POINT_DATA"].values()):
-            raise FileFormatError(f"{self._path} has other numbers of points and of values")
+            raise FileFormatError(f"{self._path} has different numbers of points and of values")
         return ReadMesh(
             points=points,
             cells=cells,
@@ -128,7 +128,7 @@ class _Reader:
         """Separate corners from the counts before them."""
         width = len(flat) // count - 1 if count else 0
         if len(flat) == count * (width + 1) and (flat[:: width + 1] == width).all():
-            # All cells have as many corners.
+            # All cells have the same number of corners.
             rows = flat.reshape(count, -1)[:, 1:]
             return _List(rows.ravel(), width * np.arange(1, count + 1))
         starts, at, values = [], 0, flat.tolist()
@@ -144,7 +144,7 @@ class _Reader:
         return _List(np.delete(flat, heads), ends)
 
     def _values(self, count: int) -> dict[str, NDArray[np.float64]]:
-        """Read values of points or cells by name, up to what is not such values."""
+        """Read point or cell values by name, up to anything else."""
         found: dict[str, NDArray[np.float64]] = {}
         while True:
             at = self._at
@@ -193,7 +193,7 @@ class _Reader:
             self._at = at
 
     def _skip(self) -> None:
-        """Pass over what ends at a blank line."""
+        """Skip a section that ends at a blank line."""
         found = _BLANK.search(self._content, self._at)
         self._at = found.end() if found else len(self._content)
 

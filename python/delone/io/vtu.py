@@ -1,8 +1,8 @@
-"""VTU: points, cells, values of points, markers and regions, read with Python's XML parser.
+"""VTU: points, cells, point values, markers and regions, read with Python's XML parser.
 
-Arrays are text, or binary inline or appended, raw or in base64, compressed by zlib or LZMA or not.
-What an array declares is compared with the bytes that follow before memory is set aside, and it is
-decompressed to the declared size at most.
+Arrays are text, or binary, inline or appended, raw or in base64, uncompressed or compressed by zlib
+or LZMA. What an array declares is compared with the bytes that follow before memory is allocated,
+and it is decompressed to at most the declared size.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _TYPES = {
 }
 _HEADERS = {"UInt32": "u4", "UInt64": "u8"}
 _ORDERS = {"LittleEndian": "<", "BigEndian": ">"}
-# Names of VTK's types of cells; 7 is a polygon.
+# Names of VTK's cell types; 7 is a polygon.
 _NAMES = {
     **{1: "vertex", 3: "line", 4: "polyline", 5: "triangle", 6: "triangle strip", 8: "pixel"},
     **{9: "quad", 10: "tetra", 11: "voxel", 12: "hexahedron", 13: "wedge", 14: "pyramid"},
@@ -46,7 +46,7 @@ _NAMES = {
 POLYGON = 7
 _APPENDED = re.compile(rb"<AppendedData[^>]*\sencoding\s*=\s*[\"']raw[\"'][^>]*>\s*_")
 _END = b"</AppendedData>"
-# A dictionary of LZMA of the highest preset takes 65 MiB.
+# An LZMA dictionary of the highest preset takes 65 MiB.
 _MEMORY = 1 << 28
 
 
@@ -150,9 +150,10 @@ class Numbers(TypedDict):
 
 
 def numbers_of(cells: list[Cells], values: Mapping[str, NDArray[Any]], path: Path) -> Numbers:
-    """Return the values of cells that are called marker and region.
+    """Return the cell values named marker and region.
 
-    They are those of triangles and polygons, and of tetrahedra, in their order. Vectors are none.
+    They are those of triangles and polygons, and of tetrahedra, in their order. Vectors do not
+    count.
     """
     return {
         "markers": _own(cells, POLYGONS, values.get("marker"), "marker", path),
@@ -268,21 +269,21 @@ class _Arrays:
         return self._unpacked(_raw(self._raw, at))
 
     def _unpacked(self, take: Callable[[int, bool], bytes]) -> bytes:
-        """Return the bytes of an array, of which `take` returns the next, in a new part or not."""
+        """Return the bytes of an array; `take` returns the next ones, from a new part or not."""
         size = self._header.itemsize
         (first,) = self._numbers(take(size, False), 1)
         if self._compressor is None:
             return self._whole(take(first, True), first)
         claimed = take(2 * size, False)
         block, last = self._numbers(claimed, 2)
-        # Every block has a size, which takes as many bytes.
+        # The size of every block takes this many bytes.
         lengths = self._numbers(take(first * size, False), first)
         sizes = [block] * first
         if last and first:
             sizes[-1] = last
         self._left -= sum(sizes)
         if self._left < 0:
-            raise FileFormatError(f"{self.path} contains far more than its size makes likely")
+            raise FileFormatError(f"{self.path} contains far more than its size suggests")
         packed, at, found = self._whole(take(sum(lengths), True), sum(lengths)), 0, []
         for length, expected in zip(lengths, sizes, strict=True):
             found.append(self._inflated(packed[at : at + length], expected))
@@ -315,7 +316,7 @@ class _Arrays:
 
 
 def _raw(content: bytes, at: int) -> Callable[[int, bool], bytes]:
-    """Return a function that takes the next bytes."""
+    """Return a function that returns the next bytes."""
 
     def take(count: int, _: bool) -> bytes:
         nonlocal at
@@ -326,7 +327,7 @@ def _raw(content: bytes, at: int) -> Callable[[int, bool], bytes]:
 
 
 def _base64(text: str, at: int = 0) -> Callable[[int, bool], bytes]:
-    """Return a function that takes the next bytes of what is encoded.
+    """Return a function that returns the next decoded bytes.
 
     The header of an array may be encoded by itself, and then its data begin in a new part.
     """
@@ -348,5 +349,5 @@ def _base64(text: str, at: int = 0) -> Callable[[int, bool], bytes]:
 
 
 def _characters(count: int) -> int:
-    """Return how many characters encode so many bytes."""
+    """Return how many characters encode a number of bytes."""
     return -(-count // 3) * 4

@@ -1,6 +1,6 @@
-"""Columns of text files as they are: numbers where each field is one, else words.
+"""Columns of text files: numbers if each field is one, otherwise words.
 
-Codes such as ``007`` stay words, because as numbers they would be others. Numbers become the
+Codes such as ``007`` stay words, because they would change as numbers. Numbers become the
 nearest doubles, or integers, and an empty field in a column of numbers is NaN.
 """
 
@@ -40,7 +40,7 @@ class Words:
         self._fields: list[list[str]] = [[] for _ in columns]
 
     def add(self, lines: Sequence[str], delimiter: str | None) -> None:
-        """Take the fields of more rows; those that a short row does not have are empty."""
+        """Add the fields of more rows; fields that a short row does not have are empty."""
         if not self._columns:
             return
         if delimiter is None:
@@ -66,7 +66,7 @@ class Words:
 def unique_names(names: Sequence[str], numbers: Sequence[int], source: str) -> list[str]:
     """Return names of columns; one that repeats, or is empty, gets the number of its column.
 
-    A warning tells of it.
+    A warning says so.
     """
     counts, taken = Counter(names), set(names)
     found, renamed = [], []

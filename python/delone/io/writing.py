@@ -43,7 +43,7 @@ _WRITERS = {
     **dict.fromkeys(LANDXML, "landxml"),
     **dict.fromkeys((".png", ".svg"), "picture"),
 }
-# What holds tetrahedra, or triangles in 3-D, or draws them.
+# Formats that store tetrahedra or 3-D triangles, or draw them.
 _TETRAHEDRA = (
     *(".vtu", ".msh", ".xdmf", ".med", ".inp", ".su2", ".vtk", ".mesh", ".npz", ".png"),
     *(".node", ".ele", ".poly", *TETGEN),
@@ -63,9 +63,9 @@ _SURFACES = (
     ".poly",
     *TETGEN,
 )
-# What holds elements of second order.
+# Formats that store second-order elements.
 _SECOND_ORDER = (".vtu", ".msh", ".xdmf", ".med", ".inp", ".vtk", ".ele", ".node")
-# What holds triangles that share no points.
+# Formats that store triangles that share no points.
 _SEPARATE = (*MESHES, ".npz", ".xdmf", ".gpkg", ".geojson")
 _HOLDERS: dict[str, tuple[tuple[str, ...], str]] = {
     "triangles": (tuple(_WRITERS), "triangles"),
@@ -116,13 +116,13 @@ def write_mesh(
         GeoJSON, LandXML (.xml, .landxml), npz, PNG or SVG. An existing file is replaced only once
         the new one is complete.
     triangulation : Delaunay, ConstrainedDelaunay, Mesh, TetMesh or another mesh
-        What to write: also a `RegularTriangulation`, a `PeriodicDelaunay` or a `ConvexHull` in 3-D.
+        What to write; also a `RegularTriangulation`, a `PeriodicDelaunay` or a 3-D `ConvexHull`.
         Tetrahedra go to VTU, MSH, XDMF, MED, INP, SU2, VTK, MESH, NODE, ELE, FACE, SMESH,
         POLY and PNG, those of a `Delaunay` or `TetMesh` to npz as well. The surface of a hull goes
         to VTU, MSH, PLY, OBJ, STL, OFF, XDMF, MED, INP, VTK, MESH, NODE, FACE, SMESH, POLY and PNG.
-        Both are written without `z` and `crs`.
+        Tetrahedra and hulls are written without `z` and `crs`.
     z : array_like of float, shape (n,), optional
-        Heights, the third coordinate, by default those of a `delone.terrain.TIN`; in plots the
+        Heights, the third coordinate, by default those of a `delone.terrain.TIN`; in plots, the
         color, with shading if there are 2000 triangles or more, but never on a `Mesh`.
     crs : str, int or pyproj.CRS, optional
         Coordinate reference system, for GeoPackage, GeoJSON, LandXML, npz and labels of plots; by
@@ -133,12 +133,12 @@ def write_mesh(
     attributes : mapping of str to array_like, optional
         Values by point (n,) or by simplex (m,), for VTU, MSH, PLY, GeoPackage and GeoJSON.
     order : {1, 2}, optional
-        With 2, elements of second order, for VTU, MSH, XDMF, MED, INP, VTK, ELE and NODE: with a
-        node in the middle of each edge, in the order of ``triangulation.edges`` behind the points.
-        Attributes are those of points, of simplices, or of all nodes.
+        With 2, second-order elements, for VTU, MSH, XDMF, MED, INP, VTK, ELE and NODE, with a node
+        in the middle of each edge: after the points, in the order of ``triangulation.edges``.
+        Attributes have one value per point, per simplex, or per node.
     version : {"2.2", "4.1"}, optional
-        Version of an MSH file. By default 2.2, which more programs read, where segments or faces
-        have markers or tetrahedra have regions; otherwise 4.1, which orders simplices by group.
+        Version of an MSH file. By default 2.2, which more programs read, if segments or faces have
+        markers or tetrahedra have regions; otherwise 4.1, which orders simplices by group.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def write_mesh(
     CRSWarning
         `crs` is given, but the format cannot store it.
     UnitsWarning
-        A LandXML file names no units, because those of the heights are unknown.
+        A LandXML file does not name units, because the unit of the heights is unknown.
 
     Notes
     -----
@@ -212,10 +212,10 @@ def write_mesh(
 
 
 def _kind(triangulation: Any) -> str:
-    """Tell which simplices there are to be written: a key of `_HOLDERS`."""
+    """Return which simplices are to be written: a key of `_HOLDERS`."""
     shapes = (np.shape(getattr(triangulation, name, ())) for name in ("points", "simplices"))
     coordinates, corners = (shape[1] if len(shape) == 2 else 0 for shape in shapes)
-    # Meshes of others say by ndim that they are triangulations.
+    # Meshes of other packages declare by ndim that they are triangulations.
     if hasattr(triangulation, "_parts") or getattr(triangulation, "ndim", 0) == corners - 1:
         if (coordinates, corners) == (2, 3):
             return "separate" if hasattr(triangulation, "offsets") else "triangles"
@@ -224,13 +224,13 @@ def _kind(triangulation: Any) -> str:
     name = type(triangulation).__name__
     if coordinates > 3 and corners == coordinates + 1:
         raise InputError(
-            f"no format of meshes has simplices in {coordinates}-D: {name}.save writes them"
+            f"no mesh format stores simplices in {coordinates}-D: {name}.save writes them"
         )
     raise InputError(f"cannot write an object of type {name}: pass a triangulation or a mesh")
 
 
 def _require_place(path: str | os.PathLike[str], mesh: Any, kind: str, *, edges: bool) -> None:
-    """Refuse what the format has no place for."""
+    """Reject what the format cannot store."""
     name, suffix = type(mesh).__name__, Path(path).suffix.lower()
     if suffix == ".npz" and not hasattr(mesh, "save"):
         raise FileFormatError(f"{path}: .npz files cannot store a {name}; use .vtu")
@@ -242,7 +242,7 @@ def _second_order(suffix: str, *, edges: bool) -> int:
     if edges or suffix not in _SECOND_ORDER:
         what = "edges" if edges else f"{suffix} files"
         raise FileFormatError(
-            f"{what} have no second order here: write elements to {', '.join(_SECOND_ORDER)}"
+            f"{what} cannot store second-order elements: write them to {', '.join(_SECOND_ORDER)}"
         )
     return 2
 
@@ -256,7 +256,7 @@ def _version(version: str, suffix: str) -> str:
 def _plain(
     attributes: Mapping[str, ArrayLike] | None, suffix: str
 ) -> dict[str, NDArray[Any]] | None:
-    """Attributes as arrays of dtypes that the format can store."""
+    """Return attributes as arrays of dtypes that the format can store."""
     if attributes is None:
         return None
     if not hasattr(attributes, "items"):
@@ -280,7 +280,7 @@ def writer(
     """Return the function that writes this suffix in place, after importing its library.
 
     It takes the arguments of `write_mesh`. With `space`, tetrahedra will be written; with
-    `surface`, triangles in 3-D; with ``order=2``, elements of second order, except to images.
+    `surface`, triangles in 3-D; with ``order=2``, second-order elements, except to images.
     """
     write = _writer(path, "surface" if surface else "tetrahedra" if space else "triangles")
     suffix = Path(path).suffix.lower()

@@ -1,4 +1,4 @@
-"""What the construction of a surface has changed of its input: merged points, level polygons."""
+"""What the construction of a surface changed in its input: merged points, level polygons."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ class Adjustments(ReadOnly):
     largest_move : float
         The largest distance that a point moved; 0 if none moved.
     points_leveled : int
-        The number of points that were left out inside level polygons, on their shores, or nearer
-        to a shore than `snap`.
+        The number of points that were left out inside level polygons, on their shores, or closer to
+        a shore than `snap`.
     levels : ndarray of float64, shape (k,)
         The height of each level polygon; NaN where a feature has no geometry.
 
@@ -65,7 +65,7 @@ class Adjustments(ReadOnly):
         return f"<Adjustments: {', '.join(parts)}>"
 
     def _text(self) -> str:
-        """The numbers as a text for files."""
+        """The numbers as text for files."""
         return json.dumps({**vars(self), "levels": self.levels.tolist()})
 
     @classmethod

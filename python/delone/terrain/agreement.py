@@ -1,4 +1,4 @@
-"""How far two classifications of the same points agree: Cohen's kappa, errors of type I and II."""
+"""How well two classifications of the same points agree: Cohen's kappa, errors of type I and II."""
 
 from __future__ import annotations
 

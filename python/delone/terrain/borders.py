@@ -3,11 +3,12 @@
 Borders between two bands are cut into lines at points where more than two of them meet, where
 bands that are not neighbors in height meet, and at the outline of the surface, which stays as it
 is. These lines are those of contours at the same levels, and `generalizing` leaves out the same
-points of both. A point that is left out is no longer in any ring, so polygons still share their
-points. They may differ where points are nearer than the resolution of coordinates at the outline.
+points in both. A point that is left out is no longer in any ring, so polygons still share their
+points. Borders and contours may differ at the outline, where points are closer than the resolution
+of coordinates.
 
-If the line that remains is an edge of the outline, the polygon between has no area, and is left
-out.
+If the line that remains is an edge of the outline, the polygon between them has no area, and is
+left out.
 """
 
 from __future__ import annotations
@@ -32,15 +33,15 @@ class _Sides(NamedTuple):
     ring: Rows
     u: Rows  # numbers of vertices
     v: Rows
-    rise: Rows  # how many bands higher the polygon is than the one beyond
-    outer: Bools  # no polygon is beyond
+    rise: Rows  # by how many bands the polygon is higher than the one beyond
+    outer: Bools  # whether no polygon is beyond
 
 
 def simplified_borders(given: Rings, band: Rows, tolerance: float) -> tuple[Rings, Rows, int]:
-    """Leave out points of borders that are within a distance of what remains.
+    """Leave out points of borders that are within a distance of the remaining border.
 
-    The results are polygons, the rows of those that still have an area, and the number of points
-    that are left out, each counted once.
+    Return polygons, the rows of those that still have an area, and the number of points that were
+    left out, each counted once.
     """
     places, vertex = np.unique(given.points, axis=0, return_inverse=True)
     vertex = vertex.ravel()
@@ -56,7 +57,7 @@ def simplified_borders(given: Rings, band: Rows, tolerance: float) -> tuple[Ring
 
 
 def _sides(given: Rings, vertex: Rows, count: int, band: Rows) -> _Sides:
-    """Return the sides of all rings, with what is beyond."""
+    """Return the sides of all rings, and which polygon is beyond each."""
     polygon = np.repeat(np.arange(len(given.polygons) - 1), np.diff(given.polygons))
     first = np.delete(np.arange(len(vertex)), given.rings[1:] - 1)
     ring = np.repeat(np.arange(len(polygon)), np.diff(given.rings) - 1)
@@ -71,11 +72,11 @@ def _sides(given: Rings, vertex: Rows, count: int, band: Rows) -> _Sides:
 
 
 def _movable(sides: _Sides, count: int) -> Bools:
-    """Return the vertices where nothing but one border between neighboring bands passes."""
+    """Return the vertices through which only one border, between neighboring bands, passes."""
     special = sides.outer | (np.abs(sides.rise) != 1)
     fixed = np.zeros(count, dtype=bool)
     fixed[sides.u[special]], fixed[sides.v[special]] = True, True
-    # Both bands of a border have the vertex once.
+    # Both bands of a border contain the vertex once.
     found: Bools = ~fixed & (np.bincount(sides.u, minlength=count) == 2)
     return found
 
@@ -83,12 +84,12 @@ def _movable(sides: _Sides, count: int) -> Bools:
 def _lines(given: Rings, sides: _Sides, vertex: Rows, movable: Bools) -> tuple[Rows, Rows]:
     """Return the borders as lines of vertices, with the higher polygon to their left.
 
-    A border is part of the ring of its higher polygon. It is between two vertices that stay; if the
-    ring has none, the border is the whole ring.
+    A border is part of the ring of its higher polygon. It runs between two vertices that stay; if
+    the ring has none, the border is the whole ring.
     """
     size = np.diff(given.rings) - 1
     start = np.cumsum(size) - size
-    # Turn each ring, so that it begins with a vertex that stays, or with its smallest vertex.
+    # Rotate each ring, so that it begins with a vertex that stays, or with its smallest vertex.
     place = np.arange(len(sides.u)) - start[sides.ring]
     count = len(movable)
     key = np.minimum.reduceat(np.where(movable[sides.u], count + sides.u, place), start)
@@ -97,7 +98,7 @@ def _lines(given: Rings, sides: _Sides, vertex: Rows, movable: Bools) -> tuple[R
     turn[sides.ring[smallest]] = place[smallest]
     at = start[sides.ring] + (place + turn[sides.ring]) % size[sides.ring]
     u, v = sides.u[at], sides.v[at]
-    # Sides between polygons of the same band are taken once.
+    # Sides between polygons of the same band are used once.
     level = (sides.rise[at] == 0) & ~sides.outer[at] & (u < v)
     wanted = (sides.rise[at] > 0) | level
     # A line begins where a ring begins, and at vertices that stay.

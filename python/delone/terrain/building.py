@@ -140,7 +140,7 @@ def build(
     kept = np.ones(len(every), dtype=bool)
     lakes: Level | None = None
     if level is not None:
-        # Sides are divided, so that a shore causes no long edges beside it.
+        # Sides are divided, so that a shore does not cause long edges next to it.
         longest = np.inf if limit is None else limit / 2
         lakes = leveled(level, points, system, longest, surface_of)
         kept, points = lakes.outside.copy(), points[lakes.outside]
@@ -183,7 +183,7 @@ def build(
 
 @contextmanager
 def _rows_of(kept: Bools) -> Iterator[None]:
-    """Let errors give rows of all points, including those that are left out."""
+    """Make errors name rows of all points, including those that are left out."""
     try:
         yield
     except ConflictingValuesError as error:
@@ -207,7 +207,7 @@ def bare(
 
 
 def as_tolerance(given: Any) -> float:
-    """Return the largest difference of heights that are equal."""
+    """Return the largest difference between heights that count as equal."""
     found = as_number(given, name="tolerance")
     if not 0 <= found < np.inf:
         raise InputError(f"tolerance must be a difference of heights from 0 on, got {given!r:.60}")
@@ -281,7 +281,7 @@ def stated_units(given: Any, stated: str | None, by: str) -> str | None:
 
 
 def settled_units(given: Any, system: str | None, lengths: str | None, by: str) -> str | None:
-    """Return the unit of heights, given or that of the system; warn if x and y have another one.
+    """Return the unit of heights, given or of the system; warn if x and y have a different one.
 
     `lengths` is the unit of x and y that the data declare, and `by` is their file.
     """
@@ -314,10 +314,10 @@ def peeled(mesh: ConstrainedDelaunay, kept: Bools, limit: float, *, voids: bool)
     kept, neighbors = kept.copy(), mesh.neighbors
     long = _longer(mesh, limit) & ~mesh.constrained
     if voids:
-        # What is left has no long edge, so nothing else is removed from outside.
+        # The rest has no long edge, so nothing else is removed from outside.
         return kept & ~long.any(axis=1)
     candidates: NDArray[Any] = np.arange(len(neighbors))
-    # Each round removes at least one triangle, so it ends.
+    # Terminates: each round removes at least one triangle.
     while len(candidates):
         around = neighbors[candidates]
         outer = (around < 0) | ~kept[around]
@@ -334,7 +334,7 @@ def _longer(mesh: ConstrainedDelaunay, limit: float) -> Bools:
     along = mesh.points[ends[..., 1]] - mesh.points[ends[..., 0]]
     length = np.hypot(along[..., 0], along[..., 1])
     found: Bools = length > limit
-    # Lengths have a few rounding errors, tiny ones a whole unit; the core decides close cases.
+    # Lengths have a few rounding errors, and tiny ones a whole unit; the core decides close cases.
     near = np.abs(length - limit) <= limit * 2.0**-48 + 2.0**-1070
     if near.any():
         unit = np.array([(0.0, 0.0), (limit, 0.0)])

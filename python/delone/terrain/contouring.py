@@ -47,14 +47,14 @@ __all__ = [
     "lines",
 ]
 
-# Points of contours that a call may compute by default: about 3 GB, working memory included.
+# Points of contours that a call may compute by default: about 3 GB, including working memory.
 MOST = 50_000_000
-# The maximum number of smoothing rounds; `smoothing` refuses more.
+# The maximum number of smoothing rounds; `smoothing` rejects more.
 _MOST_ROUNDS = 5
 # The arrays of lines and of areas in files.
 _LINES = ("points", "starts", "level", "index", "levels")
 _AREAS = ("points", "ring_starts", "polygon_starts", "low", "high")
-# The numbers of what is left out.
+# The counts of what is left out.
 _LINES_LEFT_OUT = ("left_out", "short", "small", "straightened")
 _AREAS_LEFT_OUT = ("left_out", "small", "straightened", "flattened")
 # The maximum number of levels that an interval may give.
@@ -161,7 +161,7 @@ class Contours(ReadOnly, Filed, Layer):
     def labels(
         self, *, length: float | None = None, spacing: float | None = None, index: bool = False
     ) -> Labels:
-        """Return places for labels along the lines.
+        """Return positions for labels along the lines.
 
         Parameters
         ----------
@@ -242,7 +242,7 @@ class Contours(ReadOnly, Filed, Layer):
         )
 
     def to_meshio(self) -> Any:
-        """Convert to a mesh of meshio (extra ``mesh``).
+        """Convert to a meshio mesh (extra ``mesh``).
 
         Returns
         -------
@@ -267,7 +267,7 @@ class Contours(ReadOnly, Filed, Layer):
         return to_meshio(self._parts())
 
     def to_pyvista(self) -> Any:
-        """Convert to lines of PyVista (extra ``pyvista``), at their heights.
+        """Convert to PyVista lines (extra ``pyvista``), at their heights.
 
         Returns
         -------
@@ -411,7 +411,7 @@ class Bands(ReadOnly, Filed, Layer):
         return f"<Bands of {counted(ranges, 'range')}: {counted(len(self), 'polygon')}>"
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
-        """Plot the polygons in the colors of their heights (extra ``plot``).
+        """Plot the polygons, colored by height (extra ``plot``).
 
         Parameters
         ----------
@@ -512,7 +512,8 @@ def levels_of(
 ) -> tuple[Floats, Bools]:
     """Return ascending levels, each once, and which are index contours.
 
-    An interval gives those between the least and the greatest height, which `extremes` returns.
+    An interval gives the levels between the smallest and the largest height, which `extremes`
+    returns.
     """
     if (levels is None) == (interval is None):
         raise InputError("give either levels or an interval")
@@ -542,7 +543,7 @@ def levels_of(
 def _multiples(
     low: float, high: float, start: Fraction, step: Fraction, every: int
 ) -> tuple[Floats, Bools]:
-    """Return the doubles nearest to multiples from a height to another one; each `every`-th."""
+    """Return the doubles nearest to multiples between two heights; every `every`-th one."""
     # One more on each side: a height may be the double that is nearest to a multiple.
     first, last = (Fraction(each) - start for each in (low, high))
     numbers = np.arange(math.ceil(first / step) - 1, math.floor(last / step) + 2)
@@ -557,7 +558,7 @@ def _multiples(
 
 
 class Drawn(NamedTuple):
-    """Lines as the core draws them: the number of the level of each, and triangles left out."""
+    """Lines as the core computes them, with the level number of each, and triangles left out."""
 
     points: Floats
     starts: Rows
@@ -567,7 +568,7 @@ class Drawn(NamedTuple):
 
 
 class Finish(NamedTuple):
-    """What is done with lines after they are drawn."""
+    """What is done with lines after they are computed."""
 
     smooth: int
     min_length: float
@@ -651,7 +652,7 @@ def _outline(sheet: Sheet) -> Floats:
 
 
 def _least(given: float, name: str) -> float:
-    """Return the least measure of what is not left out."""
+    """Return the smallest size that is not left out."""
     found = as_number(given, name=name)
     if not 0 <= found < math.inf:
         raise InputError(f"{name} must be finite and at least 0, got {given!r:.60}")
@@ -662,7 +663,7 @@ def _lengths(points: Floats, starts: Rows) -> Floats:
     """Return the lengths of lines, rounded."""
     steps = np.zeros(len(points))
     steps[1:] = np.hypot(*np.diff(points, axis=0).T)
-    # Not from the end of a line to the start of the next; each line has two points or more.
+    # Not from the end of a line to the start of the next; each line has at least two points.
     steps[starts[:-1]] = 0.0
     return np.add.reduceat(steps, starts[:-1]) if len(starts) > 1 else np.zeros(0)
 
@@ -677,10 +678,10 @@ def _only(points: Floats, starts: Rows, kept: Bools) -> tuple[Floats, Rows]:
 def _within(
     compute: Any, tin: Surface, levels: Floats, max_points: int, factor: int
 ) -> tuple[Any, Sheet, int]:
-    """Compute contours of at most `max_points` points once each is replaced by `factor`.
+    """Compute contours that have at most `max_points` points after multiplication by `factor`.
 
-    The core counts them before it computes them. The other results are the surface that they are
-    of, and the number of triangles that were left out.
+    The core counts them before it computes them. Also return the surface that they belong to, and
+    the number of triangles that were left out.
     """
     limit = as_count(max_points, name="max_points")
     try:

@@ -36,23 +36,23 @@ class Detailed(HullTiling):
         Parameters
         ----------
         max_error : float, optional
-            The greatest vertical distance of a point of this surface from the new one.
+            The largest vertical distance of a point of this surface from the new one.
         max_triangles : int, optional
             Instead, the maximum number of triangles: the level with the smallest error is returned.
         keep : {"breaklines", "hard", "boundary"}, optional
-            The edges that stay: those on all lines, on hard breaklines and the outline, or on the
-            outline alone. Where the outline is the convex hull, only its corners stay.
+            The edges that are kept: those on all lines, on hard breaklines and the outline, or on
+            the outline alone. Where the outline is the convex hull, only its corners are kept.
 
         Returns
         -------
         TIN
-            The surface: some of the points, with their heights, and the edges that stay.
+            The surface: some of the points, with their heights, and the edges that are kept.
 
         Raises
         ------
         InputError
-            Not one of `max_error` and `max_triangles` is given, one is out of range, or the edges
-            that stay have more than `max_triangles`.
+            Not exactly one of `max_error` and `max_triangles` is given, it is out of range, or the
+            edges that are kept require more than `max_triangles`.
         MemoryError
             There is not enough memory.
 
@@ -62,7 +62,7 @@ class Detailed(HullTiling):
 
         Notes
         -----
-        Greedy insertion [1]_: starting with the edges that stay, the point farthest from the
+        Greedy insertion [1]_: starting with the edges that are kept, the point farthest from the
         surface is inserted until none is too far from it. The bound holds exactly for the given
         numbers, at all points, including those on removed edges; it is proven as points are
         inserted, and again by `Simplification.validate`. Between points, the distance from this

@@ -1,10 +1,10 @@
 """The vertical distance of points from a surface, proven exactly.
 
-With weights w of the corners of a triangle, which are areas between the point and its edges, the
-surface is n / w above the point: n is the sum of the weights times the heights above the point, and
-w that of the weights. Each term of n results from at most 7 rounded operations, each of w from at
-most 5, so 16 units of rounding of the sums of absolute values bound the errors of both. Where that
-is not enough to decide, fractions do.
+The weights of the corners of a triangle are areas between the point and its edges. The surface is n
+/ w above the point, where n is the sum of the weights times the heights above the point, and w the
+sum of the weights. Each term of n results from at most 7 rounded operations, and each term of w
+from at most 5, so 16 units of rounding times the sums of absolute values bound the errors of both.
+Where that is not enough to decide, fractions decide.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["Deviations", "deviations"]
 
 _ROUNDINGS = 16 * 2.0**-53
-# Points that are compared together.
+# Number of points that are compared at a time.
 _BLOCK = 1 << 18
 
 
@@ -128,7 +128,7 @@ def _homes(mesh: Mesh, kept: Bools, places: Floats) -> Indices:
 
 
 def _compared(part: _Part, limit: float) -> tuple[Floats, Bools, Bools]:
-    """The distances, whether it is certain which of them are above the limit, and which are."""
+    """The distances, which of them are certainly above the limit or not, and which are above."""
     with np.errstate(all="ignore"):
         x, y, z = np.moveaxis(part.corners - part.points[:, None], -1, 0)
         nx, ny = np.roll(x, -1, axis=1), np.roll(y, -1, axis=1)

@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Difference", "difference"]
 
-# Centers that differ by less than this share of a cell are the same: files store them rounded.
+# Centers that differ by less than this fraction of a cell are the same: files store them rounded.
 _SAME = 1e-6
-# Nodes at which a surface is evaluated at once.
+# Number of nodes at which a surface is evaluated at a time.
 _BLOCK = 1 << 18
 
 
@@ -113,7 +113,7 @@ class Difference(ReadOnly):
         largest = max(abs(self.min), abs(self.max)) if self.count else float("nan")
         if not largest > 0:
             return largest
-        # In units of the largest, so that no square leaves the range of doubles.
+        # In units of the largest one, so that no square overflows or underflows.
         return float(largest * np.sqrt(np.mean((self._known / largest) ** 2)))
 
     @property
@@ -260,9 +260,9 @@ def difference(
     ------
     InputError
         The rasters have different cells, or are in different reference systems; the message says
-        how to match them. Or heights are in different units, or an argument is not one of these.
-    FileFormatError, MissingExtraError, OSError
-        As for `delone.io.read_raster`; or a raster of a file is rotated.
+        how to match them. Or heights are in different units, or an argument has an invalid type.
+    FileFormatError, MissingExtraError, OSError As for `delone.io.read_raster`; or a raster in a
+    file is rotated.
 
     Warns
     -----
@@ -350,7 +350,7 @@ def _raster_of(given: Any, band: Any, name: str, *, bounds: Any, nodata: Any) ->
             columns, rows = (x >= box[0]) & (x <= box[2]), (y >= box[1]) & (y <= box[3])
             values, x, y = values[np.ix_(rows, columns)], x[columns], y[rows]
             if not values.size:
-                raise InputError(f"{name}: no node of the raster is inside of bounds={box}")
+                raise InputError(f"{name}: no node of the raster is inside bounds={box}")
     if (np.diff(x) < 0).all():
         values, x = values[:, ::-1], x[::-1]
     if (np.diff(y) < 0).all():
@@ -376,7 +376,7 @@ def _common_system(a: str | None, b: str | None, first: str, second: str) -> str
 
 
 def _require_same_cells(a: _Raster, b: _Raster) -> None:
-    """Refuse rasters with different cells, and say how to match them."""
+    """Reject rasters with different cells, and say how to match them."""
     sizes = [abs(float(spacing(nodes))) for nodes in (a.x, a.y)]
     limits = [_SAME * (size or 1.0) for size in sizes]
     pairs = list(zip((a.x, a.y), (b.x, b.y), limits, strict=True))
@@ -398,9 +398,9 @@ def _require_same_cells(a: _Raster, b: _Raster) -> None:
 
 
 def _shared(p: Floats, q: Floats, limit: float) -> tuple[float, float] | None:
-    """Return the first and the last node that two axes have in common; None if others are between.
+    """Return the first and last node that two axes have in common; None if others lie between.
 
-    Nodes in common are all of those of both from the first to the last.
+    From the first to the last, both axes must have the same nodes.
     """
     low, high = max(p[0], q[0]) - limit, min(p[-1], q[-1]) + limit
     mine, others = p[(p >= low) & (p <= high)], q[(q >= low) & (q <= high)]

@@ -1,6 +1,6 @@
-"""Where a surface is: inside of boundaries, outside of holes, or on islands.
+"""Where a surface is: inside boundaries, outside holes, or on islands.
 
-Rings are segments of the triangulation, so each triangle is inside or outside of a ring as a whole.
+Rings are segments of the triangulation, so each triangle is inside or outside a ring as a whole.
 This follows from the segments between it and the outside, without coordinates, so it is exact even
 for rings that rounding has bent.
 """
@@ -38,7 +38,7 @@ class Part(NamedTuple):
 def inside_of_rings(
     rings: list[Ring], *, workers: int | None = None
 ) -> tuple[ConstrainedDelaunay, Bools]:
-    """Triangulate rings, and return which triangles are inside of the polygons."""
+    """Triangulate rings, and return which triangles are inside the polygons."""
     lengths = [len(ring.points) - 1 for ring in rings]
     ends = np.cumsum(np.array(lengths) + 1) - 1
     row = np.delete(np.arange(ends[-1] + 1), ends)
@@ -54,7 +54,7 @@ def inside_of_rings(
 
 
 def refuse_crossing_rings(what: str, *several: list[Ring]) -> None:
-    """Refuse polygons whose own rings cross. Those of different polygons may: they are a union."""
+    """Reject polygons whose own rings cross. Those of different polygons may: they are a union."""
     rings = [(kind, ring) for kind, rings in enumerate(several) for ring in rings]
     if not rings:
         return
@@ -87,7 +87,7 @@ def within(mesh: ConstrainedDelaunay, lines: Lines) -> Bools:
 
 
 def without_outer(part: Part, lines: Lines) -> Part:
-    """Leave out the rows that have no heights: points of rings outside of the hull of all heights.
+    """Leave out the rows that have no heights: points of rings outside the hull of all heights.
 
     The triangles of the surface stay the same.
     """
@@ -107,7 +107,7 @@ def without_outer(part: Part, lines: Lines) -> Part:
     ours = np.add.reduceat((lines.kinds[source] != HULL).astype(np.int64), start[:-1]) > 0
     on = ~bad[mesh.segments].any(axis=1)
     wanted = number[mesh.simplices[kept]]
-    # The hull is a segment only if triangles beside it would otherwise change.
+    # The hull consists of segments only if triangles next to it would otherwise change.
     for some in (on & ours, on):
         made = ConstrainedDelaunay(
             mesh.points[rows], number[mesh.segments[some]], workers=mesh.workers, planar=True

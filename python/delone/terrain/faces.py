@@ -38,10 +38,10 @@ _AFRESH = "faces=False (--retriangulate) triangulates its points and lines afres
 
 
 def with_lines(surface: SurfaceFile, options: dict[str, Any]) -> dict[str, Any]:
-    """Return options of `TIN.from_points` with the lines of a file added to those given."""
+    """Return options for `TIN.from_points`, with the lines of a file added to the given ones."""
     merged = dict(options)
     for name in (*_LINES, *_RINGS):
-        # Each ring of a file is a polygon: several are a union.
+        # Each ring of a file is a polygon, and several rings form a union.
         own = [Ring(line.copy()) for line in getattr(surface, name)]
         given = options.get(name)
         if own:
@@ -87,7 +87,7 @@ def build_faces(surface: SurfaceFile, options: dict[str, Any]) -> building.Built
 
 
 def _upward(points: Floats, faces: Rows, source: str) -> Rows:
-    """Faces counter-clockwise, by the first row of each place, without those that have no area."""
+    """Return counter-clockwise faces by the first row at each place; drop those without area."""
     _, first, same = np.unique(points + 0.0, axis=0, return_index=True, return_inverse=True)
     found: Rows = first[same.reshape(-1)][faces]
     turn = orient2d(*(points[found[:, k]] for k in range(3)))
@@ -106,7 +106,7 @@ def _upward(points: Floats, faces: Rows, source: str) -> Rows:
 def _with_edges(
     surface: SurfaceFile, points: Floats, faces: Rows, workers: int | None
 ) -> tuple[ConstrainedDelaunay, Lines]:
-    """Triangulate with the edges on breaklines, and with those that are missing otherwise."""
+    """Triangulate with the edges on breaklines, and with those that would otherwise be missing."""
     sides = np.unique(np.sort(faces[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1), axis=0)
     keys = _keys(sides, len(points))
     hard, soft = (
@@ -154,7 +154,7 @@ def _overlap(places: Floats, source: str) -> InputError:
 
 
 def _on_lines(lines: Iterable[Floats], points: Floats, keys: Rows) -> Rows:
-    """The edges, by their rows, whose ends follow each other on a line."""
+    """Return the edges, by row, whose ends follow each other on a line."""
     row = {place: at for at, place in reversed(list(enumerate(map(tuple, points.tolist()))))}
     found = [np.empty((0, 2), dtype=np.int64)]
     for line in lines:

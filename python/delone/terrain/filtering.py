@@ -1,8 +1,8 @@
 """Ground points in lidar: progressive densification of a triangulation (P. Axelsson, 2000).
 
 A coarse triangulation of the lowest points of cells is below buildings and trees. Each pass inserts
-points that are close to their triangle and form a small angle with it at its corners: of those that
-are nearest to the same corner, the one with the smallest angle. So the triangulation climbs gradual
+points that are close to their triangle and form a small angle with it at its corners: of the points
+nearest to the same corner, the one with the smallest angle. So the triangulation climbs gradual
 slopes and stays below whatever rises steeply. The mesh is dynamic: a pass only inserts points and
 never retriangulates.
 
@@ -36,12 +36,12 @@ __all__ = ["Ground", "ground"]
 # Defaults in meters. Axelsson's angle and distance are medians of the data; these are close to
 # those of urban ground. A cell is wider than most buildings.
 _METERS = {"cell": 20.0, "distance": 1.4, "edge": 1.0, "thickness": 0.1, "low": 1.0}
-# At most this many points below a gap are measurement errors, more are a pit; with fewer than the
-# second number of points around, no point is rejected.
+# At most this many points below a gap are measurement errors; more are a pit. With fewer points
+# around than the second number, no point is rejected.
 _FEW, _MANY = 5, 20
 # The maximum number of cells along an axis.
 _MOST_CELLS = 1 << 30
-# Points that are measured at once.
+# Number of points that are measured at a time.
 _BLOCK = 1 << 19
 
 
@@ -108,7 +108,7 @@ class Ground(ReadOnly):
         Returns
         -------
         Agreement
-            Cohen's kappa, and the errors of type I and II.
+            Cohen's kappa, and the type I and type II errors.
 
         Raises
         ------
@@ -158,8 +158,8 @@ def ground(
     distance : float, optional
         Largest distance of such a point from the plane of the triangle. By default 1.4 m.
     mirror : bool, optional
-        In triangles steeper than `angle`, test a point that fails again, at its mirror image about
-        the highest corner, with its own height: this finds edges of embankments.
+        In triangles steeper than `angle`, test a point that fails a second time, at its mirror
+        image about the highest corner, with its own height: this finds edges of embankments.
     edge : float, optional
         Triangles whose edges are all shorter than this get no more points. By default 1 m.
     thickness : float, optional
@@ -173,7 +173,7 @@ def ground(
         smallest angles near its corners.
     crs : optional
         Coordinate reference system, as for `TIN.from_points`. If it is in feet, the defaults are
-        converted; if it is unknown, they are the numbers above.
+        converted; if it is unknown, the numbers above are used.
     planar : bool, optional
         Whether longitudes and latitudes are intentional, without a warning.
     workers : int, optional
@@ -202,7 +202,7 @@ def ground(
     and angles that are exactly at a limit. What is ground is an estimate, but the triangulation
     itself is exact: each pass inserts points into a `Dynamic`.
 
-    Beyond the lowest points, the surface extends to four points beyond the corners of the survey,
+    Beyond the lowest points, the surface extends to four points outside the corners of the survey,
     each with the height of the nearest lowest point.
 
     Each pass tests all remaining points, in time roughly proportional to their number.
@@ -299,7 +299,7 @@ def _cells(flat: Floats, width: float) -> _Cells:
             f"cell={width:g} is too small for points that extend over {span[0]:g} x {span[1]:g}"
         )
     column, row = np.floor((flat - low) / width).astype(np.int64).T
-    # One empty cell on each side, so that neighbors are numbers apart.
+    # One empty cell on each side, so that neighbors have fixed differences of numbers.
     stride = int(row.max()) + 3
     keys, cell = np.unique((column + 1) * stride + row + 1, return_inverse=True)
     return _Cells(keys, stride, cell.ravel())
@@ -333,7 +333,7 @@ def _lowest_kept(cells: _Cells, z: Floats, gap: float) -> Floats:
 
 
 def _seeds(flat: Floats, z: Floats, cells: _Cells, outliers: Bools) -> Rows:
-    """Return the lowest point of each cell; of several the first by its coordinates."""
+    """Return the lowest point of each cell; of several, the first by coordinates."""
     rows = np.flatnonzero(~outliers)
     order = rows[np.lexsort((flat[rows, 1], flat[rows, 0], z[rows], cells.cell[rows]))]
     _, first = np.unique(cells.cell[order], return_index=True)
@@ -341,12 +341,12 @@ def _seeds(flat: Floats, z: Floats, cells: _Cells, outliers: Bools) -> Rows:
 
 
 class _Seen(NamedTuple):
-    """Points as they are seen from the triangles below or above them."""
+    """Points in relation to the triangles below or above them."""
 
     simplex: Indices
     above: Floats  # the vertical distance from the plane
     away: Floats  # the distance from the plane
-    sine: Floats  # of the greatest angle between the plane and the lines from the corners
+    sine: Floats  # of the largest angle between the plane and the lines from the corners
     nearest: Rows  # the number of the nearest corner
 
 
@@ -383,7 +383,7 @@ class _Surface:
         return np.column_stack((self._flat[rows], self._z[rows]))
 
     def seen(self, places: Floats) -> _Seen:
-        """Measure points that are inside of the corners."""
+        """Measure points that are inside the corners."""
         simplex = self._mesh.find_simplex(places[:, :2])
         corners, slope = self.simplices[simplex], self.gradients[simplex]
         from_first = places[:, :2] - self.points[corners[:, 0]]
@@ -416,7 +416,7 @@ class _Surface:
 
 
 def _chosen(surface: _Surface, left: Rows, limits: _Limits) -> Rows:
-    """Return the points that join: of each triangle, near each corner, that of the least angle."""
+    """Return the points to insert: the smallest angle for each triangle and corner."""
     large = surface.longest > limits.edge
     steep = np.hypot(*surface.gradients.T) > limits.tangent
     found = []

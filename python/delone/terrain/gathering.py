@@ -1,4 +1,4 @@
-"""All lines of a surface as segments; lines without heights are put onto the points."""
+"""All lines of a surface as segments; lines without heights are draped over the points."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ __all__ = [
     "off_ground",
 ]
 
-# The kinds of lines. The last two are shores of level polygons, and the hull of all heights, where
+# The kinds of lines. The last two are shores of level polygons, and the hull of all heights if
 # rings leave it.
 HARD, SOFT, BOUNDARY, HOLE, ISLAND, LEVEL, HULL = range(7)
 
@@ -40,7 +40,7 @@ HARD, SOFT, BOUNDARY, HOLE, ISLAND, LEVEL, HULL = range(7)
 class Lines(NamedTuple):
     """All lines: their points, segments between them, and the kind of each segment."""
 
-    points: Floats  # (p, 3), heights NaN outside of the ground
+    points: Floats  # (p, 3), heights NaN outside the ground
     draped: Bools  # (p,), whether the height is that of the ground
     segments: Indices  # (s, 2), rows of `points`
     kinds: NDArray[np.int8]
@@ -48,7 +48,7 @@ class Lines(NamedTuple):
 
     @classmethod
     def joined(cls, lines: list[tuple[int, int, Floats, Bools]]) -> Lines:
-        """Put lines together: the kind and polygon of each, its points, and which are draped."""
+        """Combine lines: the kind and polygon of each, its points, and which are draped."""
         counts = np.array([len(points) for _, _, points, _ in lines], dtype=np.int64)
         sides = np.maximum(counts - 1, 0)
         ends = np.cumsum(counts)
@@ -65,7 +65,7 @@ class Lines(NamedTuple):
 def gathered(
     given: list[list[Ring]], points: Floats, surface_of: Callable[[Floats], Surface]
 ) -> Lines:
-    """Gather the lines of each kind, and put those without heights onto the points."""
+    """Gather the lines of each kind, and drape those without heights over the points."""
     found: list[tuple[int, int, Floats, Bools]] = []
     ground: Surface | None = None
     for kind, lines in enumerate(given):
@@ -92,9 +92,9 @@ def _hull(points: Floats) -> Floats:
 
 
 def _on_ground(line: Floats, ground: Surface, *, ring: bool) -> Floats:
-    """Return a line with heights: on the surface of the points, if it has none itself.
+    """Return a line with heights: those of the surface of the points, if it has none itself.
 
-    The points of rings without any height are NaN outside of that surface; others must be on it.
+    The points of rings without any height are NaN outside that surface; others must be on it.
     """
     places, without = np.ascontiguousarray(line[:, :2]), np.isnan(line[:, 2])
     z = np.where(without, ground.heights(places), line[:, 2])
@@ -119,8 +119,8 @@ def _on_ground(line: Floats, ground: Surface, *, ring: bool) -> Floats:
 
 
 def off_ground(x: float, y: float) -> InputError:
-    """The error that a line without heights leaves the surface of the points."""
+    """Return the error that a line without heights leaves the surface of the points."""
     return InputError(
-        f"a line without heights is outside of the points at ({x:.10g}, {y:.10g}): give it heights "
+        f"a line without heights is outside the points at ({x:.10g}, {y:.10g}): give it heights "
         "there"
     )

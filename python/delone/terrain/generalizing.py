@@ -1,21 +1,21 @@
-"""Lines with fewer points that cross nothing and stay on their side of all other lines.
+"""Simplified lines that do not cross and stay on the same side of all other lines.
 
 A point between two others is left out if no other point of any line, and no vertex of the outline,
-is inside of or on the triangle of the three, which is decided exactly. Moving the line across an
+is inside or on the triangle of the three, which is decided exactly. Moving the line across an
 empty triangle is an isotopy: no line crosses another one, itself or the outline, closed lines still
-enclose what they enclosed, and lines that touch do so at the same points, for which two points are
-never joined twice. This is the condition of A. Saalfeld, "Topologically consistent line
-simplification with the Douglas-Peucker algorithm", CaGIS 26 (1999), for one point at a time, as M.
-Visvalingam and J. Whyatt leave points out (The Cartographic Journal 30, 1993).
+enclose what they enclosed, and lines that touch still touch at the same points, because two points
+are never joined twice. This is the condition of A. Saalfeld, "Topologically consistent line
+simplification with the Douglas-Peucker algorithm", CaGIS 26 (1999), for one point at a time, in the
+way in which M. Visvalingam and J. Whyatt leave out points (The Cartographic Journal 30, 1993).
 
 Every point that is left out is within the tolerance of the segment that replaces it. In each round,
 points are left out that deviate less than both of their neighbors; ties are broken by coordinates.
 The triangles of such points remain empty when others are left out, so that one round equals leaving
 them out one by one.
 
-Points where lines touch stay, and cut lines into parts. A closed line without such points keeps the
-first of its points by coordinates. So the result depends on the points of lines, but not on where
-they begin and how they are joined, and borders of bands get the same points as contours.
+Points where lines touch are kept, and divide lines into parts. A closed line without such points
+keeps the first of its points by coordinates. So the result depends on the points of lines, but not
+on where they begin or how they are joined, and borders of bands get the same points as contours.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 
 __all__ = ["kept_points", "simplified"]
 
-# Points in boxes of triangles that are compared at once.
+# Number of points in boxes of triangles that are compared at a time.
 _PAIRS = 1 << 22
-# Cells are rebuilt when fewer than this share of their points are left.
+# Cells are rebuilt when less than this fraction of their points is left.
 _WORTH = 0.6
 # The minimum number of distinct points of a closed line.
 _LEAST = 3
@@ -46,7 +46,7 @@ _FEW = 2 * _LEAST
 
 @dataclass(eq=False)
 class _State:
-    """Points of all lines, and which of them are still there."""
+    """Points of all lines, and which of them are left."""
 
     points: Floats
     number: Rows  # points at the same place have the same number
@@ -63,9 +63,10 @@ class _State:
 def simplified(
     points: Floats, starts: Rows, tolerance: float, outline: Floats | None = None
 ) -> tuple[Floats, Rows]:
-    """Return lines with fewer points, within a distance of all that are left out.
+    """Return lines with fewer points, within a distance of all points that are left out.
 
-    Closed lines may begin elsewhere. Lines remain on their side of an outline, edges (k, 2, 2).
+    Closed lines may start at a different point. Lines stay on their side of an outline, edges (k,
+    2, 2).
     """
     if len(starts) < 2:
         return points, starts
@@ -83,14 +84,15 @@ def kept_points(
         return np.ones(len(points), dtype=bool)
     count = len(points)
     state = _state(*_with_vertices(points, starts, outline), outline)
-    # Each round leaves out a point, or finds a blocker, which stays until a point is left out.
+    # Each round leaves out a point, or finds a blocker, which remains one until a point is left
+    # out.
     while _round(state, tolerance):
         pass
     return state.alive[:count]
 
 
 def _with_vertices(points: Floats, starts: Rows, outline: Floats | None) -> tuple[Floats, Rows]:
-    """Return lines with the vertices of the outline, each a line that has nothing to leave out."""
+    """Return lines together with the vertices of the outline, each as a line of one point."""
     if outline is None or not len(outline):
         return points, starts
     corners = np.unique(outline.reshape(-1, 2), axis=0)
@@ -143,14 +145,14 @@ def _state(points: Floats, starts: Rows, outline: Floats | None) -> _State:
     number, single = _numbers(points, starts)
     fixed = np.bincount(number[single], minlength=len(points))[number] > 1
     fixed[first], fixed[last] = True, True
-    # The points between two fixed ones are of the part that begins at the first of these.
+    # The points between two fixed ones belong to the part that begins at the first of these.
     part = np.cumsum(fixed) - 1
     ends = np.flatnonzero(fixed)
     closed = number[ends] == number[np.append(ends[1:], ends[:1])]
     end = np.zeros(len(points), dtype=bool)
     end[last] = True
     if outline is not None:
-        # Where a line follows the outline, another one may, too: nothing is between them.
+        # Where a line follows the outline, so may another one, with nothing between them.
         at = np.flatnonzero(fixed[:-1] & fixed[1:] & ~end[:-1])
         end[at[_among(points, at, outline)]] = True
     return _State(
@@ -187,7 +189,7 @@ def _round(state: _State, tolerance: float) -> bool:
     new = np.isnan(state.deviation[v])
     state.deviation[v[new]] = _deviations(state.points, u[new], w[new])
     deviation = state.deviation[v]
-    # With the fixed point at which the part begins.
+    # Including the fixed point at which the part begins.
     counts = np.bincount(state.part[rows], minlength=len(state.closed))
     few = state.closed & (counts <= _FEW)
     enough = ~(state.closed & (counts <= _LEAST))[state.part[v]]
@@ -214,7 +216,7 @@ def _round(state: _State, tolerance: float) -> bool:
 
 
 def _deviations(points: Floats, u: Rows, w: Rows) -> Floats:
-    """Return the greatest distance of the points between rows u and w from the piece u-w."""
+    """Return the largest distance of the points between rows u and w from the segment u-w."""
     counts = w - u - 1
     owner = np.repeat(np.arange(len(u)), counts)
     between = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts) + u[owner] + 1
@@ -230,7 +232,7 @@ def _deviations(points: Floats, u: Rows, w: Rows) -> Floats:
 
 
 def _independent(points: Floats, rows: Rows, place: Rows, deviation: Floats) -> Bools:
-    """Return which points deviate less than those beside them on the line that may go, too."""
+    """Return which points deviate less than those of their neighbors that may also be left out."""
     rank = np.full(len(rows) + 1, np.iinfo(np.int64).max)
     x, y = points[rows[place]].T
     order = np.lexsort((y, x, deviation))
@@ -240,7 +242,7 @@ def _independent(points: Floats, rows: Rows, place: Rows, deviation: Floats) -> 
 
 
 def _one_of_few(state: _State, v: Rows, deviation: Floats, chosen: Bools, few: Bools) -> Bools:
-    """Of closed parts with few points, keep only the first of the chosen points."""
+    """In closed parts with few points, keep only the first of the chosen points."""
     rows = np.flatnonzero(chosen & few[state.part[v]])
     x, y = state.points[v[rows]].T
     order = rows[np.lexsort((y, x, deviation[rows], state.part[v[rows]]))]
@@ -275,7 +277,7 @@ def _joints(state: _State, a: Rows, b: Rows) -> Rows:
 
 
 def _inside(state: _State, rows: Rows, u: Rows, v: Rows, w: Rows) -> NDArray[np.int64]:
-    """Return a point inside of or on each triangle other than its corners, -1 if there is none."""
+    """Return a point inside or on each triangle other than its corners, -1 if there is none."""
     points = state.points
     corners = points[np.stack((u, v, w))]
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -287,7 +289,7 @@ def _inside(state: _State, rows: Rows, u: Rows, v: Rows, w: Rows) -> NDArray[np.
     total = cells.counts(low, high)
     ends = np.cumsum(total)
     start = 0
-    # Each block has at least one triangle, so this ends.
+    # Each block has at least one triangle, so this terminates.
     while start < len(u):
         before = ends[start - 1] if start else 0
         stop = max(start + 1, int(np.searchsorted(ends, before + _PAIRS, side="right")))
@@ -323,7 +325,7 @@ class _Cells(NamedTuple):
 
     @classmethod
     def of(cls, points: Floats, rows: Rows, low: Floats, high: Floats) -> _Cells:
-        """Sort points into cells about as large as boxes, not many more than points."""
+        """Sort points into cells about as large as boxes, not many more cells than points."""
         places = points[rows]
         origin = places.min(axis=0)
         extent = np.maximum(places.max(axis=0) - origin, np.finfo(float).tiny)
@@ -365,6 +367,6 @@ class _Cells(NamedTuple):
 def _cell(
     places: Floats, origin: Floats, size: Floats, shape: NDArray[np.int64]
 ) -> NDArray[np.int64]:
-    """Return the column and row of places; monotone, so that a box has all that is inside."""
+    """Return the column and row of places; monotone, so the cells of a box cover what is inside."""
     found: NDArray[np.int64] = np.floor((places - origin) / size).astype(np.int64)
     return np.clip(found, 0, shape - 1)

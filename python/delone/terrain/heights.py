@@ -4,9 +4,9 @@ Each vertex has *claims*: the heights of the points there, and those of the line
 it. Claims that differ are resolved by the policies of the caller, or raise an error that contains
 their coordinates.
 
-A claim of a line between its own points is known up to a bound: the slope of the line times the
-rounding of the coordinates. Claims differ if the intervals that these bounds give have no height in
-common. Lines without heights claim none: they take the other heights there, or that of the ground.
+The claim of a line between its own points has an error bound: the slope of the line times the
+rounding error of the coordinates. Claims differ if their intervals have no height in common. Lines
+without heights have no claims: they get the other heights there, or the height of the ground.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ __all__ = [
 ]
 
 POLICIES = ("raise", "min", "max", "mean")
-# Both ends of a line, the vertex on it and its share of the line are rounded once each.
+# Both ends of a line, the vertex on it and its fraction of the line are each rounded once.
 _ROUNDINGS = 4
 _EPS = float(np.finfo(np.float64).eps)
 _SHOWN = 5
-# Digits of heights in messages: the first of these that shows a difference.
+# Numbers of digits of heights in messages: the first one that shows a difference is used.
 _DIGITS = (6, 9, 12, 17)
 
 
@@ -48,11 +48,11 @@ class Claims(NamedTuple):
 
     vertex: Rows
     z: Floats
-    bound: Floats  # how far rounding may have moved each height
+    bound: Floats  # by how much rounding may have changed each height
 
     @classmethod
     def joined(cls, parts: list[Claims]) -> Claims:
-        """Put several together."""
+        """Combine several."""
         return cls(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
     def among(self, rows: Bools) -> Claims:
@@ -90,7 +90,7 @@ def _along(
     length = np.hypot(*whole.T)
     rise = z[b] - z[a]
     found = z[a] + np.clip(np.hypot(*part.T) / length, 0, 1) * rise
-    # A vertex is beside its segment where the segment is bent.
+    # Where a segment is bent, its vertices are next to it.
     beside = np.abs(whole[:, 0] * part[:, 1] - whole[:, 1] * part[:, 0]) / length
     largest = np.abs(mesh.points[np.column_stack((a, b, vertex))]).max(axis=(1, 2), initial=0.0)
     moved = beside + _ROUNDINGS * np.spacing(largest)
@@ -118,9 +118,9 @@ def resolved(
 
 
 def on_ground(z: Floats, claims: Claims) -> Floats:
-    """Return heights with those of the ground where there are none: the lowest of several.
+    """Return heights, with those of the ground if there are none: the lowest of several.
 
-    They are heights of one surface and differ by rounding only.
+    They are heights of one surface and differ only by rounding errors.
     """
     missing = claims.among(np.isnan(z[claims.vertex]))
     found = z.copy()
@@ -143,7 +143,7 @@ def _reduced(  # noqa: PLR0917
     least, most = high.copy(), low.copy()
     np.minimum.at(low, at, claims.z)
     np.maximum.at(high, at, claims.z)
-    # Intervals have a height in common if the greatest lower end is not above the least upper end.
+    # Intervals overlap if the largest lower end is not above the smallest upper end.
     np.maximum.at(least, at, claims.z - claims.bound)
     np.minimum.at(most, at, claims.z + claims.bound)
     with np.errstate(over="ignore"):
@@ -164,7 +164,7 @@ def _reduced(  # noqa: PLR0917
 def conflict(  # noqa: PLR0917
     places: Floats, rows: Rows, low: Floats, high: Floats, what: str, option: str
 ) -> ConflictingValuesError:
-    """The error that heights differ at places."""
+    """Return the error that heights differ at places."""
     shown = ", ".join(
         f"({x:.10g}, {y:.10g}): {_range(*span)}"
         for (x, y), *span in zip(places[:_SHOWN], low.tolist(), high.tolist(), strict=False)
@@ -179,7 +179,7 @@ def conflict(  # noqa: PLR0917
 
 
 def _range(low: float, high: float) -> str:
-    """Two heights, with the digits that show that they differ."""
+    """Return two heights as text, with enough digits to show that they differ."""
     for digits in _DIGITS:
         first, second = f"{low:.{digits}g}", f"{high:.{digits}g}"
         if first != second:

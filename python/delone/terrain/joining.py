@@ -1,4 +1,4 @@
-"""Points and lines of a survey are merged where they are nearer to each other than `snap`."""
+"""Merging of points and lines of a survey that are closer to each other than `snap`."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ __all__ = ["Joined", "joined"]
 
 
 class Joined(NamedTuple):
-    """Points and lines after merging, which points remain, and how many moved how far."""
+    """Points and lines after merging, which points remain, how many moved, and how far."""
 
     points: Floats  # (n, 3), all of them
-    kept: Bools  # (n,), False for those that are part of a line now, or on a shore
+    kept: Bools  # (n,), False for those that are now part of a line, or on a shore
     lines: Lines
     points_leveled: int  # on shores of level polygons, which are left out
     points_moved: int
@@ -87,14 +87,14 @@ def joined(points: Floats, lines: Lines, limit: float, policy: str, tolerance: f
 
 
 def _at(places: Floats, known: Floats) -> Bools:
-    """Which places are equal to one of others."""
+    """Return which places are equal to one of others."""
     _, number = np.unique(np.concatenate((known, places)), axis=0, return_inverse=True)
     found: Bools = np.isin(number[len(known) :], number[: len(known)])
     return found
 
 
 def _from_smaller(places: Floats, segments: Indices) -> Indices:
-    """Return segments from the smaller end on, so that no direction is rounded differently."""
+    """Return segments from the smaller end, so that rounding does not depend on the direction."""
     (ax, ay), (bx, by) = places[segments[:, 0]].T, places[segments[:, 1]].T
     turned = (ax > bx) | ((ax == bx) & (ay > by))
     return np.where(turned[:, None], segments[:, ::-1], segments)
@@ -109,10 +109,10 @@ def _threaded(  # noqa: PLR0917
     policy: str,
     tolerance: float,
 ) -> Lines:
-    """Let lines take the place of points beside them.
+    """Let lines replace points next to them.
 
-    A line without heights gets a point there. One with heights stays as it is if they agree; else
-    the policy decides.
+    A line without heights gets a point there. A line with heights is unchanged if the heights
+    agree; otherwise, the policy decides.
     """
     a, b = lines.segments[segment].T
     start, way = lines.points[a], lines.points[b] - lines.points[a]
@@ -136,7 +136,7 @@ def _with_ends(lines: Lines, fixed: Bools, limit: float, tolerance: float) -> tu
     """Move ends of lines onto the sides of others that they nearly reach, and return how far.
 
     The other line gets a point there. If heights agree, the point has that of the end; otherwise,
-    they are compared as where lines cross.
+    heights are compared as where lines cross.
     """
     own = np.flatnonzero(lines.kinds != HULL)
     places, number = np.unique(lines.points[:, :2], axis=0, return_inverse=True)
@@ -164,7 +164,7 @@ def _with_ends(lines: Lines, fixed: Bools, limit: float, tolerance: float) -> tu
 
 
 def _through(lines: Lines, foot: Floats, without: Bools, segment: Rows, share: Floats) -> Lines:
-    """Let segments pass through points at shares of them."""
+    """Route segments through points at given fractions of their lengths."""
     if not len(foot):
         return lines
     added = np.lexsort((foot[:, 2], share, segment))

@@ -25,9 +25,10 @@ if TYPE_CHECKING:
 
 __all__ = ["Labels", "labels_of"]
 
-# Places that are compared for a label, and the length of one by default, as a part of the extent.
+# Positions that are compared for a label, and the default length of one, as a fraction of the
+# extent.
 _PLACES, _LENGTH = 32, 1 / 40
-# Labels that a call may make.
+# The maximum number of labels.
 _MOST = 1_000_000
 
 
@@ -51,7 +52,7 @@ class Labels(ReadOnly, Layer):
     index : ndarray of bool, shape (k,)
         Whether it is an index contour.
     length : float
-        The length of a label for which the places were chosen.
+        The length of a label for which the positions were chosen.
     short : int
         The number of lines without a label because they are shorter than two labels.
     crs : str, optional
@@ -112,7 +113,7 @@ def labels_of(
     spacing: float | None,
     crs: str | None,
 ) -> Labels:
-    """Return labels for those lines that are wanted."""
+    """Return labels for the requested lines."""
     extent = max((float(np.ptp(line, axis=0).max()) for line in lines), default=0.0)
     size = extent * _LENGTH if length is None else as_number(length, name="length")
     apart = math.inf if spacing is None else as_number(spacing, name="spacing")
@@ -144,16 +145,16 @@ def labels_of(
 
 
 def _placed(line: Floats, along: Floats, size: float, count: int) -> list[tuple[Floats, float]]:
-    """Return the middles and angles of labels, each in its part of a line."""
+    """Return the midpoints and angles of labels, each in its part of a line."""
     found = []
     ends = np.linspace(0.0, along[-1], count + 1)
     for start, stop in pairwise(ends.tolist()):
-        # A label stays within its part, and the middle comes first among equals.
+        # A label stays within its part; among equally good positions, the middle is preferred.
         at = np.linspace(start + size / 2, stop - size / 2, _PLACES + 1)
         at = at[np.argsort(np.abs(at - (start + stop) / 2), kind="stable")]
         first, middle, last = (_on(line, along, at + shift) for shift in (-size / 2, 0, size / 2))
         chord = np.hypot(*(last - first).T)
-        # Straight within a hundredth is straight: there the middle is better.
+        # Lines within a hundredth of straight count as straight, where the middle is better.
         best = int((chord >= chord.max() - size / 100).argmax())
         x, y = (last - first)[best]
         angle = math.degrees(math.atan2(y, x))

@@ -1,4 +1,4 @@
-"""What results for maps have in common: a table with a geometry in each row."""
+"""The base of results for maps: a table with a geometry in each row."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Layer:
     """Elements with a geometry and columns, in the reference system of a surface."""
 
     crs: str | None
-    # What the elements are called, in the plural.
+    # The name of the elements, in the plural.
     _ELEMENTS: ClassVar[str]
 
     def _geometries(self) -> NDArray[Any]:
@@ -28,7 +28,7 @@ class Layer:
         raise NotImplementedError
 
     def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
-        """Return a table with a geometry in each row, as a layer of a map (extra ``geo``).
+        """Return a GeoDataFrame with one row for each element, as a map layer (extra ``geo``).
 
         Parameters
         ----------
@@ -48,8 +48,8 @@ class Layer:
         MissingExtraError
             geopandas or shapely is not installed.
         InputError
-            `data` does not have one row for each element, or has a column with a name of the
-            table's own.
+            `data` does not have one row for each element, or has a column with the same name as one
+            of the table.
 
         Examples
         --------

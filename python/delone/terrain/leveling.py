@@ -1,6 +1,6 @@
 """Polygons in which a surface is level: lakes, ponds, basins.
 
-The shore is a line of one height. Points inside of it or on it are left out, so that nothing else
+The shore is a line of one height. Points inside it or on it are left out, so that nothing else
 is there, and triangles between points of the shore are level.
 """
 
@@ -49,7 +49,7 @@ def leveled(
     """Return the shores of level polygons with their heights, and which points are outside.
 
     A polygon without heights has the lowest height of its shore, on the surface of the points that
-    are outside of all polygons. Sides longer than `longest` are divided.
+    are outside all polygons. Sides longer than `longest` are divided.
     """
     features = _numbered(rings_by_feature(given, name="level", crs=crs))
     features = [[_divided(ring, longest) for ring in rings] for rings in features]
@@ -79,7 +79,7 @@ def leveled(
 
 
 def _numbered(features: list[list[Ring]]) -> list[list[Ring]]:
-    """Return the rings with numbers of polygons that no two features share."""
+    """Return the rings, numbered so that no two features share a polygon number."""
     count, found = 0, []
     for rings in features:
         own = {polygon: count + k for k, polygon in enumerate({ring.polygon for ring in rings})}
@@ -103,16 +103,16 @@ def _divided(ring: Ring, longest: float) -> Ring:
     side = np.repeat(np.arange(len(way)), count)
     share = (np.arange(len(side)) - np.repeat(np.cumsum(count) - count, count)) / count[side]
     found = ring.points[side] + share[:, None] * way[side]
-    # A side of one height keeps it.
+    # The points of a side of constant height have that height.
     found[:, 2] = np.where(way[side, 2] == 0, ring.points[side, 2], found[:, 2])
     return ring._replace(points=np.vstack((found, ring.points[-1:])))
 
 
 def _covered(mesh: ConstrainedDelaunay, within: Bools, places: Floats) -> Bools:
-    """Return which places are inside of polygons or on their sides, exactly."""
+    """Return which places are inside polygons or on their sides, exactly."""
     triangle = mesh.find_simplex(places)
     found = (triangle >= 0) & within[triangle]
-    # On a side or a corner, the triangle may be the one on its other side.
+    # For a place on a side or corner, the triangle found may be the one outside.
     rest = np.flatnonzero((triangle >= 0) & ~found)
     corners, beside = mesh.simplices[triangle[rest]], mesh.neighbors[triangle[rest]]
     shore = np.zeros(mesh.npoints, dtype=bool)
@@ -127,7 +127,7 @@ def _covered(mesh: ConstrainedDelaunay, within: Bools, places: Floats) -> Bools:
 
 
 def _own_height(rings: list[Ring], row: int) -> float | None:
-    """Return the height that the points of a polygon have; None if they have none."""
+    """Return the common height of the points of a polygon; None if they have none."""
     z = np.concatenate([ring.points[:, 2] for ring in rings])
     if np.isnan(z).all():
         return None
@@ -136,7 +136,7 @@ def _own_height(rings: list[Ring], row: int) -> float | None:
         rest = ", and points without a height" if np.isnan(z).any() else ""
         raise InputError(
             f"level, feature {row}: a level polygon has one height, and this one has heights from "
-            f"{low:.10g} to {high:.10g}{rest}: give all of its points one, or none"
+            f"{low:.10g} to {high:.10g}{rest}: give all of its points one height, or none"
         )
     return float(z[0])
 
@@ -160,17 +160,17 @@ def _shore_height(rings: list[Ring], row: int, ground: Surface) -> float:
 def require_level(
     mesh: ConstrainedDelaunay, z: Floats, lakes: Bools, kept: Bools, heights: Floats
 ) -> None:
-    """Refuse lines with other heights inside of level polygons."""
+    """Reject lines with other heights inside level polygons."""
     corners = mesh.simplices[lakes & kept]
     bad = np.flatnonzero((z[corners] != z[corners[:, :1]]).any(axis=1))
     if not len(bad):
         return
     rows = np.unique(corners[bad])
-    # A point at the height of no level polygon, if there is one, is the culprit.
+    # If a point has the height of no level polygon, name it.
     other = rows[~np.isin(z[rows], heights)]
     row = int(other[0] if len(other) else rows[0])
     x, y = mesh.points[row].tolist()
     raise InputError(
-        f"a line inside of a level polygon has another height at ({x:.10g}, {y:.10g}): "
+        f"a line inside a level polygon has a different height at ({x:.10g}, {y:.10g}): "
         f"{z[row]:.10g}; leave it out there, or leave out its heights"
     )

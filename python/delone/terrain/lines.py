@@ -1,8 +1,8 @@
 """Lines and rings with heights, as arrays: breaklines, boundaries, profiles.
 
-Rings have one meaning everywhere: each polygon has its own holes, and several polygons are a union.
-Rings that belong to no polygon (arrays and closed lines) together form one polygon, whose inside is
-what an odd number of them contain.
+Rings have one meaning everywhere: each polygon has its own holes, and several polygons form a
+union. Rings that belong to no polygon (arrays and closed lines) together form one polygon by the
+even-odd rule.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ __all__ = [
     "rings_of",
 ]
 
-# The polygon of rings that belong to none.
+# The polygon number of rings that belong to none.
 LOOSE = 0
 
 
@@ -43,11 +43,11 @@ class Ring(NamedTuple):
     """A line or ring, and its polygon."""
 
     points: Floats  # (k, 3), heights NaN where there are none
-    polygon: int | None = None  # None for a polygon of its own
+    polygon: int | None = None  # None for a separate polygon
 
 
 def lines_of(given: Any, *, name: str, crs: str | None) -> list[Floats]:
-    """Return lines as arrays (k, 3); heights are NaN where there are none, also in the input.
+    """Return lines as arrays (k, 3); heights are NaN where there are none, as in the input.
 
     Accepted are shapely geometries, GeoDataFrames, a `GeometrySet`, arrays (k, 2) or (k, 3), and
     sequences of these. Polygons become their rings, closed. Lines that declare a reference
@@ -69,7 +69,7 @@ def _placed(given: Any, name: str, crs: str | None) -> list[Ring]:
 
 
 def rings_of(given: Any, *, name: str, crs: str | None) -> list[Ring]:
-    """Return closed rings: arrays that do not repeat their first point at the end are closed."""
+    """Return closed rings; arrays that do not repeat their first point at the end are closed."""
     return [_closed(ring, name) for ring in _placed(given, name, crs)]
 
 
@@ -94,7 +94,7 @@ def rings_by_feature(given: Any, *, name: str, crs: str | None) -> list[list[Rin
         _require_areas(feature, own)
         rings = [ring for ring in _each(feature, own, count(1)) if len(ring.points)]
         found.append([_closed(ring, own) for ring in rings])
-    # Together, since each call of a transformation has to be set up.
+    # All at once, because each call of a transformation has a fixed cost.
     every = [ring.points for rings in found for ring in rings]
     if every:
         moved = transformed(given, np.concatenate(every), crs, name=name, to="the surface")
@@ -122,7 +122,7 @@ def _features(given: Any) -> list[Any]:
 
 
 def require_areas(given: Any, name: str) -> None:
-    """Refuse geometries that are neither polygons nor closed lines; arrays are rings."""
+    """Reject geometries that are neither polygons nor closed lines; arrays are rings."""
     if _is_line(given) or isinstance(given, Ring):
         return
     features = _features(given)
@@ -134,7 +134,7 @@ def require_areas(given: Any, name: str) -> None:
 
 
 def _require_areas(feature: Any, name: str) -> None:
-    """Refuse a geometry that is neither a polygon nor a closed line."""
+    """Reject a geometry that is neither a polygon nor a closed line."""
     mapping = feature if isinstance(feature, dict) else None
     if mapping is not None:
         geometry = mapping.get("geometry") if mapping.get("type") == "Feature" else mapping
@@ -161,7 +161,7 @@ def line_of(given: Any, *, name: str, crs: str | None) -> Floats:
 
 
 def _each(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
-    """Yield lines with the polygons that they belong to; `number` numbers these."""
+    """Yield lines with the polygons that they belong to, which `number` numbers."""
     if given is None:
         return
     if isinstance(given, Ring):
@@ -187,7 +187,7 @@ def _each(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
 
 
 def _of_set(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
-    """Yield the lines of a GeometrySet; heights in a column are those of whole lines."""
+    """Yield the lines of a GeometrySet; a height in a column applies to a whole line."""
     for row, geometry in enumerate(given.geometries):
         for line in _each(geometry, name, number):
             if given.feature_heights is not None:
@@ -196,7 +196,7 @@ def _of_set(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
 
 
 def _of_mapping(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
-    """Yield the lines of GeoJSON, and of objects with an interface of that form."""
+    """Yield the lines of GeoJSON, and of objects with a GeoJSON-like interface."""
     mapping = given if isinstance(given, dict) else given.__geo_interface__
     if mapping.get("type") == "FeatureCollection":
         yield from _each(mapping["features"], name, number)
@@ -230,13 +230,13 @@ def _of_array(array: NDArray[Any], name: str) -> Floats:
 
 
 def _checked(points: Floats, name: str) -> Floats:
-    """Refuse points that are not finite; a height of NaN means none."""
+    """Reject points that are not finite; a height of NaN means none."""
     require_finite(np.where(np.isnan(points) & (np.arange(3) == 2), 0.0, points), name=name)
     return points
 
 
 def _of_geometry(geometry: Any, name: str, number: count[int]) -> Iterator[Ring]:
-    """Yield the lines and rings of a geometry of shapely."""
+    """Yield the lines and rings of a shapely geometry."""
     import shapely
 
     kind = geometry.geom_type

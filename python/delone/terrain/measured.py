@@ -29,7 +29,7 @@ class Measured(HullTiling):
         other : float, triple of float, or TIN
             As for `volume_to`.
         regions : GeoDataFrame, GeometrySet, or sequence of polygons or rings
-            A region for each row, feature or item: polygons and multipolygons of shapely, closed
+            A region for each row, feature or item: shapely polygons and multipolygons, closed
             lines, GeoJSON, or arrays of shape (k, 2), each of which is a separate region. A missing
             geometry gives a row without an area. Regions may overlap.
 
@@ -156,7 +156,7 @@ class Measured(HullTiling):
         Raises
         ------
         InputError
-            A station is outside of the alignment, or a width or the interval is out of range;
+            A station is outside the alignment, or a width or the interval is out of range;
             otherwise as for `profiles`.
         BudgetExceededError
             The interval gives more than 100,000 stations.

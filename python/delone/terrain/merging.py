@@ -1,10 +1,10 @@
-"""Points that are nearer than a distance to each other or to a line are merged: `snap`.
+"""Merging of points that are closer than a distance to each other or to a line: `snap`.
 
-What is kept is chosen by coordinates, not by rows. Of points that are nearer to each other, the
-first in the order of x, y and height is kept, unless it is near one that is kept already; all
-others move to the nearest that is kept. So no point moves farther than the distance, and no two
-points that are kept are nearer to each other. Places move, heights do not: those that meet at a
-place are compared as heights of duplicates are.
+The points that are kept are chosen by coordinates, not by rows. Of points that are closer to each
+other, the first in the order of x, y and height is kept, unless it is close to one that is already
+kept; all others move to the nearest one that is kept. So no point moves farther than the distance,
+and no two points that are kept are closer to each other. Only positions change: heights that meet
+at one place are compared like those of duplicates.
 
 Lines come before points: their points are merged first, and their ends move onto other lines.
 Then points move to those of lines, and points that are near a line but not near a point of it
@@ -30,14 +30,14 @@ if TYPE_CHECKING:
 
 __all__ = ["Moves", "as_snap", "merged", "near_segments", "onto"]
 
-# Pairs of points in cells beside each other that are compared: some 2 GB.
+# Maximum number of pairs of points in adjacent cells that are compared: about 2 GB.
 _MOST = 40_000_000
-# Cells that a segment is cut for, per segment and point.
+# Maximum number of cells for which segments are cut, per segment and point.
 _PIECES = 4
 
 
 class Moves(NamedTuple):
-    """Where points go: new places, and which points have moved."""
+    """New positions of points, and which points have moved."""
 
     places: Floats  # (n, 2)
     moved: Bools
@@ -52,9 +52,9 @@ def as_snap(given: Any) -> float:
 
 
 def merged(places: Floats, order: NDArray[Any], limit: float, fixed: Bools | None = None) -> Moves:
-    """Merge places that are nearer to each other than `limit`, in an order; `fixed` ones stay.
+    """Merge places that are closer to each other than `limit`, in an order; `fixed` ones stay.
 
-    `order` has the rank of each place: the lower of two near ones is kept.
+    `order` contains the rank of each place: of two close ones, the lower is kept.
     """
     a, b = _near(places, limit)
     if not len(a):
@@ -67,7 +67,7 @@ def merged(places: Floats, order: NDArray[Any], limit: float, fixed: Bools | Non
     goes[first[stays[second] & ~stays[first]]] = True
     involved = np.zeros(len(places), dtype=bool)
     involved[a], involved[b] = True, True
-    # Each round decides at least the first of those that are undecided, so this ends.
+    # Each round decides at least the first undecided one, so this terminates.
     while True:
         undecided = involved & ~stays & ~goes
         if not undecided.any():
@@ -85,7 +85,7 @@ def merged(places: Floats, order: NDArray[Any], limit: float, fixed: Bools | Non
 def _to_nearest(  # noqa: PLR0917
     places: Floats, order: NDArray[Any], a: Rows, b: Rows, stays: Bools, goes: Bools
 ) -> Moves:
-    """Move what goes to the nearest that stays; of several the first in the order."""
+    """Move places to the nearest one that stays; of several, to the first in the order."""
     source = np.concatenate((a, b))
     target = np.concatenate((b, a))
     rows = goes[source] & stays[target]
@@ -100,7 +100,7 @@ def _to_nearest(  # noqa: PLR0917
 
 
 def onto(places: Floats, targets: Floats, limit: float) -> Moves:
-    """Move places that are nearer than `limit` to a target to the nearest one."""
+    """Move places that are closer than `limit` to a target to the nearest target."""
     both = np.concatenate((targets, places))
     a, b = _near(both, limit)
     ours = np.concatenate((a[b >= len(targets)], b[a >= len(targets)]))
@@ -126,14 +126,14 @@ def _ranks(places: Floats) -> NDArray[np.int64]:
 
 
 def _near(places: Floats, limit: float) -> tuple[Rows, Rows]:
-    """Return all pairs of places that are nearer than `limit`, each once."""
+    """Return all pairs of places that are closer than `limit`, each once."""
     cell = _cells(places, limit)
     key, order, start, stop = _sorted(cell)
     found: list[tuple[Rows, Rows]] = [(np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64))]
     total = 0
     if not len(key):
         return found[0]
-    # The cell itself, and half of those around it: the other half sees this one.
+    # The cell itself, and half of those around it: the other half covers this one.
     for across, up in ((0, 0), (1, -1), (1, 0), (1, 1), (0, 1)):
         wanted = key + (across << 32) + up
         at = np.minimum(np.searchsorted(key, wanted), len(key) - 1)
@@ -162,7 +162,7 @@ def _near(places: Floats, limit: float) -> tuple[Rows, Rows]:
 
 
 def _cells(places: Floats, size: float) -> NDArray[np.int64]:
-    """Return the column and row of places in a grid of cells that are at least of a size."""
+    """Return the column and row of places in a grid of cells of at least a given size."""
     if not len(places):
         return np.empty((0, 2), dtype=np.int64)
     low = places.min(axis=0)
@@ -187,10 +187,10 @@ def _sorted(cell: NDArray[np.int64]) -> tuple[NDArray[np.int64], Rows, Rows, Row
 
 
 def near_segments(places: Floats, ends: Floats, limit: float) -> tuple[Rows, Rows, Floats, Floats]:
-    """Return places that are nearer than `limit` to the inside of a segment.
+    """Return places that are closer than `limit` to the interior of a segment.
 
-    `ends` has the ends of the segments, (s, 2, 2). The result is rows of places and, for each, the
-    nearest segment, the fraction along it, and the distance.
+    `ends` contains the ends of the segments, (s, 2, 2). The result is rows of places and, for each,
+    the nearest segment, the fraction along it, and the distance.
     """
     nothing = np.empty(0, dtype=np.int64)
     if not len(places) or not len(ends):
@@ -200,7 +200,7 @@ def near_segments(places: Floats, ends: Floats, limit: float) -> tuple[Rows, Row
     both = np.concatenate((places, ends.reshape(-1, 2)))
     extent = float((both.max(axis=0) - both.min(axis=0)).max())
     size = max(limit, float(length.sum()) / (_PIECES * (len(places) + len(ends))), extent / 2.0**30)
-    # Pieces of at most a cell, so that each is in few cells.
+    # Pieces no longer than a cell, so that each is in few cells.
     count = np.maximum(1, np.ceil(length / size)).astype(np.int64)
     segment = np.repeat(np.arange(len(ends)), count)
     number = np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)
@@ -227,7 +227,7 @@ def near_segments(places: Floats, ends: Floats, limit: float) -> tuple[Rows, Row
         )
     near = (distance < limit) & (share > 0) & (share < 1)
     rows, segments, share, distance = (each[near] for each in (rows, segments, share, distance))
-    # Where two segments are equally near, the first in the order of their ends.
+    # If two segments are equally near, the first in the order of their ends.
     _, number = np.unique(ends.reshape(-1, 2), axis=0, return_inverse=True)
     sides = np.sort(number.reshape(-1, 2), axis=1)
     rank = np.empty(len(ends), dtype=np.int64)

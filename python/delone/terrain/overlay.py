@@ -1,10 +1,10 @@
-"""The overlay of a surface with a pad and its side slopes: one plane counts in each piece.
+"""The overlay of a surface with a pad and its side slopes: in each piece, one plane applies.
 
 The edges of the surface near the pad, the edges of the pad and the rims of the facets are segments
 of a first triangulation. In a region between them the surface is one plane, and so is each facet:
 which triangle, pad and facets contain a region follows from the segments around it (`coverage`);
 where two of these planes cross in a triangle, the crossing is a segment of a second triangulation.
-In each of its regions one plane counts: that of the highest facet above the ground, or of the
+In each of its regions, one plane applies: that of the highest facet above the ground, or of the
 lowest facet below it. Regions that are not connected to the pad remain ground.
 """
 
@@ -36,7 +36,7 @@ PAD, GROUND = -1, -2
 _ROUNDINGS, _STEEPEST = 64, 16.0
 # A slope whose direction differs from that of the outline by less than this runs along it.
 _ALONG = 1e-6
-# Points on the edges of a pad, for each edge, to which distances are measured.
+# Number of points on each edge of a pad to which distances are measured.
 _SPREAD = 4
 _EPS = float(np.finfo(np.float64).eps)
 # The polygons of segments: the pad, the whole surface, facets by their numbers from `_FACETS` on,
@@ -58,7 +58,7 @@ class Overlay(NamedTuple):
 
 
 class _Sides(NamedTuple):
-    """Segments to triangulate, and the polygon of each, -1 for none; each side of each polygon."""
+    """Segments to triangulate, and the polygon of each, -1 for none; one row for each side."""
 
     points: Floats
     segments: Indices
@@ -79,7 +79,7 @@ class _Cells(NamedTuple):
     simplex: Rows  # as in `Overlay`
     outside: Bools
     pad: Bools
-    beyond: Bools  # inside of the polygon, but not on the surface
+    beyond: Bools  # inside the polygon, but not on the surface
     facets: Rows  # (k, 2), regions and facets that contain them
 
 
@@ -144,7 +144,7 @@ def _near(tin: Surface, pad: Pad, facets: Facets) -> tuple[Bools, Floats]:
         if not (mine.any() and near.any()):
             continue
         met = best - facets.mildest[mine][0] * closest >= lowest
-        # Facets are cut off behind the last triangle that they can meet.
+        # Facets are cut off beyond the last triangle that they can meet.
         reach[mine] = 1.0625 * float(away[tin.simplices[met | near]].max())
         near |= met
     return near, reach
@@ -153,7 +153,7 @@ def _near(tin: Surface, pad: Pad, facets: Facets) -> tuple[Bools, Floats]:
 def _distances(points: Floats, pad: Pad) -> tuple[Floats, float]:
     """Return distances of points to a pad, 0 inside, and by how much they may be too large.
 
-    They are those to the nearest of points that are spread over the edges of the pad.
+    They are distances to the nearest of points that are spread over the edges of the pad.
     """
     ends = pad.points[pad.edges]
     lengths = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
@@ -171,7 +171,7 @@ def _distances(points: Floats, pad: Pad) -> tuple[Floats, float]:
 def _first(
     tin: Surface, pad: Pad, facets: Facets, near: Bools, reach: Floats
 ) -> tuple[_Sides, Rows]:
-    """Return what is triangulated first, and the vertices of the surface it starts with."""
+    """Return what is triangulated first, and the vertices of the surface that come first in it."""
     sides, of_triangle = _sides_of_surface(tin, near, _FACETS + len(reach))
     used, rows = np.unique(sides, return_inverse=True)
     far = reach[:, None]
@@ -190,7 +190,7 @@ def _first(
     order = np.argsort(whole, kind="stable")
     begin = np.searchsorted(whole[order], np.arange(len(edges) + 1))
     side, piece = _expanded(begin, edge.reshape(-1))
-    # Of a facet also the edge of the pad, which closes its rims.
+    # For a facet, also the edge of the pad, which closes its rims.
     around = [rim[:, [k, k + 1]] for k in range(3)] + [rim[:, [0, 3]]]
     others, row = threaded(points, np.concatenate([pad.edges + len(used), *around]), ours)
     number = np.concatenate(
@@ -235,7 +235,8 @@ def _cells(mesh: ConstrainedDelaunay, polygons: Indices, near: Bools, nfacets: i
     simplex = np.full(len(largest), -1)
     of_triangle = polygon >= _FACETS + nfacets
     simplex[region[of_triangle]] = np.flatnonzero(near)[polygon[of_triangle] - _FACETS - nfacets]
-    # Regions as narrow as a rounding may be behind an edge of their triangle and of the surface.
+    # Regions as narrow as a rounding error may be beyond an edge of their triangle and of the
+    # surface.
     simplex[~surface] = -1
     of_facet = (polygon >= _FACETS) & ~of_triangle
     return _Cells(
@@ -250,7 +251,7 @@ def _cells(mesh: ConstrainedDelaunay, polygons: Indices, near: Bools, nfacets: i
 
 
 def _ground(tin: Surface, mesh: ConstrainedDelaunay, cells: _Cells, used: Rows) -> Floats:
-    """Return the height of the surface at each vertex: each on one of its triangles."""
+    """Return the height of the surface at each vertex, each on one of its triangles."""
     found = np.full(mesh.npoints, np.nan)
     simplex = cells.simplex[mesh.region]
     at = np.flatnonzero(simplex >= 0)
@@ -263,7 +264,7 @@ def _ground(tin: Surface, mesh: ConstrainedDelaunay, cells: _Cells, used: Rows) 
     with np.errstate(divide="ignore", invalid="ignore"):
         v, w = _cross(p, c - a) / twice, _cross(b - a, p) / twice
         height = low + v * (mid - low) + w * (high - low)
-    # Where triangles of the surface meet, the largest has the smallest rounding errors.
+    # If several triangles of the surface meet, the largest has the smallest rounding errors.
     order = np.argsort(twice, kind="stable")
     found[rows[order]] = height[order]
     found[: len(used)] = tin.z[used]
@@ -271,7 +272,7 @@ def _ground(tin: Surface, mesh: ConstrainedDelaunay, cells: _Cells, used: Rows) 
 
 
 def _slack(tin: Surface, pad: Pad, facets: Facets, near: Bools) -> float:
-    """Return the difference of heights that may come from rounding."""
+    """Return the difference of heights that rounding may cause."""
     steepness = np.hypot(*tin.gradients[near].T).max()
     steepness = min(float(steepness), _STEEPEST) + float(np.hypot(*facets.gradient.T).max())
     span = max(float(np.abs(tin.min_bound).max()), float(np.abs(tin.max_bound).max()))
@@ -307,7 +308,7 @@ def _split(
     """Return the segments again, with the lines where planes cross."""
     triangles, values = [pairs.triangle], [pairs.excess]
     for first, second in _couples(pairs, facets):
-        # Not of the excesses, which are rounded to zero.
+        # Not from the excesses, which are rounded to zero.
         corners = mesh.simplices[pairs.triangle[first]]
         one = facets.at(np.repeat(pairs.facet[first], 3), mesh.points[corners.ravel()])
         two = facets.at(np.repeat(pairs.facet[second], 3), mesh.points[corners.ravel()])
@@ -353,12 +354,12 @@ def _zero_lines(mesh: ConstrainedDelaunay, triangle: Rows, values: Floats) -> _L
     row, side = np.nonzero(changes)
     two = (side[:, None] + (1, 2)) % 3
     ends, at = mesh.simplices[triangle[row][:, None], two], values[row[:, None], two]
-    # From the smaller row on: both triangles at an edge compute the same point.
+    # From the smaller row, so that both triangles at an edge compute the same point.
     turned = ends[:, 0] > ends[:, 1]
     ends[turned], at[turned] = ends[turned, ::-1], at[turned, ::-1]
     p, q = (mesh.points[ends[:, k]] for k in range(2))
     share = at[:, 0] / (at[:, 0] - at[:, 1])
-    # Corners that are zero, and edges with a change, are ends: a segment has two.
+    # Ends are corners that are zero and edges with a change of sign: a segment has two.
     zero, corner = np.nonzero(sign == 0)
     of = np.concatenate((row, zero))
     end = np.concatenate(
@@ -374,8 +375,8 @@ def _zero_lines(mesh: ConstrainedDelaunay, triangle: Rows, values: Floats) -> _L
 def _through(mesh: ConstrainedDelaunay, lines: _Lines) -> tuple[Rows, Rows]:
     """Return the segments of a mesh, through the new points that are on them, and their rows.
 
-    Points are rounded: without that, regions on both sides of a segment would be connected beside
-    its new points.
+    Points are rounded: otherwise, regions on both sides of a segment would be connected next to its
+    new points.
     """
     scale = np.array([mesh.npoints, 1])
     keys = np.sort(mesh.segments, axis=1).astype(np.int64) @ scale
@@ -398,11 +399,11 @@ def _through(mesh: ConstrainedDelaunay, lines: _Lines) -> tuple[Rows, Rows]:
 
 
 def _labels(mesh: ConstrainedDelaunay, cells: _Cells, pairs: _Pairs, facets: Facets) -> Rows:
-    """Return which plane counts on each triangle: the largest triangle of a region decides."""
+    """Return which plane applies to each triangle: the largest triangle of a region decides."""
     region = mesh.region[pairs.triangle]
     here = (cells.largest[region] == pairs.triangle) & (pairs.excess.sum(axis=1) > 0)
     region, facet = region[here], pairs.facet[here]
-    # Of fill the highest, of cut the lowest; among equal ones the first.
+    # For fill the highest, for cut the lowest; among equal ones, the first.
     height = -facets.rise[facet] * facets.at(facet, cells.center[region])
     order = np.lexsort((-facet, height, region))
     found = np.where(cells.pad, PAD, GROUND)
@@ -427,7 +428,7 @@ def _connected(mesh: ConstrainedDelaunay, label: Rows) -> Rows:
 
 
 def _refuse_outside(tin: Surface, pad: Pad, mesh: ConstrainedDelaunay, cells: _Cells) -> None:
-    """Refuse a pad that leaves the surface."""
+    """Reject a pad that leaves the surface."""
     off = cells.beyond[mesh.region]
     if not off.any():
         return
@@ -446,7 +447,7 @@ def _leaves(x: float, y: float) -> OutsideError:
 
 
 def _refuse_leaving(mesh: ConstrainedDelaunay, cells: _Cells, facets: Facets, label: Rows) -> None:
-    """Refuse slopes that run across the outline of the surface before they meet the ground."""
+    """Reject slopes that run across the outline of the surface before they meet the ground."""
     outside = np.append(cells.outside[mesh.region], True)[mesh.neighbors]
     triangle, side = np.nonzero(outside & (label >= 0)[:, None])
     a, b = (mesh.points[mesh.simplices[triangle, (side + turn) % 3]] for turn in (1, 2))

@@ -3,8 +3,8 @@
 Each edge has a facet: the plane through it that falls (or rises) outward at the given slope. Around
 a convex corner, facets of the same slope touch the cone of that slope: enough of them that the
 directions of neighbors differ by no more than `CORNERS`. Neighbors meet halfway between their
-directions, so a facet covers what lies between two rays. Where facets overlap, beside reflex
-corners, the highest one counts in fill, and the lowest one in cut.
+directions, so a facet covers what lies between two rays. Where facets overlap, next to reflex
+corners, the highest one applies in fill, and the lowest one in cut.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class Facets(NamedTuple):
 
     @classmethod
     def joined(cls, parts: list[Facets]) -> Facets:
-        """Put several together."""
+        """Combine several."""
         return cls(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
     def at(self, k: Any, points: Floats) -> Floats:
@@ -93,7 +93,7 @@ def pad_of(polygon: Any, z: Any, crs: str | None) -> Pad:
         [mesh.simplices[triangle, (side + turn) % 3] for turn in (1, 2)]
     ).astype(np.int32)
     if not len(edges):
-        raise InputError("polygon has no area: each point is inside of an even number of rings")
+        raise InputError("polygon has no area: each point is inside an even number of rings")
     used, rows = np.unique(edges, return_inverse=True)
     return Pad(mesh.points[used], rows.reshape(-1, 2).astype(np.int32), mesh, within, plane)
 
@@ -109,7 +109,7 @@ def _plane(z: Any) -> tuple[float, float, float]:
 
 
 def inside(points: Floats, pad: Pad) -> Bools:
-    """Which points are inside of a pad, or on its edge."""
+    """Which points are inside a pad, or on its edge."""
     simplex = pad.mesh.find_simplex(points)
     found: Bools = (simplex >= 0) & pad.within[simplex]
     return found
@@ -134,7 +134,7 @@ def facets_of(pad: Pad, slope: float, rise: int, corners: str) -> Facets:
     first, last = outward.copy(), outward.copy()
     wedges: list[list[Floats]] = []
     for i, j in _corners(pad):
-        # On a tilted pad slopes lean, so there may be more than half a turn between them.
+        # On a tilted pad, slopes lean, so there may be more than half a turn between them.
         turn = _angle(along[i], along[j]) + lean[j] - lean[i]
         if turn <= _STRAIGHT:
             continue
@@ -171,7 +171,7 @@ def facets_of(pad: Pad, slope: float, rise: int, corners: str) -> Facets:
 
 
 def _corners(pad: Pad) -> list[tuple[int, int]]:
-    """Return the pairs of edges between which there is ground, at the end of the first one.
+    """Return the pairs of edges with ground between them, at the end of the first edge.
 
     Parts of a pad that touch at a point have several such pairs there.
     """

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Profile", "Sight", "drape", "parts_of", "profile", "sight"]
 
-# Heights of a surface are rounded: by this share of the largest height they may exceed a line of
-# sight that they touch.
+# Heights of a surface are rounded: by this fraction of the largest height, they may exceed a line
+# of sight that they touch.
 _ROUNDING = 1e-12
 
 
@@ -124,7 +124,7 @@ class Sight(ReadOnly):
 
 
 class _Part(NamedTuple):
-    """A part of a segment that is on the surface: shares of the way, heights and positions."""
+    """A part of a segment that is on the surface: fractions along it, heights and positions."""
 
     share: Floats
     z: Floats
@@ -140,7 +140,7 @@ def profile(tin: Surface, line: Any) -> Profile:
     for a, b, length in zip(points[:-1], points[1:], lengths.tolist(), strict=True):
         for k, part in enumerate(parts_of(tin, a, b)):
             table = np.column_stack((start + part.share * length, part.z, part.places))
-            # Two parts of one segment have something between them, however short.
+            # Two parts of one segment have a gap between them, however short.
             if rows and (k or (rows[-1][-1, 2:] != table[0, 2:]).any()):
                 gap = table[:1].copy()
                 gap[0, 1] = np.nan
@@ -156,7 +156,7 @@ def profile(tin: Surface, line: Any) -> Profile:
 
 
 def parts_of(tin: Surface, a: Floats, b: Floats) -> list[_Part]:
-    """Return the parts of a segment that are on the surface, also those that are one point."""
+    """Return the parts of a segment that are on the surface, including single points."""
     if (a == b).all():
         return _end(tin, a, 0.0)
     found: list[_Part] = []
@@ -189,7 +189,7 @@ def _touched(tin: Surface, vertices: NDArray[np.integer], a: Floats, b: Floats) 
     """The parts that are vertices of the surface between the ends of a segment, in order."""
     places = tin.points[vertices]
     start, end = (np.broadcast_to(each, places.shape).copy() for each in (a, b))
-    # On a line, the coordinate in which its ends differ more has an order without rounding.
+    # Along a segment, the coordinate in which its ends differ more gives an exact order.
     axis = int(np.abs(b - a).argmax())
     low, high = sorted((a[axis], b[axis]))
     on = (low < places[:, axis]) & (places[:, axis] < high)
@@ -207,7 +207,7 @@ def _touched(tin: Surface, vertices: NDArray[np.integer], a: Floats, b: Floats) 
 
 
 def _part(tin: Surface, met: Indices, a: Floats, b: Floats) -> _Part:
-    """Return the part of a segment in triangles of which each touches the next one on it."""
+    """Return the part of a segment in triangles each of which touches the next one on it."""
     corners = tin.simplices[met]
     first, last = _opening(tin, corners[0], a, b), _opening(tin, corners[-1], b, a)
     sides = _between(corners)
@@ -227,7 +227,7 @@ def _part(tin: Surface, met: Indices, a: Floats, b: Floats) -> _Part:
 
 
 def _height(tin: Surface, triangle: int, place: Floats) -> Floats:
-    """The height at a place that is in a triangle."""
+    """The height at a place in a triangle."""
     z = tin.heights(place[None])
     if not np.isnan(z[0]):
         return z
@@ -245,7 +245,7 @@ def _opening(tin: Surface, corners: Indices, a: Floats, b: Floats) -> Indices | 
         return None
     one, two = (_core.orient2d(start, end, tin.points[each]) for each in (tail, head))
     crossed = np.flatnonzero(beyond & (one * two <= 0) & ((one != 0) | (two != 0)))
-    # Of two sides that meet on the segment either one will do: it passes through their corner.
+    # If two sides meet on the segment, either one will do: it passes through their corner.
     return np.column_stack((tail, head))[crossed[:1]]
 
 
@@ -266,7 +266,7 @@ def _crossings(tin: Surface, sides: Indices, a: Floats, b: Floats) -> _Part:
     points, count = tin.points, len(u)
     start, end = (np.broadcast_to(each, (count, 2)).copy() for each in (a, b))
     on_u, on_v = (_core.orient2d(start, end, points[each]) == 0 for each in (u, v))
-    # Areas have small relative errors, so that shares are right on needles, too.
+    # Areas have small relative errors, so that fractions are right even in needles.
     of_u, of_v = (_areas(start, end, points[each]) for each in (u, v))
     of_a, of_b = (_areas(points[u], points[v], each) for each in (start, end))
     with np.errstate(invalid="ignore"):
@@ -291,7 +291,7 @@ def drape(tin: Surface, geometry: Any) -> Any:
     """Return a geometry with the heights of the surface."""
     shapely = require("shapely", extra="geo", what="geometries")
     if not hasattr(geometry, "geom_type"):
-        raise InputError(f"a geometry of shapely is needed, got {geometry!r:.60}")
+        raise InputError(f"a shapely geometry is needed, got {geometry!r:.60}")
     kind = geometry.geom_type
     if geometry.is_empty:
         return geometry
@@ -314,18 +314,18 @@ def _draped(tin: Surface, line: Any) -> Floats:
     if len(gaps):
         (ax, ay), (bx, by) = found.points[gaps[0] - 1], found.points[gaps[0] + 1]
         raise InputError(
-            f"what is between ({ax:.10g}, {ay:.10g}) and ({bx:.10g}, {by:.10g}) is outside of the "
+            f"what is between ({ax:.10g}, {ay:.10g}) and ({bx:.10g}, {by:.10g}) is outside the "
             "surface"
         )
     return np.column_stack((found.points, found.z))
 
 
 def _on(z: Floats, places: Floats) -> Floats:
-    """Refuse heights of which one is NaN."""
+    """Reject heights with a NaN among them."""
     outside = np.flatnonzero(np.isnan(z))
     if len(outside):
         x, y = places[outside[0]]
-        raise InputError(f"({x:.10g}, {y:.10g}) is outside of the surface")
+        raise InputError(f"({x:.10g}, {y:.10g}) is outside the surface")
     return z
 
 

@@ -36,9 +36,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Volumes", "volumes"]
 
-# Rows that a warning names.
+# The number of rows that a warning names.
 _NAMED = 10
-# Shares this close to 1 count as whole: areas are rounded.
+# Fractions this close to 1 count as complete: areas are rounded.
 _WHOLE = 1e-9
 _COLUMNS = ("cut", "fill", "net", "area", "coverage", "cut_area", "fill_area", "region_area")
 
@@ -52,7 +52,7 @@ class Volumes(ReadOnly, Layer):
     cut, fill : ndarray of float64, shape (k,)
         The volumes where the surface is above and below the other one.
     cut_area, fill_area : ndarray of float64, shape (k,)
-        The horizontal areas where that is so.
+        The corresponding horizontal areas.
     area : ndarray of float64, shape (k,)
         The area of each polygon that both surfaces cover.
     region_area : ndarray of float64, shape (k,)
@@ -114,7 +114,7 @@ class Volumes(ReadOnly, Layer):
 
     @property
     def net(self) -> Floats:
-        """Fill minus cut of each polygon: what has to be brought in or, if negative, taken away."""
+        """Fill minus cut of each polygon: the volume to bring in or, if negative, to take away."""
         return sealed(self.fill - self.cut)
 
     @property
@@ -133,7 +133,7 @@ class Volumes(ReadOnly, Layer):
         return sealed(~(self.coverage >= 1 - _WHOLE))
 
     def to_pandas(self, data: Any = None) -> Any:
-        """Return a table without geometries (extra ``geo``), as for a spreadsheet.
+        """Return a table without geometries, such as for a spreadsheet (extra ``geo``).
 
         Parameters
         ----------
@@ -182,7 +182,7 @@ def _geometry(rings: tuple[Ring, ...]) -> Any:
     several: dict[int | None, list[NDArray[Any]]] = {}
     for ring in rings:
         several.setdefault(ring.polygon, []).append(ring.points[:, :2])
-    # Rings that belong to no polygon: inside is what an odd number of them contain.
+    # Rings that belong to no polygon follow the even-odd rule.
     loose = [shapely.Polygon(ring) for ring in several.pop(LOOSE, [])]
     made = [shapely.Polygon(outer, inner) for outer, *inner in several.values()]
     made += [reduce(shapely.symmetric_difference, loose)] if loose else []
@@ -222,7 +222,7 @@ def volumes(tin: Surface, other: Any, regions: Any) -> Volumes:
 
 
 def _region(rings: list[Ring]) -> Region | None:
-    """Return the triangles inside of rings; None if there are none."""
+    """Return the triangles inside rings; None if there are none."""
     try:
         region = region_of(rings) if rings else None
     except DegenerateInputError:  # all corners are on one line
@@ -245,7 +245,7 @@ def _warn(without: Rows) -> None:
 
 
 class _Parts:
-    """A surface of which parts are taken."""
+    """A surface from which parts are selected."""
 
     def __init__(self, sheet: Sheet) -> None:
         self._sheet = sheet

@@ -2,7 +2,7 @@
 
 Between pieces of the overlay that differ, edges become segments of one triangulation; vertices of
 the ground remain where there is ground. Triangles that the design cuts keep the rest of their
-ground: their edges are soft breaklines. All others stay the same, since Delaunay triangles do not
+ground: their edges are soft breaklines. All others stay the same, because Delaunay triangles do not
 depend on what is behind segments.
 """
 
@@ -34,8 +34,8 @@ __all__ = ["embanked", "flattened"]
 
 # Slopes from this to its inverse are possible, and coordinates up to `_LARGEST`.
 _MILDEST, _LARGEST = 1e-6, 1e100
-# What is beside edges, apart from triangles of the design: those of the surface have `GROUND - 1`
-# minus their number.
+# What is next to edges, apart from triangles of the design: triangles of the surface have
+# `GROUND - 1` minus their number.
 _OUTSIDE = GROUND
 
 
@@ -56,7 +56,7 @@ class _Edges(NamedTuple):
 
 
 def flattened(tin: Surface, polygon: Any, z: Any) -> Built:
-    """Return a surface with the plane of a pad inside of its polygon."""
+    """Return a surface with the plane of a pad inside its polygon."""
     pad = _pad(tin, polygon, z)
     facets = Facets.none()
     overlay = overlaid(tin, pad, facets)
@@ -85,8 +85,9 @@ def _slopes(slope: Any, cut: Any, fill: Any) -> tuple[float, float]:
         number = as_number(given, name="slope" if value is None else name)
         if not _MILDEST <= number <= 1 / _MILDEST:
             raise InputError(
-                f"{'slope' if value is None else name} must be from 1e-6 to 1e6: the rise for one "
-                f"unit of distance, as 0.5 for 1 : 2; got {given!r:.80}. A vertical wall cannot be "
+                f"{'slope' if value is None else name} must be from 1e-6 to 1e6: the rise per "
+                f"unit of distance, such as 0.5 for 1 : 2; got {given!r:.80}. A vertical wall "
+                f"cannot be "
                 "part of a TIN"
             )
         found.append(number)
@@ -119,14 +120,15 @@ def _change(tin: Surface, overlay: Overlay) -> _Change:
     mesh, design = overlay.mesh, overlay.label != GROUND
     ends = mesh.points[mesh.simplices]
     longest = np.hypot(*np.moveaxis(ends - ends[:, [1, 2, 0]], -1, 0)).max(axis=1)
-    # Ground as narrow as a rounding, at an outline that is not exactly straight, does not count.
+    # Ground as narrow as a rounding error, at an outline that is not exactly straight, does not
+    # count.
     narrow = mesh.areas <= closeness(mesh.points) * longest
     ground = _incident(overlay, ~(design | overlay.outside | narrow))
     ground |= ~_incident(overlay, design)
     ground &= ~_incident(overlay, overlay.label == PAD)
     remains = np.ones(tin.npoints, dtype=bool)
     remains[overlay.vertex[overlay.vertex >= 0]] = ground[overlay.vertex >= 0]
-    # Triangles whose width is a rounding may have no piece in the overlay.
+    # Triangles as narrow as a rounding error may have no piece in the overlay.
     cut = np.array(~remains[tin.simplices].all(axis=1))
     # New points on an edge concern the triangles on both sides.
     new = _incident(overlay, design) & ~(ground & (overlay.vertex >= 0))
@@ -138,7 +140,7 @@ def _change(tin: Surface, overlay: Overlay) -> _Change:
 def _edges(tin: Surface, overlay: Overlay, change: _Change, *, exact: bool) -> _Edges:
     """Return the edges of the overlay that the new surface needs.
 
-    If `exact`, the rest of triangles that the design cuts keeps its heights.
+    If `exact`, the rest of the triangles that the design cuts keeps its heights.
     """
     mesh, label = overlay.mesh, overlay.label
     beyond = np.where(overlay.simplex < 0, _OUTSIDE, GROUND - 1 - overlay.simplex)
@@ -170,7 +172,7 @@ def _lines_between(tin: Surface, overlay: Overlay, triangle: Any, other: Any) ->
     one, two = simplex[triangle], simplex[other]
     found = np.full(len(one), -1, dtype=np.int8)
     status = _status(tin)
-    # The overlay has no triangle of the surface where there is none, or it is not near.
+    # The overlay has no triangle of the surface where the surface has none, or where none is near.
     beside = np.where(np.append(overlay.near, False)[tin.neighbors], tin.neighbors, -1)
     for first, second in ((one, two), (two, one)):
         at = np.flatnonzero((first >= 0) & (first != second))
@@ -181,7 +183,7 @@ def _lines_between(tin: Surface, overlay: Overlay, triangle: Any, other: Any) ->
 
 
 def _status(tin: Surface) -> NDArray[np.int8]:
-    """Of each edge of each triangle: 1 on hard breaklines, 0 on soft ones, -1 elsewhere."""
+    """The status of the edges of triangles: 1 on hard breaklines, 0 on soft ones, -1 elsewhere."""
     ends = np.sort(tin.simplices[:, [[1, 2], [2, 0], [0, 1]]], axis=2).astype(np.int64)
     keys = ends @ np.array([tin.npoints, 1])
     lines = np.sort(tin.breaklines, axis=1).astype(np.int64) @ np.array([tin.npoints, 1])
@@ -211,7 +213,7 @@ def _straightened(overlay: Overlay, change: _Change, edges: _Edges) -> _Edges:
 def _joined(edges: _Edges, vertices: list[int], pairs: list[list[int]]) -> _Edges:
     """Join two edges at each of these vertices."""
     ends = edges.ends.tolist()
-    # An edge that was joined to another one, up to the one that is left.
+    # Follow edges that were joined to others, up to the one that is left.
     into = list(range(len(ends)))
     for vertex, pair in zip(vertices, pairs, strict=True):
         one, two = (_root(into, edge) for edge in pair)
@@ -284,7 +286,7 @@ def _heights(overlay: Overlay, change: _Change, pad: Pad, facets: Facets) -> Flo
     slope = np.flatnonzero(overlay.label >= 0)
     for corner in mesh.simplices[slope].T:
         height = facets.at(overlay.label[slope], mesh.points[corner])
-        # On the daylight line heights are those of the ground, which therefore stays the same.
+        # On the daylight line, heights are those of the ground, which therefore stays the same.
         z[corner] = np.where(at_ground[corner], z[corner], height)
     of_pad = np.unique(mesh.simplices[overlay.label == PAD])
     z[of_pad] = plane_at(pad.plane, mesh.points[of_pad])
@@ -306,7 +308,7 @@ def _complete(mesh: ConstrainedDelaunay, z: Floats) -> Floats:
 
 
 def _kept(tin: Surface, mesh: ConstrainedDelaunay, row: Rows, ends: Bools) -> Bools:
-    """Which triangles are part of the surface: those that were left out still are.
+    """Return which triangles are part of the surface; those that were left out still are.
 
     `ends` says which segments are where the surface ends. Between these and the old outline
     triangles are all inside or all outside, and some of them are old.
@@ -324,7 +326,7 @@ def _kept(tin: Surface, mesh: ConstrainedDelaunay, row: Rows, ends: Bools) -> Bo
     triangle, side = np.nonzero(outline)
     here, there = component[triangle], component[mesh.neighbors[triangle, side]]
     here, there = (each[mesh.neighbors[triangle, side] >= 0] for each in (here, there))
-    # What has no old triangle is on the other side of its neighbors. Each round finds some state.
+    # Others are found from their neighbors across edges; each round settles some.
     while True:
         found = (state[there] < 0) & (state[here] >= 0)
         if not found.any():

@@ -30,8 +30,9 @@ __all__ = ["CrossSections", "Profiles", "cross_sections", "profiles"]
 
 # The maximum number of stations.
 _STATIONS = 100_000
-# Distances that differ by this share of the length of the line are one row, and a station this
-# close to a corner of the alignment is at it: both differ only by rounding errors.
+# Distances that differ by at most this fraction of the length of the line are one row, and a
+# station this close to a corner of the alignment is at the corner: both differ only by rounding
+# errors.
 _ROUNDING = 1e-12
 _END, _GAP, _PLAIN = range(3)  # kinds of rows, in the order in which they follow each other
 # Names of surfaces must not be those of other columns.
@@ -104,7 +105,8 @@ class Profiles(ReadOnly):
         MissingExtraError
             pandas is not installed.
         InputError
-            `data` does not have one row for each, or has a column with a name of the table's own.
+            `data` does not have one row for each, or has a column with the same name as one of the
+            table.
 
         Examples
         --------
@@ -244,8 +246,8 @@ class CrossSections(ReadOnly, Layer):
         MissingExtraError
             pandas is not installed.
         InputError
-            `data` does not have one row for each section, or has a column with a name of the
-            table's own.
+            `data` does not have one row for each section, or has a column with the same name as one
+            of the table.
 
         Examples
         --------
@@ -286,7 +288,7 @@ class CrossSections(ReadOnly, Layer):
         Returns
         -------
         matplotlib Axes
-            The axes. ``sections[k].plot()`` draws one section, `figure` all.
+            The axes. ``sections[k].plot()`` draws one section, and `figure` draws all.
 
         Raises
         ------
@@ -338,7 +340,7 @@ class CrossSections(ReadOnly, Layer):
 
 
 def named(tin: Surface, others: Any, name: str) -> dict[str, Surface]:
-    """Return a surface and others that are compared with it, by their names."""
+    """Return a surface and the others to compare with it, by name."""
     if others is None:
         others = {}
     elif hasattr(others, "_sheet"):
@@ -375,7 +377,7 @@ def _common(surfaces: Mapping[str, Surface], line: Floats, tin: Surface) -> Prof
     places = np.column_stack([np.interp(common, along, axis) for axis in line.T])
     parts, gaps = [], []
     for k, (one, at) in enumerate(zip(found, known, strict=True)):
-        # Each distance is that of the common row from which it differs by roundings.
+        # Each distance is replaced by the common one from which it differs only by rounding.
         row = np.searchsorted(common, one.distances, side="right") - 1
         places[row[at]] = one.points[at]
         own = _split(common[np.maximum(row, 0)] if len(common) else one.distances, one.z)
@@ -413,7 +415,7 @@ def _rows(common: Floats, gaps: list[tuple[int, float, float]], count: int) -> t
 
     Where nothing lies between two parts of a surface, there is a row with a gap before the second
     one; if both are at one distance, also one with the end of the first. In such rows, all surfaces
-    with a part that starts there have a gap, too.
+    with a part that starts there also have a gap.
     """
     kinds = [(k, _PLAIN) for k in range(len(common))]
     starting: dict[int, list[tuple[int, int]]] = {}
@@ -500,7 +502,7 @@ def _stations(
         bad = np.flatnonzero(~((at >= -slack) & (at <= length + slack)))
         if len(bad):
             raise InputError(
-                f"{counted(len(bad), 'station')} outside of the line, which has stations from "
+                f"{counted(len(bad), 'station')} outside the line, which has stations from "
                 f"{origin:.10g} to {origin + length:.10g}; first row {bad[0]}: {given[bad[0]]:.10g}"
             )
         if not len(at):
@@ -517,21 +519,21 @@ def _stations(
             found=int(min(length / step, 2.0**62)),
         )
     every = np.arange(math.floor(length / step) + 1).astype(np.float64) * step
-    # The end, unless a multiple is there but for roundings.
+    # The end, unless a multiple is there up to rounding.
     return np.append(every[length - every > _ROUNDING * length], length)
 
 
 def _across(line: Floats, along: Floats, at: Floats) -> tuple[Floats, Floats]:
     """Return positions on a line, and unit vectors to the right of it.
 
-    At a corner the vector halves the angle; for a line that turns back, it is that of the first
+    At a corner, the vector bisects the angle; for a line that turns back, it is that of the first
     segment.
     """
     steps = np.diff(line, axis=0)
     ways = steps / np.hypot(*steps.T)[:, None]
     before = np.clip(np.searchsorted(along, at, side="left") - 1, 0, len(ways) - 1)
     after = np.clip(np.searchsorted(along, at, side="right") - 1, 0, len(ways) - 1)
-    # Stations within a rounding of a corner are at it.
+    # Stations within a rounding error of a corner are at the corner.
     later = np.clip(np.searchsorted(along, at), 1, len(along) - 1)
     near = np.where(at - along[later - 1] < along[later] - at, later - 1, later)
     corner = np.abs(along[near] - at) <= _ROUNDING * along[-1]

@@ -35,14 +35,14 @@ if TYPE_CHECKING:
 __all__ = ["KEEP", "Ground", "Simplification", "ground_of", "ground_of_points", "simplified"]
 
 KEEP = ("breaklines", "hard", "boundary")
-# Extents within this factor of 1, as powers of two, are used as they are.
+# Extents within this factor of 1, as powers of two, are not scaled.
 _USUAL = 200
 # The core cannot number more triangles.
 _MOST = 2**31 - 1
 
 
 class Ground(NamedTuple):
-    """Points of a surface, and which parts of it stay."""
+    """Points of a surface, and which parts of it are kept."""
 
     points: Floats
     z: Floats
@@ -136,8 +136,8 @@ class Simplification(ReadOnly):
         Raises
         ------
         InputError
-            Not exactly one of the two is given, or no level meets it: the finest one has a larger
-            error, or the coarsest one has more triangles.
+            Not exactly one of the two is given, or no level satisfies it: the finest one has a
+            larger error, or the coarsest one has more triangles.
 
         Examples
         --------
@@ -149,7 +149,7 @@ class Simplification(ReadOnly):
     def validate(
         self, *, max_error: float | None = None, max_triangles: int | None = None
     ) -> Deviations:
-        """Prove the error of a level by exact arithmetic, independently of the core.
+        """Prove the error of a level in exact arithmetic, independently of the core.
 
         Parameters
         ----------
@@ -201,7 +201,7 @@ class Simplification(ReadOnly):
 
 
 def too_few(most: int, present: int) -> str:
-    """The message that lines and outline alone need more triangles."""
+    """Return the message that lines and outline alone need more triangles."""
     return (
         f"max_triangles={most} is below the {counted(present, 'triangle')} of lines, outline and "
         'hull: allow more, or choose keep="boundary"'
@@ -209,7 +209,7 @@ def too_few(most: int, present: int) -> str:
 
 
 def as_goal(max_error: Any, max_triangles: Any) -> tuple[float, int]:
-    """Return the error and the number of triangles at which to end; one of them is given."""
+    """Return the error and the number of triangles at which to stop; one of them is given."""
     if (max_error is None) == (max_triangles is None):
         raise InputError("give one of max_error and max_triangles")
     if max_triangles is not None:
@@ -223,13 +223,13 @@ def as_goal(max_error: Any, max_triangles: Any) -> tuple[float, int]:
 
 
 def ground_of(tin: Surface, keep: str) -> Ground:
-    """Return which parts of a surface stay, and which may be removed."""
+    """Return which parts of a surface are kept, and which may be removed."""
     as_choice(keep, KEEP, name="keep")
     count = tin.npoints
     ends = tin.simplices[:, [[1, 2], [2, 0], [0, 1]]][tin.neighbors < 0]
     outer = _keys(ends, count)
     beyond = _keys(tin._left_out()[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), count)
-    # The outline has triangles that are left out on its other side; else the edge is on the hull.
+    # Beyond the outline are triangles that are left out; otherwise, the edge is on the hull.
     outline = ends[among(outer, beyond)]
     lines = _keys(tin.breaklines, count)
     stays = among(lines, outer) | (keep == "breaklines") | ((keep == "hard") & ~tin.soft)
@@ -259,7 +259,7 @@ def ground_of(tin: Surface, keep: str) -> Ground:
 def ground_of_points(
     points: Floats, z: Floats, crs: str | None, units: str | None, workers: int | None
 ) -> Ground:
-    """Return points without lines, of which only the corners of the hull stay."""
+    """Return points without lines, of which only the corners of the hull are kept."""
     corners, _ = _core.hull2(points)
     fixed = np.zeros(len(points), dtype=bool)
     fixed[corners] = True
@@ -317,7 +317,7 @@ class _Sheet(NamedTuple):
 
 
 def _part(ground: Ground, rows: Rows) -> _Part:
-    """Triangulate some of the points, with all lines that stay."""
+    """Triangulate some of the points, with all lines that are kept."""
     number = np.full(len(ground.points), -1, dtype=np.int32)
     number[rows] = np.arange(len(rows), dtype=np.int32)
     mesh = ConstrainedDelaunay(
@@ -370,12 +370,12 @@ def _built(ground: Ground, rows: Rows) -> Built:
 
 
 def _scaled(*arrays: Floats) -> tuple[list[Floats], int]:
-    """Divide by a power of two if numbers are so large or small that products leave their range."""
+    """Divide by a power of two if products of such numbers would overflow or underflow."""
     most = max(float(np.abs(each).max(initial=0.0)) for each in arrays)
     exponent = math.frexp(most)[1]
     if abs(exponent) > _USUAL:
         smaller = [np.ldexp(each, -exponent) for each in arrays]
-        # Numbers that would be rounded stay: all points are inserted then.
+        # If numbers would be rounded, nothing is scaled, and all points are inserted.
         if all(map(np.array_equal, (np.ldexp(each, exponent) for each in smaller), arrays)):
             return smaller, exponent
     return list(arrays), 0

@@ -2,8 +2,8 @@
 
 Contours in them run along the outline, and rounded, they may cross. If that happens, such triangles
 at the outline are left out, the outermost first, and counted: the outline then passes through their
-inner corners. In others, points of contours are united, or contours pass through corners. How thin
-a triangle is decides how contours are drawn, not whether.
+inner corners. In other triangles, points of contours are merged, or contours pass through corners.
+How thin a triangle is determines how contours are computed, not whether.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ class _Part(NamedTuple):
 def drawn(compute: Callable[[Sheet, Bools, bool], Any], sheet: Sheet) -> tuple[Any, Sheet, int]:
     """Compute contours or bands.
 
-    The other results are the surface without the triangles that are left out, and their number.
+    Also return the surface without the triangles that are left out, and their number.
     """
     collapsed = np.zeros(len(sheet.simplices), dtype=bool)
     left_out, far = 0, False
-    # Each round leaves out or collapses at least one triangle, or is the first that unites points
-    # that are far apart. If all are collapsed, contours follow edges.
+    # Each round leaves out or collapses at least one triangle, or is the first to merge points that
+    # are far apart. If all are collapsed, contours follow edges.
     while True:
         made = compute(sheet, collapsed, far)
         if not len(made.tangled):
@@ -60,14 +60,14 @@ def at_the_outline(sheet: Sheet, tangled: Indices) -> Bools:
     """Return thin triangles that can be left out one by one at the outline, near given ones."""
     simplices, neighbors = sheet.simplices, sheet.neighbors
     thin, _, longest = slivers.shapes(sheet.points, simplices)
-    # Thin triangles beside each other, and which of these groups have one in which contours cross.
+    # Groups of adjacent thin triangles, and which groups have one in which contours cross.
     beyond = thin[neighbors] & (neighbors >= 0)
     group = _core.components2(neighbors, ~(beyond & thin[:, None]))
     wanted = np.zeros(int(group.max(initial=-1)) + 1, dtype=bool)
     wanted[group[tangled]] = True
     candidates = np.flatnonzero(thin & wanted[group])
     outer = np.zeros(len(simplices), dtype=bool)
-    # A triangle is at the outline if nothing is left beyond its longest side.
+    # A triangle is at the outline if no triangle is left beyond its longest side.
     across = neighbors[candidates, longest[candidates]]
     while len(candidates):
         free = (across < 0) | outer[across]

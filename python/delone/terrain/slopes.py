@@ -33,16 +33,16 @@ __all__ = [
 
 _WHAT = ("height", "slope", "aspect", "hillshade")
 _LIGHT = ("azimuth", "altitude", "z_factor")
-# Nodes that are located together.
+# Number of nodes that are located at a time.
 _BLOCK = 1 << 18
 
 
 def gradient(points: Floats, z: Floats, simplices: Indices) -> Floats:
     """Return the gradients of the planes of triangles, (m, 2).
 
-    Areas are those of the corners as they are, also in triangles that are thinner than rounding.
+    Areas are those of the given corners, even in triangles that are thinner than rounding errors.
     """
-    # Units of the largest coordinate, without rounding: no product leaves the range of doubles.
+    # In units of the largest coordinate, without rounding: no product overflows or underflows.
     exponent = int(np.frexp(np.abs(points).max(initial=0.0))[1])
     points = np.ldexp(points, -exponent)
     a, b, c = (points[corner] for corner in simplices.T)
@@ -61,7 +61,7 @@ def gradient(points: Floats, z: Floats, simplices: Indices) -> Floats:
 def normals(slopes: Floats) -> Floats:
     """Return the upward unit normals of planes with these gradients."""
     found = np.column_stack((-slopes, np.ones(len(slopes))))
-    # An infinite slope is upright; squares of others must not overflow.
+    # An infinite slope is vertical; squares of others must not overflow.
     upright = np.isinf(found).any(axis=1)
     found[upright] = np.where(np.isinf(found[upright]), np.sign(found[upright]), 0.0)
     largest = np.abs(found).max(axis=1, initial=0.0, keepdims=True)
@@ -112,13 +112,13 @@ def heights(tin: Surface, xy: ArrayLike, tolerance: float) -> Floats:
     inside = place.simplex >= 0
     corners = tin.z[tin.simplices[np.where(inside, place.simplex, 0)]]
     found = (place.barycentric * corners).sum(axis=-1)
-    # What is level stays level; weights have the sum 1 up to rounding only.
+    # Level triangles stay level, because weights sum to 1 only up to rounding.
     level = (corners == corners[..., :1]).all(axis=-1)
     return np.asarray(np.where(inside, np.where(level, corners[..., 0], found), np.nan))
 
 
 def extremes(tin: Surface) -> tuple[float, float]:
-    """Return the least and the greatest height of a surface."""
+    """Return the smallest and the largest height of a surface."""
     z = tin.z[on_surface(tin)]
     return float(z.min()), float(z.max())
 

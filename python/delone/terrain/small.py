@@ -1,7 +1,7 @@
-"""Small contours and small polygons between contours: what is left out, and what takes its place.
+"""Small contours and small polygons between contours: what is left out, and what replaces it.
 
-A polygon that fills a hole of another one becomes part of it, with everything inside. What is
-inside is found by the sides that polygons share bit for bit, without coordinates.
+A polygon that fills a hole of another one becomes part of it, with everything inside. The polygons
+inside are found by the sides that polygons share bit for bit, without geometry.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def ring_areas(points: Floats, starts: Rows) -> Floats:
     if len(starts) < 2:
         return np.zeros(0)
     sizes = np.diff(starts)
-    # Relative to the start of each, so that large coordinates lose nothing.
+    # Relative to the start of each, so that large coordinates lose no digits.
     x, y = (points - np.repeat(points[starts[:-1]], sizes, axis=0)).T
     twice = np.zeros(len(points))
     twice[1:] = x[:-1] * y[1:] - x[1:] * y[:-1]
@@ -42,7 +42,7 @@ def ring_areas(points: Floats, starts: Rows) -> Floats:
 def without_small(given: Rings, least: float) -> tuple[Rings, Rows]:
     """Leave out polygons in holes with an area below `least`; holes of the surface stay.
 
-    The second result is the rows of the polygons that remain.
+    Also return the rows of the polygons that remain.
     """
     owner = np.repeat(np.arange(len(given.polygons) - 1), np.diff(given.polygons))
     inner = np.ones(len(owner), dtype=bool)
@@ -81,7 +81,7 @@ def _inside(beside: list[Rows], owner: Rows, ring: int, polygons: Rows) -> list[
     around = int(owner[ring])
     found: set[int] = set()
     front = set(beside[ring].tolist())
-    # Each round takes polygons that were not there, so this ends.
+    # Each round adds new polygons, so this terminates.
     while front:
         if -1 in front:
             return None
@@ -95,7 +95,7 @@ def _inside(beside: list[Rows], owner: Rows, ring: int, polygons: Rows) -> list[
 
 
 def _only(given: Rings, kept: Bools, owner: Rows, rows: Rows) -> Rings:
-    """Return the rings that are kept, of the polygons that are."""
+    """Return the rings that are kept of the polygons that are kept."""
     sizes = np.diff(given.rings)
     rings = np.concatenate(([0], np.cumsum(sizes[kept])))
     counts = np.bincount(owner[kept], minlength=len(given.polygons) - 1)[rows]

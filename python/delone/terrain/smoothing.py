@@ -2,9 +2,9 @@
 
 Corner cutting: G. Chaikin, "An algorithm for high-speed curve generation", Computer Graphics and
 Image Processing 3 (1974). Each round replaces a corner by two points, on a quarter of the way to
-its neighbors. Whether lines cross is decided exactly, for all pairs; where two do, the corners
-beside both are restored, and everything is cut again without them. Each pass restores at least one
-corner, and without cut corners nothing crosses, so it ends.
+its neighbors. Whether lines cross is decided exactly, for all pairs; where two do, the corners next
+to both are restored, and everything is cut again without them. Each pass restores at least one
+corner, and without cut corners nothing crosses, so this terminates.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def smoothed(points: Floats, starts: Rows, tin: Surface | None, rounds: int) -> 
             return cut, begin
         beside = np.unique(np.concatenate((corner[crossing], corner[crossing + 1])))
         if sharp[beside].all():
-            # Only corners further away are left.
+            # Only corners farther away are left.
             beside = np.unique(np.concatenate((beside - 1, beside + 1)))
             beside = beside[(beside >= 0) & (beside < len(sharp))]
             if sharp[beside].all():
@@ -68,7 +68,7 @@ def _on_hard_lines(points: Floats, tin: Surface) -> Bools:
 
 
 def _repeated(points: Floats, starts: Rows) -> Bools:
-    """Which points lines have in common: there they touch."""
+    """Return which points lines have in common, where they touch."""
     _, place, count = np.unique(points, axis=0, return_inverse=True, return_counts=True)
     last = starts[1:] - 1
     closed = (points[starts[:-1]] == points[last]).all(axis=1)
@@ -125,6 +125,6 @@ def _crossing(points: Floats, starts: Rows) -> Rows:
     except CrossingSegmentsError as error:
         found: Rows = np.unique(row[error.pairs])
         return found
-    # A line that passes through a point of another one touches it where it did not before.
+    # A line that now passes through a point of another touches it where it did not before.
     found = np.unique(row[mesh.report.through[:, 0]]).astype(np.int64)
     return found

@@ -1,8 +1,8 @@
-"""Points and segments that differ by roundings only are made to coincide.
+"""Making points and segments coincide if they differ only by rounding errors.
 
-Without that, a polygon whose edge is meant to be on edges of a surface would leave triangles of the
-ground beside it that are as narrow as a rounding error, with heights of the ground next to those of
-the polygon.
+Otherwise, a polygon whose edge is meant to be on edges of a surface would leave triangles of the
+ground next to it that are as narrow as a rounding error, with heights of the ground next to those
+of the polygon.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ __all__ = ["closeness", "settled", "threaded"]
 
 # Distances of at most this many rounding errors count as zero.
 _ROUNDINGS = 64
-# Pairs that are compared at once.
+# Number of pairs that are compared at a time.
 _PAIRS = 1 << 20
 _EPS = float(np.finfo(np.float64).eps)
 
 
 def closeness(*points: Floats) -> float:
-    """Return the distance below which points coincide: roundings of the largest coordinate."""
+    """Return the distance below which points coincide, from the largest coordinate."""
     return _ROUNDINGS * _EPS * max(float(np.abs(each).max()) for each in points)
 
 
 def settled(pad: Pad, tin: Surface) -> Pad:
-    """Return a pad whose points are those of a surface where they are as close as that."""
+    """Return a pad whose points are replaced by points of a surface that are that close."""
     limit = closeness(tin.points, pad.points)
     nearest = tin.points[tin.nearest(pad.points)]
     close = np.abs(nearest - pad.points).max(axis=1) <= limit
@@ -39,7 +39,7 @@ def settled(pad: Pad, tin: Surface) -> Pad:
 
 
 def threaded(points: Floats, segments: Rows, vertices: Rows) -> tuple[Rows, Rows]:
-    """Return segments through those vertices that are close to them, and the row of each."""
+    """Return segments routed through the vertices close to them, and the row of each."""
     row, share, vertex = _beside(points, segments, vertices)
     order = np.lexsort((vertex, share, row))
     row, vertex = row[order], vertex[order]
@@ -57,7 +57,7 @@ def threaded(points: Floats, segments: Rows, vertices: Rows) -> tuple[Rows, Rows
 
 
 def _beside(points: Floats, segments: Rows, vertices: Rows) -> tuple[Rows, Floats, Rows]:
-    """Return segments, shares of them and vertices that are close to them there.
+    """Return segments, fractions along them, and the vertices that are close to them there.
 
     Vertices are compared only with segments whose x range contains theirs.
     """
@@ -70,7 +70,7 @@ def _beside(points: Floats, segments: Rows, vertices: Rows) -> tuple[Rows, Float
     total = np.cumsum(high - low)
     found = [(np.empty(0, dtype=np.int64), np.empty(0), np.empty(0, dtype=np.int64))]
     start = 0
-    # Each block has at least one segment, so this ends.
+    # Each block has at least one segment, so this terminates.
     while start < len(segments):
         before = total[start - 1] if start else 0
         stop = max(start + 1, int(np.searchsorted(total, before + _PAIRS, side="right")))
@@ -86,7 +86,7 @@ def _beside(points: Floats, segments: Rows, vertices: Rows) -> tuple[Rows, Float
 def _close(
     points: Floats, ends: Floats, row: Rows, vertex: Rows, limit: float
 ) -> tuple[Rows, Floats, Rows]:
-    """Return those pairs of segments and vertices that are close, with the share of the segment."""
+    """Return close pairs of segments and vertices, with the fraction along the segment."""
     a, b = ends[row, 0], ends[row, 1]
     along = b - a
     length = np.hypot(*along.T)

@@ -1,4 +1,4 @@
-"""What surfaces are made from, besides points and lines: rasters, files, and the faces in files."""
+"""Surfaces from sources other than points and lines: rasters, files, and the faces in files."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class Sources(HullTiling):
         InputError
             `dem` is not a raster with one height in each cell; `band` or `step` is given, but `dem`
             is not a file; cells have a constant such as -9999 that is farther from all other
-            heights than those are from each other, and `nodata` is not given; otherwise as for
+            heights than these are from each other, and `nodata` is not given; otherwise as for
             `from_points` and `simplify`.
         FileFormatError, MissingExtraError, OSError
             As for `delone.io.read_raster`.
@@ -214,7 +214,7 @@ class Sources(HullTiling):
         Raises
         ------
         InputError
-            Faces overlap; the message contains a place. Otherwise as for `from_points`.
+            Faces overlap; the message says where. Otherwise as for `from_points`.
         ConflictingValuesError
             Points with the same x and y have different heights: a vertical wall.
 
@@ -259,7 +259,7 @@ def _nodes_of(dem: Any, bounds: Any, nodata: Any) -> tuple[Floats, bool, str | N
         grid = grid[(grid[:, 0] >= left) & (grid[:, 0] <= right)]
         grid = grid[(grid[:, 1] >= bottom) & (grid[:, 1] <= top)]
         if not len(grid):
-            raise InputError(f"no node of the raster is inside of bounds={box}")
+            raise InputError(f"no node of the raster is inside bounds={box}")
     found = grid[~(np.isnan(grid[:, 2]) | is_nodata(grid[:, 2], empty))]
     if not is_array(dem):
         require_declared(found[:, 2], empty, "the raster", file=False)

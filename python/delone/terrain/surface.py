@@ -1,4 +1,4 @@
-"""What functions of terrain need of a surface: the class TIN has it."""
+"""What terrain functions need from a surface, which the class TIN provides."""
 
 from __future__ import annotations
 
@@ -88,11 +88,11 @@ class Surface(Protocol):
 
     @property
     def min_bound(self) -> Floats:
-        """The least coordinates."""
+        """The smallest coordinates."""
 
     @property
     def max_bound(self) -> Floats:
-        """The greatest coordinates."""
+        """The largest coordinates."""
 
     @property
     def nsimplex(self) -> int:

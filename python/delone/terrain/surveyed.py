@@ -1,4 +1,4 @@
-"""What a TIN keeps of its survey: heights, lines, reference system and units; its exports."""
+"""What a TIN keeps from its survey: heights, lines, reference system and units; its exports."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class Surveyed(HullTiling):
         return Adjustments._of_text(str(self._adjustments)) if str(self._adjustments) else None
 
     def _stretches(self, a: Floats, b: Floats) -> list[Stretch]:
-        """The triangles of the hull along a segment, in parts that are on the surface or not."""
+        """The triangles of the hull along a segment, divided into parts on and off the surface."""
         tiling = (self._points, *self._tiling())
         return stretches(self._whole_locator, tiling, self._number, a, b)
 

@@ -29,7 +29,7 @@ __all__ = ["TIN"]
 
 
 class _Sheet(NamedTuple):
-    """What the core needs of a surface."""
+    """What the core needs from a surface."""
 
     points: Floats
     simplices: Indices
@@ -123,24 +123,24 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         ----------
         xyz : array_like, shape (n, 3), or PointSet with heights
             The points. x and y must have the same unit of length; heights may have a different one,
-            but preferably have the same.
+            but should preferably have the same.
         breaklines, soft_breaklines : optional
-            Lines that edges follow, such as those of roads, dikes and water: shapely geometries,
+            Lines that become edges, such as those of roads, dikes and water: shapely geometries,
             GeoDataFrames, a `delone.io.GeometrySet`, or arrays of shape (k, 2) or (k, 3).
             Lines without heights follow the surface of the points, and so do single points of a
             line whose height is NaN. Both kinds become edges; contours are not smoothed where they
             cross hard ones.
         boundary, holes : optional
             Polygons or rings: the surface ends at the boundary, or where the points end, and does
-            not cover holes. Each polygon has its own holes, and several polygons are a union. Rings
-            given as arrays or closed lines form one polygon by the even-odd rule.
+            not cover holes. Each polygon has its own holes, and several polygons form a union.
+            Rings given as arrays or closed lines form one polygon by the even-odd rule.
         islands : optional
             Polygons or rings in holes or outside the boundary that belong to the surface.
         max_edge : float, optional
             Triangles are removed from the outside in, as long as their outer edge is longer than
             this and not on a line; by default, the surface covers the convex hull or the boundary.
         voids : bool, optional
-            Remove all triangles with an edge longer than `max_edge` that is not on a line, also
+            Remove all triangles with an edge longer than `max_edge` that is not on a line, even
             inside, such as across lakes.
         duplicates : {"raise", "min", "max", "mean"}, optional
             The height where points, or a point and a line, have different heights at one place.
@@ -151,10 +151,10 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
             is the slope of a line times the rounding error of its coordinates. Of equal heights,
             the most accurate is used, and of several such heights, the lowest.
         snap : float, optional
-            Points that are nearer than this to each other or to a line are merged. Points of lines
+            Points that are closer than this to each other or to a line are merged. Points of lines
             are merged first, and ends of lines move onto lines that they nearly reach. Then other
             points move to points of lines, or become part of a line; of the rest, the first in the
-            order of x and y stays. Heights that meet at a place are treated as duplicates: see
+            order of x and y is kept. Heights that meet at a place are treated as duplicates: see
             `duplicates`, `crossing` and `tolerance`. Boundary, holes and islands do not move.
             `adjustments` contains the number of moved points and the largest move.
         level : optional
@@ -197,8 +197,8 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         Warns
         -----
         GeographicWarning, UnitsWarning, CRSWarning
-            x and y are degrees or have a different unit from heights; or an unknown CRS is taken to
-            be the known one.
+            x and y are degrees or have a different unit from heights; or an unknown CRS is assumed
+            to be the known one.
 
         Examples
         --------
@@ -421,7 +421,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         index : int, optional
             With an interval, every `index`-th multiple is marked as an index contour.
         smooth : int, optional
-            Rounds of corner cutting, at most 5; 0 keeps contours straight in each triangle.
+            Number of corner-cutting rounds, at most 5; 0 keeps contours straight in each triangle.
             Smoothed lines do not cross: where they would, corners are kept.
         min_length : float, optional
             Lines shorter than this, in the unit of the points, are left out and counted.
@@ -432,7 +432,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
             line that remains, no line crosses another one, itself or the outline, and lines stay on
             the same side of each other.
         max_points : int, optional
-            Maximum number of points of all contours; smoothing may double them in each round.
+            Maximum total number of points of all contours; each round of smoothing may double it.
 
         Returns
         -------
@@ -488,10 +488,10 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
             As for `contours`.
         min_area : float, optional
             A polygon with a smaller area than this that fills a hole of another one is merged into
-            it, with everything inside; holes of the surface stay. Merged polygons are counted.
+            it, with everything inside; holes of the surface are kept. Merged polygons are counted.
         simplify : float, optional
-            Points of the borders between polygons are left out and counted, the same for both
-            polygons, as for `contours`. The outline stays.
+            Points of the borders between polygons are left out and counted as for `contours`, the
+            same points in both polygons. The outline is unchanged.
 
         Returns
         -------

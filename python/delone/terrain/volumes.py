@@ -36,7 +36,7 @@ __all__ = [
 
 
 class Region(NamedTuple):
-    """The triangles of a region or a part of a surface, as the core takes them."""
+    """The triangles of a region or a part of a surface, in the form that the core needs."""
 
     points: Floats
     simplices: Indices
@@ -46,14 +46,14 @@ class Region(NamedTuple):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Volume(ReadOnly):
-    """The volume between a surface and the one to be reached.
+    """The volume between a surface and the one to reach.
 
     Parameters
     ----------
     cut, fill : float
         The volumes where the surface is above and below: what has to be removed and added.
     cut_area, fill_area : float
-        The horizontal areas where that is so.
+        The corresponding horizontal areas.
     area : float
         The area where both are defined, including where they are equal.
     of_triangles : ndarray of float64, shape (m, 5)
@@ -93,7 +93,7 @@ class Volume(ReadOnly):
 
     @property
     def net(self) -> float:
-        """Fill minus cut: what has to be brought in, or, if negative, taken away."""
+        """Fill minus cut: the volume to bring in or, if negative, to take away."""
         return self.fill - self.cut
 
     def __repr__(self) -> str:
@@ -102,7 +102,7 @@ class Volume(ReadOnly):
 
     @property
     def mean_height(self) -> Floats:
-        """The mean height of what has to be added in each triangle, negative for cut, (m,).
+        """The mean height to add in each triangle, negative for cut, (m,).
 
         NaN where a triangle has no part in the volume.
         """
@@ -151,7 +151,7 @@ def require_same_crs(one: str | None, other: str | None) -> None:
 
 
 def goal_of(tin: Surface, other: Any) -> tuple[Sheet | None, list[float]]:
-    """Return the surface to be reached, or None and a plane."""
+    """Return the surface to reach, or None and a plane."""
     if not hasattr(other, "_sheet"):
         return None, plane_of(other)
     require_same_crs(tin.crs, other.crs)
@@ -184,7 +184,7 @@ def wanted_region(region: Any, crs: str | None) -> Region | None:
 
 
 def region_of(rings: list[Ring]) -> Region:
-    """Return the triangles inside of polygons."""
+    """Return the triangles inside polygons."""
     mesh, within = inside_of_rings(rings)
     number = np.append(np.where(within, np.cumsum(within) - 1, -1), -1).astype(np.int32)
     return Region(
