@@ -69,7 +69,7 @@ def uniform(count: int, seed: int = 0) -> Tetrahedra:
 
 
 def ball(count: int, rim: int) -> Tetrahedra:
-    """Points inside of a sphere and well spaced ones on it."""
+    """Points inside a sphere and well spaced ones on it."""
     rng = np.random.default_rng(1)
     i = np.arange(rim) + 0.5
     angle, z = np.pi * (1 + 5**0.5) * i, 1 - 2 * i / rim

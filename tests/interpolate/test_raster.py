@@ -52,7 +52,7 @@ def test_from_triangulations_and_interpolators() -> None:
     np.testing.assert_array_equal(
         grid(made, np.array(VALUES) * 2, resolution=1).values, 2 * expected
     )
-    with pytest.raises(InputError, match="an interpolator that exists"):
+    with pytest.raises(InputError, match="an existing interpolator"):
         grid(made, resolution=1, method="sibson")
 
 

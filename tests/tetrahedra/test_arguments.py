@@ -184,7 +184,7 @@ def test_extra_points_that_are_wrong_among_many(kind: str) -> None:
     points = [(0, 0, 0), (8, 0, 0), (0, 8, 0), (0, 0, 8)]
     faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
     extra = np.insert(inside, 20, wrong[kind], axis=0)
-    message = {"repeated": "rows repeat others: 20", "outside": "1 point outside of all"}
+    message = {"repeated": "rows repeat others: 20", "outside": "1 point outside all"}
     message["far"] = message["outside"]
     with pytest.raises(delone.InputError, match=message.get(kind, "1 point on a face .* row 20;")):
         tetrahedralize(points, faces, extra_points=extra)

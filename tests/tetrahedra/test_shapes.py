@@ -66,7 +66,7 @@ def cut() -> Surface:
 
 
 def t_junction() -> Surface:
-    """A box on a larger one: coplanar faces overlap, corners are inside of faces."""
+    """A box on a larger one: coplanar faces overlap, corners are inside faces."""
     return solids.joined(solids.box((0, 0, 0), (4, 4, 1)), solids.box((1, 1, 1), (2, 2, 3)))
 
 

@@ -4,10 +4,10 @@ The import registers ``.delone`` on DataArray and Dataset. Scattered points are 
 two coordinates (``x(station)``, ``y(station)``), or several (curvilinear ``lon(j, i)``,
 ``lat(j, i)``). The weights of the target points are computed once and applied to each field along
 every other dimension (time, level), chunk by chunk if the data are Dask arrays. The module `places`
-has what coordinates mean.
+determines what coordinates mean.
 
 Longitudes and latitudes, known by their units, standard names or names, are interpolated on the
-sphere by the methods that `delone.sphere` has; ``planar=True`` takes them as planar coordinates.
+sphere by the methods that `delone.sphere` has; ``planar=True`` treats them as planar coordinates.
 There, two variables may be the components of a vector; the module `components` finds them.
 """
 
@@ -132,7 +132,8 @@ class ArrayInterpolation:
             ``"laplace"``; others are planar, with a warning.
         degrees : bool, optional
             Whether angles without units are degrees, those of targets and of ``max_distance``. By
-            default they are degrees beside points in degrees, and asked for beside radians.
+            default they are degrees if the points are in degrees; if the points are in radians, the
+            unit is required.
         missing : {"raise", "drop"}, optional
             Whether places whose coordinates are NaN, as in masked grids, raise an error or are left
             out with their values.
@@ -208,8 +209,8 @@ class ArrayInterpolation:
         resolution, shape, bounds
             As in `delone.interpolate.grid`. On the sphere, cells end at multiples of the
             resolution, and the raster is the whole globe if the triangles cover it, all longitudes
-            if they contain a pole, and else the least box, which may cross the date line. So may
-            `bounds`: then the left one exceeds the right one.
+            if they contain a pole, and otherwise the smallest box, which may cross the date line.
+            So may `bounds`: then the left one exceeds the right one.
         coords, method, degrees, missing, **options
             As in `interp`.
 
@@ -256,7 +257,7 @@ class ArrayInterpolation:
         Parameters
         ----------
         target : xarray.Dataset, delone.sphere.Grid or str
-            Where values are wanted: what `delone.sphere.Grid.from_dataset` takes, a grid, or its
+            Where values are wanted: what `delone.sphere.Grid.from_dataset` accepts, a grid, or its
             name, such as "1x1" in degrees or "healpix:64".
         method : str, optional
             As for `delone.xarray.Regridder`.
@@ -303,9 +304,9 @@ class DatasetInterpolation:
     Parameters
     ----------
     dataset : xarray.Dataset
-        Values at scattered points. Variables without these dimensions stay as they are. Bounds of
-        cells of the coordinates are not in the result, like the coordinates; nor is what has only
-        some of the dimensions, with a `VariableWarning`.
+        Values at scattered points. Variables without these dimensions are unchanged. The
+        coordinates and their cell bounds are not in the result; nor are variables with only some of
+        the dimensions, which cause a `VariableWarning`.
 
     Notes
     -----
@@ -313,7 +314,7 @@ class DatasetInterpolation:
     components of vectors, and interpolated as such: see `delone.sphere.Linear.vectors_at`. Their
     dimensions and ``cell_methods`` must be the same; of several with one standard name, names such
     as u10 and v10 decide. With ``vectors=[("u", "v")]`` exactly these pairs are vectors, and with
-    ``vectors=[]`` none. Where one of two components is NaN, both are taken as NaN.
+    ``vectors=[]`` none. Where one of two components is NaN, both are treated as NaN.
 
     Examples
     --------
@@ -399,7 +400,7 @@ def _regridder(*args: Any, **options: Any) -> Any:
 
 
 class _Choices(NamedTuple):
-    """What the caller has chosen, but for the targets."""
+    """What the caller has chosen, except for the targets."""
 
     coords: Sequence[str] | None
     method: str
@@ -463,7 +464,7 @@ def _sites(data: Any, targets: Sequence[Any], choices: _Choices) -> _Sites:
 
 
 def _turns(degrees: bool, wanted: bool) -> float:
-    """By what to multiply an angle in one unit, degrees or radians, to have it in the other."""
+    """The factor that converts an angle from one unit, degrees or radians, to the other."""
     if degrees == wanted:
         return 1.0
     return float(np.degrees(1.0) if wanted else np.radians(1.0))
@@ -510,7 +511,7 @@ def _target(x: Any, y: Any, sites: _Sites) -> tuple[Any, Any]:
 
 
 def _nodes(nodes: Sequence[Any], sites: _Sites, unit: str | None) -> tuple[Any, Any]:
-    """Nodes of a grid as two arrays; in a unit, or in the one that they say."""
+    """Nodes of a grid as two arrays; in a given unit, or in the one that they declare."""
     parts = []
     for axis, (name, node) in enumerate(zip(sites.places.names, nodes, strict=True)):
         said = unit or unit_of(node, axis)
@@ -571,7 +572,7 @@ def _interpolated(data: Any, sites: _Sites, target: tuple[Any, Any], vectors: An
 
 
 def _pairs(plain: Any, names: list[Any], sites: _Sites, vectors: Any) -> list[tuple[Any, Any]]:
-    """The pairs of variables that are vectors; warn of components without another."""
+    """The pairs of variables that are vectors; warn about unpaired components."""
     if sites.planar:
         if vectors:
             raise InputError(
@@ -591,7 +592,7 @@ def _warn_of_components(names: Iterable[Any], *, alone: bool) -> None:
 
 
 def _require_free(parts: Iterable[tuple[Any, Any]], geometry: _Geometry) -> None:
-    """Refuse what keeps a dimension that the targets have, too."""
+    """Reject variables that keep a dimension that the targets also have."""
     targets = set(geometry.target[0].dims)
     for name, part in parts:
         both = targets & set(part.dims) - set(geometry.dims)
@@ -605,7 +606,7 @@ def _require_free(parts: Iterable[tuple[Any, Any]], geometry: _Geometry) -> None
 def _variables(data: Any, plain: Any, sites: _Sites) -> tuple[list[Any], list[Any]]:
     """The variables that are interpolated, and those that are not in the result.
 
-    The latter are the coordinates, the bounds of their cells, and what has only some dimensions.
+    The latter are the coordinates, their cell bounds, and variables with only some dimensions.
     """
     dims = set(sites.places.dims)
     along = [data[name] for name in dims if name in data.variables]
@@ -679,7 +680,7 @@ def _computed(
 ) -> Any:
     """Apply a function of the last axes, which are the points, to arrays; as many results."""
     dims, (across, _), near = geometry.dims, geometry.target, geometry.near
-    # Computed in doubles, and stored as the fields are: integers become doubles.
+    # Computed in doubles, and stored in the type of the fields; integers become doubles.
     kinds = [part.dtype if part.dtype.kind in "fc" else np.dtype(np.float64) for part in arrays]
     if any(kind.kind == "c" for kind in kinds):
         kinds = [np.result_type(kind, np.complex64) for kind in kinds]

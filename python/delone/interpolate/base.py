@@ -58,10 +58,10 @@ if TYPE_CHECKING:
 __all__ = ["Interpolator", "Sheet", "as_max_distance", "shaped_derivatives"]
 
 _NAMED = 5
-# The most coordinates that are taken; a grid needs no triangulation.
+# The maximum number of coordinates; a grid needs no triangulation.
 _MOST_COLUMNS = 64
-# The share of the way to the middle of a triangle at which derivatives at its side are taken, and
-# how many units in the last place away it must be.
+# The fraction of the way to the middle of a triangle at which derivatives at its side are
+# evaluated, and how many units in the last place away it must be.
 _BEHIND = 2.0**-30
 _CLEAR = 64
 
@@ -86,7 +86,7 @@ class Interpolator:
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Sites. A triangulation of delone is used directly if the method allows it; a periodic one
+        Sites. A delone triangulation is used directly if the method allows it; a periodic one
         makes the interpolant periodic.
     values : array_like, shape (n,) or (n, ...), optional
         Values at the sites.
@@ -101,7 +101,7 @@ class Interpolator:
     """
 
     EXTRAPOLATE: ClassVar[tuple[str, ...]] = ("nan", "nearest", "linear", "raise")
-    # The most coordinates of sites.
+    # The maximum number of coordinates of sites.
     _MOST: ClassVar[int] = 3
 
     def __init__(
@@ -124,7 +124,7 @@ class Interpolator:
         self._workers = workers
         self._respect_constraints = as_flag(respect_constraints, name="respect_constraints")
         self._cache: dict[str, Any] = {}
-        # Interpolators without other rows, by these rows; those of the last call.
+        # Interpolators of the last call that leave rows out, by the rows that they keep.
         self._others: dict[bytes, Any] = {}
         self._parts: Parts | None = None
         as_workers(workers)
@@ -179,7 +179,7 @@ class Interpolator:
 
     @property
     def _box(self) -> tuple[list[float], list[float]]:
-        """Least and greatest coordinates of the sites; for periodic sites, one period."""
+        """Smallest and largest coordinates of the sites; for periodic sites, one period."""
         low, high = self._mesh.min_bound.copy(), self._mesh.max_bound.copy()
         if self._repeated is not None:
             for axis, length in enumerate(self._repeated.periods):
@@ -362,7 +362,7 @@ class Interpolator:
         """Raise for what is only available in 2-D."""
 
     def _check_higher(self) -> None:
-        """Refuse what needs the nearest points of the hull, or is not there, from 4-D on."""
+        """Reject options that need the nearest points of the hull, or that 4-D and higher lack."""
         if self._ndim > self._MOST:
             others = "Linear and Nearest accept" if self._ndim <= MOST else "Linear accepts"
             raise InputError(
@@ -427,7 +427,7 @@ class Interpolator:
 
     @property
     def _policies(self) -> Policies:
-        """What becomes of values, and which of the caller's rows are those of a table."""
+        """How values are treated, and which of the caller's rows a table refers to."""
         if "policies" not in self._cache:
             again = self._repeated
             first = self._first_rows() if again is None else again.duplicate_of
@@ -495,7 +495,7 @@ class Interpolator:
     def _fill_beside(
         self, found: Floats, columns: Floats, order: int, rows: Rows, place: Location
     ) -> None:
-        """Set derivatives beside the sheet to those just behind its side, in the simplex beside."""
+        """Set derivatives next to the sheet to those just inside its side, in the next simplex."""
         if rows.size:
             sheet = self._sheet
             corners = sheet.points[sheet.simplices[place.beside]]
@@ -684,7 +684,7 @@ class Interpolator:
         return other
 
     def _require_one(self, values: ArrayLike | None = None) -> None:
-        """Refuse what depends on the sites if fields have different ones."""
+        """Reject what depends on the sites if fields have different ones."""
         several = self._several(values)
         if several is not None:
             raise differing(len(several[1]))
@@ -728,9 +728,7 @@ def _key(kept: Rows | None) -> bytes:
 
 def _own(points: Any) -> Floats:
     if hasattr(points, "simplices"):
-        raise DtypeError(
-            f"{type(points).__name__} is not a triangulation of delone; pass its points"
-        )
+        raise DtypeError(f"{type(points).__name__} is not a delone triangulation; pass its points")
     return own_copy(points, ndim=None, most=_MOST_COLUMNS)
 
 
@@ -757,7 +755,7 @@ def _with_only(mesh: Any, kept: Rows) -> Triangulation:
 
 
 def as_max_distance(max_distance: float | None) -> float | None:
-    """Validate the greatest distance from a site at which there are values; None for no limit."""
+    """Validate the largest distance from a site at which there are values; None for no limit."""
     if max_distance is None:
         return None
     limit = as_number(max_distance, name="max_distance")

@@ -1,7 +1,7 @@
 """Linear interpolation at the points of a hull that are nearest to queries, in any dimension.
 
-The nearest point is the one of least norm in the hull of the differences from the query, which an
-active set method finds (P. Wolfe, "Finding the nearest point in a polytope", Mathematical
+The nearest point is the one of smallest norm in the hull of the differences from the query, which
+an active set method finds (P. Wolfe, "Finding the nearest point in a polytope", Mathematical
 Programming 11, 1976). It is rounded, so it may be outside by its last bits. Then it is moved toward
 the mean of the points until the exact location finds a simplex.
 """
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["nearest_in_box", "nearest_terms"]
 
-# How far points are moved toward the mean of the points, one after the other.
+# How far points are moved toward the mean of the points, one after another.
 _SHARES = (0.0, *(2.0**-k for k in range(50, 9, -5)))
-# Steps of the active set for each coordinate; the method is finite, and takes some two.
+# Steps of the active set for each coordinate; the method is finite, and takes about two.
 _STEPS = 100
 _EPS = float(np.finfo(float).eps)
 
@@ -106,7 +106,7 @@ def _reduced(ends: Floats, active: list[int], shares: Floats) -> tuple[list[int]
         wanted = np.append(1 - rest.sum(), rest)
         if (wanted > 0).all():
             return active, wanted
-        # As far toward the nearest point of their plane as no weight is negative.
+        # As far toward the nearest point of their plane as possible without a negative weight.
         falling = np.flatnonzero(wanted <= 0)
         with np.errstate(divide="ignore", invalid="ignore"):
             ratios = shares[falling] / (shares[falling] - wanted[falling])

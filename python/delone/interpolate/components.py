@@ -1,6 +1,6 @@
 """Which variables of xarray objects are components of vectors, to the east and to the north.
 
-The standard names of the CF conventions say it: ``eastward_wind`` and ``northward_wind``,
+The standard names of the CF conventions identify them: ``eastward_wind`` and ``northward_wind``,
 ``surface_downward_eastward_stress`` and so on. Names of components along the axes of a grid
 (``x_wind``, ``grid_eastward_wind``) are other directions, and standard errors, variances and
 products of components are not components.
@@ -61,7 +61,7 @@ def is_component(part: Any) -> bool:
 def vector_pairs(
     data: Any, names: Sequence[Any], vectors: Iterable[Any] | None
 ) -> tuple[list[Pair], list[Any]]:
-    """Return the pairs of variables that are vectors, and the components without another.
+    """Return the pairs of variables that are vectors, and the unpaired components.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def vector_pairs(
     names : sequence
         Those that are interpolated.
     vectors : iterable of pairs of names, or None
-        The pairs, in which case none is without another; None for those that attributes tell.
+        The pairs, in which case no component is unpaired; None to use the attributes.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def vector_pairs(
 
 
 def lone_message(names: Iterable[Any], *, alone: bool) -> str:
-    """Return the text of the warning about components without another."""
+    """Return the text of the warning about unpaired components."""
     listed = ", ".join(map(str, names))
     cure = (
         "interpolate a Dataset of both components"
@@ -112,12 +112,12 @@ def lone_message(names: Iterable[Any], *, alone: bool) -> str:
     )
     return (
         f"{listed:.160}: components of vectors, interpolated as numbers, which is wrong near the "
-        f"poles, where east turns with the longitude; {cure}"
+        f"poles, where east rotates with the longitude; {cure}"
     )
 
 
 def _by_name(east: list[Any], north: list[Any]) -> list[Pair]:
-    """Pairs by the names of variables, such as u10 and v10; none if that leaves doubts."""
+    """Pairs by the names of variables, such as u10 and v10; none if that is ambiguous."""
     pairs = []
     for name in east:
         partners = set(_partners(str(name))) & set(map(str, north))
@@ -160,12 +160,12 @@ def _given(data: Any, names: Sequence[Any], vectors: Iterable[Any]) -> Iterator[
 
 
 def _refuse_other(name: Any, part: Any, axis: int) -> None:
-    """Refuse a component whose standard name says another direction."""
+    """Reject a component whose standard name says another direction."""
     standard = str(part.attrs.get("standard_name", ""))
     words = set(standard.casefold().split("_"))
     if words & {"x", "y", "grid"}:
         raise InputError(
-            f"vectors: {name!r:.60} is {standard:.80}, along an axis of a grid: turn such "
+            f"vectors: {name!r:.60} is {standard:.80}, along an axis of a grid: rotate such "
             "components to the east and north first"
         )
     if _WORDS[1 - axis] in words and _WORDS[axis] not in words:

@@ -247,7 +247,7 @@ def cross_validate(
         require_finite_values(field)
     policy = as_choice(duplicates, DUPLICATES, name="duplicates")
     parts = []
-    # Fields that are missing at other sites are predicted from their own ones.
+    # Fields with different missing sites are predicted separately.
     for k, which in enumerate(groups):
         part = field if len(groups) == 1 else field.only(which)
         kept = np.delete(np.arange(len(sites)), part.not_finite)

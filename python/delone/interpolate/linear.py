@@ -43,8 +43,8 @@ class Linear(Interpolator):
     ----------
     points : array_like, shape (n, d), or a triangulation
         Sites with two to eight coordinates, or up to 64 if no mesh is needed (see `method`). A
-        triangulation of delone is used directly, including constrained and regular ones and, in
-        3-D, a `TetMesh`; its own boundary replaces the hull. With a periodic triangulation, such as
+        delone triangulation is used directly, including constrained and regular ones and, in 3-D, a
+        `TetMesh`; its own boundary replaces the hull. With a periodic triangulation, such as
         ``PeriodicDelaunay(points, (360, None))``, the interpolant is periodic as well.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. Optional if each call passes its own values.
@@ -156,7 +156,7 @@ class Linear(Interpolator):
         planar: bool = False,
     ) -> None:
         self._method = as_choice(method, ("auto", "mesh", "lazy", "grid"), name="method")
-        # What is evaluated in place of a triangulation.
+        # What is evaluated instead of a triangulation.
         self._implicit: Rectilinear | Lazily | None = None
         super().__init__(
             points,

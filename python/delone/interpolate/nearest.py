@@ -28,7 +28,7 @@ class Nearest(Interpolator):
     Parameters
     ----------
     points : array_like, shape (n, d), or a triangulation
-        Sites with two to eight coordinates; of a triangulation of delone, its vertices.
+        Sites with two to eight coordinates, or the vertices of a delone triangulation.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. Optional if each call passes its own values.
     extrapolate : {"nearest", "nan", "raise"}, optional

@@ -1,9 +1,9 @@
 """The coordinates of xarray objects: which two they are, what they mean, and in which unit.
 
-Coordinates are found by names, standard names and units. Where two pairs would do, the targets
-decide, by what they say of themselves; if they say nothing, the caller is asked. Angles are known
-by their units, standard names or names; a unit that differs from that of the targets is converted
-if both are known, and asked for if one is not.
+Coordinates are found by names, standard names and units. If two pairs qualify, the attributes of
+the targets decide; without attributes, the caller must choose. Angles are recognized by their
+units, standard names or names. A unit that differs from that of the targets is converted if both
+are known; otherwise, the caller must give it.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _WORDS = ("longitude", "latitude")
 class Places(NamedTuple):
     """Two coordinates of an xarray object."""
 
-    # As they are, and broadcast against each other.
+    # Unchanged, and broadcast against each other.
     parts: tuple[Any, Any]
     across: Any
     up: Any
@@ -108,7 +108,7 @@ def places_of(data: Any, coords: Sequence[str] | None, targets: Sequence[Any] = 
 
 
 def _variables(data: Any) -> dict[Any, Any]:
-    """All that may be a coordinate: also variables of a dataset that nobody declared as such."""
+    """All variables that may be coordinates, even if the dataset does not declare them as such."""
     found = dict(data.coords.items())
     if hasattr(data, "data_vars"):
         found |= {name: part for name, part in data.data_vars.items() if name not in found}
@@ -155,7 +155,7 @@ def _by_attributes(data: Any, known: dict[Any, Any]) -> tuple[Any, Any] | None:
 
 
 def _said_by(targets: Sequence[Any]) -> bool | None:
-    """Whether targets say that they are angles, or that they are not; None if they say nothing."""
+    """Whether the attributes of targets make them angles; None if they do not tell."""
     if not targets:
         return None
     names = tuple(str(getattr(part, "name", None)) for part in targets)
@@ -262,7 +262,7 @@ def target_points(
 
 
 def angles_unit(places: Places, plain: bool | None, what: str) -> str:
-    """Return the unit of angles that say none: that of the caller, or degrees beside degrees."""
+    """Return the unit of angles without one: the caller's, or degrees if the points do."""
     if plain is not None:
         return "degrees" if plain else "radians"
     if not places.in_radians:
@@ -275,7 +275,7 @@ def angles_unit(places: Places, plain: bool | None, what: str) -> str:
 
 
 def _ratio(target: str | None, source: str | None, name: str) -> float:
-    """By what to multiply targets, to have the unit of the points; 1 if one is not known."""
+    """The factor that converts targets to the unit of the points; 1 if either unit is not known."""
     if target is None or source is None or target == source:
         return 1.0
     if {target, source} == {"degrees", "radians"}:

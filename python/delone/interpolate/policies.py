@@ -1,6 +1,6 @@
-"""What becomes of the values of sites: points that coincide, missing values, rows of tables.
+"""How the values of sites are treated: points that coincide, missing values, rows of tables.
 
-A table of weights needs this and no triangles, unless it has gradients.
+A table of weights needs only this, without triangles, unless it has gradients.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Policies:
 
     @property
     def _policies(self) -> Self:
-        """These, as those of an interpolator."""
+        """These policies, under the same name as in an interpolator."""
         return self
 
     def _gradients(self, columns: Floats) -> None:
@@ -64,7 +64,7 @@ class Policies:
     def caller_rows(self) -> Indices:
         """Return the caller's row that represents each row of a table.
 
-        Of sites that coincide it is the first, or the last with ``duplicates="last"``.
+        For sites that coincide, it is the first, or the last with ``duplicates="last"``.
         """
         sites = np.arange(self.count)
         if self.duplicates == "last" and self.first is not None:
@@ -75,8 +75,8 @@ class Policies:
     def mixed_rows(self) -> tuple[Rows, Indices] | None:
         """Return the caller's rows that are averaged in each row of a table, as (indptr, rows).
 
-        None if `caller_rows` is sufficient; InputError if the policy takes the least or the
-        greatest value of points that coincide.
+        None if `caller_rows` is sufficient; InputError if the policy takes the smallest or the
+        largest value of points that coincide.
         """
         if self.duplicates not in ("mean", "min", "max") or self.first is None:
             return None

@@ -39,7 +39,7 @@ __all__ = ["Grid", "grid", "raster_nodes", "require_memory"]
 
 # Queries per block: few enough for their coordinates and weights to stay in the cache.
 _BLOCK = 1 << 18
-# Memory beside the result: a block of queries, and room for further use of the result.
+# Memory besides the result: a block of queries, and room for further use of the result.
 _SPARE = 1 << 26
 # Both ends of a box and their difference are rounded, and may have been computed from others.
 _ROUNDINGS = 4
@@ -246,7 +246,7 @@ def grid(
     limit, tell = as_max_distance(max_distance), as_callback(progress, name="progress")
     if isinstance(points, Interpolator):
         if options or method != "linear":
-            raise InputError("method and options cannot be given with an interpolator that exists")
+            raise InputError("method and options cannot be given with an existing interpolator")
         made = points
     else:
         made = interpolator(points, values, method, **options)
@@ -293,9 +293,9 @@ def raster_nodes(
 ) -> tuple[Floats, Floats]:
     """The nodes of a raster, x and y: the centers of its cells, ascending.
 
-    `box` has the least and greatest coordinates, used if there are no `bounds`. `room` is called
-    with columns and rows before anything is allocated, and raises if there is no room for such a
-    raster; by default it must fit into memory.
+    `box` contains the smallest and largest coordinates, used if there are no `bounds`. `room` is
+    called with columns and rows before anything is allocated, and raises if there is no room for
+    such a raster; by default it must fit into memory.
     """
     if (resolution is None) == (shape is None):
         raise InputError("give one of resolution, shape, or x and y")

@@ -1,7 +1,7 @@
 """Periodic sites: enough copies that queries in one period see the infinite set.
 
 Queries are moved into one period, the window. An edge of a periodic Delaunay triangulation is no
-longer than a period in its direction: of an edge from p to q that is longer, q minus a period would
+longer than a period in its direction: for a longer edge from p to q, q minus a period would
 lie in every circle through p and q on one of its sides, and p plus a period on the other. So each
 triangle at the window has its corners less than a period away from it, and copies one period
 further on each side make its neighborhood that of the infinite set. Natural neighbors are as far
@@ -120,7 +120,7 @@ def _widest(mesh: PeriodicDelaunay) -> float:
     """The diameter of the widest circle in which a query may lie.
 
     Where there is one period, a circle around a point beyond the strip of the sites meets the strip
-    between two sites of its border, which are no further apart than the period.
+    between two sites of its border, which are not farther apart than the period.
     """
     corners = mesh.corners
     count = 3 * mesh.nsimplex

@@ -1,7 +1,7 @@
 """Interpolation in 3-D: extrapolation beyond the hull, gradients in tetrahedra.
 
 These are the parts of the interpolators that differ between 2-D and 3-D. On a face of the hull the
-interpolants here depend on its three corners, exactly or almost, and extrapolation takes them as
+interpolants here depend on its three corners, exactly or almost, and extrapolation treats them as
 linear there.
 """
 

@@ -46,7 +46,7 @@ class Sites(Protocol):
 
     @property
     def _policies(self) -> Policies:
-        """What becomes of values, and which of the caller's rows are those of a table."""
+        """How values are treated, and which of the caller's rows a table refers to."""
 
     def _gradients(self, columns: Floats) -> Floats | None:
         """Gradients (n, c, 2) of these columns, if the interpolant needs them."""
@@ -63,7 +63,7 @@ class Weights:
         The entries of query i, in the order of the flattened queries, are ``indptr[i]`` to
         ``indptr[i + 1]``. There are none if the query has no result.
     rows : ndarray of int32, shape (nnz,)
-        Sites in the interpolator's numbering; `indices` has the caller's rows.
+        Sites in the interpolator's numbering; `indices` contains the caller's rows.
     weights : ndarray of float64, shape (nnz,)
         Their weights; they sum to 1 for each query, up to rounding.
     slopes : ndarray of float64, shape (nnz, d), or None
@@ -110,7 +110,7 @@ class Weights:
     def indices(self) -> Indices:
         """The rows of the caller's points, (nnz,); for duplicates, the row whose value is used.
 
-        If duplicates take their mean, least or greatest value, it is the first of them.
+        If duplicates take their mean, smallest or largest value, it is the first of them.
         """
         found: Indices = self.sites._policies.caller_rows()[self.rows]
         return found
@@ -190,8 +190,8 @@ class Weights:
             SciPy is not installed.
         InputError
             The interpolant needs gradients, which cannot be computed by a matrix product: smooth
-            methods, and all with ``extrapolate="linear"``. Or the policy takes the least or
-            greatest value of points that coincide, which is not linear.
+            methods, and all with ``extrapolate="linear"``. Or the policy takes the smallest or
+            largest value of points that coincide, which is not linear.
 
         Examples
         --------

@@ -71,12 +71,12 @@ def read_points(
     attributes : sequence of str or "all", optional
         Further columns to read. "all" means all that are not coordinates: those of text files are
         numbers if every field is one, otherwise strings; the number of the column is appended to
-        repeated names. Survey points of LandXML have ``name``, ``code`` and ``desc``; DXF and OFF
-        have none. Dimensions of EPT have the names of LAS, such as ``classification``.
+        repeated names. LandXML survey points have ``name``, ``code`` and ``desc``; DXF and OFF have
+        none. Dimensions of EPT have the names used in LAS, such as ``classification``.
     chord : float, optional
         The maximum distance of chords from the curves of a DXF file; see `read_surface`.
     bounds : sequence of four float, optional
-        Left, bottom, right, top: only points inside or on the border (LAS, LAZ and EPT; quick for
+        Left, bottom, right, top: only points inside or on the border (LAS, LAZ and EPT; fast for
         COPC and EPT, where points outside are not decoded).
 
     Returns
@@ -104,9 +104,9 @@ def read_points(
     Integers beyond 2**53 and, in tables, decimals with more digits than a double can distinguish
     are rejected. No memory is allocated for what a header declares before the size of the file
     confirms it. Nothing that a file refers to is opened, except the parts of a Shapefile, the
-    journals of a GeoPackage, the NODE file next to ELE and POLY, and the nodes of EPT, whose order
-    is that of their levels and positions. Files beside a file that are links to others are
-    rejected. Compressed files that contain more than 64 MiB (text and JSON: 8 MiB) and more than
+    journals of a GeoPackage, the NODE file next to ELE and POLY, and the nodes of EPT, in the order
+    of their levels and positions. If one of these is a link to another file, it is rejected.
+    Compressed files that contain more than 64 MiB (text and JSON: 8 MiB) and more than
     200 times their size are rejected; decompress them first. Lines of text longer than 16 MiB are
     rejected as well.
 

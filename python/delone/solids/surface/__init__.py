@@ -1,7 +1,7 @@
 """Surfaces of triangles in 3-D: exact checks, and subdivision where triangles touch or cross.
 
-`check` has the function `check_surface`, `report` its result; `resolve` and `imprint` have the
-functions that cut faces at each other, at given vertices and at new ones.
+`check` contains `check_surface`, `report` its result; `resolve` and `imprint` contain the functions
+that cut faces where they meet, at existing vertices and at new ones.
 """
 
 from delone.solids.surface.check import check_surface

@@ -1,4 +1,4 @@
-"""The function that cuts the faces of a surface at each other, and its result."""
+"""The function that cuts the faces of a surface where they meet, and its result."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ class ImprintedSurface(ReadOnly):
     points : ndarray of float64, shape (n + nadded, 3)
         The points of the input, followed by those added where faces cut each other.
     faces : ndarray of int32, shape (k, 3)
-        The vertices of each face, oriented as its source. Where sources overlap in one plane, each
-        has its own copy of the common faces.
+        The vertices of each face, oriented like its source. Where sources overlap in one plane,
+        each has its own copy of the common faces.
     source : ndarray of int32, shape (k,)
         The input face that each is a part of, ascending.
     nadded : int
@@ -113,10 +113,10 @@ def imprint_surface(
         The vertices of each triangle, rows of `points`: one or more closed surfaces, walls or
         sheets, which may cross each other or themselves.
     tolerance : float, optional
-        Vertices, edges and faces nearer than this are joined. By default, and at least, a few
-        roundings of the largest coordinate (between 3.6e-15 and 7.1e-15 of it). Give a larger one
-        for parts whose contact faces are not exactly in one plane, such as parts rounded to single
-        precision in a file.
+        Vertices, edges and faces closer than this are joined. The default and the minimum are a few
+        rounding errors of the largest coordinate (between 3.6e-15 and 7.1e-15 of it). Give a larger
+        one for parts whose contact faces are not exactly in one plane, such as parts rounded to
+        single precision in a file.
     workers : int, optional
         Number of threads; by default one per core. The result does not depend on it.
 
@@ -129,9 +129,9 @@ def imprint_surface(
     Raises
     ------
     CrossingFacesError
-        Parts of faces still cross after 16 rounds, or rounds make ever more parts, because details
-        are not much larger than the tolerance; the error contains the pairs of input faces. Also if
-        parts of a closed surface are not closed; then each pair is one face, twice.
+        Parts of faces still cross after 16 rounds, or the number of parts keeps growing, because
+        details are not much larger than the tolerance; the error contains the pairs of input faces.
+        Also if parts of a closed surface are not closed; then each pair is one face, twice.
     InputError
         `tolerance` is negative, infinite or NaN.
     NonFiniteError, ShapeError, DtypeError, MemoryError
@@ -158,7 +158,7 @@ def imprint_surface(
     whether parts cross.
 
     Regions are kept: what a closed surface enclosed is enclosed by its parts. Volumes enclosed by
-    two bodies become regions of their own, with a winding number of 2. The result does not depend
+    two bodies become separate regions, with a winding number of 2. The result does not depend
     on the order of points and faces, apart from numbering. The time is linear in the number of
     pairs of faces whose bounding boxes meet, up to logarithmic factors, for each round.
 
@@ -214,7 +214,7 @@ def _failure(pairs: Rows, tolerance: float, rounds: int) -> CrossingFacesError:
         first, second = pairs[~alone][0]
         what = f"parts of faces still cross, first {first} and {second}"
     return CrossingFacesError(
-        f"{what}, after {counted(rounds, 'round')}; `error.pairs` has all: details there are not "
+        f"{what}, after {counted(rounds, 'round')}; `error.pairs` lists all: details there are not "
         f"much larger than the tolerance {tolerance:.2g}; give a larger tolerance, or repair the "
         "surface",
         pairs=pairs,

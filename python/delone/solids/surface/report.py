@@ -135,7 +135,7 @@ class SurfaceCheck(ReadOnly):
 
     @property
     def oriented(self) -> bool:
-        """Whether each edge of two faces or more is passed equally often in both directions.
+        """Whether each edge of two faces or more is traversed equally often in both directions.
 
         If the surface is also closed, winding numbers are defined.
         """
@@ -160,7 +160,7 @@ class SurfaceCheck(ReadOnly):
         Raises
         ------
         CrossingFacesError
-            Faces cross; with the pairs and kinds that are listed.
+            Faces cross; the error contains the listed pairs and kinds.
         DegenerateInputError
             All faces are in one plane.
         OpenSurfaceError
@@ -190,7 +190,7 @@ class SurfaceCheck(ReadOnly):
             raise OpenSurfaceError(
                 f"the surface encloses nothing: {counted(len(self.boundary), 'edge')} "
                 f"{agreed(len(self.boundary), 'has', 'have')} only one face, first between the "
-                f"points {a} and {b}; `error.edges` has all of them: close the holes there",
+                f"points {a} and {b}; `error.edges` lists all of them: close the holes there",
                 edges=self.boundary,
             )
         raise InputError("the surface encloses nothing" if self.nedges else "there are no faces")
@@ -265,8 +265,8 @@ def crossing_error(pairs: Rows, kinds: NDArray[np.str_], count: int) -> Crossing
     if len(pairs):
         what += f", first {pairs[0, 0]} and {pairs[0, 1]} ({kinds[0]})"
     return CrossingFacesError(
-        f"{what}; `error.pairs` and `error.kinds` have them: repair the surface there, or cut the "
-        "faces at each other with imprint_surface",
+        f"{what}; `error.pairs` and `error.kinds` list them: repair the surface there, or cut the "
+        "faces with imprint_surface",
         pairs=pairs,
         kinds=kinds,
         count=count,

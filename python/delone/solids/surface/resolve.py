@@ -38,7 +38,7 @@ def resolve_touches(
     Returns
     -------
     faces : ndarray of int32, shape (k, 3)
-        The vertices of each triangle, oriented as its source. Degenerate triangles are left out;
+        The vertices of each triangle, oriented like its source. Degenerate triangles are left out;
         triangles of several sources, where faces repeat others or overlap, occur once.
     source : ndarray of int32, shape (k,)
         The first face of the input that contains each triangle, ascending.

@@ -1,7 +1,7 @@
 """Tetrahedral meshes: the class TetMesh, and improvement by moving vertices and by flips.
 
-`improvement` has the function `improve`, `report` its result; `recovery` has the report of
-`delone.tetrahedralize`, `walls` what `improve` keeps of its faces, `refinement` adds points for
+`improvement` contains the function `improve`, `report` its result; `recovery` contains the report
+of `delone.tetrahedralize`, `walls` what `improve` keeps of its faces, `refinement` adds points for
 sizes, which are in `lengths`, and shapes, and `relaxing` coarsens and smooths.
 """
 

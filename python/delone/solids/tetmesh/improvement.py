@@ -100,7 +100,7 @@ def improve(
     TetMesh
         The improved mesh, immutable: the same rows of input points, some of them moved, followed by
         added points, which `nadded` counts; and different tetrahedra that fill the same space. Its
-        ``report`` has the angles before and after, the changes by kind, and the remaining
+        ``report`` contains the angles before and after, the changes by kind, and the remaining
         tetrahedra below the goal, with causes.
 
     Raises

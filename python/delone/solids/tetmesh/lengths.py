@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
 __all__ = ["Lengths", "length_of"]
 
-# Average volume of tetrahedra, as a fraction of the largest allowed, and tetrahedra for a point.
+# Average volume of tetrahedra, as a fraction of the largest allowed, and tetrahedra per point.
 _SHARE = 0.55
 _PER_POINT = 5.8
-# Tetrahedra with edges longer than this share of the mesh are sampled at a lattice of positions.
+# Tetrahedra with edges longer than this fraction of the mesh are sampled at a lattice of positions.
 _LARGE = 1 / 16
 _LATTICE = 6
 
@@ -43,7 +43,7 @@ def _positions() -> Floats:
 
 
 class Lengths:
-    """The sizes that are asked for, by position and region.
+    """The requested sizes, by position and region.
 
     Corners, volumes and sizes are divided by `unit`, a power of two, and its cube; callers and
     their functions use the original coordinates.
@@ -95,7 +95,7 @@ class Lengths:
         return bool(self._functions)
 
     def at(self, corners: Floats, labels: Indices) -> Floats:
-        """Return the size asked for at each tetrahedron: the smallest in it; corners (k, 4, 3)."""
+        """Return the requested size at each tetrahedron: the smallest in it; corners (k, 4, 3)."""
         sizes = self._constant(labels)
         if not self.varies or not len(corners):
             return sizes

@@ -1,4 +1,4 @@
-"""Whether triangles in planes cover the same as others."""
+"""Whether planar triangles cover the same area as others."""
 
 from __future__ import annotations
 

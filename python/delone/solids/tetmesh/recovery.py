@@ -1,4 +1,4 @@
-"""The report of a tetrahedralization: what was added, and which faces are not there as given."""
+"""The report of a tetrahedralization: what was added, and which faces were changed."""
 
 from __future__ import annotations
 
@@ -174,5 +174,5 @@ class RecoveryReport(ReadOnly):
             (self.repeated, ("is covered by earlier ones", "are covered by earlier ones")),
             (self.degenerate, ("without area", "without area")),
             (self.dangling, ("inside a region", "inside a region")),
-            (self.outside, ("outside of the mesh", "outside of the mesh")),
+            (self.outside, ("outside the mesh", "outside the mesh")),
         ]

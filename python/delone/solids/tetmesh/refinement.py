@@ -294,7 +294,7 @@ def _started(mesh: Any) -> _State:
 def _rounds(
     state: _State, lengths: Lengths, bounds: Bounds, limit: int
 ) -> tuple[RefinedTetrahedra, bool]:
-    """Let the core add points, at most `limit`; sizes are asked for between its rounds."""
+    """Let the core add points, at most `limit`; sizes are requested between its rounds."""
     refinement = _core.Refinement3(
         state.points,
         state.simplices,
@@ -465,6 +465,6 @@ def _distance(start: _State, state: _State) -> float:
     normal = np.cross(b - a, c - a)
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     off = np.abs(((state.points[state.faces[at]] - a[:, None]) * normal[:, None]).sum(axis=2))
-    # The measure errs by some roundings of coordinates.
+    # The measure is off by a few rounding errors of coordinates.
     rounding = 16 * np.finfo(np.float64).eps * np.abs(start.points).max()
     return float(off[new[at]].max() + rounding)

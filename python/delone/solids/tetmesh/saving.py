@@ -22,7 +22,7 @@ _ANGLES = ("min_angle", "smallest_before", "smallest_after", "largest_before", "
 _HISTOGRAMS = ("bounds", "before", "after", "weights", "below")
 _NO_COUNTS = np.empty(0, dtype=np.int64)
 _NO_NUMBERS = np.empty(0)
-# What a file has of the report that there is not.
+# What a file contains for a missing report.
 _UNIMPROVED: dict[str, NDArray[Any]] = {
     **dict.fromkeys(("angles", "bounds", "weights"), _NO_NUMBERS),
     **dict.fromkeys(("counts", "before", "after", "below", "cause"), _NO_COUNTS),
@@ -44,7 +44,7 @@ _UNREFINED: dict[str, NDArray[Any]] = {
 
 
 def recovery_of(report: Report) -> RecoveryReport | None:
-    """Return what is known of the recovery of faces, unless these were divided later."""
+    """Return what is known about the recovery of faces, unless these were divided later."""
     if isinstance(report, RefinementReport):
         divided = report.on_segments or report.on_facets
         return None if divided else report.recovery

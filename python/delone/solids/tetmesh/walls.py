@@ -33,8 +33,8 @@ class Kept(NamedTuple):
     def of(cls, simplices: Indices, neighbors: Indices, faces: Indices, labels: Indices) -> Kept:
         """Return a label for each cell and region, and one for each tetrahedron at some sheets.
 
-        A face inside of a cell has that cell on both sides: the tetrahedron on one side gets a
-        label of its own.
+        A face inside a cell has that cell on both sides: the tetrahedron on one side gets its own
+        label.
         """
         face = sides(simplices, faces, int(simplices.max()) + 1).face
         cell = cells(neighbors, face >= 0)

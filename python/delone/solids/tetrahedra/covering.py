@@ -86,7 +86,7 @@ def _candidates(of: Rows, source: Indices, check: SurfaceCheck) -> tuple[Rows, R
 def _contains(points: Floats, faces: Indices, parts: Indices) -> tuple[Bools, NDArray[np.int64]]:
     """Return whether faces contain parts in their planes, and 1 for the same orientation or -1.
 
-    A part is inside a face or outside of it, so its vertices decide.
+    A part is inside a face or outside it, so its vertices decide.
     """
     covers = np.zeros(len(faces), dtype=bool)
     way = np.zeros(len(faces), dtype=np.int64)

@@ -1,6 +1,6 @@
 """The function `tetrahedralize`: checks the surface, calls the core, and decides what is inside.
 
-The core recovers the faces (its module comment has the method and why it ends).
+The core recovers the faces (its module comment describes the method and why it terminates).
 """
 
 from __future__ import annotations
@@ -86,8 +86,8 @@ def tetrahedralize(
     points : array_like of float, shape (n, 3), or path or mesh
         Coordinates. Rows with equal coordinates are one vertex; rows that no face uses are not
         vertices. Without `faces`: a file that `delone.io.read_mesh` reads, such as STL, OBJ, PLY,
-        OFF or TetGen's .smesh and .poly; or a surface as an object of trimesh, PyVista or meshio,
-        or of delone, such as a 3-D `ConvexHull`.
+        OFF or TetGen's .smesh and .poly; or a surface as a trimesh, PyVista, meshio or delone
+        object, such as a 3-D `ConvexHull`.
     faces : array_like of int, shape (m, 3)
         The vertices of each triangle, rows of `points`.
     boundary : {"faces", "surface"}, optional
@@ -95,7 +95,7 @@ def tetrahedralize(
         triangles are retriangulated with the same vertices, which takes fewer points and less time
         for models with flat sides; see Notes.
     imprint : bool, optional
-        Whether faces that cross, overlap or touch are cut at each other first, by
+        Whether faces that cross, overlap or touch are first cut where they meet, by
         `imprint_surface`: for assemblies, whose bodies are in contact or overlap. Cut faces can
         leave the surface by rounding; see `report`. By default, faces that cross are an error.
     tolerance : float, optional
@@ -168,7 +168,7 @@ def tetrahedralize(
     See Also
     --------
     check_surface : Check the surface alone.
-    imprint_surface : Cut faces that cross, overlap or touch at each other.
+    imprint_surface : Cut faces where they cross, overlap or touch.
     TetMesh.refine : Add points for sizes and shapes later.
     improve : Remove slivers from the mesh.
 
@@ -182,7 +182,7 @@ def tetrahedralize(
     With ``imprint=True``, the mesh is that of the surface returned by `imprint_surface`: its points
     follow those of the input in `points`, `face_source` names its faces, and
     ``report.imprinted[mesh.face_source]`` is the input face of each. Volumes enclosed by two bodies
-    are regions of their own.
+    are separate regions.
 
     With ``boundary="surface"``, the edge between two triangles is flipped if the triangles are
     exactly coplanar and have the same orientation and marker, until each flat part has its
@@ -266,7 +266,7 @@ class _Everything(NamedTuple):
 
 
 class _Solid(NamedTuple):
-    """What the faces of these are, and their cells."""
+    """The faces of these tetrahedra, and their cells."""
 
     sides: Sides
     cell: Indices
@@ -372,7 +372,7 @@ class _Stages(NamedTuple):
         return _Everything(tiling, made.walls, made.nadded, made.counts)
 
     def _advice(self) -> str:
-        """Say what adds fewer points, unless it has been chosen."""
+        """Suggest the option that adds fewer points, unless it was chosen."""
         if self.boundary == "surface":
             return ""
         return (
@@ -494,7 +494,8 @@ def _crowded(faces: Indices, advice: str) -> CrowdedFacesError:
     rows = np.unique(faces)
     return CrowdedFacesError(
         f"between {counted(len(rows), 'face')} no double is left for a point that is needed there: "
-        f"{listed(rows, 10)}; `error.faces` has them: move them apart, or subdivide them" + advice,
+        f"{listed(rows, 10)}; `error.faces` lists them: move them apart, or subdivide them"
+        + advice,
         faces=rows,
     )
 

@@ -76,7 +76,7 @@ def _numbers(steps: _Steps, count: int, *, parity: bool) -> tuple[Rows, Indices]
     number = np.zeros(count + 1, dtype=np.int64)
     known = np.zeros(count + 1, dtype=bool)
     known[count] = True
-    # Each round reaches at least one cell more, because all are connected to the outside.
+    # Each round reaches at least one more cell, because all are connected to the outside.
     while not known.all():
         rows = np.flatnonzero(known[steps.behind] & ~known[steps.into])
         if not len(rows):

@@ -1,7 +1,7 @@
-"""Other triangles for what is flat: edges between triangles in one plane are flipped.
+"""Retriangulation of flat parts: edges between triangles in one plane are flipped.
 
 In each flat part the result is its constrained Delaunay triangulation, with all vertices and all
-edges to other planes. Edges of 3-D Delaunay triangulations are Delaunay in each plane, too, so
+edges to other planes. Edges of 3-D Delaunay triangulations are also Delaunay in each plane, so
 fewer of these triangles have to be recovered than of others.
 """
 
@@ -33,7 +33,7 @@ class Recut(NamedTuple):
     rows: Rows
 
     def reported(self, there: Bools) -> dict[str, NDArray[np.int64]]:
-        """Return what a report has of the parts that are `there`, which flips do not change."""
+        """Return the entries of a report for the parts `there`, which flips do not change."""
         rows = self.rows[there[self.rows]]
         sources = np.column_stack((self.before.source[rows], self.parts.source[rows]))
         return {
@@ -62,8 +62,8 @@ def recut(points: Floats, parts: Parts, markers: Indices) -> Recut:
 
     Triangles are joined across edges of exactly two of them, which are in one plane, oriented
     alike, with the same marker and the same cover. An edge that is flipped never returns, as in
-    all Delaunay triangulations by flips, so this ends; ties are broken as in 3-D, so the result is
-    unique.
+    all Delaunay triangulations by flips, so this terminates; ties are broken as in 3-D, so the
+    result is unique.
     """
     npoints = len(points)
     soft = _soft(points, parts, markers)
@@ -135,7 +135,7 @@ def _among(keys: Rows, ascending: Rows) -> Bools:
 def _is_wrong(points: Floats, edges: _Edges) -> Bools:
     """Return which edges are not Delaunay in their planes."""
     a, b, c, d = (points[v] for v in edges[2:])
-    # A sphere through an apex outside of the plane meets the plane in the circle.
+    # A sphere through an apex outside the plane meets the plane in the circle.
     apex = _beside(a, b, c)
     inside = _core.insphere(a, b, c, apex, d, True) * _core.orient3d(a, b, c, apex)
     # If d is in the circle beyond the edge, c and d see each other across the edge.
@@ -144,7 +144,7 @@ def _is_wrong(points: Floats, edges: _Edges) -> Bools:
 
 
 def _beside(a: Floats, b: Floats, c: Floats) -> Floats:
-    """Return points outside of the planes of triangles, about as far as these are large."""
+    """Return points outside the planes of triangles, about as far as these are large."""
     made = a.copy()
     with np.errstate(over="ignore"):
         size = np.maximum(np.abs(b - a), np.abs(c - a)).max(axis=1)
@@ -184,5 +184,5 @@ def _result(parts: Parts, faces: Indices, joined: Indices) -> Recut:
 
 
 def uncut(parts: Parts) -> Recut:
-    """Return parts that stay as they are."""
+    """Return parts that remain unchanged."""
     return Recut(parts, parts, np.empty(0, dtype=np.int64))

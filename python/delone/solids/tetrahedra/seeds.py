@@ -83,7 +83,7 @@ def located(
     outside = np.flatnonzero(found < 0)
     if len(outside):
         raise InputError(
-            f"{name}: {counted(len(outside), kind)} outside of all that the faces enclose: "
+            f"{name}: {counted(len(outside), kind)} outside all that the faces enclose: "
             f"{agreed(len(outside), 'row', 'rows')} {listed(outside, _SHOWN)}"
         )
     on = np.flatnonzero(_on_surface(points, simplices[found], faces, seeds))
@@ -161,7 +161,7 @@ def of_voids(
 
 
 def _opened(tiling: Tiling, cells: Cells, kept: Bools, there: Bools) -> set[int]:
-    """Return the empty cells from which a way leads outside, through faces that do not remain."""
+    """Return the empty cells connected to the outside through faces that do not remain."""
     cell, face = cells
     gone = (face >= 0) & ~there[face] & ~kept[:, None]
     t, k = np.nonzero(gone)

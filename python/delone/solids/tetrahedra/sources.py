@@ -1,4 +1,4 @@
-"""What `tetrahedralize` accepts besides arrays: files, and surfaces of other libraries."""
+"""What `tetrahedralize` accepts besides arrays: files, and surfaces from other libraries."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 __all__ = ["Given", "given"]
 
 _ACCEPTED = (
-    "points and faces, a file, or a surface of triangles: an object of trimesh, PyVista, meshio or "
-    "delone"
+    "points and faces, a file, or a surface of triangles: a trimesh, PyVista, meshio or delone "
+    "object"
 )
 
 # Files of TetGen, which does not require oriented faces.
@@ -57,7 +57,7 @@ def given(
 def _of(surface: Any) -> Given:
     if isinstance(surface, str | os.PathLike):
         return _of_file(surface)
-    # trimesh.Trimesh, and whatever has its names
+    # trimesh.Trimesh, and objects with the same attributes
     if hasattr(surface, "vertices") and hasattr(surface, "faces"):
         return Given(np.asarray(surface.vertices), np.asarray(surface.faces))
     if hasattr(surface, "celltypes") and hasattr(surface, "cells_dict"):
@@ -100,7 +100,7 @@ def _of_meshio(mesh: Any) -> Given:
 
 
 def _of_grid(grid: Any) -> Given:
-    """The triangles of an UnstructuredGrid of PyVista, whose types of cells are those of VTK."""
+    """The triangles of a PyVista UnstructuredGrid, whose cell types are VTK's."""
     kinds = set(np.unique(np.asarray(grid.celltypes)).tolist())
     if kinds != {_VTK_TRIANGLE}:
         raise InputError(
@@ -128,7 +128,7 @@ def _of_pyvista(surface: Any) -> Given:
 
 
 def _values(surface: Any) -> NDArray[Any] | None:
-    """The markers of the triangles of a surface of PyVista, which follow its vertices and lines."""
+    """The markers of the triangles of a PyVista surface, which follow its vertices and lines."""
     for name in _MARKERS:
         if name in getattr(surface, "cell_data", ()):
             before = getattr(surface, "n_verts", 0) + getattr(surface, "n_lines", 0)
@@ -137,6 +137,6 @@ def _values(surface: Any) -> NDArray[Any] | None:
 
 
 def _whole(values: NDArray[Any]) -> NDArray[Any]:
-    """Return whole numbers as integers, and others as they are, to be refused."""
+    """Return whole numbers as integers, and others unchanged, to be rejected."""
     numbers = values.dtype.kind == "f" and (values == np.floor(values)).all()
     return values.astype(np.int64) if numbers else values
