@@ -9,7 +9,7 @@ segments and polygons. `mesh` and `improve` create triangles and tetrahedra of g
 `tetrahedralize` fills closed surfaces with tetrahedra. Related
 structures are `Voronoi`, `ConvexHull`, `RegularTriangulation` and `PeriodicDelaunay`. The modules
 `graphs`, `cluster`, `terrain`, `interpolate`, `distributed`, `io`, `plot`, `predicates`,
-`datasets`, `testing`, `reference` and `compat` have the rest. All errors are subclasses of
+`datasets`, `testing`, `reference` and `compat` contain the rest. All errors are subclasses of
 `DeloneError`.
 """
 
@@ -200,7 +200,7 @@ __all__ = [
     "triangulate_polygon",
 ]
 
-# What not every program needs is imported on first access, which keeps `import delone` short:
+# Imported on first access, because not every program needs them, so that `import delone` is fast:
 # modules, and classes and functions by their modules.
 _MODULES = {
     "cluster",

@@ -1,6 +1,6 @@
 """Entry point of the command ``delone`` and of ``python -m delone``.
 
-The command needs the extra ``cli``; without it, one line says so.
+The command needs the extra ``cli``; without it, a one-line message says so.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ _MISSING_EXTRA = 6  # as in `delone.cli.exits`, which cannot be imported then
 
 
 def main() -> None:
-    """Run the command and leave the interpreter with one of the codes that ``--help`` lists."""
+    """Run the command and exit with one of the codes that ``--help`` lists."""
     try:
         import rich  # noqa: F401
         import typer  # noqa: F401

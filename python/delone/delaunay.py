@@ -1,7 +1,7 @@
 """The class Delaunay: a Delaunay triangulation in 2 to 8 dimensions as immutable arrays.
 
-The core makes `simplices` and `neighbors`; what follows from them is in `triangulation`. Here are
-construction and proof.
+The core computes `simplices` and `neighbors`; what follows from them is in `triangulation`. This
+module contains construction and proof.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Delaunay"]
 
-# From 3-D on there is one method; both names mean it.
+# From 3-D on, there is one method; both names select it.
 _METHODS = _core.methods2(), ["auto", "bowyer-watson"]
-# Arguments of scipy.spatial.Delaunay without a meaning here, and of other classes.
+# Arguments of scipy.spatial.Delaunay that have no meaning here, and those of other classes.
 _INSTEAD = {
     "furthest_site": "use delone.compat.scipy.Delaunay",
     "incremental": "use delone.Dynamic(points), or delone.compat.scipy.Delaunay",
@@ -79,8 +79,8 @@ class Delaunay(PointTriangulation):
         Treat longitudes and latitudes as coordinates of a plane; otherwise points known to be in
         degrees (from a reference system or column names) cause a warning.
     max_bytes : int, optional
-        From 4-D on: the most memory that the triangulation may take; by default what is free. If
-        samples predict more, `TooLargeError` is raised before the work. See Notes.
+        From 4-D on: the maximum memory of the triangulation; by default the free memory. If samples
+        predict more, `TooLargeError` is raised before the computation. See Notes.
 
     Attributes
     ----------
@@ -96,19 +96,19 @@ class Delaunay(PointTriangulation):
     ndim : int
         The number of coordinates.
     npoints, nsimplex : int
-        Numbers of points (rows, duplicates included) and of simplices.
+        Numbers of points (rows, including duplicates) and of simplices.
     min_bound, max_bound : ndarray of float64, shape (d,)
         The smallest and the largest coordinate along each axis.
 
     Raises
     ------
     DegenerateInputError
-        Fewer than d + 1 points are distinct, or all lie on one line; ``error.chain`` has them in
+        Fewer than d + 1 points are distinct, or all lie on one line; ``error.chain`` lists them in
         order. Or 3-D points all lie in one plane; ``error.plane`` is its triangulation. Or points
-        with more coordinates all lie in a flat of fewer dimensions; ``error.chain`` has rows that
-        span it, one more than it has dimensions.
+        with more coordinates all lie in a flat of fewer dimensions; ``error.chain`` lists rows that
+        span it, one more than its dimension.
     NonFiniteError
-        A coordinate is NaN or infinite; ``error.rows`` has the first such rows.
+        A coordinate is NaN or infinite; ``error.rows`` lists the first such rows.
     ShapeError, DtypeError
         `points` is not a real array of shape (n, d), with d from 2 to 8.
     InputError
@@ -215,7 +215,7 @@ class Delaunay(PointTriangulation):
             _refuse_options(unknown)
         own = own_copy(points, ndim=None, most=MOST)
         warn_of_degrees(points, own, planar=planar)
-        # Few points are one task, and to count cores takes as long as some of them.
+        # Few points are one task, and counting cores takes as long as some triangulations.
         threads = 1 if workers is None and len(own) < _FEW else as_workers(workers)
         _require_room(own, max_bytes)
         methods = _METHODS[own.shape[1] > 2]
@@ -253,7 +253,7 @@ class Delaunay(PointTriangulation):
 
         Notes
         -----
-        Exact, in about the time of the triangulation.
+        The proof is exact and takes about as long as the triangulation.
 
         Examples
         --------

@@ -2,8 +2,8 @@
 
 All derive from `DeloneError`, so that one ``except`` clause catches everything that the package
 raises. Each class also derives from the built-in exception that users of NumPy or SciPy expect, and
-has the evidence (rows, reason, chain, extra) as attributes, because a program cannot use a message.
-All of them can be pickled, so they cross process boundaries.
+provides the evidence (rows, reason, chain, extra) as attributes, because a program cannot use a
+message. All of them can be pickled, so they cross process boundaries.
 """
 
 from __future__ import annotations
@@ -249,7 +249,7 @@ class DirectionError(InputError):
 
     def __init__(
         self,
-        message: str = "some rows mean no direction",
+        message: str = "some rows are not directions",
         *,
         rows: Iterable[int] | NDArray[np.integer] = (),
         count: int | None = None,
@@ -327,7 +327,7 @@ class CrossingFacesError(InputError):
     kinds : ndarray of str, shape (c,)
         ``"crossing"``, ``"edge on edge"``, ``"coplanar overlap"`` or ``"folded"``.
     count : int
-        The number of all such pairs, of which `pairs` are the first.
+        The number of all such pairs; `pairs` contains the first ones.
 
     Examples
     --------

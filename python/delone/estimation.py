@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Estimate", "estimate"]
 
-# Each sample has one point in this many, if that is enough.
+# Each sample contains one in this many points, if that is enough.
 _SHARES = 64, 8
 # Minimum number of sample points per corner of a simplex; inputs this small are not sampled.
 _FEW = 8

@@ -113,17 +113,17 @@ def lawson(points: ArrayLike, simplices: ArrayLike, *, record: bool = False) -> 
 
     Each flip lowers the surface of the triangles lifted to x² + y², and a flipped edge lies above
     that surface from then on. Therefore there are at most n (n - 1) / 2 flips. The bound has the
-    right order: a fan of n points (x, x²) from the first of them can take nearly n² / 2. The
-    predicates are exact.
+    right order of magnitude: a fan of n points (x, x²) from the first of them can take nearly n² /
+    2. The predicates are exact.
 
     The recorded angles are those of the exact triangles, rounded. If an edge is flipped because the
     opposite vertex is strictly inside the circle, the smallest of the six angles of the two
     triangles increases, so the sorted angles increase lexicographically (Lawson 1977; Sibson, R.,
-    1978, "Locally equiangular triangulations", The Computer Journal 21). In a flip of a tie they
-    need not: four of the six angles are inscribed angles over the sides of the quadrilateral and
-    remain, including the smallest of all six; the other two, which add up to pi, change to two that
-    add up to pi and may be larger or smaller. Hence the smallest angle of all never decreases, and
-    the whole vector decreases only at ties. ``delone.predicates.incircle`` identifies flips of
+    1978, "Locally equiangular triangulations", The Computer Journal 21). When a tie is flipped,
+    they may not: four of the six angles are inscribed angles over the sides of the quadrilateral
+    and remain, including the smallest of all six; the other two, which add up to pi, change to two
+    that add up to pi and may be larger or smaller. Hence the smallest angle of all never decreases,
+    and the whole vector decreases only at ties. ``delone.predicates.incircle`` identifies flips of
     ties.
 
     Examples

@@ -41,18 +41,19 @@ __all__ = ["ConvexHull"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HullReport(ValidationReport):
-    """The result of ``ConvexHull.validate()``: truthy if the hull is right.
+    """The result of ``ConvexHull.validate()``: truthy if the hull is correct.
 
     Parameters
     ----------
     neighbors : ndarray of int, shape (k,)
         Simplices whose neighbors are not mutual.
     concave : ndarray of int, shape (k, 2)
-        Adjacent simplices that do not meet at a convex angle, or not flat within one facet.
+        Adjacent simplices that do not meet at a convex angle or, within one facet, are not
+        coplanar.
     outside : ndarray of int, shape (k,)
         Rows of points outside.
     vertices : ndarray of int, shape (k,)
-        Rows that are in one of `vertices` and `facets` only.
+        Rows that are only in one of `vertices` and `facets`.
     facets : ndarray of int, shape (k,)
         Facets that are not the polygons of their simplices.
 
@@ -68,7 +69,7 @@ class HullReport(ValidationReport):
     )
     outside: NDArray[np.integer] = fault("point is outside", "points are outside")
     vertices: NDArray[np.integer] = fault(
-        "row is in one of vertices and facets only", "rows are in one of vertices and facets only"
+        "row is only in one of vertices and facets", "rows are only in one of vertices and facets"
     )
     facets: NDArray[np.integer] = fault(
         "facet is not the polygon of its simplices",
@@ -87,24 +88,23 @@ class ConvexHull(Complex):
     Parameters
     ----------
     points : array_like, shape (n, d)
-        Finite coordinates, two to eight of each point, in any unit: floats of up to 64 bits,
+        Finite coordinates, two to eight for each point, in any unit: floats of up to 64 bits,
         integers up to 2**53. They are copied, and results are exact for them.
     workers : int, optional
         Maximum number of threads for measures; by default one per core. The hull itself uses one
         thread.
     max_bytes : int, optional
-        From 4-D on: the most memory that the hull may take, as for `Delaunay`; by default what is
-        free.
+        From 4-D on: the maximum memory of the hull, as for `Delaunay`; by default the free memory.
 
     Attributes
     ----------
     points : ndarray of float64, shape (n, d)
         The coordinates.
     simplices : ndarray of int32, shape (h, d)
-        Edges or triangles, as rows of `points`: with the hull to the left of edges, triangles
-        counter-clockwise as seen from outside. In 3-D each begins with its lexicographically
-        smallest point; in 2-D they follow each other counter-clockwise. In more dimensions
-        simplices of d corners, which are positively oriented behind a point inside.
+        Edges with the hull to their left, or triangles, counter-clockwise as seen from outside, as
+        rows of `points`. In 3-D, each begins with its lexicographically smallest point; in 2-D,
+        they follow each other counter-clockwise. In more dimensions, simplices of d corners, which
+        are positively oriented when they follow an interior point.
     neighbors : ndarray of int32, shape (h, d)
         ``neighbors[i, k]`` is the simplex that shares all vertices of simplex i but vertex k.
     vertices : ndarray of int32, shape (v,)
@@ -120,7 +120,7 @@ class ConvexHull(Complex):
     Raises
     ------
     DegenerateInputError
-        The points span no area, or no volume; the error is that of `Delaunay`.
+        The points span no area, or no volume; the error is the same as for `Delaunay`.
     NonFiniteError
         A coordinate is NaN or infinite.
     ShapeError, DtypeError
@@ -177,7 +177,7 @@ class ConvexHull(Complex):
 
     _duplicates: Indices
     _facet_of: Indices
-    # From 4-D on, for each simplex a point that is not on its plane.
+    # From 4-D on, a point for each simplex that is not in its plane.
     _inside: Indices
     _polygons: Indices
     _starts: Indices
@@ -196,7 +196,7 @@ class ConvexHull(Complex):
             as_workers(workers)
         arrays = _ARRAYS_OF.get(own.shape[1], hull_arrays)(own)
         if arrays is None:
-            Delaunay(own)  # which says what the points span instead
+            Delaunay(own)  # The error says what the points span instead.
             error = InternalError("the hull of points that span a simplex is flat")
             error.points = own
             raise error
@@ -216,7 +216,7 @@ class ConvexHull(Complex):
 
         Notes
         -----
-        Exact; takes as long as locating all points.
+        The proof is exact and takes as long as locating all points.
 
         Examples
         --------
@@ -244,7 +244,7 @@ class ConvexHull(Complex):
         )
 
     def _sides(self, row: Rows, apex: Indices) -> tuple[NDArray[np.integer], int]:
-        """Return the signs of points in front of simplices, exactly, and the sign of the inside."""
+        """Return the exact signs of points relative to simplices, and the sign of the inside."""
         if self.ndim > 3:
             cones = np.column_stack((apex, self._simplices[row])).astype(np.int32)
             return _core.orientations_n(self._points, cones, as_workers(self._workers)), 1
@@ -253,7 +253,7 @@ class ConvexHull(Complex):
         return orient(*corners, self._points[apex]), 1 if self.ndim == 2 else -1
 
     def _wrong_facets(self) -> NDArray[np.int64]:
-        """Return the facets whose sides are not those of their simplices against other facets."""
+        """Return the facets whose sides are not those between their simplices and other facets."""
         tail, size = self._polygons, np.diff(self._starts)
         facet = np.repeat(np.arange(len(size)), size)
         if self.ndim > 3:
@@ -346,11 +346,11 @@ class ConvexHull(Complex):
             normals = space.face_normals(self._points, corners, self._workers)
         with np.errstate(all="ignore"):
             offsets = -(normals * self._points[corners[:, 0]]).sum(axis=1)
-            # Partial sums may leave the range where the offset does not.
+            # Partial sums may leave the range of doubles even if the offset does not.
             far = ~np.isfinite(offsets)
             quarters = self._points[corners[far, 0]] / 4
             offsets[far] = -4 * (normals[far] * quarters).sum(axis=1)
-        # Adding 0 makes -0 the 0 that it is.
+        # Adding 0 turns -0 into 0.
         return sealed(np.column_stack((normals, offsets + 0.0))[self._facet_of])
 
     @property
@@ -358,10 +358,10 @@ class ConvexHull(Complex):
     def volume(self) -> float:
         """The volume; in 2-D, as in SciPy, the area.
 
-        With a relative error below 1e-13; inf, or rounded among the subnormal numbers, where it is
-        beyond the range of doubles.
+        The relative error is below 1e-13. Beyond the range of doubles, the value is inf, or rounded
+        to a subnormal number.
         """
-        base = int(self._polygons[0])  # the lexicographically smallest, whatever the rows
+        base = int(self._polygons[0])  # the lexicographically smallest, whatever the order of rows
         if self.ndim == 2:
             fan = np.column_stack((np.full(self.nsimplex, base), self._simplices))
             fan = fan[(self._simplices != base).all(axis=1)]
@@ -389,7 +389,7 @@ class ConvexHull(Complex):
         return plane.total(space.face_areas(self._points, self._simplices, self._workers))
 
     def contains(self, xi: ArrayLike) -> Bools:
-        """Return which points are in the hull, boundary included.
+        """Return which points are in the hull, including its boundary.
 
         Parameters
         ----------
@@ -408,7 +408,7 @@ class ConvexHull(Complex):
 
         Notes
         -----
-        By the triangulation of the vertices, which the first call makes and keeps.
+        This uses the triangulation of the vertices, which the first call computes and keeps.
 
         Examples
         --------
@@ -459,7 +459,7 @@ class ConvexHull(Complex):
             Columns to include, with one row. The geometry of a GeoDataFrame is replaced; its
             reference system and index are kept.
         crs : optional
-            Reference system of the coordinates, anything that geopandas takes; by default that of
+            Reference system of the coordinates, anything that geopandas accepts; by default that of
             the points, if they declared one.
 
         Returns

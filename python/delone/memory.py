@@ -11,7 +11,8 @@ from delone.errors import DeloneError
 
 __all__ = ["TooLargeError", "free_memory"]
 
-# Limit, use and statistics of the control group of a process, in version 2 and 1 of Linux.
+# Limit, use and statistics of the control group of a process, in versions 2 and 1 of Linux control
+# groups.
 _GROUPS = (
     ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current", "/sys/fs/cgroup/memory.stat"),
     (
@@ -66,8 +67,8 @@ class TooLargeError(DeloneError, MemoryError):
     limit: int
 
     def __new__(cls, *args: object, **kwargs: object) -> Self:
-        """Create an error; libraries that copy errors, such as tblib, call this alone."""
-        # The one of MemoryError refuses classes with another base.
+        """Create an error; libraries that copy errors, such as tblib, call only this."""
+        # That of MemoryError rejects classes with another base.
         return Exception.__new__(cls, *args)
 
     def __init__(
@@ -87,8 +88,8 @@ class TooLargeError(DeloneError, MemoryError):
 def free_memory() -> int | None:
     """Return the bytes that are available without swapping, or None if the system does not say.
 
-    On Linux, at most what the control group of the process, such as that of a container, leaves; on
-    Windows, the free physical memory; on other systems, all physical memory.
+    On Linux, limited by what is left in the control group of the process, such as that of a
+    container; on Windows, the free physical memory; on other systems, all physical memory.
     """
     free = _available() or _available_on_windows()
     if free is None:
@@ -101,7 +102,7 @@ def free_memory() -> int | None:
 
 
 def _available() -> int | None:
-    """Return what Linux says to be available."""
+    """Return what Linux reports as available."""
     for line in _lines("/proc/meminfo"):
         if line.startswith("MemAvailable:"):
             return 1024 * int(line.split()[1])
@@ -112,17 +113,17 @@ def _left_in_group() -> int | None:
     """Return how much more the control group of this process may use; None without a limit."""
     for limit, used, cache in _GROUPS:
         found, now = _lines(limit), _lines(used)
-        # Without a limit it is "max", or a number beyond any memory.
+        # Without a limit, it is "max", or a number larger than any memory.
         if found and now and found[0].isdigit() and now[0].isdigit():
             names = dict(line.split()[:2] for line in _lines(cache) if " " in line)
-            # Files that are cached are dropped where memory is needed.
+            # Cached files are dropped when memory is needed.
             dropped = int(names.get("total_inactive_file", names.get("inactive_file", 0)))
             return max(0, int(found[0]) - int(now[0]) + dropped)
     return None
 
 
 def _lines(path: str) -> list[str]:
-    """Return the lines of a file of the system; none if it is not there."""
+    """Return the lines of a system file; none if it does not exist."""
     try:
         return Path(path).read_text(encoding="ascii").splitlines()
     except (OSError, ValueError):

@@ -84,7 +84,7 @@ class PeriodicDelaunay(Complex):
     NonFiniteError
         A coordinate or weight is NaN or infinite.
     ShapeError
-        There are not as many weights as points.
+        The numbers of weights and points differ.
 
     Notes
     -----
@@ -278,7 +278,7 @@ class PeriodicDelaunay(Complex):
 
     @property
     def _separate(self) -> tuple[Floats, Indices]:
-        """The triangles at their places, with three points each."""
+        """The triangles at their positions, with three points each."""
         return self.corners.reshape(-1, 2), _numbered(self.nsimplex)
 
     def _parts(self) -> Parts:
@@ -331,7 +331,7 @@ def _require_one_period(points: Floats, periods: tuple[float | None, float | Non
 def vertex_of(points: Floats, weights: Floats | None) -> Indices:
     """Return for each row, (n, 2), the first one with the same coordinates and weight.
 
-    Rows that are lighter than another with the same coordinates stay by themselves.
+    Rows with a smaller weight than another one with the same coordinates remain separate.
     """
     stands_for = _standing(points, weights)
     if weights is not None:
@@ -341,7 +341,7 @@ def vertex_of(points: Floats, weights: Floats | None) -> Indices:
 
 
 def _standing(points: Floats, weights: Floats | None) -> NDArray[np.int64]:
-    """The row that stands for each: the heaviest with its coordinates, the first of these."""
+    """The row that represents each: the heaviest with its coordinates, the first if several."""
     first = first_rows(points)
     if weights is None:
         return first
@@ -372,7 +372,7 @@ def _triangulated(
     if not len(made.simplices):
         raise DegenerateInputError(
             "all points lie on one line along the period, so there is no triangle; `error.chain` "
-            "has the rows of those that are not hidden, in order",
+            "contains the rows of those that are not hidden, in order",
             reason="collinear",
             chain=made.chain,
         )
@@ -394,7 +394,7 @@ def _numbered(count: int) -> Indices:
 def _directed(
     simplices: Indices, offsets: Indices
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """The edge opposite each corner, counter-clockwise: from, to, and by how much that is moved."""
+    """The edge opposite each corner, counter-clockwise: from, to, and the offset of the latter."""
     a, b = simplices[:, [1, 2, 0]], simplices[:, [2, 0, 1]]
     moved = offsets[:, [2, 0, 1]].astype(np.int64) - offsets[:, [1, 2, 0]]
     return a.reshape(-1).astype(np.int64), b.reshape(-1).astype(np.int64), moved.reshape(-1, 2)

@@ -88,8 +88,8 @@ class RegularTriangulation(PointTriangulation):
 
     The result is exact and unique. Ties are broken as in `delone.Delaunay`, so a point whose lift
     lies on the hull but is not a corner of it is hidden. If points have the same coordinates, the
-    one with the greatest weight is used, and the others are hidden. If their weights are also
-    equal, the first row is the vertex, and the others are its duplicates.
+    one with the largest weight is used, and the others are hidden. If their weights are also equal,
+    the first row is the vertex, and the others are its duplicates.
 
     The method is cavity insertion along a Hilbert curve (Bowyer; Watson, both 1981). It takes
     O(n log n) time on typical inputs.
@@ -198,7 +198,7 @@ class RegularTriangulation(PointTriangulation):
 
 
 def as_weights(weights: ArrayLike, npoints: int) -> Floats:
-    """Return a copy of finite weights, one for each point, that no one else can change."""
+    """Return a copy of finite weights, one for each point, that cannot be changed from outside."""
     shape = as_plain_array(weights, "weights").shape
     if shape != (npoints,):
         raise ShapeError(f"weights must have shape ({npoints},), one for each point, got {shape}")
@@ -246,7 +246,7 @@ def _degenerate(points: Floats, chain: Indices) -> DegenerateInputError:
     distinct = len(np.unique(points + 0.0, axis=0))
     reason = "too few points" if distinct < 3 else "collinear"
     return DegenerateInputError(
-        f"the {counted(distinct, 'distinct point')} span no triangle; `error.chain` has those "
+        f"the {counted(distinct, 'distinct point')} span no triangle; `error.chain` lists those "
         f"that are not hidden, in order",
         reason=reason,
         chain=chain,

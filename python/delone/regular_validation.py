@@ -1,6 +1,6 @@
 """Reports of exact validation of regular and periodic triangulations.
 
-The checks run in the core, as those of `validation`. This module names the faults.
+The checks run in the core, like those of `validation`. This module names the faults.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _REPEATS = (
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Weighted:
-    """What reports of regular triangulations have in every dimension."""
+    """What reports on regular triangulations contain in every dimension."""
 
     hidden: Rows = fault(*_HIDDEN)
     duplicates: Rows = fault("row has the wrong duplicate", "rows have the wrong duplicates")
@@ -53,14 +53,14 @@ class _Weighted:
     }
 
 
-# Fields of the last base are the first.
+# The fields of the last base come first.
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RegularReport(_Weighted, ValidationReport):
     """The result of ``RegularTriangulation.validate()``: truthy if the triangulation is correct.
 
-    The fields are those of `ValidationReport`, with these changes: `missing` has points outside all
-    triangles, `repeats` has vertices that are not the first of the heaviest rows with their
-    coordinates, and `delaunay` and `ties` are about lifted points. Two more:
+    The fields are those of `ValidationReport`, with these changes: `missing` lists points outside
+    all triangles, `repeats` lists vertices that are not the first of the heaviest rows with their
+    coordinates, and `delaunay` and `ties` are about lifted points. There are two more:
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class RegularReport(_Weighted, ValidationReport):
 class RegularSpaceReport(_Weighted, SpaceReport):
     """The result of ``RegularTriangulation.validate()`` in 3-D.
 
-    The fields are those of `SpaceReport`, with the changes of `RegularReport`. Two more:
+    The fields are those of `SpaceReport`, with the changes of `RegularReport`. There are two more:
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ class RegularSpaceReport(_Weighted, SpaceReport):
 class RegularHigherReport(_Weighted, HigherReport):
     """The result of ``RegularTriangulation.validate()`` in more than three dimensions.
 
-    The fields are those of `HigherReport`, with the changes of `RegularReport`. Two more:
+    The fields are those of `HigherReport`, with the changes of `RegularReport`. There are two more:
 
     Parameters
     ----------
@@ -128,11 +128,11 @@ class RegularHigherReport(_Weighted, HigherReport):
 class PeriodicReport(ValidationReport):
     """The result of ``PeriodicDelaunay.validate()``: truthy if the triangulation is correct.
 
-    The fields are those of `ValidationReport`, with these changes: `neighbors` has triangles whose
-    `neighbors` or `partners` are wrong, `hull` has edges without a partner that are not on the
-    boundary of the strip, and `edges` is always empty. With v vertices and h edges without a
+    The fields are those of `ValidationReport`, with these changes: `neighbors` lists triangles
+    whose `neighbors` or `partners` are wrong, `hull` lists edges without a partner that are not on
+    the boundary of the strip, and `edges` is always empty. With v vertices and h edges without a
     partner, `count` expects 2v - h triangles. With weights, `delaunay` and `ties` are about lifted
-    points, and `missing` is always empty. More:
+    points, and `missing` is always empty. There are three more:
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ def validate_regular(
 
 
 def _differing(found: Indices, expected: Indices) -> NDArray[np.int64]:
-    """Return the rows of pairs that stand in one array only; of all where the order differs."""
+    """Return the rows of pairs that are in only one array; all rows if the order differs."""
     if np.array_equal(found, expected):
         return np.empty(0, dtype=np.int64)
     pairs, count = np.unique(np.concatenate((found, expected)), axis=0, return_counts=True)

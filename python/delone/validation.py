@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from delone._base.types import Floats, Indices
 
     Rows = NDArray[np.integer]
-    # By kind of fault: what is said about one element, and about several.
+    # By kind of fault: the message for one element, and for several.
     Sentences = Mapping[str, tuple[str, str]]
 
 __all__ = ["HigherReport", "SpaceReport", "ValidationReport", "validate"]
@@ -36,10 +36,10 @@ _SHOWN = 5
 
 
 def fault(one: str = "", many: str = "", *, width: int | None = None) -> Any:
-    """Return a field of faulty elements, by default none, with the sentences about them.
+    """Return a field of faulty elements, by default none, with their messages.
 
-    `width` is the number of columns, for elements that are several rows. Without sentences, the
-    report says what is wrong in another way.
+    `width` is the number of columns, for elements that are several rows. Without messages, the
+    report describes the fault differently.
     """
     shape = (0,) if width is None else (0, width)
     return field(
@@ -120,12 +120,12 @@ class ValidationReport(ReadOnly):
     count: Rows = fault()
 
     _SUBJECT: ClassVar[str] = "a canonical Delaunay triangulation"
-    # Sentences about fields of a base that mean something else in this class.
+    # Messages for fields of a base class that have a different meaning in this class.
     _SAID: ClassVar[Sentences] = {}
 
     @classmethod
     def _of(cls, faults: Any, **more: Any) -> Self:
-        """Return a report of what the core found, by its names, and of more or other fields."""
+        """Return a report of what the core found, by name, with additional or different fields."""
         names = {each.name for each in fields(cls)} - set(more)
         found = {name: getattr(faults, name) for name in names if hasattr(faults, name)}
         return cls(**found, **more)
@@ -162,7 +162,7 @@ class ValidationReport(ReadOnly):
 
 
 def _of_cells(one: str, many: str, facet: str) -> Sentences:
-    """Return the sentences about cells of more than two dimensions."""
+    """Return the messages for cells of more than two dimensions."""
     return {
         "orientation": (f"{one} is not positively oriented", f"{many} are not positively oriented"),
         "neighbors": (f"{one} has wrong neighbors", f"{many} have wrong neighbors"),
@@ -183,7 +183,7 @@ class SpaceReport(ValidationReport):
     """The result of ``validate()`` in 3-D: truthy if the triangulation is correct.
 
     The fields are those of `ValidationReport`, for tetrahedra instead of triangles, with faces of
-    three vertices in `hull`; `edges` and `count` are always empty. One more:
+    three vertices in `hull`; `edges` and `count` are always empty. There is one more:
 
     Parameters
     ----------
@@ -213,7 +213,8 @@ class HigherReport(ValidationReport):
 
     The fields are those of `ValidationReport`, for simplices instead of triangles, with facets of d
     vertices in `hull`; `edges` and `count` are always empty. If a simplex is not positively
-    oriented, or has wrong neighbors, the other faults of simplices are not sought. One more:
+    oriented, or has wrong neighbors, the other faults of simplices are not checked. There is one
+    more:
 
     Parameters
     ----------
@@ -244,7 +245,7 @@ def validate(
     Parameters
     ----------
     points : array_like, shape (n, d)
-        Finite coordinates, from two to eight of each point.
+        Finite coordinates, from two to eight for each point.
     simplices : array_like of int, shape (m, d + 1)
         Vertices of the simplices, as rows of `points`.
     neighbors : array_like of int, shape (m, d + 1), optional

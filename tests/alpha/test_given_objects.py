@@ -49,7 +49,7 @@ def test_alpha_complexes_keep_periods_and_weights() -> None:
         (delone.concave_hull, GLOBE, "a concave hull is not available on the sphere"),
         (delone.AlphaComplex, GLOBE, "an alpha complex is not available on the sphere"),
         (graphs.delaunay_graph, GLOBE, "a graph is not available on the sphere"),
-        (delone.Dynamic, GLOBE, "not a Delaunay, of which the points alone"),
+        (delone.Dynamic, GLOBE, "not a Delaunay, of which only the points"),
         (delone.Dynamic, PERIODIC, "not a PeriodicDelaunay"),
         (delone.Dynamic, REGULAR, "not a RegularTriangulation"),
         (delone.Dynamic, delone.Voronoi(POINTS), "not a Voronoi"),

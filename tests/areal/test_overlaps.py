@@ -186,7 +186,7 @@ def test_tables_and_their_reference_systems() -> None:
         Overlaps(shapes, degrees)
     utm = Overlaps(shapes.translate(1e5, 4.5e5), shapes.translate(1e5, 4.5e5).to_crs(32631))
     assert np.diag(utm.matrix.toarray()[:2, :2]) == pytest.approx([72, 3], rel=1e-3)
-    with pytest.warns(delone.CRSWarning, match="taken as the same"):
+    with pytest.warns(delone.CRSWarning, match="assumed to be the same"):
         Overlaps(shapes, geopandas.GeoSeries([hole]))
 
 
@@ -221,7 +221,7 @@ def test_what_is_refused() -> None:
         Overlaps(delone.sphere.Delaunay(lonlat=[(0, 0), (90, 0), (0, 90), (180, -40)]), square)
     with pytest.raises(delone.InputError, match="3-D"):
         Overlaps(Delaunay(np.random.default_rng(0).random((9, 3))), square)
-    with pytest.raises(delone.InputError, match="make AreaWeights by"):
+    with pytest.raises(delone.InputError, match="create AreaWeights with"):
         AreaWeights()
 
 

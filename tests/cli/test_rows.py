@@ -172,6 +172,6 @@ def test_graphs_have_nodes_with_all_columns(wells, command, tmp_path):
 def test_columns_that_no_file_has_are_told(wells, command, tmp_path):
     code, _, err = command("graph", wells, "--planar", "-o", tmp_path / "out.csv")
     assert code == 0
-    assert "has 4 further columns, which edges have not" in err
+    assert "has 4 further columns, which edges do not have" in err
     code, _, err = command("graph", wells, "-o", wells.with_name("n.csv"), "--nodes", "n.vtu")
     assert code == 2

@@ -134,7 +134,7 @@ def test_regions_and_lines_in_degrees_are_transformed(tmp_path, figures, command
     assert found["cut"] == pytest.approx(100, rel=1e-4)
     assert figures("profile", source, road, *there)["length"] == pytest.approx(42.43, abs=0.01)
     code, _, notes = command("volume", source, 0, "--region", pit)
-    assert code == 0 and "that of the surface is unknown, and taken as the same" in notes
+    assert code == 0 and "that of the surface is unknown, and assumed to be the same" in notes
     assert "no area in common" in notes
 
 

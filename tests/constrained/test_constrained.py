@@ -466,7 +466,7 @@ class TestObject:
     @pytest.mark.parametrize(
         ("name", "change", "match"),
         [
-            ("constrained", lambda a: ~a, "flags of edges"),
+            ("constrained", lambda a: ~a, "edge flags"),
             ("segments", lambda a: a[[0] * len(a)], "repeated"),
             ("source", lambda a: a + 100, "index outside"),
             ("source_start", lambda a: a[:-1], "sources of segments"),

@@ -217,7 +217,7 @@ def test_sources_are_checked(source: Any, words: str) -> None:
         ("segments", [(0, 4)], "outside the rows 0 to 3:\n  subsegment 0"),
         ("segments", [(0.0, 2.0)], "mesh.segments must hold integers"),
         ("segments", [(0, 2, 1)], r"mesh.segments must have shape \(q, 2\)"),
-        ("constrained", [[0, 1, 0], [0, 0, 1]], "constrained must hold bools"),
+        ("constrained", [[0, 1, 0], [0, 0, 1]], "constrained must contain booleans"),
         ("constrained", [[True, False, False]], "constrained must have shape"),
         ("neighbors", [[-1, 1, -1]], "neighbors must have shape"),
         ("simplices", [(0, 1, 9), (0, 2, 3)], "outside the rows"),

@@ -1,4 +1,4 @@
-"""Points of COPC and other LAS files inside of bounds: those that a mask of all would keep."""
+"""Points of COPC and other LAS files inside bounds: those that a mask of all would keep."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ def cloud(count: int, d: int, seed: int) -> np.ndarray:
 
 
 def far(count: int, d: int, seed: int) -> np.ndarray:
-    """Queries of which most are outside of a unit cube."""
+    """Queries of which most are outside a unit cube."""
     return np.random.default_rng(seed).normal(size=(count, d)) * 2
 
 

@@ -49,7 +49,7 @@ def test_values_are_those_of_the_mesh(d: int, kind: str) -> None:
     assert np.array_equal(lazy(points), mesh(points))
     weights = lazy.weights_at(queries[known]) @ values**2
     assert np.abs(weights - found[known]).max() < 1e-12 * np.abs(found[known]).max()
-    # Strictly inside of a simplex, slopes are those of the same simplex.
+    # Strictly inside a simplex, slopes are those of the same simplex.
     place = mesh.triangulation.locate(queries)
     inner = (place.simplex >= 0) & (place.barycentric > 1e-9).all(axis=1)
     slopes, right = lazy.gradient(queries[inner]), mesh.gradient(queries[inner])
@@ -88,7 +88,7 @@ def test_many_coordinates(d: int) -> None:
     assert field.gradient(queries) == pytest.approx(np.tile(slope, (12, 1)), rel=1e-6)
     assert (field(points) == points @ slope).all()
     assert np.isnan(field(np.full(d, 2.0)))
-    # Each simplex is Delaunay: no site is inside of its sphere by more than rounding.
+    # Each simplex is Delaunay: no site is inside its sphere by more than rounding.
     corners, weights = _core.LazyN(points).within(queries, 1)
     for v, w, q in zip(points[corners], weights, queries, strict=True):
         assert w.min() >= 0

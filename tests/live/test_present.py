@@ -457,10 +457,10 @@ def test_few_points_cannot_claim_the_memory_of_many(tmp_path: Path) -> None:
 def test_many_points_may_have_had_64_handles_each() -> None:
     saved = State.of(Dynamic()._live)._replace(points=np.zeros((200_000, 2)))
     require_few_handles("a.npz", saved._replace(total=12_800_000), None)
-    with pytest.raises(delone.FileFormatError, match="max_handles=12800001 takes them"):
+    with pytest.raises(delone.FileFormatError, match="max_handles=12800001 accepts them"):
         require_few_handles("a.npz", saved._replace(total=12_800_001), None)
     # The limit is for handles of segments as well.
-    with pytest.raises(delone.FileFormatError, match="max_handles=12800001 takes them"):
+    with pytest.raises(delone.FileFormatError, match="max_handles=12800001 accepts them"):
         require_few_handles("a.npz", saved._replace(segments_total=12_800_001), None)
 
 
@@ -469,9 +469,11 @@ def test_pickles_cannot_claim_the_memory_of_many(monkeypatch: pytest.MonkeyPatch
     again, (saved, options) = live.__reduce__()
     for name in ("total", "segments_total"):
         bad = State(*saved)._replace(**{name: 2**31})
-        with pytest.raises(delone.InputError, match=r"takes at most 10,000,000.*max_handles=2147"):
+        with pytest.raises(delone.InputError, match=r"accepts at most 10,000,000.*max_handles=2147"):
             again(tuple(bad), options)
-        with pytest.raises(delone.InputError, match="2,147,483,648 handles have been given, for 3"):
+        with pytest.raises(
+            delone.InputError, match="2,147,483,648 handles have been assigned, for 3"
+        ):
             type(live.snapshot())._again(tuple(bad))
     # One that could not be read is not written: the error comes where it can still be saved.
     monkeypatch.setattr(saving, "_ALWAYS", 3)

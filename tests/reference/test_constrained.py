@@ -67,7 +67,7 @@ def test_the_assertion_accepts_it(points: Points, segments: Segments) -> None:
 
 @given(POINTS, ENDS)
 def test_no_point_that_is_seen_is_inside_a_circle(points: Points, segments: Segments) -> None:
-    """The definition, for all points: seen from inside of the triangle, ties broken."""
+    """The definition, for all points: seen from inside the triangle, ties broken."""
     segments = plain(points, segments)
     made = answer(points, segments)
     for triangle in made.triangles:

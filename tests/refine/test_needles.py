@@ -17,8 +17,8 @@ def ring(count: int) -> list[tuple[int, int]]:
     return [(i, (i + 1) % count) for i in range(count)]
 
 
-# Each had edges with a vertex inside of the circle of the triangle beyond: a segment was split at a
-# rounded place outside of the circle of a needle, and nobody looked at the edges of the new vertex.
+# Each had edges with a vertex inside the circle of the triangle beyond: a segment was split at a
+# rounded place outside the circle of a needle, and nobody looked at the edges of the new vertex.
 CASES: dict[str, tuple[list[tuple[float, float]], list[tuple[int, int]], dict[str, Any]]] = {
     "two lines one place apart": (
         [(0, 2 + 2 * U), (3 - 2 * U, 2), (0, 2 + 2 * U), (0, 1 - U / 2), (3, 2 + 2 * U),

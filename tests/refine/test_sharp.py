@@ -32,7 +32,7 @@ def box(size: float = 10.0) -> np.ndarray:
 
 
 def corner_in_a_box(degrees: float) -> tuple[np.ndarray, np.ndarray]:
-    """Two segments that meet at a small angle, inside of a square."""
+    """Two segments that meet at a small angle, inside a square."""
     a = math.radians(degrees)
     points, segments = loops(box())
     more = [(0, 0), (5, 0), (5 * math.cos(a), 5 * math.sin(a))]

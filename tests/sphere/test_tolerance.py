@@ -1,4 +1,4 @@
-"""Directions just outside of a hull on the sphere, which a tolerance includes."""
+"""Directions just outside a hull on the sphere, which a tolerance includes."""
 
 from __future__ import annotations
 

@@ -154,7 +154,7 @@ def _hull() -> dict[str, Any]:
 WRONG_SOLID: list[tuple[Callable[[Any], dict[str, Any]], str]] = [
     (lambda a: {"box": np.arange(6.0)}, "two clips"),
     (lambda a: {"box": np.arange(4.0), "corners": np.empty((0, 3))}, "box is incomplete"),
-    (lambda a: {"planes": np.empty((0, 4))}, "without planes"),
+    (lambda a: {"planes": np.empty((0, 4))}, "has no planes"),
     (lambda a: {"planes": a["planes"][:-1]}, "faces and planes"),
     (lambda a: {"planes": a["planes"] * np.nan}, "not finite"),
     (lambda a: {"planes": a["planes"] * [1, 1, 1, 1.001]}, "does not contain its face"),

@@ -248,7 +248,7 @@ def test_outlines_come_as_tables_and_mappings_too() -> None:
     ):
         diagram = Voronoi([(0.5, 0.5), (1.5, 0.5)], clip=clip)
         assert diagram.cell_areas.sum() == pytest.approx(size)
-    with pytest.raises(InputError, match="polygons, and nothing else"):
+    with pytest.raises(InputError, match="contain only polygons"):
         Voronoi([(0, 0)], clip=geopandas.GeoSeries([left, shapely.Point(0, 0)]))
     with pytest.raises(InputError, match="not a geometry"):
         Voronoi([(0, 0)], clip={"type": "Polygone"})

@@ -1,1 +1,1 @@
-"""Shared by all modules: arrays, checks of arguments, errors of files, units, immutability."""
+"""Shared by all modules: arrays, argument checks, file errors, units, immutability."""

@@ -1,4 +1,4 @@
-"""Conversion of the arguments of callers; values without an exact meaning are rejected.
+"""Conversion of callers' arguments; values without an exact meaning are rejected.
 
 After `as_points`, every other module may assume a native, aligned, C-contiguous float64 array of
 shape (n, 2) or (n, 3) with exactly the values that the caller wrote. Anything that float64 cannot
@@ -66,7 +66,7 @@ _REFUSED_KINDS = {
 def as_points(
     points: ArrayLike, *, ndim: int | None = None, most: int = 3, name: str = "points"
 ) -> NDArray[np.float64]:
-    """Return points as a C-contiguous float64 array with exactly the values given, NaN included.
+    """Return points as a C-contiguous float64 array with exactly the values given, including NaN.
 
     From 2 to `most` columns from anything array-like; `ndim` requires a number. No copy is made if
     none is needed, so the result may be the input itself, even if read-only: never modify it.
@@ -90,7 +90,7 @@ def as_points(
 
 
 def _coordinates(points: Any, ndim: int | None, name: str) -> Any:
-    """Return the coordinates of point geometries; anything else as it is.
+    """Return the coordinates of point geometries; anything else is returned unchanged.
 
     Geometries are those of a GeoDataFrame, GeoSeries or sequence of shapely points.
     """
@@ -121,7 +121,7 @@ def _coordinates(points: Any, ndim: int | None, name: str) -> Any:
 def _of_points(
     shapely: Any, every: NDArray[Any], ndim: int | None, name: str
 ) -> NDArray[np.float64]:
-    """Return the coordinates of shapely points, (n,); refuse others, and heights in 2-D."""
+    """Return the coordinates of shapely points, (n,); reject others, and heights in 2-D."""
     strange = np.flatnonzero(~shapely.is_valid_input(every))
     if len(strange):
         kind = type(every[strange[0]]).__name__
@@ -290,7 +290,7 @@ def as_least(n: int, least: int, *, name: str) -> int:
 
 
 def as_limit(n: int, *, name: str) -> int:
-    """Return a count that means "at most", as `as_count`; the core counts in 32 bits."""
+    """Return a count that means "at most", like `as_count`; the core counts in 32 bits."""
     return min(as_count(n, name=name), LARGEST_LIMIT)
 
 
@@ -323,7 +323,7 @@ def as_optional_flag(flag: bool | None, *, name: str) -> bool | None:
 
 
 def as_callback(function: Any, *, name: str) -> Any:
-    """Return a function, or None; anything else raises an error before work is done."""
+    """Return a function, or None; anything else raises an error before the computation."""
     if function is None or callable(function):
         return function
     raise DtypeError(f"{name} must be a function or None, got {function!r:.60}")
@@ -368,7 +368,7 @@ def _is_right(points: Any, wanted: Sequence[int]) -> TypeGuard[NDArray[np.float6
 
 
 def as_plain_array(points: Any, name: str) -> NDArray[Any]:
-    """Return an ndarray of any dtype and shape, but not of a masked array or uneven rows."""
+    """Return an ndarray of any dtype and shape, but reject masked arrays and uneven rows."""
     refuse_masks(points, name)
     try:
         return np.asarray(points)
@@ -379,7 +379,7 @@ def as_plain_array(points: Any, name: str) -> NDArray[Any]:
 
 
 def _refuse_columns(points: Any, array: NDArray[Any], name: str) -> None:
-    """Reject a table whose columns x and y, by name, are not the first two, or not the only ones.
+    """Reject a table whose columns named x and y are not the first two, or not the only ones.
 
     A third column may be a coordinate.
     """

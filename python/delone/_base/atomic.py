@@ -27,12 +27,12 @@ FULL = {
     errno.EDQUOT: "your quota on this disk is used up",
     errno.EFBIG: "the file system, or the limit of ulimit -f, does not allow a larger file",
 }
-# Formats of several files: what belongs to a file, besides itself, with the same stem.
+# Formats of several files: the other files that belong to a file, with the same stem.
 _PARTS = {
     ".shp": (".shx", ".dbf", ".prj", ".cpg"),
     ".mif": (".mid",),
 }
-# Indices of others that would not be those of the new file.
+# Indices of other programs, which would not match the new file.
 _STALE = {".shp": (".sbn", ".sbx", ".qix")}
 # Characters of the target's name in the temporary name: file systems allow 255 bytes.
 _RECOGNIZABLE = 100
@@ -61,8 +61,8 @@ def check_target(path: str | os.PathLike[str]) -> Path:
 def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Yield a temporary name next to the target, and rename it to the target at the end.
 
-    A rename within one folder is atomic: a reader sees the old file or the new one. On failure
-    nothing is left whose name begins with the temporary name, and an OutputError names the target.
+    A rename within one folder is atomic: a reader sees the old file or the new one. On failure, no
+    file remains whose name begins with the temporary name, and an OutputError names the target.
     """
     target = check_target(path)
     # Only plain characters: some libraries cut a name at ";" or treat it as a pattern.
@@ -94,7 +94,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def _replace_parts(temporary: Path, target: Path) -> None:
-    """Rename the other files of a format of several files; old ones that have no new one go."""
+    """Rename the other files of a format of several files; remove old ones without a new one."""
     kind = target.suffix.lower()
     for suffix in (*_PARTS.get(kind, ()), *_STALE.get(kind, ())):
         made, old = temporary.with_suffix(suffix), target.with_suffix(suffix)

@@ -18,7 +18,7 @@ __all__ = ["ROWS", "blocks", "copied"]
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 
-# Rows of a block. Results for so many rows fit into the caches and take milliseconds.
+# Rows of a block. Results for this many rows fit into the caches and take milliseconds.
 ROWS = 1 << 16
 
 

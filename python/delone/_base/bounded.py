@@ -28,7 +28,7 @@ __all__ = ["EXPANSION", "archived", "header", "largest", "pieces", "read_array",
 EXPANSION, _ALWAYS = 200, 1 << 26
 # Text takes a hundred times longer to parse than to decompress: for it the second limit is lower.
 _ALWAYS_TEXT = 1 << 23
-# Those that NumPy writes. Python decompresses a piece of the others without a limit.
+# The methods that NumPy uses. With others, Python decompresses a piece without a limit.
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _PIECE = 1 << 20
 
@@ -40,7 +40,7 @@ def largest(size: int, *, text: bool = False) -> int:
 
 @contextmanager
 def archived(path: Path, file: IO[bytes] | None = None) -> Iterator[zipfile.ZipFile]:
-    """Open a zip archive, or a file that is open already, if it does not expand without limit."""
+    """Open a zip archive, or an open file, if its expansion is limited."""
     with zipfile.ZipFile(file or path) as archive:
         entries = archive.infolist()
         most = largest(path.stat().st_size)
@@ -56,7 +56,7 @@ def archived(path: Path, file: IO[bytes] | None = None) -> Iterator[zipfile.ZipF
 
 
 def pieces(file: IO[bytes], size: int) -> NDArray[np.uint8]:
-    """Return the next bytes of a file, `size` or fewer, never decompressing many more at once."""
+    """Return the next bytes of a file, `size` or fewer, never decompressing many more at a time."""
     data = np.empty(size, dtype=np.uint8)
     done = 0
     while done < size and (piece := file.read(min(_PIECE, size - done))):

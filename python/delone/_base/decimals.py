@@ -1,7 +1,7 @@
-"""Exact numbers of decimals that doubles stand for, and doubles nearest to multiples of them.
+"""The exact decimals that doubles represent, and the doubles nearest to their multiples.
 
-A double that prints with up to 15 digits stands for the decimal that it prints as: these are the
-digits that each double keeps. All others stand for themselves.
+A double that prints with up to 15 digits represents the decimal that it prints as: a double
+preserves this many digits. All others represent themselves.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _DIGITS = 15
 
 
 def exact(number: float) -> Fraction:
-    """Return the number that a finite double stands for."""
+    """Return the number that a finite double represents."""
     text = repr(float(number))
     digits = Decimal(text).normalize().as_tuple().digits
     return Fraction(text) if len(digits) <= _DIGITS else Fraction(float(number))

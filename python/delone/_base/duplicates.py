@@ -25,7 +25,7 @@ def first_rows(points: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def vertices_of(duplicates: NDArray[np.int32], count: int) -> NDArray[np.int32]:
-    """Return the vertex of each of `count` rows, where duplicates, (k, 2), are the other ones."""
+    """Return the vertex of each of `count` rows, given the duplicates, (k, 2)."""
     first = np.arange(count, dtype=np.int32)
     first[duplicates[:, 0]] = duplicates[:, 1]
     return first

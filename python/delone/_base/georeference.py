@@ -1,6 +1,6 @@
 """Coordinate reference systems of input data, and the warning about degrees.
 
-Everything that delone computes is planar. Longitudes and latitudes are used as they are, which is
+Everything that delone computes is planar. Longitudes and latitudes are used unchanged, which is
 rarely intended: a degree of longitude is shorter near the poles, and 179.9 is next to -179.9. Data
 that are known to be in degrees therefore cause a warning. Plain arrays carry no such information
 and cause none.
@@ -77,7 +77,7 @@ class GeographicWarning(UserWarning):
 
 
 class CRSWarning(UserWarning):
-    """A reference system is unknown, or gets lost.
+    """A reference system is unknown, or is lost.
 
     Data that could declare their system and do not are used with data in a known system, as if
     they were in the same one; or a file is written without it, because its format cannot store it.
@@ -105,7 +105,7 @@ def as_crs(crs: Any, *, name: str = "crs") -> str | None:
 
 
 def as_known_crs(crs: Any, *, name: str = "crs") -> str | None:
-    """Return a reference system as `as_crs` does; refuse one that pyproj, if there, rejects."""
+    """Return a reference system like `as_crs`; reject one that pyproj, if installed, rejects."""
     found = as_crs(crs, name=name)
     if found is None or is_known(found):
         return found
@@ -127,7 +127,7 @@ def crs_of(data: Any) -> str | None:
 def common_crs(geometries: Any) -> str | None:
     """Return the one system of geometries, or of all tables in a list or tuple; None without.
 
-    Tables without one are taken to be in the same, with a warning.
+    Tables without one are assumed to be in the same system, with a warning.
     """
     parts = geometries if isinstance(geometries, list | tuple) else [geometries]
     found: str | None = None
@@ -154,7 +154,7 @@ def transformed(
     """Return points of `data`, x and y first, in the reference system of other data.
 
     If both systems are known and different, pyproj transforms. If one of them is unknown, both are
-    taken as the same, with a warning where data could declare one. `to` describes the other data.
+    assumed to be the same, with a warning if data could declare one. `to` describes the other data.
     """
     source = common_crs(data)
     if source is None or target is None:
@@ -180,10 +180,10 @@ def transformed(
 
 
 def warn_of_unknown(system: str, *, known: str, unknown: str) -> None:
-    """Warn that data without a reference system are taken to be in that of other data."""
+    """Warn that data without a reference system are assumed to be in that of other data."""
     warnings.warn(
         f"the reference system of {known} is {_short(system)}; that of {unknown} is unknown, and "
-        "taken as the same",
+        "assumed to be the same",
         CRSWarning,
         stacklevel=caller_level(),
     )
@@ -208,8 +208,8 @@ def as_degrees(
 ) -> NDArray[np.float64]:
     """Return coordinates in a reference system, (n, 2), as longitudes and latitudes in degrees.
 
-    Without a system they are taken as such; a system with other coordinates is transformed with
-    pyproj, and refused without it.
+    Without a system, they are assumed to be such; coordinates in other systems are transformed with
+    pyproj, and rejected without it.
     """
     if crs is None or is_geographic(crs):
         return coordinates
@@ -237,7 +237,7 @@ def is_known(crs: str) -> bool:
 
 
 def is_geographic(crs: str) -> bool:
-    """Return whether coordinates are degrees; without pyproj, if the system is a common one."""
+    """Return whether coordinates are degrees; without pyproj, for common systems."""
     known = parsed(crs)
     return bool(_GEOGRAPHIC.match(crs)) if known is None else bool(known.is_geographic)
 

@@ -57,7 +57,7 @@ class Immutable:
 
 
 class ReadOnly:
-    """The base of frozen dataclasses with read-only arrays, also after unpickling."""
+    """The base of frozen dataclasses with arrays that are read-only, even after unpickling."""
 
     def __post_init__(self) -> None:
         self._protect()
@@ -83,7 +83,7 @@ K = TypeVar("K", bound=type)
 
 
 def made_by(how: str) -> Callable[[K], K]:
-    """Give a class that functions make a constructor whose error says `how`, without arguments."""
+    """Give a class that functions create a constructor whose error says `how` to get an object."""
 
     def decorate(kind: K) -> K:
         def refuse(self: Any, *_: Any, **__: Any) -> NoReturn:
@@ -101,7 +101,7 @@ Of = TypeVar("Of", bound=Immutable)
 
 
 def kept(compute: Callable[[Of], T]) -> Callable[[Of], T]:
-    """Compute once per object, even if several threads ask at the same time."""
+    """Compute once per object, even if several threads need it at the same time."""
     name = compute.__name__
 
     @functools.wraps(compute)
@@ -120,9 +120,9 @@ def kept(compute: Callable[[Of], T]) -> Callable[[Of], T]:
 def sealed(array: NDArray[Any]) -> NDArray[Any]:
     """Return a read-only array that cannot be made writeable, not even through its base."""
     array.flags.writeable = False
-    # The owner of memory can always be made writeable again, and a view reaches it through its
-    # base. The owner of memory of the core cannot; other arrays get a memoryview as their base,
-    # which cannot either.
+    # An array that owns its memory can always be made writeable again, and a view reaches it
+    # through its base. Arrays that own memory of the core cannot; other arrays get a memoryview as
+    # their base, which cannot either.
     base = array.base
     if isinstance(base, np.ndarray):
         base.flags.writeable = False
@@ -133,7 +133,7 @@ def sealed(array: NDArray[Any]) -> NDArray[Any]:
 
 
 def own_copy(points: ArrayLike, *, ndim: int | None = 2, most: int = 3) -> NDArray[np.float64]:
-    """Return points that nobody else can change, not even while the core runs: `as_points`."""
+    """Return points, like `as_points`, that cannot be changed, even while the core runs."""
     array = as_points(points, ndim=ndim, most=most)
     if array is points:
         return copied(array)

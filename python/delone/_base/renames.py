@@ -1,7 +1,7 @@
 """Errors for old names, which give the new name until 0.1.0.
 
-A class with the decorator `renamed` does not have its old names, also for ``hasattr``; reading one
-raises AttributeError with the name to use.
+A class with the decorator `renamed` does not have its old names, not even for ``hasattr``; reading
+one raises AttributeError with the name to use.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ K = TypeVar("K", bound=type)
 
 
 class Renamed:
-    """An attribute that has another name now."""
+    """An attribute that now has a different name."""
 
     def __init__(self, old: str, new: str) -> None:
         self._old, self._new = old, new
@@ -28,7 +28,7 @@ class Renamed:
 
 
 def renamed(**names: str) -> Callable[[K], K]:
-    """Give a class, and those that inherit from it, errors that say the new names of attributes.
+    """Give a class and its subclasses errors that state the new names of attributes.
 
     Parameters
     ----------

@@ -14,11 +14,11 @@ __all__ = ["thinned"]
 
 
 def thinned(way: Floats, z: Floats, fixed: Bools, limit: float) -> Bools:
-    """Return which points of a profile stay, so that all others are within a vertical distance."""
+    """Return which points of a profile to keep, so that others are within a vertical distance."""
     kept = fixed.copy()
     kept[:1] = kept[-1:] = True
     spans = list(pairwise(np.flatnonzero(kept).tolist()))
-    while spans:  # each round with a split keeps one more point
+    while spans:  # Each round with a split keeps one more point.
         a, b = spans.pop()
         if b - a < 2:
             continue

@@ -1,7 +1,7 @@
-"""Units of length: their names, those of reference systems, and what must not be mixed.
+"""Units of length: their names, those of reference systems, and which ones must not be mixed.
 
 Heights in feet over coordinates in meters give slopes and volumes that look plausible and are
-wrong. So what is known to differ is an error or causes a warning; what is unknown causes none.
+wrong. So units that are known to differ are an error or cause a warning; unknown units do not.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ _WORDS = {
     "ftus": "us-ft",
     "mile": "mi",
 }
-# The two feet differ by two parts in a million.
+# The two feet differ by two parts per million.
 _SAME = 1e-9
 
 
@@ -124,7 +124,7 @@ def volume_units(crs: str | None, heights: str | None) -> str | None:
 
 
 def require_same_units(a: str | None, b: str | None, *, what: str) -> None:
-    """Refuse two units of heights that are known to differ."""
+    """Reject two units of heights that are known to differ."""
     if a is not None and b is not None and a != b:
         raise InputError(
             f"{what}: heights are in {a} and in {b}: multiply those in {b} by "
@@ -133,7 +133,7 @@ def require_same_units(a: str | None, b: str | None, *, what: str) -> None:
 
 
 def warn_of_units(lengths: str | None, heights: str | None, *, by: str) -> None:
-    """Warn if heights are known to be in a different unit from x and y, as known `by` something."""
+    """Warn if heights are known to be in a different unit from x and y; `by` says from what."""
     if lengths is None or heights is None or lengths == heights:
         return
     warnings.warn(

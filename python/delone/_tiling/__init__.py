@@ -1,1 +1,1 @@
-"""What triangulations of every dimension share: classes, measures, location, archives."""
+"""What triangulations of all dimensions share: classes, measures, location, archives."""

@@ -1,8 +1,8 @@
 """The base class of everything that consists of points and simplices: arrays, files, exchange.
 
 An object is filled once from its arrays and never changes. Pickles, `save` and `load`, and the
-methods that draw and convert are the same for all; a class names its arrays in `_ARRAYS` and gives
-their meaning.
+methods that draw and convert are the same for all; a class names its arrays in `_ARRAYS` and
+documents them.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from delone.exchange.parts import Parts
 
     Arrays = Mapping[str, NDArray[Any]]
-    # Names and seconds; a dictionary is made when it is asked for.
+    # Names and seconds; the dictionary is made on request.
     Stages = dict[str, float] | tuple[tuple[str, float], ...]
 
 __all__ = ["Complex", "Drawn", "Exchanged", "Filed", "Referenced", "Stored", "points_alone"]
@@ -35,7 +35,7 @@ __all__ = ["Complex", "Drawn", "Exchanged", "Filed", "Referenced", "Stored", "po
 def points_alone(
     given: Stored, *, what: str, needs: tuple[str, ...] = ("periods", "weights")
 ) -> Floats:
-    """Return the points of an object for `what`; refuse to lose what it `needs`, or the sphere."""
+    """Return the points of an object for `what`; raise if what it `needs` or the sphere is lost."""
     name = type(given).__name__
     if hasattr(given, "lonlat"):
         raise InputError(
@@ -61,7 +61,7 @@ class Referenced(Immutable):
     @property
     def crs(self) -> str | None:
         """The reference system of the points, if they declared one, as a GeoDataFrame does."""
-        # Set only where there is one: most points are arrays.
+        # Set only if there is one: most points are arrays.
         return getattr(self, "_system", None)
 
     def _refer(self, data: Any) -> Self:
@@ -134,12 +134,12 @@ class Exchanged(Referenced, Drawn):
         raise NotImplementedError
 
     def _raised_parts(self) -> Parts:
-        """Return the same for what shows heights, if there are some."""
+        """Return the same with heights, if there are any."""
         return self._parts()
 
     @only(FLAT_OR_SOLID, "meshio has no cells of more dimensions; use `save`")
     def to_meshio(self, *, order: int = 1) -> Any:
-        """Convert to a mesh of meshio (extra ``mesh``).
+        """Convert to a meshio mesh (extra ``mesh``).
 
         Parameters
         ----------
@@ -150,9 +150,9 @@ class Exchanged(Referenced, Drawn):
         Returns
         -------
         meshio.Mesh
-            The simplices, and segments as lines, with regions and markers as values. Where segments
-            have markers, as those of a `Mesh`, both are tags of Gmsh as well: regions from 1 on,
-            markers as they are. 2-D points get z = 0, those of a `TIN` their heights.
+            The simplices, and segments as lines, with regions and markers as values. If segments
+            have markers, like those of a `Mesh`, both are also Gmsh tags: regions from 1 on,
+            markers unchanged. 2-D points get z = 0, those of a `TIN` their heights.
 
         Raises
         ------
@@ -211,7 +211,7 @@ class Filed:
 
     __slots__ = ()
 
-    # Whether the arrays of a file have the reference system.
+    # Whether the arrays of a file contain the reference system.
     _SAVES_CRS: ClassVar[bool] = False
 
     def _saved(self) -> dict[str, NDArray[Any]]:
@@ -234,8 +234,7 @@ class Filed:
         Raises
         ------
         OSError
-            The file cannot be written, or is not a regular file; a file that exists stays as it
-            is.
+            The file cannot be written, or is not a regular file; an existing file is unchanged.
         TypeError
             `path` is not a path. File objects are not accepted.
 
@@ -245,8 +244,8 @@ class Filed:
 
         Notes
         -----
-        A symbolic link is followed. An existing file keeps its permissions. The file holds what
-        `load` needs for the same object, bit for bit, and no code.
+        A symbolic link is followed. An existing file keeps its permissions. The file contains what
+        `load` needs to restore the object bit for bit, and no code.
 
         Examples
         --------
@@ -292,7 +291,7 @@ class Filed:
         -----
         Shapes, dtypes, ranges, duplicates, mutual neighbors and orientations are checked in linear
         time; `validate` proves the rest. A `ConvexHull`, `RegularTriangulation`,
-        `PeriodicDelaunay`, `AlphaShape` and `Voronoi` are computed again from their input.
+        `PeriodicDelaunay`, `AlphaShape` and `Voronoi` are recomputed from their input.
 
         Examples
         --------
@@ -346,7 +345,7 @@ class Complex(Stored, Exchanged):
 
     __slots__ = ("_neighbors", "_points", "_simplices", "_stages")
 
-    # What the object consists of, by names; each has a slot with an underscore.
+    # The names of the object's parts; each has a slot with an underscore.
     _ARRAYS: ClassVar[tuple[str, ...]] = ("points", "simplices", "neighbors")
 
     _neighbors: Indices
@@ -408,7 +407,7 @@ class Complex(Stored, Exchanged):
 
     @property
     def npoints(self) -> int:
-        """Number of points, duplicates and points without a simplex included."""
+        """Number of points, including duplicates and points without a simplex."""
         return len(self._points)
 
     @property
@@ -424,13 +423,13 @@ class Complex(Stored, Exchanged):
     @property
     @kept
     def min_bound(self) -> Floats:
-        """The least coordinates, (d,)."""
+        """The smallest coordinates, (d,)."""
         return sealed(self._points.min(axis=0))
 
     @property
     @kept
     def max_bound(self) -> Floats:
-        """The greatest coordinates, (d,)."""
+        """The largest coordinates, (d,)."""
         return sealed(self._points.max(axis=0))
 
     def _parts(self) -> Parts:

@@ -1,8 +1,8 @@
-"""What differs between triangulations of one dimension and another: one table of functions each.
+"""What differs between triangulations of different dimensions: one table of functions for each.
 
-`plane` has the table of triangles in 2-D, `space` that of tetrahedra in 3-D, and `higher` those of
-simplices in four to eight dimensions. `triangulation` calls them; no other place asks how many
-coordinates there are.
+`plane` contains the table for triangles in 2-D, `space` that for tetrahedra in 3-D, and `higher`
+those for simplices in four to eight dimensions. `triangulation` calls them; no other module checks
+the number of coordinates.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Locator(Protocol):
     """The index of the core for point location; any number of threads may use one."""
 
     def find(self, xi: Floats, workers: int) -> Indices:
-        """Return the simplices that hold points."""
+        """Return the simplices that contain points."""
 
     def nearest(self, xi: Floats, workers: int) -> Indices:
         """Return the vertices nearest to points; the simplices must be Delaunay."""
@@ -35,7 +35,7 @@ class Locator(Protocol):
 
 @dataclass(frozen=True)
 class Dimension:
-    """The functions of one dimension, by one name each in all of them; a last int is `workers`."""
+    """The functions of one dimension, with the same names in each; a last int is `workers`."""
 
     ndim: int
     simplex: str
@@ -43,9 +43,9 @@ class Dimension:
     boundary: Callable[[Indices, Indices], Indices]
     # Vertices of the boundary.
     hull: Callable[[Floats, Indices], NDArray[np.int64]]
-    # Every triangle once; also of the number of points.
+    # Every triangle once; also takes the number of points.
     faces: Callable[[Indices, Indices, int, int | None], Indices]
-    # Shapes, of points and simplices.
+    # The shapes of points and simplices.
     quality: Callable[[Floats, Indices, int | None], Measures]
     # The index for point location.
     locator: Callable[[Floats, Indices, Indices], Any]
@@ -59,22 +59,22 @@ class Dimension:
 
 F = TypeVar("F", bound="Callable[..., Any]")
 
-# Dimensions that are not listed one by one.
+# Dimensions that are not listed individually.
 _MANY = 3
-# What has pictures, files of meshes and shapes of simplices.
+# Dimensions with plots, mesh files and measures of shape.
 FLAT_OR_SOLID = (2, 3)
 
 
 def absent(*_: Any) -> Any:
-    """Stand for a function that a dimension does not have; attributes hide it by `only`."""
+    """Replace a function that a dimension does not have; `only` hides its attributes."""
     raise NotImplementedError
 
 
 def only(ndim: int | tuple[int, ...], instead: str) -> Callable[[F], F]:
-    """Give a method, or the getter of a property, to instances of one dimension, or of several.
+    """Restrict a method, or the getter of a property, to instances of one or several dimensions.
 
-    In others the attribute does not exist, also for ``hasattr``; the error says what to use
-    `instead`.
+    In other dimensions, the attribute does not exist, not even for ``hasattr``; the error says what
+    to use `instead`.
     """
 
     def decorate(method: F) -> F:
@@ -102,7 +102,8 @@ class _Only:
         return self._method(owner, *args, **kwargs)
 
     def _check(self, owner: Any) -> None:
-        # What has no number of coordinates, such as the sphere, is drawn in 2-D or 3-D.
+        # Classes without a number of coordinates, such as those of the sphere, are drawn in 2-D or
+        # 3-D.
         if getattr(owner, "ndim", self._ndim[0]) not in self._ndim:
             name = self._method.__name__
             where = " and ".join(f"{d}-D" for d in self._ndim[:2])

@@ -1,7 +1,7 @@
 """Results of point location, in any dimension.
 
-Decisions are exact: the simplex that holds a point, and the facet of the boundary that is nearest
-to a point outside. Weights and points of the boundary are rounded.
+Decisions are exact: the simplex that contains a point, and the boundary facet that is nearest to a
+point outside. Weights and points of the boundary are rounded.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Location"]
 
-# The share of the extent of a facet by which a rounded distance to it may be off, with a margin.
+# The fraction of a facet's extent by which a rounded distance to it may be off, with a margin.
 _DOUBT = 2.0**-30
 
 
@@ -53,7 +53,7 @@ class Location:
     beside : ndarray of int32, shape (...)
         Outside, the simplex at that point of the boundary; otherwise -1.
     facet : ndarray of int32, shape (..., d)
-        Outside, the corners of the facet of the boundary with that point, the nearest by exact
+        Outside, the corners of the facet of the boundary with that point, the nearest one by exact
         distances: an edge with the triangle to its left, or a face, counter-clockwise seen from
         outside; else -1.
     weights : ndarray of float64, shape (..., d)
@@ -97,7 +97,7 @@ class Location:
 
 
 def find(dimension: Dimension, index: Locator, xi: ArrayLike, workers: int | None) -> Indices:
-    """Return the first simplex that holds each point of `xi`, (..., d); -1 where there is none."""
+    """Return the first simplex that contains each point of `xi`, (..., d); -1 if there is none."""
     queries = as_vectors(xi, dimension.ndim, name="xi")
     flat = queries.reshape(-1, dimension.ndim)
     return index.find(flat, as_workers(workers)).reshape(queries.shape[:-1])
@@ -111,8 +111,8 @@ def nearest(
 ) -> Indices:
     """Return the sites nearest to points, (..., d), as rows; -1 for points that are not finite.
 
-    `sites` are the index over a Delaunay triangulation, None if it has no simplex, and the row of
-    each of its points; None if these are all points in order.
+    `sites` are the index over a Delaunay triangulation, or None if it has no simplex, and the row
+    of each of its points, or None if these are all points in order.
     """
     queries = as_vectors(xi, dimension.ndim, name="xi")
     index, rows = sites
@@ -159,7 +159,7 @@ def locate_near(
     tolerance: float,
     workers: int | None,
 ) -> Location:
-    """Locate points; outside at most `tolerance` away, at the nearest point of the boundary."""
+    """Locate points; those at most `tolerance` outside, at the nearest point of the boundary."""
     limit = as_tolerance(tolerance)
     if limit and dimension.ndim not in FLAT_OR_SOLID:
         raise InputError(
@@ -181,7 +181,7 @@ def locate_near(
     simplex, barycentric = place.simplex.reshape(-1), place.barycentric.reshape(-1, d + 1)
     shares = place.weights.reshape(-1, d)
     simplex[rows] = beside[rows]
-    # The weights of the corners of the facet; that of the corner opposite is zero.
+    # The weights of the corners of the facet; that of the opposite corner is zero.
     corners = simplices[simplex[rows]]
     barycentric[rows] = 0.0
     for k in range(d):
@@ -220,7 +220,8 @@ def _are_near(
         distance = functools.reduce(np.hypot, (queries - nearest).T)
         largest = np.maximum(np.abs(corners).max(axis=(1, 2), initial=0.0), np.abs(queries).max(1))
         extent = np.ptp(corners, axis=1).max(axis=1, initial=0.0)
-        # Weights are right to 1e-12 and coordinates to a few roundings: both with a wide margin.
+        # Weights are accurate to 1e-12 and coordinates to a few rounding errors: both with a wide
+        # margin.
         error = _DOUBT * extent + 64 * np.spacing(largest)
         found: Bools = distance + error <= limit
         doubtful = ~found & ~(distance - error > limit)

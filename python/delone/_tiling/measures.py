@@ -1,4 +1,4 @@
-"""Measures of triangles and tetrahedra, and what reports of them have in common.
+"""Measures of triangles and tetrahedra, and what their reports have in common.
 
 The core computes them in stages: values that suffer cancellation in thin simplices are computed
 again with more digits. Points must be finite, and simplices exactly positively oriented.
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["Measures", "circumcenters", "edges", "sizes", "transform"]
 
 _PERCENTILES = (1, 10, 50, 90, 99)
-# The columns of a table: keys of a summary, and how they are called.
+# The columns of a table: keys of a summary, and their labels.
 _COLUMNS = {
     "min": "least",
     "p1": "1 %",
@@ -43,7 +43,7 @@ class Measures(ReadOnly):
     _noun: ClassVar[str]
 
     def summary(self) -> dict[str, dict[str, float]]:
-        """Return least, greatest and mean values and percentiles.
+        """Return smallest, largest and mean values and percentiles.
 
         Returns
         -------
@@ -87,10 +87,10 @@ class Measures(ReadOnly):
 
 
 def _percentiles(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return percentiles, linear between two values, of which the greater may be infinite."""
+    """Return percentiles, linear between two values, the larger of which may be infinite."""
     with np.errstate(invalid="ignore"):
         found = np.percentile(values, _PERCENTILES)
-    # Between infinity and something else NumPy finds NaN.
+    # Between infinity and another value, NumPy returns NaN.
     return np.where(np.isnan(found), np.percentile(values, _PERCENTILES, method="higher"), found)
 
 
@@ -110,8 +110,8 @@ def transform(points: Floats, simplices: Indices, workers: int | None = None) ->
     """Return affine maps to barycentric coordinates, (m, d + 1, d).
 
     The inverse of the matrix whose columns are the vectors from the last corner to the others, and
-    below it the last corner. Each row has an error below 1e-13 of its length, in 2-D each entry
-    below 1e-13 of itself, if within doubles.
+    below it the last corner. Within the range of doubles, each row has an error below 1e-13 of its
+    length; in 2-D, each entry has an error below 1e-13 of itself.
     """
     return _core.transforms(*as_mesh(points, simplices), as_workers(workers))
 

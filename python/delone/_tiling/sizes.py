@@ -1,6 +1,6 @@
 """Sizes by position: functions, background meshes and rasters, evaluated and checked.
 
-A size is an edge length. What it means for triangles and tetrahedra is decided where it is used.
+A size is an edge length. Its meaning for triangles and tetrahedra is defined where it is used.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ def _of_raster(raster: Any) -> Callable[[Floats], Floats]:
             raise InputError(f"the coordinates {raster.dims[axis]} of size are not monotonic")
 
     def at(positions: Floats) -> Floats:
-        # The last dimension is x, as rasters have it.
+        # The last dimension is x, as in rasters.
         (i, s), (j, t) = (_between(axes[k], positions[:, 1 - k]) for k in (0, 1))
         k, m = np.minimum(i + 1, len(axes[0]) - 1), np.minimum(j + 1, len(axes[1]) - 1)
         upper = values[i, j] * (1 - t) + values[i, m] * t

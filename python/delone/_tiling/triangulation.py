@@ -1,8 +1,8 @@
-"""The base classes of triangulations in any dimension: what follows from points and simplices.
+"""The base classes of triangulations in any dimension, with what follows from points and simplices.
 
-A class holds arrays and the table of functions of its dimension (`dimension`). Everything here
-follows from these on first use and is kept. Objects never change, so any number of threads may
-share one.
+A class holds arrays and the table of functions of its dimension (`dimension`). Everything here is
+derived from these on first use and kept. Objects never change, so any number of threads may share
+one.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Triangulation(Complex):
 
     @property
     def _number(self) -> Indices | None:
-        """What each simplex of `_tiling` is here, -1 and for the last entry; None for itself."""
+        """The number here of each simplex of `_tiling`, or -1, also at the end; None if equal."""
         return None
 
     @property
@@ -72,8 +72,8 @@ class Triangulation(Complex):
     def boundary(self) -> Indices:
         """The facets with a simplex on one side only, (h, d), in the order of the simplices.
 
-        In 2-D edges, each with the triangulation to its left; in 3-D triangles, counter-clockwise
-        as seen from outside; in more dimensions simplices of d corners, by the same rule of signs.
+        In 2-D, edges, each with the triangulation to its left; in 3-D, triangles, counter-clockwise
+        as seen from outside; in more dimensions, simplices of d corners, by the same sign rule.
         """
         return sealed(self._dimension.boundary(self._simplices, self._neighbors))
 
@@ -90,7 +90,7 @@ class Triangulation(Complex):
     def faces(self) -> Indices:
         """Every triangle once, (k, 3): vertices and rows ascending.
 
-        In 2-D the simplices, in 3-D their faces.
+        In 2-D, the simplices; in 3-D, their faces.
         """
         topology = self._simplices, self._neighbors, self.npoints, self._workers
         return sealed(self._dimension.faces(*topology))
@@ -134,8 +134,8 @@ class Triangulation(Complex):
         With ``inverse, r = transform[t, :d], transform[t, d]``, where r is the last vertex of
         simplex t, ``c = inverse @ (x - r)`` are the first d barycentric coordinates of x, and
         ``1 - c.sum()`` is the last. No simplex is flat, so no row is NaN, however thin the simplex.
-        In 2-D entries have a relative error below 1e-13, in more dimensions rows have one below
-        1e-13 of their length. Values beyond the range of doubles are infinite.
+        In 2-D, entries have a relative error below 1e-13; in more dimensions, rows have an error
+        below 1e-13 of their length. Values beyond the range of doubles are infinite.
         """
         return sealed(measures.transform(self._points, self._simplices, self._workers))
 
@@ -144,8 +144,8 @@ class Triangulation(Complex):
     def circumcenters(self) -> Floats:
         """Centers of the circles or spheres through the corners of simplices, (m, d).
 
-        Each coordinate within 4 units in the last place. Those of thin simplices are far away, and
-        infinite beyond the range of doubles.
+        Each coordinate is within 4 units in the last place. Centers of thin simplices are far away,
+        and infinite beyond the range of doubles.
         """
         return sealed(measures.circumcenters(self._points, self._simplices, self._workers))
 
@@ -227,17 +227,17 @@ class Triangulation(Complex):
         xi : array_like, shape (..., d)
             Points to locate. NaN and infinity are outside.
         tolerance : float, optional
-            Points outside at most this far away, in the unit of the points, are in the simplex at
-            the nearest point of the boundary, such as points that lie on a side up to rounding.
-            By default 0. The distance is compared exactly, which takes some 20 microseconds for
-            each point about this far away. Only in 2-D and 3-D.
+            Points that are at most this far outside, in the unit of the points, are in the simplex
+            at the nearest point of the boundary, such as points that lie on a side up to rounding.
+            By default 0. The distance is compared exactly, which takes about 20 microseconds for
+            each point at about this distance. Only in 2-D and 3-D.
 
         Returns
         -------
         ndarray of int32, shape (...)
             The simplex with the point inside or on its boundary, the first one if there are
-            several; -1 if there is none, that is outside or in a hole. The shape is () for a single
-            point.
+            several; -1 if there is none, that is, outside or in a hole. The shape is () for a
+            single point.
 
         Raises
         ------
@@ -250,9 +250,9 @@ class Triangulation(Complex):
         -----
         Points are taken along a space-filling curve, and each is reached by a visibility walk from
         the previous one; for k points this takes O(k log k) time plus that of the walks, in any
-        order. A visibility walk ends in every Delaunay triangulation (L. De Floriani et al., "On
-        sorting triangles in a Delaunay tessellation", 1991); a straight walk helps where triangles
-        are constrained, and a tree of boxes where there are holes.
+        order. A visibility walk terminates in every Delaunay triangulation (L. De Floriani et al.,
+        "On sorting triangles in a Delaunay tessellation", 1991); a straight walk is used where
+        triangles are constrained, and a tree of boxes where there are holes.
 
         Examples
         --------
@@ -298,10 +298,11 @@ class Triangulation(Complex):
 
         Notes
         -----
-        Exact: distances are compared by predicates. In 2-D from vertex to vertex: in a Delaunay
-        triangulation, a neighbor of each vertex is nearer until the nearest one is reached. The
-        vertices of any other triangulation get a Delaunay triangulation of their own in the first
-        call. In 3-D, and at vertices of high degree, by a tree of boxes over the vertices.
+        Exact: distances are compared by predicates. In 2-D, the search goes from vertex to vertex:
+        in a Delaunay triangulation, a neighbor of each vertex is nearer until the nearest one is
+        reached. For any other triangulation, the first call computes a Delaunay triangulation of
+        the vertices. In 3-D, and at vertices of high degree, the search uses a tree of boxes over
+        the vertices.
 
         Examples
         --------
@@ -320,7 +321,7 @@ class Triangulation(Complex):
         xi : array_like, shape (..., d)
             Points to locate.
         tolerance : float, optional
-            Points outside at most this far away, in the unit of the points, are inside, at the
+            Points that are at most this far outside, in the unit of the points, are inside, at the
             nearest point of the boundary, such as points that lie on a side up to rounding. By
             default 0. The distance is compared exactly. Only in 2-D and 3-D.
 
@@ -383,8 +384,8 @@ class Triangulation(Complex):
         Returns
         -------
         ndarray of int32, shape (k,)
-            The triangles that have more than one point of the segment, in order from a to b. Where
-            it runs along an edge, the triangle to the left of it, or the only one there is. Parts
+            The triangles that contain more than one point of the segment, in order from a to b.
+            Where it runs along an edge, the triangle to its left, or the only adjacent one. Parts
             outside and in holes are skipped; a segment of length zero is located as a point.
 
         Raises
@@ -422,7 +423,7 @@ class Triangulation(Complex):
             Columns to include, with one row for each triangle. The geometry of a GeoDataFrame is
             replaced; its reference system and index are kept.
         crs : optional
-            Reference system of the coordinates, anything that geopandas takes; by default that of
+            Reference system of the coordinates, anything that geopandas accepts; by default that of
             the geometries that were triangulated, if any.
 
         Returns
@@ -454,7 +455,7 @@ class Triangulation(Complex):
 
     @only(2, "matplotlib has no tetrahedral meshes")
     def to_matplotlib(self) -> Any:
-        """Convert to a triangulation of matplotlib (extra ``plot``); 2-D only.
+        """Convert to a matplotlib triangulation (extra ``plot``); 2-D only.
 
         Returns
         -------
@@ -490,8 +491,8 @@ class Triangulation(Complex):
         -------
         skfem.MeshTri or skfem.MeshTet
             With subdomains ``"region 0"`` and so on where there are regions. Segments are
-            boundaries: ``"marker 0"`` and so on where they have markers, as those of a `Mesh`, else
-            all of them together ``"segments"``.
+            boundaries: ``"marker 0"`` and so on if they have markers, like those of a `Mesh`;
+            otherwise, all of them are ``"segments"``.
 
         Raises
         ------
@@ -548,7 +549,7 @@ class Triangulation(Complex):
 
 
 class HullTiling(Triangulation):
-    """A triangulation that is part of a tiling of the convex hull of its points."""
+    """A triangulation that is part of a triangulation of the convex hull of its points."""
 
     __slots__ = ()
 
@@ -557,22 +558,22 @@ class HullTiling(Triangulation):
     def convex_hull(self) -> Indices:
         """The facets of the convex hull, (h, d), as in SciPy: `boundary` without holes and bays.
 
-        `hull` has the vertices.
+        `hull` contains the vertices.
         """
         return sealed(self._dimension.boundary(*self._tiling()))
 
     @property
     @kept
     def hull(self) -> NDArray[np.int64]:
-        """The vertices on the convex hull, (h,), those inside its sides included.
+        """The vertices on the convex hull, (h,), including those inside its sides.
 
-        In 2-D counter-clockwise from the lexicographically smallest point on, in 3-D ascending.
+        In 2-D, counter-clockwise from the lexicographically smallest point on; in 3-D, ascending.
         """
         return sealed(self._dimension.hull(self._points, self.convex_hull))
 
 
 class PointTriangulation(HullTiling):
-    """A triangulation of given points, of which some may be equal."""
+    """A triangulation of given points, some of which may be equal."""
 
     __slots__ = ("_duplicates",)
 

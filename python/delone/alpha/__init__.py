@@ -1,7 +1,7 @@
 """Alpha complexes, alpha shapes and concave hulls of points, in 2-D and 3-D.
 
-Values are squared radii: the doubles nearest to the exact ones. Which faces have a value of their
-own is decided exactly.
+Values are squared radii: the doubles nearest to the exact ones. Which faces have their own value is
+decided exactly.
 """
 
 from delone.alpha.concave import concave_hull

@@ -1,4 +1,4 @@
-"""Concave hulls: one polygon around points, dug from their convex hull along long edges."""
+"""Concave hulls: one polygon around points, carved from their convex hull along long edges."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def concave_hull(
     points : array_like, shape (n, 2) or (n, 3), or Delaunay
         Finite coordinates in any unit. A `Delaunay` triangulation is used directly.
     max_edge : float, optional
-        Edges of the boundary that are longer are removed as far as possible, in the unit of the
-        points; 0 or more, infinity included. Either this or `ratio` must be given.
+        The length, in the unit of the points, above which boundary edges are removed if possible; 0
+        or more, possibly infinity. Either this or `ratio` must be given.
     ratio : float, optional
         From 0 to 1: the same limit, interpolated between the lengths of the shortest and the
         longest edge of the triangulation, as in ``shapely.concave_hull``. 1 keeps the convex hull.
@@ -54,7 +54,7 @@ def concave_hull(
     -------
     ConcaveHull
         The triangles or tetrahedra that are kept, with `polygon`, `boundary` and measures. Points
-        that span no area (no volume) have none, and an empty polygon.
+        that span no area (in 3-D, no volume) have none, and an empty polygon.
 
     Raises
     ------
@@ -69,12 +69,12 @@ def concave_hull(
 
     Notes
     -----
-    In 2-D, boundary edges are processed from the longest down. If an edge is longer than the limit
-    and the opposite corner of its triangle is inside, the triangle is removed. If that corner is
-    already on the boundary, the edge remains. So the hull is one simple polygon, whatever the
+    In 2-D, boundary edges are processed from longest to shortest. If an edge is longer than the
+    limit and the opposite corner of its triangle is inside, the triangle is removed. If that corner
+    is already on the boundary, the edge remains. So the hull is one simple polygon, whatever the
     limit, and some longer edges may remain. With `holes`, a triangle with a longer edge and no
-    corner on the boundary starts a hole, the one with the longest edge first, which is carved in
-    the same way; holes touch neither each other nor the outline.
+    corner on the boundary starts a hole, which is carved in the same way; triangles with the
+    longest edges come first. Holes touch neither each other nor the outline.
 
     In 3-D, a tetrahedron behind a face with a longer edge is removed, unless it is the last one of
     a point. The remaining tetrahedra need not form a manifold: see ``ConcaveHull.is_manifold``.

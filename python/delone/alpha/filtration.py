@@ -55,7 +55,8 @@ class AlphaComplex(Stored):
     NonFiniteError
         A coordinate or weight is NaN or infinite.
     ShapeError, DtypeError
-        `points` is not a real array of shape (n, 2) or (n, 3), or there are not as many weights.
+        `points` is not a real array of shape (n, 2) or (n, 3), or the number of weights is
+        different.
     InputError
         `periodic` is given with 3-D points or has no valid period, or points lie a period or more
         apart.
@@ -220,8 +221,9 @@ class AlphaComplex(Stored):
         -------
         ndarray of int32, shape (m, k + 1)
             Rows of `points`. Edges and the faces of tetrahedra have ascending rows, in ascending
-            order; those of the highest dimension are those of the triangulation. Of periodic
-            points, one simplex of each class of translates; an edge may have one row twice.
+            order; those of the highest dimension are those of the triangulation. For periodic
+            points, one simplex of each class of translates; both ends of an edge may be the same
+            row.
 
         Raises
         ------
@@ -300,7 +302,7 @@ class AlphaComplex(Stored):
         Parameters
         ----------
         alpha : float
-            A squared radius, infinity included. Not negative, unless there are weights.
+            A squared radius, possibly infinity. Not negative, unless there are weights.
 
         Returns
         -------
@@ -340,8 +342,8 @@ class AlphaComplex(Stored):
         Returns
         -------
         float
-            A squared radius, one of `spectrum`. All vertices are corners of triangles
-            (tetrahedra) of its shape. If there are none, the largest value.
+            A squared radius, one of `spectrum`. All vertices are corners of triangles (tetrahedra)
+            of its shape. If there is no such alpha, the largest value.
 
         Raises
         ------
@@ -381,7 +383,7 @@ class AlphaComplex(Stored):
     @property
     @kept
     def _steps(self) -> tuple[Indices, NDArray[np.int64]]:
-        """The simplices of the highest dimension by value, and the last one of each value."""
+        """The simplices of the highest dimension, by value, and the last one of each value."""
         values = self._valued.values[-1]
         order = np.argsort(values, kind="stable").astype(np.int32)
         last = np.flatnonzero(np.diff(values[order], append=np.nan) != 0)

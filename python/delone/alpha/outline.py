@@ -42,7 +42,7 @@ def rings_of(points: Floats, simplices: Indices, neighbors: Indices, labels: Ind
     holes = holes[np.lexsort((rank[holes], of_part[parts[holes]]))]
     order = np.concatenate((shells, holes))
     sizes = np.diff(starts)[order]
-    # Each ring with its first point again at the end.
+    # Each ring, with its first point repeated at the end.
     ring = np.repeat(np.arange(len(order)), sizes + 1)
     begin = np.cumsum(sizes + 1) - (sizes + 1)
     within = np.arange(len(ring)) - begin[ring]

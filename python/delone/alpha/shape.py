@@ -1,4 +1,4 @@
-"""Simplices that are kept of a triangulation: alpha shapes, concave hulls, and their outlines."""
+"""The simplices of a triangulation that are kept: alpha shapes, concave hulls, their outlines."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ __all__ = ["AlphaShape", "ConcaveHull", "Kept"]
 
 
 class Kept(Exchanged, Filed):
-    """Triangles or tetrahedra that are kept of a triangulation, and their boundary."""
+    """The triangles or tetrahedra of a triangulation that are kept, and their boundary."""
 
     __slots__ = ("_flags", "_neighbors", "_points", "_tops", "_workers")
 
@@ -75,7 +75,7 @@ class Kept(Exchanged, Filed):
     @property
     @kept
     def _labels(self) -> Indices:
-        """The part of each triangle or tetrahedron, -1 of those that are not kept."""
+        """The part of each triangle or tetrahedron, -1 for those that are not kept."""
         return sealed(_core.alpha_labels(self._flags, self._neighbors))
 
     @property
@@ -122,7 +122,7 @@ class Kept(Exchanged, Filed):
             Columns to include, with one row for each polygon. The geometry of a GeoDataFrame is
             replaced; its reference system and index are kept.
         crs : optional
-            Reference system of the coordinates, anything that geopandas takes; by default that of
+            Reference system of the coordinates, anything that geopandas accepts; by default that of
             the points, if they declared one.
 
         Returns
@@ -156,9 +156,9 @@ class Kept(Exchanged, Filed):
         Returns
         -------
         ndarray of object, shape (k,)
-            One polygon for each part, with its holes: shells counter-clockwise, each ring from its
-            lexicographically smallest point on, in the order of these. All are valid, also
-            where a part touches itself or another one in a point.
+            One polygon for each part, with its holes: shells counter-clockwise, each ring starting
+            at its lexicographically smallest point, and sorted by it. All are valid, even if a part
+            touches itself or another one at a point.
 
         Raises
         ------
@@ -174,7 +174,9 @@ class Kept(Exchanged, Filed):
         6.0
         """
         if self.ndim == 3:
-            raise InputError("polygons are only available in 2-D: `boundary` has the triangles")
+            raise InputError(
+                "polygons are only available in 2-D: `boundary` contains the triangles"
+            )
         self._require_plane()
         from delone.exchange.outlines import to_polygons
 
@@ -221,8 +223,8 @@ class Kept(Exchanged, Filed):
     def is_manifold(self) -> bool:
         """Whether the boundary is a manifold: around each of its points, one ring or two edges.
 
-        In 2-D, whether its rings are disjoint; in 3-D, whether it is a surface without points or
-        edges where it touches itself. True without a boundary.
+        In 2-D, whether its rings are disjoint; in 3-D, whether it is a surface that does not touch
+        itself at points or edges. True without a boundary.
         """
         sides = self.boundary
         if self.ndim == 2:
@@ -248,7 +250,7 @@ class Kept(Exchanged, Filed):
 
 @made_by("create an AlphaShape with AlphaComplex.shape(alpha), not with its class")
 class AlphaShape(Kept):
-    """The simplices of an `AlphaComplex` with values up to alpha; made by ``AlphaComplex.shape``.
+    """The simplices of an `AlphaComplex` with values up to alpha, from ``AlphaComplex.shape``.
 
     Attributes
     ----------
@@ -265,7 +267,7 @@ class AlphaShape(Kept):
     -----
     A shape may have edges and points that belong to no triangle. `simplices_of` and the numbers of
     components and holes include them; `simplices`, `boundary`, `polygons` and the measures include
-    the triangles (in 3-D, the tetrahedra) only.
+    only the triangles (in 3-D, the tetrahedra).
 
     Examples
     --------
@@ -298,7 +300,7 @@ class AlphaShape(Kept):
 
     @classmethod
     def _again(cls, given: Given, alpha: float, workers: int | None) -> Self:
-        """Return the shape of points, computed again."""
+        """Return the shape of points, recomputed."""
         return cls._made(given, given.valued(as_workers(workers)), alpha, workers)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -367,7 +369,7 @@ class AlphaShape(Kept):
     @property
     @kept
     def ncomponents(self) -> int:
-        """Number of connected components, single points and edges included."""
+        """Number of connected components, including single points and edges."""
         rows = self.simplices_of(0)[:, 0]
         edges = np.ascontiguousarray(self.simplices_of(1))
         found = _core.graph_components(edges, len(self._points))

@@ -1,4 +1,4 @@
-"""The simplices of an alpha complex and their values, for points that span anything."""
+"""The simplices of an alpha complex and their values, for points of any span."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class Given(NamedTuple):
 
     @classmethod
     def loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
-        """Return what the arrays of a file hold."""
+        """Return the contents of the arrays of a file."""
         points, weights = sealed(arrays["points"]), None
         if len(arrays["weights"]):
             weights = sealed(as_weights(arrays["weights"], len(points)))
@@ -86,7 +86,7 @@ class Given(NamedTuple):
 
 
 def of_points(points: Floats, weights: Floats | None, workers: int, mesh: Any = None) -> Valued:
-    """Return the complex of finite points; `mesh` is their triangulation, if it is known."""
+    """Return the complex of finite points; `mesh` is their triangulation, if known."""
     if mesh is not None:
         return _of_simplices(points, weights, mesh.simplices, mesh.neighbors, workers)
     if not len(points):
@@ -114,7 +114,7 @@ def of_points(points: Floats, weights: Floats | None, workers: int, mesh: Any = 
 def _seen_on_line(points: Floats, weights: Floats, chain: Indices) -> Indices:
     """Return the rows of a chain of collinear 3-D points that are not hidden, in order."""
     first = first_rows(points)
-    # Of equal points the heaviest, of equally heavy ones the first.
+    # Of equal points, the heaviest; of equally heavy ones, the first.
     order = np.lexsort((np.arange(len(first)), -weights, first))
     at = np.unique(first[order], return_index=True)[1]
     heaviest = dict(zip(first[order][at].tolist(), order[at].tolist(), strict=True))
@@ -184,7 +184,7 @@ def _of_chain(points: Floats, weights: Floats | None, chain: Indices, workers: i
 
 
 def edge_slots(mesh: PeriodicDelaunay) -> NDArray[np.int64]:
-    """Return for each edge of a periodic triangulation one code 3 t + k: of its later triangle."""
+    """Return a code 3 t + k, of its later triangle, for each edge of a periodic triangulation."""
     partners = mesh.partners.ravel()
     code = np.arange(partners.size)
     return code[partners < code]

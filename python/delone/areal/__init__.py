@@ -1,4 +1,4 @@
-"""Areas that cells share, in the plane and on the sphere, and what is transferred by them."""
+"""Areas that cells share, in the plane and on the sphere, and the transfer of values."""
 
 from delone.areal.overlaps import AreaWeights, OverlapReport, Overlaps
 

@@ -1,4 +1,4 @@
-"""Cells in the plane: polygons, triangles and Voronoi cells as arrays of the core."""
+"""Cells in the plane: polygons, triangles and Voronoi cells as arrays for the core."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Cells", "as_cells"]
 
-# Squares of larger coordinates leave the range of doubles; so do those of smaller extents.
+# Squares of larger coordinates leave the range of doubles, as do those of smaller extents.
 _LARGEST, _SMALLEST = 2.0**500, 2.0**-500
-# What the core reports of a cell without area, and of one whose sides cross.
+# What the core reports for a cell without area, and for one whose sides cross.
 _EMPTY, _CROSSING = 1, 4
 
 
@@ -127,12 +127,12 @@ def _count(given: Any) -> int:
         return len(given["features"])
     if isinstance(given, dict) or not hasattr(given, "__len__"):
         return 1
-    # A ring of places is one geometry.
+    # A ring of positions is one geometry.
     return 1 if len(given) and np.ndim(given[0]) == 1 else len(given)
 
 
 def _require_range(points: Floats, name: str) -> None:
-    """Refuse coordinates whose areas are beyond the range of doubles."""
+    """Reject coordinates whose areas are beyond the range of doubles."""
     if not len(points):
         return
     top = float(np.abs(points).max())

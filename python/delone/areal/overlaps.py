@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["AreaWeights", "OverlapReport", "Overlaps"]
 
-# Names of arrays in files that those on the sphere do not have.
+# Names of arrays in files that are not in files of overlaps on the sphere.
 _ROWS = "source_reversed", "target_reversed"
 
 

@@ -59,7 +59,7 @@ class Paired(Immutable):
 
     @property
     def matrix(self) -> Any:
-        """The entries as a sparse matrix of SciPy, (ntarget, nsource) (extra ``graph``)."""
+        """The entries as a SciPy sparse matrix, (ntarget, nsource) (extra ``graph``)."""
         sparse = require("scipy.sparse", extra="graph", what="a sparse matrix")
         shape = len(self._areas[1]), len(self._areas[0])
         return sparse.csr_matrix((self._rows[2], self._rows[1], self._rows[0]), shape=shape)
@@ -77,7 +77,7 @@ def row_sums(indptr: Rows, values: Floats) -> Floats:
 def added(
     rows: Rows, columns: Rows, values: Floats, count: int
 ) -> tuple[Rows, NDArray[np.int32], Floats]:
-    """Return entries as compressed rows, where those of one pair are added."""
+    """Return entries as compressed rows; those of the same pair are added."""
     order = np.lexsort((columns, rows))
     rows, columns, values = rows[order], columns[order], values[order]
     first = np.ones(len(rows), dtype=bool)

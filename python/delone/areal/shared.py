@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["OverlapReport", "SharedAreas"]
 
-# Shares that differ from 0 or 1 by less are roundings of corners.
+# Fractions that differ from 0 or 1 by less come from rounded corners.
 _ROUNDING = 1e-9
 # Names of arrays in files.
 _ROWS = "indptr", "indices", "areas"
@@ -95,13 +95,13 @@ class SharedAreas(Paired, Generic[W]):
     _sums: tuple[Floats, Floats]
 
     def _hold_areas(self, rows: Iterable[Any], sums: Iterable[Any], **more: Any) -> None:
-        """Hold rows, and areas and sums of source and target, with what a class has in addition."""
+        """Store rows, areas and sums of source and target, and what a class adds."""
         a, b, c = (sealed(x) for x in rows)
         s, t, u, v = (sealed(x) for x in sums)
         self._hold(rows=(a, b, c), areas=(s, t), sums=(u, v), **more)
 
     def _fill(self, *parts: Any) -> None:
-        """Hold the parts that ``__reduce__`` has."""
+        """Store the parts that ``__reduce__`` returns."""
         raise NotImplementedError
 
     @classmethod
@@ -177,9 +177,9 @@ class SharedAreas(Paired, Generic[W]):
             - "conservative": integrals over the target cell, divided by its area ("destarea" in map
               files). This preserves the sum of values times areas. A partly covered cell gets
               proportionally less.
-            - "normalized": means over the covered part ("fracarea"). A constant stays constant.
-            - "sum": amounts, such as numbers of inhabitants: each source cell gives its value to
-              target cells by the share of its area.
+            - "normalized": means over the covered part ("fracarea"). A constant remains constant.
+            - "sum": amounts, such as numbers of inhabitants: each source cell distributes its value
+              to target cells in proportion to the shared area.
             - "majority": categories: the value that covers most of the target cell.
         source_mask, target_mask : array_like of bool, optional
             True, or 1, for the cells to use, as in files; in the shape of fields or of cells. By

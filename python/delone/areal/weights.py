@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["METHODS", "OTHER", "AreaWeights", "as_mask"]
 
 METHODS = ("conservative", "normalized", "sum", "majority")
-# Of files that do not say how their weights are normalized.
+# For files that do not say how their weights are normalized.
 OTHER = "other"
 # Fractions that differ by less are equal.
 _ROUNDING = 1e-12
@@ -32,7 +32,7 @@ _LOT = 1 << 22
 class AreaWeights(Paired):
     """The contribution of each source cell to each target cell.
 
-    Made by `Overlaps.to_weights`.
+    Created by `Overlaps.to_weights`.
 
     Attributes
     ----------
@@ -60,7 +60,7 @@ class AreaWeights(Paired):
 
     See Also
     --------
-    Overlaps.to_weights : Makes them.
+    Overlaps.to_weights : Creates them.
     delone.sphere.Weights : The same on the sphere, with map files.
 
     Examples
@@ -83,7 +83,7 @@ class AreaWeights(Paired):
     _method: str
 
     def __init__(self) -> None:
-        raise InputError("make AreaWeights by Overlaps.to_weights")
+        raise InputError("create AreaWeights with Overlaps.to_weights")
 
     @classmethod
     def _of(
@@ -149,8 +149,8 @@ class AreaWeights(Paired):
             Whether NaN means a missing value, whose cell is ignored. By default NaN propagates to
             all target cells that share area with it; for "majority" it is a category.
         min_fraction : float, optional
-            Target cells of which a smaller fraction has values, by more than a rounding of 1e-12,
-            are missing. By default, any fraction suffices.
+            Target cells in which a smaller fraction has values, by more than a rounding error of
+            1e-12, are missing. By default, any fraction suffices.
         fill : number, optional
             The value of missing target cells, by default NaN. Needed for integers of "majority"
             where target cells are missing.
@@ -172,7 +172,7 @@ class AreaWeights(Paired):
 
         Notes
         -----
-        "conservative" and "sum" treat missing values as masked cells: what is known is conserved.
+        "conservative" and "sum" treat missing values as masked cells: known amounts are conserved.
         "normalized" is the mean over the known values, so that a constant remains exactly constant.
         A changing mask, such as that of sea ice, needs no new weights.
 
@@ -240,7 +240,7 @@ class AreaWeights(Paired):
         """Return sums of products, and which are missing.
 
         Sums are over differences from the smallest value of each field, so that a constant remains
-        one, exactly.
+        exactly constant.
         """
         share = np.broadcast_to(self.fractions, (len(part), len(self.fractions)))
         totals = np.broadcast_to(self._totals(), share.shape)
@@ -301,7 +301,7 @@ class AreaWeights(Paired):
     def _majority(
         self, given: NDArray[Any], skipna: bool, least: float
     ) -> tuple[NDArray[Any], Bools]:
-        """Return the value that covers most of each target cell, the smallest of several."""
+        """Return the value that covers most of each target cell, or the smallest of several."""
         row = np.repeat(np.arange(len(self.fractions)), np.diff(self.indptr))
         found = np.zeros((len(given), len(self.fractions)), dtype=given.dtype)
         missing = np.ones(found.shape, dtype=bool)
@@ -318,7 +318,7 @@ class AreaWeights(Paired):
             first = np.ones(len(of), dtype=bool)
             differ = entries[1:] != entries[:-1]
             if entries.dtype.kind == "f":
-                # NaN is one category.
+                # NaN counts as one category.
                 differ &= ~(np.isnan(entries[1:]) & np.isnan(entries[:-1]))
             first[1:] = (of[1:] != of[:-1]) | differ
             starts = np.flatnonzero(first)

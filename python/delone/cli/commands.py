@@ -1,7 +1,7 @@
 """The list of commands: a command's module is imported when the command is called.
 
 The list itself imports none of these modules, so ``delone --help`` is fast, and a command does not
-wait for the libraries of others.
+wait for libraries that other commands need.
 """
 
 from __future__ import annotations
@@ -191,7 +191,7 @@ class Commands(TyperGroup):  # type: ignore[misc]
         self.commands = _Loading.fromkeys(COMMANDS)
 
     def format_commands(self, ctx: Context, formatter: HelpFormatter) -> None:
-        """Write the commands by task, with whole summaries, without loading any of them."""
+        """Write the commands by task, with complete summaries, without loading any of them."""
         del ctx
         width = max(map(len, COMMANDS))
         for task, names in TASKS.items():

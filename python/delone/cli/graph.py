@@ -109,8 +109,8 @@ def graph(
         list[Path] | None,
         typer.Option(
             metavar="FILE",
-            help="File of the points with all their columns, and of their rows, to which v0 and v1 "
-            "of edges refer, once or more: " + " ".join(ROW_SUFFIXES),
+            help="File to write, once or more: the points with all columns and their rows, to "
+            "which v0 and v1 of edges refer: " + " ".join(ROW_SUFFIXES),
         ),
     ] = None,
     boundary: Annotated[
@@ -255,8 +255,8 @@ def _tell(table: Rows, output: list[Path], nodes: list[Path], *, quiet: bool) ->
     elif table.columns and output:
         what = counted(len(table.columns), "further column")
         note(
-            f"{table.survey.source} has {what}, which edges have not: v0 and v1 are its rows, and "
-            "--nodes FILE writes the points with all columns",
+            f"{table.survey.source} has {what}, which edges do not have: v0 and v1 are its rows, "
+            f"and --nodes FILE writes the points with all columns",
             quiet=quiet,
         )
 

@@ -60,8 +60,8 @@ def hull(
     alpha: Annotated[
         str | None,
         typer.Option(
-            help="Triangles with a circle up to this squared radius; or optimal, the smallest "
-            "with all points in one polygon without holes."
+            help="Keep triangles whose circles have at most this squared radius; or optimal: the "
+            "smallest one for which one polygon without holes contains all points."
         ),
     ] = None,
     classes: Classes = None,

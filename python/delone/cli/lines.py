@@ -44,7 +44,7 @@ def naming_lines(command: Callable[Given, None]) -> Callable[Given, None]:
             files = given if isinstance(given, list | tuple) else [given]
             rows = np.ravel(error.rows[:_FIRST]).tolist()
             if rows and len(files) == 1 and isinstance(files[0], str | Path) and is_text(files[0]):
-                # The message is correct without lines, too.
+                # The message is also correct without lines.
                 with suppress(FileFormatError, OSError):
                     lines = ", ".join(map(str, line_numbers(files[0], rows)))
                     noun = agreed(len(rows), "line", "lines")

@@ -46,7 +46,7 @@ class CondensedTree:
 
     @property
     def lambdas(self) -> Floats:
-        """One over the distance of each level; 0 where it exceeds doubles, infinite for zero."""
+        """One over the distance of each level; 0 if it is beyond doubles, infinite for zero."""
         with np.errstate(divide="ignore", over="ignore"):
             found: Floats = 1 / self.heights
             return found
@@ -96,8 +96,8 @@ def condensed_tree(
 def binary(table: NDArray[np.void]) -> NDArray[np.void]:
     """Return a table of `CondensedTree.table` in which no cluster splits into more than two.
 
-    Of more, all but the first are in a cluster without rows of its own, which splits at the same
-    lambda, and so on. Parents have smaller numbers, and all numbers from the root on are used.
+    If there are more, all but the first are in a cluster without its own rows, which splits at the
+    same lambda, and so on. Parents have smaller numbers, and all numbers from the root on are used.
     """
     root = int(table["parent"].min())
     inner = table[table["child"] >= root]
@@ -109,7 +109,7 @@ def binary(table: NDArray[np.void]) -> NDArray[np.void]:
     for cluster in range(root, root + len(inner) + 1):
         # The number of a cluster is known, because those of its parents are smaller.
         holder, left = number[cluster], kids.get(cluster, [])
-        while left:  # ends: one less in each round
+        while left:  # Terminates: one less in each round
             parts = [left] if len(left) == 1 else [left[:1], left[1:]]
             for part in parts:
                 new = root + 1 + len(rows)

@@ -28,7 +28,7 @@ class DBSCAN(Clusterer):
         At least 0, used exactly as given: points at this distance are neighbors. With 0, only rows
         with the same coordinates are neighbors. It may be infinite.
     min_samples : int, optional
-        At least 1: a core point has this many rows within `eps`, itself included.
+        At least 1: a core point has this many rows within `eps`, including itself.
     metric : {"euclidean", "l2"}, optional
         Other metrics raise an error.
     workers : int, optional
@@ -55,10 +55,10 @@ class DBSCAN(Clusterer):
     M. Ester, H.-P. Kriegel, J. Sander and X. Xu, "A density-based algorithm for discovering
     clusters in large spatial databases with noise" (1996). Core points within `eps` of each other
     are in one cluster. Another point within `eps` of core points belongs to the cluster of the
-    nearest one; of equally near ones, to that with the lexicographically smallest coordinates.
-    scikit-learn assigns it to the cluster that reaches it first. All squared distances are compared
-    exactly. So the clusters do not depend on the order of the rows, and scaling points and `eps` by
-    a power of two leaves them unchanged.
+    nearest one; if several are equally near, to that with the lexicographically smallest
+    coordinates. scikit-learn assigns it to the cluster that reaches it first. All squared distances
+    are compared exactly. So the clusters do not depend on the order of the rows, and scaling points
+    and `eps` by a power of two leaves them unchanged.
 
     Rows with the same coordinates count separately. With `min_samples` above n, all points are
     noise. Points on one line or in one plane are not special cases.
@@ -97,7 +97,7 @@ class DBSCAN(Clusterer):
         samples = as_least(self.min_samples, 1, name="min_samples")
         workers = as_workers(self.workers)
         points = self._points(given)
-        # A count above that of all rows stands for every larger one.
+        # A count above that of all rows represents every larger one.
         scaled, exponent = rescaled(points, eps)
         reach = float(np.ldexp(eps, exponent))
         clusters, is_core = _core.density(scaled, reach, min(samples, len(points) + 1), workers)

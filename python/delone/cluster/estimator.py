@@ -172,7 +172,7 @@ class Clusterer:
         return hasattr(self, "labels_")
 
     def __sklearn_tags__(self) -> Any:
-        """Return the tags by which scikit-learn handles estimators; only it calls this."""
+        """Return the tags by which scikit-learn, the only caller, handles estimators."""
         from sklearn.utils import InputTags, Tags, TargetTags
 
         return Tags(
@@ -185,7 +185,7 @@ class Clusterer:
         )
 
     def _points(self, points: Any) -> Floats:
-        """Return finite 2-D or 3-D points as they are, after the metric was checked."""
+        """Return finite 2-D or 3-D points unchanged, after checking the metric."""
         if not isinstance(self.metric, str):
             raise DtypeError(f"metric must be a string, got {self.metric!r:.60}")
         if self.metric not in _METRICS:
@@ -214,7 +214,7 @@ class Clusterer:
 
 
 def as_reach(value: float, *, name: str) -> float:
-    """Return a distance from 0 on, which may be infinite."""
+    """Return a distance of at least 0, which may be infinite."""
     number = as_number(value, name=name)
     if not number >= 0:
         raise InputError(f"{name} must be a number of at least 0, got {value}")
@@ -222,7 +222,7 @@ def as_reach(value: float, *, name: str) -> float:
 
 
 def numbered(clusters: NDArray[np.integer[Any]]) -> Indices:
-    """Return labels numbered by first rows, of clusters with any numbers, (n,); -1 remains."""
+    """Return labels numbered by first rows, for clusters with any numbers, (n,); -1 remains."""
     found, first, inverse = np.unique(clusters, return_index=True, return_inverse=True)
     number = np.empty(len(found), dtype=np.int32)
     order = np.argsort(first)

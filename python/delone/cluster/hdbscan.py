@@ -29,7 +29,7 @@ class HDBSCAN(Clusterer):
         At least 2: the smallest number of rows that form a cluster.
     min_samples : int, optional
         At least 1: the core distance of a row is the distance to its `min_samples`-th nearest row,
-        the row itself included, as in scikit-learn. By default `min_cluster_size`.
+        including the row itself, as in scikit-learn. By default `min_cluster_size`.
     cluster_selection_epsilon : float, optional
         Clusters that split from each other at a smaller distance are not split.
     max_cluster_size : int, optional
@@ -52,8 +52,8 @@ class HDBSCAN(Clusterer):
         The cluster of each row, or -1 for noise. Clusters are numbered from 0 on by their first
         rows.
     probabilities_ : ndarray of float64, shape (n,)
-        How long each row stays in its cluster as the distance shrinks, relative to the row that
-        stays longest; 0 for noise.
+        How long each row remains in its cluster as the distance shrinks, relative to the row that
+        remains longest; 0 for noise.
     condensed_tree_ : ndarray, shape (m,)
         A structured array with ``parent``, ``child``, ``lambda_val`` and ``child_size``: the rows
         (children below n) and clusters (from n on, n being the root) that leave each cluster.
@@ -65,7 +65,7 @@ class HDBSCAN(Clusterer):
     Notes
     -----
     R. J. G. B. Campello, D. Moulavi and J. Sander, "Density-based clustering based on hierarchical
-    density estimates" (2013). The mutual reachability of two points is the largest of their
+    density estimates" (2013). The mutual reachability of two points is the maximum of their
     distance and both core distances. All of these are compared exactly. Edges of equal weight are
     removed together, as in the paper: a cluster may split into more than two parts, and ties need
     no choice. So the clusters do not depend on the order of the rows, and scaling by a power of two
@@ -73,8 +73,8 @@ class HDBSCAN(Clusterer):
 
     If no weights are equal, the clusters are those of scikit-learn, up to their numbering. With
     `min_samples` above 2, some weights are always equal, because a core distance is the weight of
-    several edges; scikit-learn then splits in an order that depends on the rows. The alpha of
-    scikit-learn is always 1 here. Rows with the same coordinates count separately.
+    several edges; scikit-learn then splits in an order that depends on the rows. scikit-learn's
+    alpha is always 1 here. Rows with the same coordinates count separately.
 
     The minimum spanning tree of all pairs is found by Boruvka's algorithm in a tree of boxes; it is
     not part of the Delaunay graph if `min_samples` exceeds 2. About O(n log n) time for scattered

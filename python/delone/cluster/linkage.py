@@ -32,7 +32,7 @@ class SingleLinkage(Immutable):
     linkage : ndarray of float64, shape (n - 1, 4)
         The merges, in the format of ``scipy.cluster.hierarchy``.
     npoints : int
-        Number of points, duplicates included.
+        Number of points, including duplicates.
 
     Examples
     --------
@@ -72,7 +72,7 @@ class SingleLinkage(Immutable):
 
     @property
     def npoints(self) -> int:
-        """Number of points, duplicates included."""
+        """Number of points, including duplicates."""
         return self._tree.npoints
 
     @property
@@ -80,9 +80,9 @@ class SingleLinkage(Immutable):
     def linkage(self) -> Floats:
         """The merges, (n - 1, 4): two clusters, their distance, and the number of points in both.
 
-        Clusters below n are rows; merge i makes cluster n + i. Distances ascend, and are correctly
-        rounded. Of equal distances, the edge of the tree whose ends have the smaller coordinates
-        comes first; duplicates are merged at distance zero.
+        Clusters below n are rows; merge i creates cluster n + i. Distances ascend and are correctly
+        rounded. If distances are equal, the edge of the tree whose ends have the smaller
+        coordinates comes first; duplicates are merged at distance zero.
         """
         tree = self._tree
         if tree.npoints < 2:
@@ -147,7 +147,7 @@ class SingleLinkage(Immutable):
         """Return a pair of rows for each of the first merges, (count, 2)."""
         n = self.npoints
         parts = self.linkage[:count, :2].astype(np.int64)
-        # Of each cluster, any row: that of its first part, found by following first parts.
+        # Any row of each cluster: that of its first part, found by following first parts.
         row = np.concatenate((np.arange(n), parts[:, 0]))
         while (row >= n).any():
             row = row[row]
@@ -172,7 +172,8 @@ def single_linkage(
     Returns
     -------
     SingleLinkage
-        Its ``linkage`` has the merges in SciPy's format; its method ``labels`` has the clusters.
+        Its ``linkage`` contains the merges in SciPy's format; its method ``labels`` returns the
+        clusters.
 
     Raises
     ------
@@ -196,7 +197,7 @@ def single_linkage(
     ``scipy.cluster.hierarchy.linkage``, the distances of all pairs are never computed.
 
     Rows with the same coordinates are merged first, at distance zero. No points, or a single one,
-    have no merges; points on one line or in one plane need nothing special.
+    have no merges; points on one line or in one plane are not special cases.
 
     Examples
     --------

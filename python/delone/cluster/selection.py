@@ -45,7 +45,7 @@ def _of_excess_of_mass(
         if cluster == 0 and not single:
             is_chosen[0] = False
             break
-        # Summed without rounding between, so that the order does not matter.
+        # Summed without intermediate rounding, so that the order does not matter.
         below = math.fsum(total[kid] for kid in kids[cluster])
         is_large = largest is not None and sizes[cluster] > largest
         if below > total[cluster] or is_large:
@@ -65,7 +65,7 @@ def _merged(
 ) -> list[int]:
     """Return clusters that split off at the given distance or above it.
 
-    One that begins below is replaced by the first ancestor that begins above it.
+    A cluster that begins below it is replaced by the first ancestor that begins above it.
     """
     births = tree.births.tolist()
     found: set[int] = set()
@@ -75,7 +75,8 @@ def _merged(
             while True:
                 parent = parents[cluster]
                 if parent <= 0:
-                    # At the root: itself if that is a cluster, else the one below it.
+                    # At the root: the root itself if it is a cluster, otherwise the cluster below
+                    # it.
                     cluster = 0 if single else cluster
                     break
                 cluster = parent
@@ -103,14 +104,14 @@ def labeled(tree: CondensedTree, chosen: list[int], *, epsilon: float) -> NDArra
             home[cluster] = home[parent]
     found = home[tree.clusters]
     if chosen == [0]:
-        # Of the root, the rows that stay to the end, or up to the given distance.
+        # For the root, the rows that remain to the end, or up to the given distance.
         most = tree.up_to - 1 if epsilon > 0 else int(tree.deaths[0])
         found[tree.levels > most] = -1
     return found
 
 
 def memberships(tree: CondensedTree, labels: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return how long each row stays in its cluster, relative to the last row, from 0 to 1."""
+    """Return how long each row remains in its cluster, relative to the last row, from 0 to 1."""
     found = np.zeros(len(labels))
     inside = labels >= 0
     own = tree.heights[tree.levels[inside]]

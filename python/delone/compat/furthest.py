@@ -65,7 +65,7 @@ class _Polygon:
         and their area is visible from the vertex because the polygon is convex.
         """
         edges = [(before, after)]
-        while edges:  # ends: each round removes a triangle or completes an edge
+        while edges:  # Terminates: each round removes a triangle or completes an edge
             u, v = edges.pop()
             w = self.apex.get((u, v))
             if w is not None and self._is_outside((u, v, w), vertex):

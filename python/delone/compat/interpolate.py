@@ -7,7 +7,7 @@ Differences:
 query that is outside by a rounding error is outside, because there is no tolerance. * From 3-D on
 `tri` is a `delone.Delaunay`. With more than eight coordinates, or where the simplices would not fit
 into memory, there is no triangulation: `tri` is None, and linear interpolation finds the simplex of
-each query by itself. More than 64 coordinates raise a `DimensionError`. * Of equally near sites,
+each query separately. More than 64 coordinates raise a `DimensionError`. * Of equally near sites,
 the one with the smallest row is used. * Norms other than the Euclidean one (`p`) are left to
 SciPy's tree; `eps` and `tree_options` have no effect. * A triangulation of
 ``scipy.spatial.Delaunay`` is replaced by its points.
@@ -45,7 +45,7 @@ __all__ = [
 ]
 
 _SPACE = 3
-# The most coordinates that are interpolated.
+# The maximum number of coordinates for interpolation.
 _MOST = 64
 # Distances compared at a time if all points lie on one line.
 _BLOCK = 1 << 22
@@ -70,7 +70,7 @@ class _Scale:
 class _Triangulated:
     """Base of the interpolators on triangles."""
 
-    # The most coordinates of sites.
+    # The maximum number of coordinates of sites.
     _most: int = _MOST
     points: Floats
     values: NDArray[Any]
@@ -542,7 +542,7 @@ def estimate_gradients_2d_global(
 
 
 def _require_few(owner: object, points: Floats, most: int) -> None:
-    """Refuse sites with more coordinates than an interpolator accepts."""
+    """Reject sites with more coordinates than an interpolator accepts."""
     if points.shape[1] > most:
         name = "2-D points" if most == 2 else f"points with up to {most} coordinates"
         raise DimensionError(

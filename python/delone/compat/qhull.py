@@ -63,7 +63,7 @@ class Incremental:
 
     # Its name in messages.
     _what: str = DELAUNAY
-    # The most coordinates of points.
+    # The maximum number of coordinates of points.
     _most: int = 3
 
     # Only for triangulations and diagrams.
@@ -201,7 +201,7 @@ def triangulate(points: Floats, furthest: bool, what: str = DELAUNAY) -> delauna
 def as_low_points(points: ArrayLike, most: int, *, like: int | None = None) -> Floats:
     """Convert as SciPy does if that is exact; errors have SciPy's types. At most `most` axes.
 
-    A few points are `like` others with so many coordinates.
+    For a few points, `like` is the number of coordinates of the others.
     """
     ndim = 2 if most == 2 else None
     if is_masked(points):

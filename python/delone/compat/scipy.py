@@ -7,7 +7,7 @@
 >>> sorted(map(sorted, tri.simplices.tolist()))
 [[0, 1, 3], [0, 2, 3]]
 
-Signatures, attributes, dtypes, errors and the mutability of arrays are SciPy's. Differences:
+Signatures, attributes, dtypes, errors and the mutability of arrays are those of SciPy. Differences:
 
 * Every distinct point is a vertex, so `coplanar` lists only duplicates.
 * Among the triangulations of cocircular points, the result is delone's canonical one, with

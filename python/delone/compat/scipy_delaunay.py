@@ -1,4 +1,4 @@
-"""SciPy's ``Delaunay`` and ``tsearch`` on the triangulations of delone."""
+"""SciPy's ``Delaunay`` and ``tsearch`` on delone triangulations."""
 
 from __future__ import annotations
 
@@ -182,12 +182,12 @@ class Delaunay(Incremental):
 
     @cached_property
     def min_bound(self) -> Floats:
-        """The least coordinates, (ndim,)."""
+        """The smallest coordinates, (ndim,)."""
         return self._mesh.min_bound.copy()
 
     @cached_property
     def max_bound(self) -> Floats:
-        """The greatest coordinates, (ndim,)."""
+        """The largest coordinates, (ndim,)."""
         return self._mesh.max_bound.copy()
 
     @cached_property
@@ -331,11 +331,11 @@ class Delaunay(Incremental):
         return -distance if self.furthest_site else distance
 
     def __array__(self, *_: Any, **__: Any) -> NDArray[Any]:
-        # SciPy's interpolators take any object but their own class for an array of points.
+        # SciPy's interpolators treat any object except their own class as an array of points.
         raise DtypeError(
-            "a Delaunay of delone.compat.scipy is not an array of points: pass its points. SciPy's "
-            "interpolators take only SciPy's class; those of delone.compat.scipy take this one: "
-            "from delone.compat.scipy import LinearNDInterpolator"
+            "a Delaunay of delone.compat.scipy is not an array of points: pass its points. "
+            "SciPy's interpolators accept only SciPy's class; those of delone.compat.scipy accept "
+            "this one: from delone.compat.scipy import LinearNDInterpolator"
         )
 
     def find_simplex(

@@ -254,7 +254,7 @@ def _as_rows(halfspaces: ArrayLike) -> Floats:
         raise DtypeError("halfspaces must not be a masked array")
     given: NDArray[Any] = np.asarray(halfspaces)
     if given.dtype.kind not in "biufO":
-        raise DtypeError(f"halfspaces must hold real numbers, got dtype {given.dtype}")
+        raise DtypeError(f"halfspaces must contain real numbers, got dtype {given.dtype}")
     rows = np.ascontiguousarray(given, dtype=np.float64)
     if rows.ndim != 2 or rows.shape[1] < _FEWEST:
         raise ShapeError(

@@ -5,7 +5,7 @@
 >>> hull.vertices.tolist(), hull.volume, hull.area
 ([0, 1, 2, 3], 12.0, 14.0)
 
-Signatures, attributes, dtypes, errors and the mutability of arrays are SciPy's. Differences:
+Signatures, attributes, dtypes, errors and the mutability of arrays are those of SciPy. Differences:
 
 * Simplices are in delone's order, and each facet is triangulated by delone's rule.
 * Normals are those of whole facets, so coplanar triangles have the same equation. * `coplanar`,
@@ -185,13 +185,13 @@ class ConvexHull(Incremental):
 
     @cached_property
     def min_bound(self) -> Floats:
-        """The least coordinates."""
+        """The smallest coordinates."""
         bound: Floats = self._points.min(axis=0)
         return bound
 
     @cached_property
     def max_bound(self) -> Floats:
-        """The greatest coordinates."""
+        """The largest coordinates."""
         bound: Floats = self._points.max(axis=0)
         return bound
 

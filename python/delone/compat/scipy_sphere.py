@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["SphericalVoronoi"]
 
 # Between generators that are closer, rounded vertices are too coarse for areas: they have relative
-# errors of some 1e-16 divided by this distance.
+# errors of about 1e-16 divided by this distance.
 _CLOSE = 1e-3
 
 
@@ -112,7 +112,7 @@ class SphericalVoronoi:
             )
         self.center: Floats
         self.center = np.zeros(3) if center is None else np.array(center, dtype=float)
-        # The rank of anything else is an error of LAPACK.
+        # For anything else, computing the rank is a LAPACK error.
         require_finite(self.points)
         require_finite(np.atleast_2d(self.center), name="center")
         tolerance = threshold * self.radius
@@ -133,12 +133,12 @@ class SphericalVoronoi:
     def _refuse_lengths(self, tolerance: float) -> None:
         squares = np.einsum("ij,ij->i", self._vectors, self._vectors)
         away = np.sqrt([squares.min(), squares.max()])
-        # Not a number is for the triangulation to refuse.
+        # The triangulation rejects NaN.
         if np.abs(away - self.radius).max() >= tolerance:
             raise ValueError("Radius inconsistent with generators.")
 
     def _refuse_duplicates(self, tolerance: float) -> None:
-        """Compare ends of the edges, among which is the closest pair."""
+        """Compare the ends of edges, which include the closest pair."""
         tails, heads = (_columns(self.points, self._dual.around[:, k]) for k in (0, 1))
         steps = tails - heads
         # Between the two generators of each ridge.

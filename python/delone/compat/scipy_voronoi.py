@@ -192,12 +192,12 @@ class Voronoi(Incremental):
 
     @cached_property
     def min_bound(self) -> Floats:
-        """The least coordinates."""
+        """The smallest coordinates."""
         return self._mesh.min_bound.copy()
 
     @cached_property
     def max_bound(self) -> Floats:
-        """The greatest coordinates."""
+        """The largest coordinates."""
         return self._mesh.max_bound.copy()
 
 

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 __all__ = ["MeshNotTetrahedralizedError", "TetGen"]
 
-# The marker of faces and edges of the input that were given none.
+# The marker of input faces and edges without a given marker.
 _UNMARKED = -1
 
 
@@ -59,7 +59,7 @@ class TetGen:
     v, f : ndarray
         The vertices and triangles.
     tetmesh : TetMesh or None
-        The result as delone's own class, after `tetrahedralize`; the package has no such attribute.
+        The result as delone's own class, after `tetrahedralize`; the package lacks this attribute.
 
     Raises
     ------
@@ -95,7 +95,7 @@ class TetGen:
         self._markers = found.markers
         self._holes: list[Floats] = [] if found.holes is None else list(np.asarray(found.holes))
         self._regions: list[tuple[int, Floats]] = []
-        # The largest volume in regions, by their labels.
+        # The largest volumes in regions, by label.
         self._volumes: dict[int, float] = {}
         for x, y, z, number in () if found.regions is None else np.asarray(found.regions).tolist():
             self.add_region(int(number), (x, y, z))
@@ -218,8 +218,8 @@ class TetGen:
             cut again, as with ``boundary="surface"`` of `delone.tetrahedralize`, and points are
             added on the surface if volumes are bounded.
         steinerleft : int, optional
-            The maximum number of points that are added for shapes and volumes, and of those that
-            exist besides the input at any time before; -1 for no limit of one's own.
+            The maximum number of points that are added for shapes and volumes, and of points
+            besides the input at any earlier time; -1 for the default limit.
         order : {1, 2}, optional
             With 2, `node` also contains the midpoints of edges, and rows of `elem` have ten nodes,
             in TetGen's order; those of `grid` are in VTK's order.
@@ -231,16 +231,16 @@ class TetGen:
             Whether `edges` contains all edges, instead of those of input faces.
         switches : str, optional
             TetGen's switches, which replace all other arguments: p is necessary; ``q1.4/20 a0.1 Y
-            A S M O o2 f e Q`` and those of output are accepted; m and r are refused.
+            A S M O o2 f e Q`` and those of output are accepted; m and r are rejected.
         bgmesh : optional
-            Must be None: sizes are read from no other mesh.
+            Must be None: sizes are not read from another mesh.
         nomergefacet : bool, optional
             The same as `nobisect`: coplanar triangles are not merged.
         **others
             Further arguments of the package ``tetgen``: `fixedvolume` and `maxvolume`, the largest
-            volume of a tetrahedron, and `varvolume`, whether those of regions hold without
-            `quality`. Those for output, silence and checks, and
-            those that choose between algorithms, have no effect; others must have their defaults.
+            volume of a tetrahedron, and `varvolume`, whether those of regions apply without
+            `quality`. Those for output, silence and checks, and those that choose between
+            algorithms, have no effect; others must have their defaults.
 
         Returns
         -------
@@ -319,7 +319,7 @@ class TetGen:
                 for label, volume in self._volumes.items()
             }
         if not wishes.quality:
-            # Volumes alone: shapes are as good as they come.
+            # Volumes alone: shapes are not improved.
             return {} if volumes is None else {"max_volume": volumes}
         angle = {"min_angle": wishes.angle} if wishes.angle else {}
         return {"max_volume": volumes, "radius_edge": max(wishes.ratio, 1.0)} | angle
@@ -339,7 +339,7 @@ class TetGen:
 
     @property
     def mesh(self) -> Any:
-        """The surface that was given, a ``pyvista.PolyData`` (extra ``pyvista``)."""
+        """The given surface, a ``pyvista.PolyData`` (extra ``pyvista``)."""
         return to_pyvista(Parts(self.v, self.f))
 
     @property
@@ -402,7 +402,7 @@ class TetGen:
         return np.where(self._of_input(self.edges), _UNMARKED, 0).astype(np.int32)
 
     def _of_input(self, edges: Indices) -> NDArray[np.bool_]:
-        """Whether each edge is one of a triangle of the input."""
+        """Whether each edge belongs to a triangle of the input."""
         faces, n = self._made.input_faces, np.int64(self._made.npoints)
         pairs = np.sort(faces[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1)
         found: NDArray[np.bool_] = np.isin(
@@ -455,7 +455,7 @@ class TetGen:
             grid.save(temporary, binary=as_flag(binary, name="binary"))
 
     def plot(self, **options: Any) -> Any:
-        """Display the surface that was given (extra ``pyvista``).
+        """Display the given surface (extra ``pyvista``).
 
         Parameters
         ----------

@@ -1,8 +1,8 @@
-"""The arguments and switches of the package ``tetgen``: what each requests, and what is refused.
+"""The arguments and switches of the package ``tetgen``: what each requests, and what is rejected.
 
 Nothing that would change the result is ignored. What is accepted without effect requests output,
-silence or checks, chooses between algorithms with the same result, or bounds errors that exact
-arithmetic does not make.
+silence or checks, chooses between algorithms with the same result, or bounds errors that do not
+occur in exact arithmetic.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _SIZES = (
 )
 _SWITCH = re.compile(r"([a-zA-Z])((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/[\d.]*)*|/[\d./]+)?")
 # Numbers from zero, silence, checks, files, neighbors, unused vertices, the tolerance of coplanar
-# points, and what TetGen does to tetrahedra afterward: they change nothing that is promised.
+# points, and what TetGen later does to tetrahedra: they do not affect the guarantees.
 _WITHOUT_EFFECT = "zQVCFIJNEgkBOnTWxbUX"
 _REFUSED = {
     "m": _SIZES,
@@ -41,8 +41,8 @@ _REFUSED = {
     "l": "there is one algorithm",
     "s": "there is one algorithm",
 }
-# Arguments of the package besides those that have a place in the signature, their defaults, and
-# the switch whose reason holds where another value is refused; "" where any value is accepted.
+# Arguments of the package that are not in the signature, their defaults, and the switch whose
+# reason applies when another value is rejected; "" if any value is accepted.
 _FURTHER: dict[str, tuple[Any, str]] = {
     **{"psc": (False, "s"), "refine": (False, "r"), "cdt": (False, "D"), "cdtrefine": (7, "")},
     **{"coarsen": (False, "R"), "weighted": (False, "w"), "flipinsert": (False, "L")},
@@ -73,7 +73,7 @@ _REVERSED = "tetrahedra are positively oriented"
 
 
 class Wishes(NamedTuple):
-    """What is asked for."""
+    """What is requested."""
 
     limit: int | None  # points that may be added
     regions: bool  # labels of regions
@@ -104,7 +104,7 @@ def of_arguments(
     nomergefacet: Any,
     others: dict[str, Any],
 ) -> Wishes:
-    """Return what arguments ask for, or refuse them."""
+    """Return what arguments request, or reject them."""
     wanted = as_flag(quality, name="quality")
     if bgmesh is not None:
         raise InputError(f"bgmesh: {_SIZES}")
@@ -137,7 +137,7 @@ def of_arguments(
 
 
 def _check(name: str, value: Any) -> None:
-    """Refuse an argument that is unknown, or asks for what is not supported."""
+    """Reject an argument that is unknown, or requests what is not supported."""
     if name not in _FURTHER:
         raise DtypeError(f"tetrahedralize has no argument {name}")
     default, switch = _FURTHER[name]
@@ -147,7 +147,7 @@ def _check(name: str, value: Any) -> None:
 
 
 def of_switches(switches: str) -> Wishes:
-    """Return what a string of switches asks for, or refuse it."""
+    """Return what a string of switches requests, or reject it."""
     rest = _SWITCH.sub("", switches)
     if rest:
         raise InputError(f"switches has {rest!r:.80}, which is not a switch")
@@ -161,7 +161,7 @@ def of_switches(switches: str) -> Wishes:
             raise InputError(f"the switch {letter} is not known")
     if "p" not in found:
         raise InputError("switches must contain p: delone.Delaunay triangulates points alone")
-    # q has a ratio and, behind a slash, an angle.
+    # q has a ratio and, after a slash, an angle.
     ratio, _, angle = found.get("q", "").partition("/")
     return Wishes(
         limit=as_count(int(float(found["S"] or 0)), name="S") if "S" in found else None,
@@ -180,7 +180,7 @@ def of_switches(switches: str) -> Wishes:
 
 
 def _number(text: str, default: float, letter: str) -> float:
-    """Return the number behind a switch, or the default if there is none."""
+    """Return the number after a switch, or the default if there is none."""
     if not text:
         return default
     try:

@@ -93,8 +93,8 @@ def triangulate(tri: Mapping[str, Any], opts: str = "") -> dict[str, Any]:
         - ``j``: omit vertices that no triangle uses.
 
         ``X i F l s C Q V v z`` are accepted and change nothing: arithmetic is always exact, and as
-        in the package ``v`` returns nothing here, see `voronoi`. All others raise an error that
-        names them.
+        in the package, ``v`` returns nothing here; see `voronoi`. All other switches raise an error
+        that names them.
 
     Returns
     -------

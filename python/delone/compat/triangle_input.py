@@ -48,7 +48,7 @@ class Given(NamedTuple):
     points: Floats
     simplices: Indices
     neighbors: Indices
-    # (m, 3): whether the edge opposite each vertex is a segment, or has no triangle beyond it.
+    # (m, 3): whether the edge opposite each vertex is a segment or a boundary edge.
     walls: Bools
     # (m,): the region between walls, which no triangle of a refined mesh leaves.
     part: Indices
@@ -75,7 +75,7 @@ class Given(NamedTuple):
         return cls(points, simplices, neighbors, walls, part, index)
 
     def homes(self, points: Floats, simplices: Indices, neighbors: Indices, part: Indices) -> Rows:
-        """Return the given triangle from which each triangle of a refined mesh has its properties.
+        """Return the given triangle from which each triangle of a refined mesh gets its properties.
 
         `part` is the region of each triangle, and decides: the triangle at its rounded center
         counts only if it is in the same region. Others take that of a neighbor there.
@@ -202,7 +202,7 @@ def _domain(tri: Mapping[str, Any], base: Given, given: Indices, switches: Switc
 
 
 def _parts_in(made: _core.ConstrainedTriangulation, base: Given) -> Indices:
-    """Return the part of the given triangles in which each triangle is, -1 outside.
+    """Return the part of the given triangles that contains each triangle, -1 outside.
 
     Both have the walls as edges, and the parts to the left of them are the same.
     """

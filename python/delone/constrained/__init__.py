@@ -1,6 +1,6 @@
 """Constrained triangulations of segments, polygons and lines.
 
-`delaunay` has the class, `segmented` its state, `segments` the input report, `regions` and
+`delaunay` contains the class, `segmented` its state, `segments` the input report, `regions` and
 `coverage` find regions and holes, `editing` applies changes, `validation` proves the result;
 `polygons` and `geodata` read geometries.
 """

@@ -41,7 +41,7 @@ def first_polygon(
 ) -> Indices:
     """Return the first geometry whose rings contain each component (even-odd rule), or -1.
 
-    `geometries` has the geometry of each row of segments, `sides` those of closed rings.
+    `geometries` contains the geometry of each row of segments, `sides` those of closed rings.
     """
     inside, polygon = containing(made, np.where(sides, geometries, -1), component).T
     found = np.full(int(component.max(initial=-1)) + 1, -1, dtype=np.int32)
@@ -59,9 +59,9 @@ def containing(
 ) -> Indices:
     """Return pairs of a component and a polygon that contains it, (k, 2), ascending.
 
-    What no triangle covers is one component more, the last, and in no polygon; or else that is the
-    first component. Takes linear time, plus for each component time in proportion to the polygons
-    that overlap in it.
+    The area that no triangle covers is an additional component, the last, and in no polygon;
+    otherwise, it is the first component. This takes linear time, plus time proportional to the
+    number of polygons that overlap in each component.
     """
     first = int(component.max(initial=-1)) + 1 if from_outside else 0
     parts = made.simplices, made.neighbors, made.constrained, component, made.segments
@@ -76,8 +76,8 @@ def beside(made: ConstrainedTriangulation, component: Indices) -> Indices:
 
 
 def odd_pairs(start: Rows, source: Indices, polygons: Indices) -> Indices:
-    """Return pairs of a subsegment and a polygon of which an odd number of sides cover it, (k, 2).
+    """Return pairs of a subsegment and a polygon with an odd number of sides that cover it, (k, 2).
 
-    The sources are compressed rows, as `segment_source` has them.
+    The sources are compressed rows, as in `segment_source`.
     """
     return _core.odd_pairs2((start, source, np.ascontiguousarray(polygons, np.int32)))

@@ -1,7 +1,7 @@
 """The class ConstrainedDelaunay: a triangulation whose edges include given segments.
 
-The core triangulates the whole convex hull; `segmented` holds these triangles and determines which
-of them are kept. This module has construction, queries, validation and files. Walks use all
+The core triangulates the whole convex hull; `segmented` stores these triangles and determines which
+of them are kept. This module contains construction, queries, validation and files. Walks use all
 triangles of the hull, so they pass through holes and bays.
 
 Chew, L. P. (1989), "Constrained Delaunay triangulations", Algorithmica 4, 97-108.
@@ -47,7 +47,8 @@ _MOST_ADDED = 4_000_000
 _BOUNDARIES = ("hull", "outline", "polygons")
 _CROSSINGS = ("raise", "split")
 _METHODS = tuple(_core.methods2())
-# Fewer points are never shared among threads, and to count cores takes as long as some of them.
+# Fewer points are never shared among threads, and counting cores takes as long as some
+# triangulations.
 _FEW = 1000
 _NO_SEEDS = sealed(np.empty((0, 2)))
 _NO_LABELS = sealed(np.empty(0, dtype=np.int32))
@@ -102,7 +103,7 @@ class ConstrainedDelaunay(Segmented):
     Raises
     ------
     CrossingSegmentsError
-        Segments cross, and `crossing` is ``"raise"``; ``error.pairs`` has all pairs of rows, and
+        Segments cross, and `crossing` is ``"raise"``; ``error.pairs`` lists all pairs of rows, and
         ``error.points`` where they cross.
     BudgetExceededError
         More than `max_points` vertices would have to be added, or more segments cross than it
@@ -126,7 +127,7 @@ class ConstrainedDelaunay(Segmented):
     rounded vertices and may bend there by the rounding error; the triangulation is always valid.
 
     To make the triangulation conforming, subsegments are split in half, or near corners at powers
-    of two, so that segments that meet at sharp angles stop encroaching upon each other (J. Ruppert,
+    of two, so that segments that meet at sharp angles stop encroaching on each other (J. Ruppert,
     "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", 1995). Subsegments
     between adjacent doubles cannot be split and remain unchanged.
 

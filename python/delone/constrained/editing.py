@@ -1,12 +1,13 @@
 """Changes to a constrained triangulation, collected in a block and applied together at its end.
 
 A triangulation is immutable and canonical, so a changed copy is the triangulation of the changed
-input. A live triangulation behind the result would not make the cost follow the size of the edit,
-because the new object needs its own arrays. With 200,000 points and 40,000 segments, where a new
-triangulation takes 1, the live one takes 1.5 to make, a point inserted into it 0.0003, and its
-simplices and neighbors 0.3, in a different order from those of a new one, and without the rows of
-segments along each edge. So a single edit would take nearly twice as long, and only chains of three
-or more would gain. For these there are blocks with many changes, and `Dynamic`.
+input. With a live triangulation behind the result, the cost would still not be proportional to the
+size of the edit, because the new object needs its own arrays. With 200,000 points and 40,000
+segments, in units of the time of a new triangulation, building the live one takes 1.5, inserting a
+point into it 0.0003, and extracting its simplices and neighbors 0.3, in a different order from
+those of a new one, and without the rows of segments along each edge. So a single edit would take
+nearly twice as long, and only chains of three or more would benefit. For these, there are blocks
+with many changes, and `Dynamic`.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ class EditRows(NamedTuple):
     ----------
     points : ndarray of int32, shape (n,)
         For each row of points in the edit, its row in the result; -1 for removed points, and for
-        vertices that the triangulation had added.
+        vertices that the triangulation added.
     segments : ndarray of int32, shape (s,)
         For each row of segments in the edit, its row in `input_segments` of the result; -1 for
         removed segments.

@@ -48,7 +48,7 @@ _POINT, _POLYGON, _COLLECTION = 0, 3, 7
 class Parts(NamedTuple):
     """Runs of coordinates, and the kind of each."""
 
-    # (n, 2): all parts, one after the other.
+    # (n, 2): all parts, one after another.
     coordinates: Floats
     # (p + 1,): the start of each part in the coordinates.
     starts: NDArray[np.int64]
@@ -167,7 +167,7 @@ def _is_ring(given: list[Any] | tuple[Any, ...] | NDArray[Any]) -> bool:
 
 
 def _string_error(given: Any, name: str) -> str:
-    """Return an error message for a string: it is the name of a file, or WKT."""
+    """Return an error message for a string: it is a file name or WKT."""
     text = os.fsdecode(given)
     if not isinstance(given, os.PathLike) and "(" in text:
         return f"{name}: {text!r:.80} is not a geometry: read WKT with shapely.from_wkt"

@@ -1,4 +1,4 @@
-"""Which triangles and regions are inside of polygons whose sides are segments."""
+"""Which triangles and regions are inside polygons whose sides are segments."""
 
 from __future__ import annotations
 
@@ -18,8 +18,9 @@ __all__ = ["containing", "inside"]
 def containing(mesh: Segmented, polygons: Indices) -> Rows:
     """Return pairs of a region of `mesh.region` and a polygon that contains it, (k, 2), ascending.
 
-    `polygons` has the polygon of each row of segments, -1 for rows that are sides of none. The
-    sides of each polygon must be closed rings; even-odd rule. For meshes of the whole hull.
+    `polygons` contains the polygon of each row of segments, -1 for rows that are not sides of a
+    polygon. The sides of each polygon must be closed rings; the even-odd rule applies. For meshes
+    of the whole hull.
     """
     component = mesh._component
     region = np.empty(int(component.max()) + 1, dtype=np.int64)
@@ -32,8 +33,8 @@ def containing(mesh: Segmented, polygons: Indices) -> Rows:
 def inside(mesh: Segmented, polygons: Indices) -> Bools:
     """Return which triangles of the hull are inside some polygon.
 
-    `polygons` has the polygon of each row of segments, -1 for rows that are sides of none. The
-    sides of each polygon must be closed rings; even-odd rule.
+    `polygons` contains the polygon of each row of segments, -1 for rows that are not sides of a
+    polygon. The sides of each polygon must be closed rings; the even-odd rule applies.
     """
     if not (polygons >= 0).any():
         return np.zeros(len(mesh._made.simplices), dtype=bool)

@@ -1,8 +1,8 @@
 """Constrained triangulations of polygons and other geometries, and the triangles inside a polygon.
 
 `from_geometry` converts geometries to points and segments and passes them to `ConstrainedDelaunay`.
-`triangulate_polygon` calls the core directly, because drawing programs call it for each of very
-many small rings.
+`triangulate_polygon` calls the core directly, because drawing programs call it for very many small
+rings.
 """
 
 from __future__ import annotations
@@ -75,7 +75,8 @@ def from_geometry(
     ConstrainedDelaunay
         The triangulation. Its points are the distinct coordinates in order of appearance. Its
         segments are the lines and the sides of all rings, including holes, in the same order;
-        ``geometry_of_segment`` has the geometry of each, and ``part_of_segment`` the ring or line.
+        ``geometry_of_segment`` contains the geometry of each, and ``part_of_segment`` its ring or
+        line.
 
     Raises
     ------
@@ -97,8 +98,8 @@ def from_geometry(
     Open rings are closed. Missing and empty geometries are skipped, and third coordinates are
     dropped. Equal coordinates are one point, so adjacent polygons share vertices. Polygons need not
     be valid: by the even-odd rule, a point is inside if the rings of a geometry wind around it an
-    odd number of times, and ``mesh.polygon_of_simplex`` has the first geometry that contains
-    each triangle. With ``boundary="outline"`` holes of polygons remain, with ``"polygons"`` they
+    odd number of times, and ``mesh.polygon_of_simplex`` contains the first geometry that contains
+    each triangle. With ``boundary="outline"``, holes of polygons remain; with ``"polygons"``, they
     are removed.
 
     Examples

@@ -1,7 +1,7 @@
 """Regions between segments: which are outside, which are holes, and their numbers and labels.
 
 A region is a connected component of triangles that share edges other than segments; the core finds
-these components. Everything here is arithmetic on their numbers. `Tiling` holds all triangles of
+these components. Everything here is arithmetic on their numbers. `Tiling` contains all triangles of
 the convex hull. Exact predicates decide whether a seed lies on a segment.
 """
 
@@ -51,7 +51,7 @@ def located(
 ) -> tuple[Indices, Bools]:
     """Return the triangle that contains each seed, -1 outside, and whether it lies on a segment.
 
-    The ends of segments count.
+    Segments include their ends.
     """
     points, simplices, neighbors, constrained = tiling
     triangle = _core.find_simplex2(points, simplices, neighbors, seeds, workers)
@@ -84,8 +84,8 @@ def corners(on_edge: Bools) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 def labels(component: Indices, of_seed: Indices, given: Indices) -> tuple[Indices, Indices]:
     """Label triangles with the label of the first seed in their component, -1 without one.
 
-    `of_seed` is -1 for seeds outside. The second result, (r, 2), has the seeds whose component
-    already has a label, and the seed that it is from.
+    `of_seed` is -1 for seeds outside. The second result, (r, 2), contains the seeds whose component
+    already has a label, and the seed that this label is from.
     """
     seeds = np.flatnonzero(of_seed >= 0).astype(np.int32)
     first = np.full(int(component.max(initial=-1)) + 1, -1, dtype=np.int32)
@@ -110,8 +110,8 @@ def crossed(tiling: Tiling, along: Indices, a: Floats, b: Floats) -> Indices:
     of_a, of_b = _core.orient2d(u, v, start), _core.orient2d(u, v, end)
     sides = _core.orient2d(start, end, u) * _core.orient2d(start, end, v)
     proper = (sides < 0) & (of_a * of_b < 0) & tiling.constrained[triangle, corner]
-    # The line leaves a triangle through an edge that has the end of the line beyond it. It enters
-    # through edges by which it has left the triangle before, except where it enters the hull.
+    # The line leaves a triangle through an edge beyond which it ends. It enters through edges by
+    # which it left the previous triangle, except where it enters the hull.
     leaves = proper & (of_b < 0)
     enters = proper & (of_a < 0) & (tiling.neighbors[triangle, corner] < 0)
     rows = np.concatenate((np.flatnonzero(enters), np.flatnonzero(leaves)))

@@ -1,8 +1,8 @@
 """The state of a constrained triangulation, and attributes derived from segments and seeds.
 
-`_given` holds the input other than points, and `_made` the result of the core: the triangles of the
-whole convex hull, and subsegments with their rows. `simplices` and similar arrays have only the
-triangles that are kept; `_number` maps all triangles to these.
+`_given` contains the input other than points, and `_made` the result of the core: the triangles of
+the whole convex hull, and subsegments with their rows. `simplices` and similar arrays contain only
+the triangles that are kept; `_number` maps all triangles to these.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Options(NamedTuple):
     method: str
     workers: int | None
     labeled: bool
-    # That of the geometries, if they have one.
+    # The reference system of the geometries, if they have one.
     crs: str | None = None
 
 
@@ -112,7 +112,7 @@ class Segmented(segments.SegmentArrays, PointTriangulation):
         options: Options,
         stages: Any,
     ) -> None:
-        """Set everything; the arrays other than the points cannot be made writeable."""
+        """Set everything; arrays other than the points cannot be made writeable."""
         put = object.__setattr__
         put(self, "_given", given)
         put(self, "_made", made)
@@ -228,7 +228,7 @@ class Segmented(segments.SegmentArrays, PointTriangulation):
     def region(self) -> Indices:
         """The region of each triangle, (m,): the same where no segment separates triangles.
 
-        With region seeds it is the label of the first seed in the region, -1 without one. Without
+        With region seeds, it is the label of the first seed in the region, -1 without one. Without
         seeds, regions are numbered from 0 in the order of their smallest triangles. Triangles are
         compared by their smallest corners, then their middle ones, then their largest; corners by
         x, then y. So the numbers do not depend on the order of rows.

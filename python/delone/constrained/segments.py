@@ -43,7 +43,7 @@ class SegmentReport(ReadOnly):
     """Input report of a constrained triangulation: duplicates, overlaps, crossings.
 
     Truthy if there is nothing to report: each row of `segments` is one subsegment, no two points
-    coincide, and each seed lies in a region of its own. Every field is an array of findings, which
+    coincide, and each seed lies in a different region. Every field is an array of findings, which
     is empty if there are none. A "row" is a row of the input array.
 
     Parameters
@@ -72,10 +72,10 @@ class SegmentReport(ReadOnly):
     holes_on_segment, regions_on_segment : ndarray of int32, shape (k,)
         Rows of seeds that lie on a segment, and therefore in no region. They have no effect.
     regions_repeated : ndarray of int32, shape (k, 2)
-        Rows of seeds, and the earlier row that has labeled their region.
+        Rows of seeds, and the earlier row that labels their region.
     open_ends : ndarray of int32, shape (k,)
         With ``boundary="outline"``, vertices outside at which only one segment ends: there the
-        outline is open, and what it was to enclose is outside.
+        outline is open, and what it was meant to enclose is outside.
 
     Attributes
     ----------
@@ -287,7 +287,8 @@ def steiner_rows(
 ) -> Indices:
     """Return row and vertex, ascending, where a path has neither a crossing nor a point on it.
 
-    `known`, (c, 2), has these crossings and points with their rows; `ends` the ends of each row.
+    `known`, (c, 2), contains these crossings and points with their rows; `ends` the ends of each
+    row.
     """
     row = np.repeat(source, 2)
     vertex = np.repeat(segments, np.diff(start), axis=0).ravel()

@@ -31,7 +31,7 @@ __all__ = ["ConstrainedReport", "OfSegments"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class OfSegments:
-    """What reports of triangulations with segments have, in the plane and on the sphere."""
+    """What reports on triangulations with segments share, in the plane and on the sphere."""
 
     flags: Rows = fault("triangle has wrong flags", "triangles have wrong flags")
     absent: Rows = fault("subsegment is not an edge", "subsegments are not edges", width=2)
@@ -39,7 +39,7 @@ class OfSegments:
     bent: Rows = fault("vertex bends a row of segments", "vertices bend rows of segments", width=2)
 
 
-# Fields of the last base are the first.
+# The fields of the last base come first.
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ConstrainedReport(OfSegments, ValidationReport):
     """The result of ``ConstrainedDelaunay.validate()``: truthy if it is correct.
@@ -158,12 +158,12 @@ def bent_rows(
     ninput: int,
     is_off: Callable[[Indices, Indices, Indices], Bools],
 ) -> Indices:
-    """Return vertices off their row, for rows that have no reason to bend.
+    """Return vertices off their row, for rows without a reason to bend.
 
     Reasons are a crossing, an added vertex, and a row with one of these that bends at the same
     vertex: bent pieces may cross rows that their segments do not meet. Of the `npoints` vertices of
-    `made` those from `ninput` on were added; `is_off` tells for `ends` of rows and a vertex each
-    whether it is not between them.
+    `made`, those from `ninput` on were added; given `ends` of rows and a vertex for each, `is_off`
+    tells whether it is not between them.
     """
     row, tail, head = _directed(made)
     off = is_off(ends[row, 0], ends[row, 1], head)

@@ -89,7 +89,7 @@ def gaussian_clusters(n: int, *, seed: int = 0, clusters: int = 11) -> Points:
 
     Notes
     -----
-    Crowded cells: uniform grids put most of the points into a few cells.
+    The cells are crowded: uniform grids put most of the points into a few cells.
 
     Examples
     --------
@@ -248,7 +248,7 @@ def spiral(n: int, *, seed: int | None = 0, turns: float = 10.0) -> Points:
 
     Notes
     -----
-    Long thin triangles between the arms; insertions in order walk along the hull.
+    There are long thin triangles between the arms; insertions in order walk along the hull.
 
     Examples
     --------

@@ -124,10 +124,10 @@ def land() -> dict[str, Any]:
     Returns
     -------
     dict
-        A GeoJSON-like multipolygon, which shapely and `delone.sphere.from_geometry` take:
-        ``"coordinates"`` has for each polygon its rings of (longitude, latitude) in degrees, the
-        outer one counter-clockwise. Polygons end at the date line; Antarctica also has an edge at
-        the pole. The largest ones come first.
+        A GeoJSON-like multipolygon, which shapely and `delone.sphere.from_geometry` accept:
+        ``"coordinates"`` contains for each polygon its rings of (longitude, latitude) in degrees,
+        the outer one counter-clockwise. Polygons end at the date line; Antarctica also has an edge
+        at the pole. The largest ones come first.
 
     Examples
     --------

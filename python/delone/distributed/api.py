@@ -62,8 +62,8 @@ def triangulate(
         The executor of the tasks: this process, with all cores; one process per core, which ends
         with this one; or a Dask cluster whose machines can access the output folder.
     resume : bool, optional
-        Whether to resume an interrupted run of the same source and arguments. Finished tiles are
-        not computed again.
+        Whether to resume an interrupted run with the same source and arguments. Finished tiles are
+        not recomputed.
     columns, classes, attributes
         As in `delone.io.read_points`; attributes, which must be numeric, go to the vertices.
     nan : {"raise", "drop"}, optional
@@ -71,7 +71,7 @@ def triangulate(
         them, or drop them. Attributes are copied unchanged, including NaN; so are heights that are
         given as an attribute.
     progress : callable, optional
-        Called with a `Progress` from time to time.
+        Called regularly with a `Progress`.
     crs : str, int or pyproj.CRS, optional
         The reference system of the coordinates, by default that of the files. Nothing is
         transformed.

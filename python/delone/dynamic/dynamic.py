@@ -53,8 +53,8 @@ class Dynamic(Measured, Drawn, Filed):
     ndim : int, optional
         The number of coordinates, 2 or 3; by default that of `points`, and 2 without points.
     workers : int, optional
-        Maximum number of threads when all points are triangulated at once; by default one per core.
-        The result does not depend on it.
+        Maximum number of threads when all points are triangulated together; by default one per
+        core. The result does not depend on it.
     planar : bool, optional
         Treat longitudes and latitudes as coordinates of a plane, without a warning, here and in
         `insert`.
@@ -95,10 +95,10 @@ class Dynamic(Measured, Drawn, Filed):
     and simplices appear with the first point that is not on that line or plane.
 
     With segments, the simplices are those of a new `ConstrainedDelaunay` of the same points and
-    segments. A segment joins two handles and moves with its endpoints; a point that is an endpoint
-    cannot be removed. With ``crossing="split"``, the crossing of two segments is a vertex with its
-    own handle, which is removed with the segments. The time of an edit of a crossing segment
-    depends on the segments that are connected to it by crossings (`insert_segments`).
+    segments. A segment joins two handles and moves with its endpoints; endpoints cannot be removed.
+    With ``crossing="split"``, the crossing of two segments is a vertex with its own handle, which
+    is removed with the segments. The time of an edit of a crossing segment depends on the segments
+    that are connected to it by crossings (`insert_segments`).
 
     An edit is atomic: after any error, including Ctrl-C and a failed allocation, nothing has
     changed. If Ctrl-C arrives after the edit is complete, only its return value is lost: check
@@ -108,11 +108,11 @@ class Dynamic(Measured, Drawn, Filed):
     An insertion walks from the last edit, or from a tree of starting points; its time is
     proportional to the number of simplices that it replaces (A. Bowyer; D. F. Watson, both 1981). A
     removal fills the star of the point with m simplices of its k neighbors in O(k m), or
-    triangulates all points again if that is faster. A point that moves within its star keeps its
-    place in the mesh: in 2-D, flips (C. L. Lawson, 1977) restore the triangulation; in 3-D, this is
-    done only if no flip is needed. Batches are sorted along a space-filling curve, and large ones
-    triangulate all points again. Arrays such as `simplices` are built on first use after an edit,
-    in linear time; `plot` draws the result of `freeze`. Each handle takes 12 bytes, even after its
+    retriangulates all points if that is faster. A point that moves within its star keeps its
+    connections: in 2-D, flips (C. L. Lawson, 1977) restore the triangulation; in 3-D, this is done
+    only if no flip is needed. Batches are sorted along a space-filling curve, and large ones
+    retriangulate all points. Arrays such as `simplices` are built on first use after an edit, in
+    linear time; `plot` draws the result of `freeze`. Each handle takes 12 bytes, even after its
     point is removed.
 
     Examples
@@ -132,7 +132,7 @@ class Dynamic(Measured, Drawn, Filed):
 
     __slots__ = ("__weakref__", "_planar")
 
-    # Whether degrees cause no warning.
+    # Whether warnings about degrees are off.
     _planar: bool
 
     @property
@@ -211,7 +211,7 @@ class Dynamic(Measured, Drawn, Filed):
         return self._workers, self._planar, self._system
 
     def _state(self) -> State:
-        """Return the present state, one whatever other threads do."""
+        """Return the current state, a consistent one whatever other threads do."""
         return State.of(self._live.state().open())
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -228,7 +228,7 @@ class Dynamic(Measured, Drawn, Filed):
         return self._live.counts()[0]
 
     def __contains__(self, handle: object) -> bool:
-        """Return whether the point with this handle is there."""
+        """Return whether the point with this handle exists."""
         if isinstance(handle, bool) or not isinstance(handle, int | np.integer):
             return False
         if not 0 <= handle < self._live.counts()[3]:
@@ -313,8 +313,8 @@ class Dynamic(Measured, Drawn, Filed):
         Returns
         -------
         ndarray of int64, shape (s,), or None
-            With ``segments="remove"`` the handles of the segments that were removed, ascending;
-            None otherwise.
+            With ``segments="remove"``, the handles of the removed segments, ascending; otherwise
+            None.
 
         Raises
         ------
@@ -324,12 +324,12 @@ class Dynamic(Measured, Drawn, Filed):
         DtypeError
             `handles` are not integers.
         InputError
-            `segments` is something else.
+            `segments` is not one of its choices.
 
         Notes
         -----
         Points and their segments are removed in one edit. As in `remove_segments`, its time depends
-        on the size of the change: segments that crossed them are inserted again.
+        on the size of the change: segments that crossed them are reinserted.
 
         Examples
         --------
@@ -354,7 +354,7 @@ class Dynamic(Measured, Drawn, Filed):
         return np.empty(0, dtype=np.int64) if also else None
 
     def move(self, handles: ArrayLike, points: ArrayLike) -> None:
-        """Move points and their segments, all at once.
+        """Move points and their segments, all in one edit.
 
         Parameters
         ----------
@@ -371,7 +371,7 @@ class Dynamic(Measured, Drawn, Filed):
         CrossingSegmentsError
             Segments would cross, and `crossing` is ``"raise"``; nothing has changed.
         NonFiniteError, ShapeError, DtypeError
-            As for the constructor, or there are not as many points as handles.
+            As for the constructor, or the numbers of points and handles differ.
 
         Examples
         --------
@@ -436,21 +436,21 @@ class Dynamic(Measured, Drawn, Filed):
         yield draft
         if draft._live.edits and not self._take(draft, known):
             raise EditConflictError(
-                "the triangulation was edited outside the draft meanwhile: the draft is "
-                "dropped, and its edits have to be made again"
+                "the triangulation was edited outside the draft in the meantime: the draft is "
+                "discarded, and its edits must be repeated"
             )
 
     def _draft(self) -> tuple[int, Self]:
-        """Return a copy of the present state, and how many edits led to it."""
+        """Return a copy of the current state, and the number of edits that led to it."""
         while True:
             known = self._live.edits
             state = self._live.state()
-            # Otherwise an edit of another thread is complete.
+            # Otherwise, another thread has completed an edit.
             if self._live.edits == known:
                 return known, self._of(state.open(), *self._options)
 
     def _take(self, draft: Self, known: int) -> bool:
-        """Take the state of a draft, unless there has been an edit other than those known."""
+        """Adopt the state of a draft, unless there have been unknown edits."""
         taken: bool = self._edited(_restore, self._live, draft._live.state(), known)
         if taken:
             self._system = draft._system
@@ -489,7 +489,7 @@ class Dynamic(Measured, Drawn, Filed):
 
         Notes
         -----
-        The points and segments are triangulated again. Snapshots can be pickled.
+        The points and segments are retriangulated. Snapshots can be pickled.
 
         Examples
         --------
@@ -665,7 +665,7 @@ class Dynamic(Measured, Drawn, Filed):
 
 
 def _restore(core: _core.Live, state: _core.LiveState, known: int | None) -> bool:
-    """Restore a state of the same dimension, unless there are other edits than the known ones."""
+    """Restore a state of the same dimension, unless there are unknown edits."""
     own, other = core.ndim, state.ndim
     if own != other:
         raise DtypeError(f"a {other}-D snapshot cannot be restored to a {own}-D triangulation")

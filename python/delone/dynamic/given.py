@@ -1,4 +1,4 @@
-"""What callers of `Dynamic` give: points, or what is taken whole for its points."""
+"""The arguments of `Dynamic`: points, or objects whose points are used."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ _LARGEST_EXACT_INTEGER = 2**53
 
 
 def given_points(points: Any) -> Any:
-    """The points of what is taken whole; others are refused by name."""
+    """The points of accepted objects; others are rejected by name."""
     if not isinstance(points, Stored):
         return points
     if isinstance(points, Delaunay | ConstrainedDelaunay):
         return points.points
     name = type(points).__name__
     raise InputError(
-        f"Dynamic takes points, a Delaunay or a ConstrainedDelaunay, not a {name}, of which the "
-        "points alone would be left: pass its points, and its segments if it has some"
+        f"Dynamic takes points, a Delaunay or a ConstrainedDelaunay, not a {name}, of which "
+        "only the points would be left: pass its points, and its segments if it has any"
     )
 
 
@@ -46,7 +46,7 @@ def as_ndim(ndim: int | None) -> int | None:
 
 
 def own_points(points: ArrayLike, ndim: int, crs: str | None) -> Floats:
-    """Return points that nobody changes while the core runs, in a reference system."""
+    """Return points that cannot change while the core runs, in a reference system."""
     array = as_points(points, ndim=ndim)
     if type(points) is not np.ndarray and hasattr(points, "crs"):
         array = as_queries(points, ndim, crs, name="points", to="the triangulation")
@@ -54,16 +54,16 @@ def own_points(points: ArrayLike, ndim: int, crs: str | None) -> Floats:
 
 
 def as_any_values(values: ArrayLike) -> NDArray[Any]:
-    """Return values of any dtype as an array, of which none is masked."""
+    """Return values of any dtype as an array; none may be masked."""
     refuse_hidden(values, "values")
     return as_plain_array(values, "values")
 
 
 def as_values(values: ArrayLike) -> NDArray[Any]:
-    """Return values to be interpolated as doubles, or complex ones, without rounding."""
+    """Return values to interpolate as doubles or complex numbers, without rounding."""
     array = as_any_values(values)
     if array.size and array.dtype.kind not in "iufc":
-        raise DtypeError(f"values must hold numbers, got dtype {array.dtype}")
+        raise DtypeError(f"values must contain numbers, got dtype {array.dtype}")
     if array.dtype in (np.float64, np.complex128):
         return array
     plain = array.astype(np.complex128 if array.dtype.kind == "c" else np.float64)

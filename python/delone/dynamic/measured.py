@@ -1,4 +1,4 @@
-"""Edges, boundary and sizes of the present state of a live triangulation."""
+"""Edges, boundary and sizes of the current state of a live triangulation."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["Measured"]
 
 
 class Measured(Present):
-    """What is computed from the present arrays, once after each edit."""
+    """What is computed from the current arrays, once after each edit."""
 
     __slots__ = ("_whole",)
 
@@ -26,7 +26,7 @@ class Measured(Present):
     _whole: tuple[_core.LiveArrays, Delaunay] | None
 
     def _mesh(self) -> Delaunay:
-        """Return the present arrays as a mesh, which may have no simplex."""
+        """Return the current arrays as a mesh, which may not have a simplex."""
         made, whole = self._arrays(), self._whole
         if whole is None or whole[0] is not made:
             arrays: dict[str, NDArray[Any]] = {
@@ -43,7 +43,7 @@ class Measured(Present):
     def boundary(self) -> Indices:
         """The facets with a simplex on one side only, (h, d), as rows of `points`.
 
-        As in `Delaunay`; empty if there is no simplex, as all that follows.
+        As in `Delaunay`; empty if there is no simplex, like everything below.
         """
         return self._mesh().boundary
 
@@ -61,7 +61,7 @@ class Measured(Present):
     def hull(self) -> NDArray[np.int64]:
         """The vertices on the convex hull, (h,), as rows of `points`.
 
-        In 2-D counter-clockwise from the lexicographically smallest point on, in 3-D ascending.
+        In 2-D, counter-clockwise from the lexicographically smallest point on; in 3-D, ascending.
         """
         mesh = self._mesh()
         return mesh.hull if mesh.nsimplex else mesh.boundary[:, 0].astype("int64")
@@ -82,7 +82,7 @@ class Measured(Present):
         return self._mesh().volumes
 
     def quality(self) -> Any:
-        """Measure the shapes of the present simplices.
+        """Measure the shapes of the current simplices.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""The present state of a live triangulation as arrays, and queries in it."""
+"""The current state of a live triangulation as arrays, and queries in it."""
 
 from __future__ import annotations
 
@@ -33,22 +33,22 @@ __all__ = ["Present"]
 
 @renamed(corners="corners_at")
 class Present(Segmented):
-    """What a `Dynamic` tells about its present state."""
+    """What a `Dynamic` provides about its current state."""
 
     __slots__ = ("_index", "_known", "_present", "_system")
 
     # The reference system of the points.
     _system: str | None
 
-    # The arrays of a state, and the object that stands for it.
+    # The arrays of a state, and the object that identifies it.
     _present: tuple[object, _core.LiveArrays] | None
-    # What finds simplices, and the arrays that it is for.
+    # The point location index, and the arrays that it belongs to.
     _index: tuple[_core.LiveArrays, Locator] | None
     # The number of an edit, and the handles of all points after it.
     _known: tuple[int, Handles]
 
     def _arrays(self) -> _core.LiveArrays:
-        """Return the arrays of the present state, made once after each edit."""
+        """Return the arrays of the current state, built once after each edit."""
         edit, present = self._edit, self._present
         if present is None or present[0] is not edit:
             made = self._live.arrays()
@@ -92,7 +92,7 @@ class Present(Segmented):
 
     @property
     def npoints(self) -> int:
-        """The number of points, duplicates included."""
+        """The number of points, including duplicates."""
         return self._live.counts()[0]
 
     @property
@@ -129,7 +129,7 @@ class Present(Segmented):
 
         Notes
         -----
-        The arrays are made again after an edit; `corners` and `interpolate` do without.
+        The arrays are rebuilt after an edit; `corners_at` and `interpolate` do not need them.
 
         Examples
         --------
@@ -184,7 +184,7 @@ class Present(Segmented):
         )
 
     def _locator(self) -> tuple[_core.LiveArrays, Locator]:
-        """Return the present arrays, and what finds simplices in them."""
+        """Return the current arrays, and their point location index."""
         made, index = self._arrays(), self._index
         if not len(made.simplices):
             # The error says why there is none.
@@ -213,7 +213,7 @@ class Present(Segmented):
 
         Notes
         -----
-        By a walk in the present state, without arrays: cheap between edits.
+        The search is a walk in the current state and needs no arrays: it is cheap between edits.
 
         Examples
         --------
@@ -244,7 +244,8 @@ class Present(Segmented):
 
         Notes
         -----
-        Exact, by a walk in the present state, without arrays: cheap between edits.
+        The result is exact. The search is a walk in the current state and needs no arrays: it is
+        cheap between edits.
 
         Examples
         --------
@@ -262,8 +263,8 @@ class Present(Segmented):
         Parameters
         ----------
         values : array_like, shape (k, ...), optional
-            A value for each handle: that of handle h is ``values[h]``. There may be more than
-            there are handles, as in an array that grows.
+            A value for each handle: that of handle h is ``values[h]``. There may be more values
+            than handles, as in an array that grows.
 
         Returns
         -------
@@ -313,7 +314,7 @@ class Present(Segmented):
         Raises
         ------
         HandleError
-            A handle is not there.
+            A handle does not exist.
         DtypeError
             `handles` are not integers.
 
@@ -331,18 +332,18 @@ class Present(Segmented):
     def interpolate(
         self, xi: ArrayLike, values: ArrayLike, *, handles: ArrayLike | None = None
     ) -> NDArray[Any]:
-        """Interpolate values linearly in the present simplices.
+        """Interpolate values linearly in the current simplices.
 
         Parameters
         ----------
         xi : array_like, shape (..., d)
             Where to interpolate.
         values : array_like, shape (n, ...)
-            A real or complex value for each row of `points`; of duplicates, that of the vertex
-            counts.
+            A real or complex value for each row of `points`; for duplicates, that of the vertex is
+            used.
         handles : array_like of int, shape (n,), optional
             The handles that the values belong to, in any order, each once. All points must be
-            among them; others are not used. By default those of the present rows.
+            among them; others are not used. By default, those of the current rows.
 
         Returns
         -------
@@ -352,7 +353,7 @@ class Present(Segmented):
         Raises
         ------
         ShapeError
-            There are not as many values as points, or as handles.
+            The number of values differs from that of points, or of handles.
         DtypeError
             `values` are not numbers, are masked, or cannot be represented as float64.
         HandleError
@@ -370,7 +371,7 @@ class Present(Segmented):
         given = as_values(values)
         queries = as_queries(xi, self.ndim, self._system)
         flat = np.ascontiguousarray(queries.reshape(-1, self.ndim))
-        # One call for all that must be of one state, whatever other threads do.
+        # One call for everything that must be of one state, whatever other threads do.
         edit, own = self._known
         corners, weights, now, changed = self._live.weights(flat, edit)
         if changed is not None:
@@ -390,7 +391,7 @@ class Present(Segmented):
 
 
 def _places(own: Handles, wanted: Handles) -> NDArray[np.int64]:
-    """Return the places of handles among others, which ascend."""
+    """Return the positions of handles among others, which ascend."""
     place = np.searchsorted(own, wanted).clip(max=max(len(own) - 1, 0))
     there = own[place] == wanted if len(own) else np.zeros(len(wanted), dtype=bool)
     refuse(np.unique(wanted[~there]), np.empty(0, dtype=np.int64), "handle")
@@ -398,7 +399,7 @@ def _places(own: Handles, wanted: Handles) -> NDArray[np.int64]:
 
 
 def _of_handles(values: NDArray[Any], handles: Handles, own: Handles) -> NDArray[Any]:
-    """Return the values of handles in the order of the present rows."""
+    """Return the values of handles in the order of the current rows."""
     if values.ndim == 0 or len(values) != len(handles):
         raise ShapeError(
             f"values must have {len(handles)} rows, one per handle, got {values.shape}"

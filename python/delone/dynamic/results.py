@@ -1,4 +1,4 @@
-"""What a live triangulation returns: changes since the last look, and snapshots."""
+"""What a live triangulation returns: changes since the last call, and snapshots."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ class Changes(NamedTuple):
     Parameters
     ----------
     gone : ndarray of int64, shape (k, d + 1)
-        Simplices that are not there anymore, as handles.
+        Simplices that no longer exist, as handles.
     new : ndarray of int64, shape (k, d + 1)
-        Simplices that were not there, as handles.
+        Simplices that did not exist before, as handles.
 
     Notes
     -----
-    Each begins with its smallest handle, in 3-D with the two smallest, and is positively oriented;
-    rows are ascending. A simplex
-    whose vertices moved, but are still joined, is in neither.
+    Each begins with its smallest handle (in 3-D, with the two smallest), and is positively
+    oriented; rows are ascending. A simplex whose vertices moved, but are still joined, is in
+    neither.
 
     Examples
     --------
@@ -89,7 +89,7 @@ class Snapshot:
     Notes
     -----
     Snapshots share with each other what has not changed between them. Pickles and deep copies in
-    other processes hold points, segments and handles, share nothing, and restore the same state.
+    other processes contain points, segments and handles, share nothing, and restore the same state.
 
     Examples
     --------

@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 __all__ = ["State", "require_few_handles"]
 
-# Handles that a file or a pickle may have whatever its size, and for each point in it. Each takes
-# 12 bytes.
+# The number of handles that a file or a pickle may have, whatever its size, and for each point in
+# it. Each takes 12 bytes.
 _ALWAYS, _PER_POINT = 10_000_000, 64
 
 
 class State(NamedTuple):
-    """Points and segments with their handles: all that the core needs for the same state."""
+    """Points and segments with their handles: all that the core needs to restore the state."""
 
     points: Floats
     handles: Handles
@@ -37,7 +37,7 @@ class State(NamedTuple):
 
     @classmethod
     def of(cls, core: _core.Live) -> State:
-        """Return the state of a core that nobody edits meanwhile."""
+        """Return the state of a core that is not edited in the meantime."""
         handles, points = core.points()
         none = np.empty(0, dtype=np.int64)
         total = core.counts()[3]
@@ -48,7 +48,7 @@ class State(NamedTuple):
 
     @classmethod
     def unpickled(cls, saved: Any) -> State:
-        """Return the state in a pickle, checked as that of a file is."""
+        """Return the state in a pickle, checked like that of a file."""
         from delone._tiling.archive.checks import ContradictionError, check_live
 
         try:
@@ -59,27 +59,27 @@ class State(NamedTuple):
         return state.pickled()
 
     def pickled(self) -> State:
-        """Return the state; refuse one that a pickle cannot hold."""
+        """Return the state; reject one that does not fit into a pickle."""
         found, limit = self.total_of_handles(), self.most_handles()
         if found > limit:
             raise InputError(
-                f"{found:,} handles have been given, for {len(self.points):,} points, and a pickle "
-                f"takes at most {limit:,}, since each needs 12 bytes: use save(path), and "
+                f"{found:,} handles have been assigned, for {len(self.points):,} points, and a "
+                f"pickle accepts at most {limit:,}, since each needs 12 bytes: use save(path), and "
                 f"load(path, max_handles={found})"
             )
         return self
 
     def total_of_handles(self) -> int:
-        """Return how many handles of points or of segments have been given, the larger number."""
+        """Return how many handles of points or segments have been assigned, whichever is more."""
         return max(self.total, self.segments_total)
 
     def most_handles(self) -> int:
-        """Return how many handles are plausible beside the points and segments."""
+        """Return how many handles are plausible, given the points and segments."""
         return max(_ALWAYS, _PER_POINT * max(len(self.points), len(self.segments)))
 
     def opened(self, workers: int) -> _core.Live:
         """Return a core in this state."""
-        # Crossings come back with the segments, at the same places and with the same handles.
+        # Crossings are restored with the segments, at the same positions and with the same handles.
         crossed = np.isin(self.handles, self.added)
         kept = ~crossed
         core = _core.Live(self.points[kept], self.handles[kept], self.total, workers)
@@ -93,7 +93,7 @@ class State(NamedTuple):
         return core
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """Return what a file has."""
+        """Return the contents of a file."""
         numbers = [self.total, self.split, self.segments_total]
         return {
             "points": self.points,
@@ -121,7 +121,7 @@ class State(NamedTuple):
 
 
 def _of_kinds(saved: Any) -> State:
-    """Return the parts of a pickle, each of the kind that `State` says."""
+    """Return the parts of a pickle, each of the kind given in `State`."""
     from delone._tiling.archive.checks import require
 
     require(isinstance(saved, tuple) and len(saved) == len(State._fields), "a part is missing")
@@ -149,12 +149,12 @@ def _of_kinds(saved: Any) -> State:
 
 
 def require_few_handles(path: Any, state: State, most: int | None) -> None:
-    """Refuse a file whose handles would take much more memory than its points."""
+    """Reject a file whose handles would take much more memory than its points."""
     limit = state.most_handles() if most is None else most
     found = state.total_of_handles()
     if found > limit:
         raise FileFormatError(
-            f"{path} says that {found:,} handles have been given, for {len(state.points):,} "
-            f"points: at most {limit:,} are taken, since each needs 12 bytes; "
-            f"max_handles={found} takes them"
+            f"{path} says that {found:,} handles have been assigned, for {len(state.points):,} "
+            f"points: at most {limit:,} are accepted, since each needs 12 bytes; "
+            f"max_handles={found} accepts them"
         )

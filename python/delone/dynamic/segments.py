@@ -1,4 +1,4 @@
-"""Segments of a live triangulation: edges that stay while points come, go and move."""
+"""Segments of a live triangulation: edges that remain while points are added, removed and moved."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ T = TypeVar("T")
 
 __all__ = ["FEW", "Segmented", "as_handles", "given_segments", "refuse"]
 
-# Fewer items are edited with the GIL, so that nobody can change them meanwhile.
+# Fewer items are edited while holding the GIL, so that they cannot change in the meantime.
 FEW = 16
 
 
 class Segmented:
-    """What a `Dynamic` has because it may have segments."""
+    """The part of a `Dynamic` that deals with segments."""
 
     __slots__ = ("_edit", "_live", "_workers")
 
     _live: _core.Live
-    # An object of its own for each state.
+    # A separate object for each state.
     _edit: object
     _workers: int | None
 
@@ -49,11 +49,11 @@ class Segmented:
         raise InputError("segments are for 2-D triangulations; this one is 3-D")
 
     def _edited(self, change: Callable[..., T], *arguments: Any) -> T:
-        """Change the core, after which the arrays are not those of before, whatever interrupts.
+        """Change the core and invalidate the arrays, even if interrupted.
 
-        A signal may be handled when the core has finished and before anything else happens here,
-        so the edit counts as done from the start; it counts again after it, for readers in other
-        threads. Where the core has completed nothing, the arrays are still those of before.
+        A signal may be handled after the core has finished and before anything else happens here,
+        so the edit is counted before it starts; it is counted again after it, for readers in other
+        threads. If the core has completed nothing, the old arrays are still valid.
         """
         before, known = self._live.edits, self._edit
         self._edit = object()
@@ -84,26 +84,26 @@ class Segmented:
         Returns
         -------
         ndarray of int64, shape (s,)
-            Handles of the segments, ascending: numbers of their own, apart from those of points.
+            Handles of the segments, ascending; they are independent of those of points.
 
         Raises
         ------
         CrossingSegmentsError
-            Segments cross, and `crossing` is ``"raise"``; ``error.pairs`` has the handles of all
-            pairs. Nothing has changed.
+            Segments cross, and `crossing` is ``"raise"``; ``error.pairs`` contains the handles of
+            all pairs. Nothing has changed.
         HandleError
-            A point is not there, or is a crossing of segments; nothing has changed.
+            A point does not exist, or is a crossing of segments; nothing has changed.
         BudgetExceededError, DtypeError, ShapeError, MemoryError
             As for `ConstrainedDelaunay`; nothing has changed.
 
         Notes
         -----
         Edges in the way of a segment are flipped until none is (S. W. Sloan, "A fast algorithm for
-        generating constrained Delaunay triangulations", 1993): for k of them in O(k) if most can
-        be flipped at once, and at most O(k^2). Where segments cross, all that are connected by
-        crossings are inserted again, and all crossings are compared with the new ones; everything
-        is triangulated again where that is cheaper, and where a segment passes within the rounding
-        of a point or of a crossing of others.
+        generating constrained Delaunay triangulations", 1993): for k of them in O(k) if most can be
+        flipped immediately, and at most O(k^2). Where segments cross, all that are connected by
+        crossings are reinserted, and all crossings are compared with the new ones. Everything is
+        retriangulated if that is cheaper, or if a segment passes within rounding error of a point
+        or of a crossing of others.
 
         Examples
         --------
@@ -132,7 +132,7 @@ class Segmented:
         Raises
         ------
         HandleError
-            A segment is not there, or is named twice; nothing has changed.
+            A segment does not exist, or is named twice; nothing has changed.
         DtypeError
             `segments` are not integers.
 
@@ -180,7 +180,7 @@ class Segmented:
         return sealed(np.unique(edges, axis=0).astype(np.int32))
 
     def _frozen_segments(self) -> ConstrainedDelaunay:
-        """Return the present triangulation with its segments as an object that never changes."""
+        """Return the current triangulation with its segments as an object that never changes."""
         # Of one state, whatever other threads do.
         plane = self._plane().state().open()
         made, own = plane.arrays(), plane.segments()
@@ -196,14 +196,14 @@ class Segmented:
         )
 
     def _validated_segments(self) -> DynamicReport:
-        """Check the present triangulation with its segments, all of one state."""
+        """Check the current triangulation with its segments, all of one state."""
         plane = self._plane().state().open()
         split = plane.constraints()[1]
         made, own = plane.arrays(), plane.segments()
         return validation.validate(made, own, split=split, workers=self._workers)
 
     def _refuse_held(self, handles: Handles, *, ends: bool = True) -> None:
-        """Raise an error if some points are crossings, or `ends` of segments that stay."""
+        """Raise an error if some points are crossings, or `ends` of segments that remain."""
         if not self._has_segments:
             return
         held = self._plane().held(handles)
@@ -235,7 +235,7 @@ def given_segments(live: _core.Live, segments: ArrayLike, workers: int) -> None:
 
 
 def refuse(gone: Handles, twice: Handles, noun: str) -> None:
-    """Raise an error that names handles that are not there, or named twice."""
+    """Raise an error that names handles that do not exist, or occur twice."""
     if len(gone):
         names = ", ".join(map(str, gone[:5].tolist())) + (", ..." if len(gone) > 5 else "")
         verb, nouns = ("is", noun) if len(gone) == 1 else ("are", f"{noun}s")
@@ -244,7 +244,7 @@ def refuse(gone: Handles, twice: Handles, noun: str) -> None:
         raise HandleError(f"{noun} {twice[0]} is named twice", handles=twice)
 
 
-# Exactly integers: booleans, and numbers of NumPy, have types of their own.
+# Exactly integers: booleans and NumPy numbers have their own types.
 _INT = frozenset((int,))
 
 

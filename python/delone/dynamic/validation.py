@@ -1,9 +1,9 @@
-"""Validation of live triangulations with segments: their own arrays, and not those of a new build.
+"""Validation of live triangulations with segments: of their arrays, not those of a new build.
 
-The core checks the present triangles; pairs with a segment between them need not be locally
-Delaunay. A new `ConstrainedDelaunay` of the same points and segments says which edges segments must
-consist of, and where they cross. With these edges, and no other ones constrained, locally Delaunay
-triangles are the only ones that there are.
+The core checks the current triangles; pairs with a segment between them need not be locally
+Delaunay. A new `ConstrainedDelaunay` of the same points and segments determines which edges
+segments must consist of, and where they cross. If exactly these edges are constrained, the locally
+Delaunay triangles are unique.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ __all__ = ["DynamicReport", "validate"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DynamicReport(ConstrainedReport):
-    """The result of ``Dynamic.validate()`` with segments: truthy if the present state is correct.
+    """The result of ``Dynamic.validate()`` with segments: truthy if the current state is correct.
 
     Every field is an array of faulty elements, which is empty if there are none. Triangles and
-    points are rows of the present arrays. The fields of `ConstrainedReport` mean the same as there;
-    `uncovered` has the handles of segments, `absent` the edges of segments that are not edges of
-    triangles, and `bent` is always empty, because each edge is known.
+    points are rows of the current arrays. The fields of `ConstrainedReport` mean the same as there;
+    `uncovered` contains the handles of segments, `absent` the edges of segments that are not edges
+    of triangles, and `bent` is always empty, because each edge is known.
 
     Parameters
     ----------
@@ -47,10 +47,10 @@ class DynamicReport(ConstrainedReport):
     flags, absent, uncovered, bent : ndarray of int
         As in `ConstrainedReport`.
     surplus : ndarray of int, shape (k,)
-        Rows of points that are crossings of no segments, and were not inserted.
+        Rows of points that are not crossings of segments, and were not inserted.
     crossings : ndarray of int, shape (k, 3)
-        Rows of ``Dynamic.crossings`` that are wrong, or are not there but should be; then the
-        handle is -1 if there is no point.
+        Rows of ``Dynamic.crossings`` that are wrong or missing; for a missing one, the handle is -1
+        if there is no point.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ def validate(made: Any, own: Any, *, split: bool, workers: int | None) -> Dynami
         planar=True,
     )
     place = _places(fresh.points, points)
-    # The edges that there must be, where both of their ends are there.
+    # The edges that must exist, if both of their ends exist.
     wanted = place[fresh.segments]
     there: Bools = np.asarray((wanted >= 0).all(axis=1))
     found = wanted[there]
@@ -130,7 +130,7 @@ def _sources(fresh: ConstrainedDelaunay, missed: Bools) -> NDArray[np.int64]:
 def _wrong_crossings(
     fresh: ConstrainedDelaunay, place: NDArray[np.int64], handles: Handles, own: Any
 ) -> NDArray[np.int64]:
-    """Return the crossings that only one of both has."""
+    """Return the crossings that only one of the two has."""
     rows = place[fresh.report.crossings[:, 2]]
     expected = np.column_stack(
         (own.handles[fresh.report.crossings[:, :2]], np.where(rows >= 0, handles[rows], -1))

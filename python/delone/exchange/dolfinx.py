@@ -1,4 +1,4 @@
-"""The arrays of which DOLFINx makes a mesh; no library is needed for them."""
+"""The arrays from which DOLFINx creates a mesh; no library is needed for them."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
 __all__ = ["to_dolfinx_arrays"]
 
 
-# The nodes of elements of second order as DOLFINx has them, by their places in the order of VTK:
-# corners, then edges, each opposite to a corner or an edge.
+# DOLFINx's order of the nodes of second-order elements, as positions in VTK's order: corners, then
+# edges, each opposite a corner or an edge.
 _NODES = {3: (0, 1, 2), 6: (0, 1, 2, 4, 5, 3), 10: (0, 1, 2, 3, 9, 8, 5, 7, 6, 4)}
 
 
 def to_dolfinx_arrays(mesh: Given, *, order: int = 1) -> dict[str, NDArray[Any]]:
     """Return ``cells`` and ``x`` for ``dolfinx.mesh.create_mesh``, of triangles or tetrahedra.
 
-    Beside them ``facets``, the segments that are edges of triangles or marked faces of tetrahedra,
+    Also return ``facets``, the segments that are edges of triangles or marked faces of tetrahedra,
     and regions and markers as ``cell_tags`` and ``facet_tags``, zero where there are none. With
     ``order=2``, cells and facets have all their nodes, which ``distribute_entity_data`` needs.
     """

@@ -24,7 +24,7 @@ __all__ = ["beside", "by_region", "columns_beside", "shapely_or_say", "to_geopan
 def to_geopandas(mesh: Given, crs: Any = None, data: Any = None) -> Any:
     """Return a GeoDataFrame of triangles or edges; `crs` is by default that of the mesh.
 
-    A row has the vertices ``v0``, ``v1`` (and ``v2``), the values, and a polygon or a line.
+    A row contains the vertices ``v0``, ``v1`` (and ``v2``), the values, and a polygon or a line.
     """
     shapely = require("shapely", extra="geo", what="a table of geometries")
     parts = parts_of(mesh)
@@ -61,10 +61,10 @@ def beside(
     columns: Mapping[str, Any] | None = None,
     of: str = "points",
 ) -> Any:
-    """Return a GeoDataFrame of geometries beside `columns` and those of `data`.
+    """Return a GeoDataFrame of geometries with `columns` and those of `data`.
 
-    The index, and without `crs` the reference system, are those of `data`. `of` says in errors what
-    each row is.
+    The index and, without `crs`, the reference system are those of `data`. `of` is the name of a
+    row in errors.
     """
     geopandas = require("geopandas", extra="geo", what="a table of geometries")
     own = dict(columns or {})
@@ -83,9 +83,9 @@ def beside(
 def columns_beside(
     own: Mapping[str, Any], data: Any = None, *, of: str, repeats: Sequence[int] | None = None
 ) -> Any:
-    """Return a DataFrame of columns beside those of `data`, whose index and geometry it leaves out.
+    """Return a DataFrame of columns with those of `data`, without its index and geometry.
 
-    `repeats` says how many rows of the table a row of `data` is for, by default one.
+    `repeats` is the number of rows of the table for each row of `data`, by default one.
     """
     pandas = require("pandas", extra="geo", what="a table")
     table = pandas.DataFrame(dict(own))
@@ -100,7 +100,7 @@ def columns_beside(
 
 
 def _checked(frame: Any, count: int, taken: set[str], of: str) -> Any:
-    """Refuse a table with another number of rows, or with columns that are taken."""
+    """Reject a table with a different number of rows, or with column names that are in use."""
     if len(frame) != count:
         raise InputError(f"data has {len(frame)} rows for {count} {of}")
     if found := [name for name in frame.columns if name in taken]:

@@ -1,4 +1,4 @@
-"""Graphs of other libraries: SciPy, NetworkX and libpysal."""
+"""Graphs for other libraries: SciPy, NetworkX and libpysal."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Links(NamedTuple):
     directed: bool
 
     def both_ways(self) -> tuple[Indices, Indices, Floats]:
-        """Return tails, heads and weights; without a direction, of each edge and its reverse."""
+        """Return tails, heads and weights; if undirected, of each edge and its reverse."""
         tail, head = self.edges.T
         if self.directed:
             return tail, head, self.weights
@@ -51,7 +51,7 @@ def to_networkx(links: Links, points: Floats) -> Any:
     networkx = require("networkx", extra="graph", what="a NetworkX graph")
     graph = networkx.DiGraph() if links.directed else networkx.Graph()
     graph.add_nodes_from((i, {"pos": tuple(p)}) for i, p in enumerate(points.tolist()))
-    # Algorithms of NetworkX read the attribute weight by default, and count edges without it.
+    # NetworkX algorithms read the attribute weight by default, and count edges without it.
     rows = zip(*links.edges.T.tolist(), links.weights.tolist(), strict=True)
     graph.add_edges_from((a, b, {"length": w, "weight": w}) for a, b, w in rows)
     return graph

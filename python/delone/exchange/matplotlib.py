@@ -1,4 +1,4 @@
-"""Triangulations of matplotlib."""
+"""matplotlib triangulations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Meshes of meshio."""
+"""meshio meshes."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ _CELLS = {
     "tetrahedra": ("tetra", "tetra10"),
 }
 _FACETS = {"triangles": "edges", "surface": "edges", "tetrahedra": "triangles"}
-# What programs that read MSH files know parts of a mesh by.
+# The names by which programs that read MSH files identify parts of a mesh.
 TAGS = ("gmsh:physical", "gmsh:geometrical")
 
 
 def to_meshio(mesh: Given, *, order: int = 1) -> Any:
     """Return a `meshio.Mesh` in 3-D; segments, or marked faces, are a second block of cells.
 
-    That has the type ``line``, or ``triangle``; with ``order=2`` ``line3``, or ``triangle6``. Where
-    only simplices have a value, segments have -1 (integers) or NaN; where only segments have one,
-    simplices have 0 or NaN. With a ``marker``, it and regions, from 1 on, are tags of Gmsh.
+    This block has the type ``line`` or ``triangle``; with ``order=2``, ``line3`` or ``triangle6``.
+    If only simplices have a value, segments get -1 (integers) or NaN; if only segments have one,
+    simplices get 0 or NaN. With a ``marker``, it and regions, from 1 on, are Gmsh tags.
     """
     meshio = require("meshio", extra="mesh", what="to_meshio")
     parts = parts_of(mesh)
@@ -67,20 +67,20 @@ def _values(parts: Parts) -> dict[str, list[NDArray[Any]]]:
 
 
 def _missing(like: NDArray[Any], count: int, integer: int) -> NDArray[Any]:
-    """What stands for no value: an integer where the values are signed ones, else NaN."""
+    """What represents a missing value: an integer for signed integers, otherwise NaN."""
     if like.dtype.kind == "i":
         return np.full(count, integer, dtype=like.dtype)
     return np.full(count, np.nan)
 
 
 def _tags(parts: Parts) -> dict[str, list[NDArray[Any]]]:
-    """Regions and markers as gmsh has them, where 0 stands for no part of the mesh."""
+    """Regions and markers as in Gmsh, where 0 means no part of the mesh."""
     if parts.segments is None or "marker" not in parts.of_segments:
         return {}
     none = np.zeros(len(parts.simplices), dtype=np.int32)
     region = region_tags(parts.of_simplices.get("region", none))
     marker = parts.of_segments["marker"].astype(np.int64)
-    # Negative numbers have no place in Gmsh: they follow the largest one.
+    # Gmsh does not allow negative numbers: they follow the largest one.
     below = np.unique(marker[marker < 0])
     numbers = max(0, marker.max(initial=0)) + 1 + np.arange(len(below))
     marker[marker < 0] = numbers[np.searchsorted(below, marker[marker < 0])]
@@ -89,7 +89,7 @@ def _tags(parts: Parts) -> dict[str, list[NDArray[Any]]]:
 
 
 def region_tags(region: NDArray[Any]) -> NDArray[np.int32]:
-    """Return the numbers of regions as Gmsh has them, from 1 on."""
+    """Return the numbers of regions as in Gmsh, from 1 on."""
     found = np.asarray(region).astype(np.int64)
     if found.min(initial=1) < 1:
         found += 1 - found.min(initial=1)

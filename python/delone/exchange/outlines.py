@@ -29,14 +29,14 @@ class _Outline(Protocol):
 
 
 def to_polygons(outline: _Outline) -> NDArray[Any]:
-    """Return a polygon of shapely for each shell, in their order."""
+    """Return a shapely polygon for each shell, in the order of shells."""
     shapely = require("shapely", extra="geo", what="polygons")
     if not outline.nshells:
         return np.empty(0, dtype=object)
     rings = shapely.linearrings(outline.coordinates, indices=outline.ring)
     shells, holes = rings[: outline.nshells], rings[outline.nshells :]
     found: NDArray[Any] = shapely.polygons(shells)
-    # Only polygons with holes are made again: of all, shapely wants each number.
+    # Only polygons with holes are created again, because shapely needs each number separately.
     for number in np.unique(outline.polygon):
         first, last = np.searchsorted(outline.polygon, (number, number + 1))
         found[number] = shapely.polygons(shells[number], holes=holes[first:last])

@@ -32,7 +32,7 @@ __all__ = [
 ]
 
 _NONE: Values = MappingProxyType({})
-# By numbers of corners and coordinates.
+# By the numbers of corners and coordinates.
 _KINDS = {
     (2, 2): "edges",
     (2, 3): "edges",
@@ -40,7 +40,7 @@ _KINDS = {
     (3, 3): "surface",
     (4, 3): "tetrahedra",
 }
-# Of simplices of second order, by the number of nodes.
+# For simplices of second order, by the number of nodes.
 _CORNERS = {3: 2, 6: 3, 10: 4}
 # The facet opposite each corner: edges with the triangle to their left, faces seen from outside.
 _FACETS = {3: ((1, 2), (2, 0), (0, 1)), 4: ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))}
@@ -57,7 +57,7 @@ class Parts(NamedTuple):
     segments: Indices | None = None
     of_segments: Values = _NONE
     crs: str | None = None
-    # 2 where simplices and segments have a node in the middle of each edge, behind their corners.
+    # 2 if simplices and segments have a node in the middle of each edge, after their corners.
     order: int = 1
 
 
@@ -88,7 +88,7 @@ Given: TypeAlias = "Parts | HasParts | tuple[ArrayLike, ArrayLike]"
 
 
 def parts_of(mesh: Any) -> Parts:
-    """Return the parts of a mesh; those of arrays, which are checked, are without values."""
+    """Return the parts of a mesh, or of arrays, which are checked and have no values."""
     if isinstance(mesh, Parts):
         return mesh
     if hasattr(mesh, "_parts"):
@@ -104,7 +104,7 @@ def parts_of(mesh: Any) -> Parts:
 def _checked(points: ArrayLike, simplices: ArrayLike) -> Parts:
     places = as_points(points)
     width = np.shape(simplices)[-1:] or (0,)
-    # Triangles may be those of a surface; everything else has a corner more than coordinates.
+    # Triangles may form a surface; everything else has one more corner than coordinates.
     corners = 3 if width == (3,) else places.shape[1] + 1
     return Parts(places, as_simplices(simplices, len(places), corners - 1))
 
@@ -112,7 +112,7 @@ def _checked(points: ArrayLike, simplices: ArrayLike) -> Parts:
 def kind_of(parts: Parts, *, what: str, kinds: tuple[str, ...] = ()) -> str:
     """Tell what the simplices are, "surface" for triangles in 3-D; raise if that is not in `kinds`.
 
-    `what` is asked for, as the beginning of the error message.
+    `what` is requested; it begins the error message.
     """
     corners, coordinates = parts.simplices.shape[1], parts.points.shape[1]
     if parts.order == 2:
@@ -130,14 +130,14 @@ def kind_of(parts: Parts, *, what: str, kinds: tuple[str, ...] = ()) -> str:
 
 
 def with_third(points: Floats) -> Floats:
-    """Return a copy of points with a third coordinate, zero where there was none."""
+    """Return a copy of points with a third coordinate, zero if there was none."""
     found = np.zeros((len(points), 3))
     found[:, : points.shape[1]] = points
     return found
 
 
 def boundary(simplices: Indices) -> Indices:
-    """Return the facets, (h, k - 1), of one triangle or positively oriented tetrahedron alone.
+    """Return the facets, (h, k - 1), of only one triangle or positively oriented tetrahedron.
 
     Edges have the triangle to their left; faces are counter-clockwise as seen from outside.
     """
@@ -150,14 +150,14 @@ def boundary(simplices: Indices) -> Indices:
 def facet_segments(parts: Parts) -> tuple[Indices, NDArray[np.int64]]:
     """Return the segments that are edges of triangles, (s, k - 1), and their rows among all.
 
-    Segments in a hole are edges of no triangle, and finite elements have no place for them. Of
-    tetrahedra, they are faces.
+    Segments in a hole are not edges of triangles, and have no place in finite element meshes. For
+    tetrahedra, segments are faces.
     """
     return _segments_among(parts, _facets(parts.simplices))
 
 
 def boundary_segments(parts: Parts) -> tuple[Indices, NDArray[np.int64]]:
-    """Return the segments that are edges of one triangle alone, as `facet_segments` does."""
+    """Return the segments that are edges of only one triangle, like `facet_segments`."""
     return _segments_among(parts, boundary(parts.simplices))
 
 
@@ -181,6 +181,6 @@ def _keys(facets: Indices) -> NDArray[np.int64]:
     corners = np.sort(facets, axis=1).astype(np.int64)
     key = corners[:, 0]
     for column in corners.T[1:]:
-        # Numbers of what is there so far leave room for the next corner.
+        # The numbers so far leave room for the next corner.
         key = np.unique(key, return_inverse=True)[1] * (int(corners.max(initial=0)) + 1) + column
     return key

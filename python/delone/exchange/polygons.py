@@ -1,7 +1,7 @@
 """Polygons, such as Voronoi cells in 2-D, as PyVista and meshio meshes in the plane z = 0.
 
-Their corners, (c, 2), are given one polygon after another; `starts`, (k + 1,), tells where those
-of each begin, and the end. Each polygon has points of its own, and a value, (k,), of each name.
+Their corners, (c, 2), are given one polygon after another; `starts`, (k + 1,), tells where those of
+each begin, and the end. Each polygon has its own points, and a value, (k,), for each name.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ __all__ = ["polygons_to_meshio", "polygons_to_pyvista"]
 def polygons_to_pyvista(starts: Indices, corners: Floats, values: Mapping[str, Any]) -> Any:
     """Return a `pyvista.PolyData` of the polygons in order."""
     pyvista = require("pyvista", extra="pyvista", what="polygons of cells")
-    # VTK takes all faces in one stream: the number of corners, then the corners.
+    # VTK reads all faces as one stream: the number of corners, then the corners.
     stream = np.insert(np.arange(len(corners)), starts[:-1], np.diff(starts))
     found = (
         pyvista.PolyData(with_third(corners), faces=stream) if len(stream) else pyvista.PolyData()

@@ -1,6 +1,6 @@
 """Polyhedra, such as Voronoi cells in 3-D, as PyVista and meshio meshes.
 
-Each of the k polyhedra has points of its own in the mesh, and a value, (k,), of each name.
+Each of the k polyhedra has its own points in the mesh, and a value, (k,), for each name.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["polyhedra_to_meshio", "polyhedra_to_pyvista"]
 
-# VTK's number of a polyhedron.
+# VTK's number for polyhedra.
 _POLYHEDRON = 42
 
 
@@ -40,7 +40,7 @@ def polyhedra_to_pyvista(
     """Return a `pyvista.UnstructuredGrid` with a cell for each polyhedron, in order."""
     pyvista = require("pyvista", extra="pyvista", what="polyhedra of cells")
     points: list[NDArray[np.float64]] = [np.empty((0, 3))]
-    # VTK takes all cells in one stream of integers.
+    # VTK reads all cells as one stream of integers.
     stream: list[int] = []
     count = 0
     for cell in cells:

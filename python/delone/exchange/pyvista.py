@@ -1,4 +1,4 @@
-"""Surfaces and grids of PyVista."""
+"""PyVista surfaces and grids."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["to_pyvista"]
 
-# VTK's numbers of a tetrahedron, and of edges, triangles and tetrahedra of second order.
+# VTK's numbers for tetrahedra, and for edges, triangles and tetrahedra of second order.
 _TETRA = 10
 _SECOND = {"edges": 21, "triangles": 22, "surface": 22, "tetrahedra": 24}
 
@@ -23,8 +23,8 @@ _SECOND = {"edges": 21, "triangles": 22, "surface": 22, "tetrahedra": 24}
 def to_pyvista(mesh: Given, *, order: int = 1) -> Any:
     """Return a PolyData of triangles (2-D at z = 0) or edges, an UnstructuredGrid of tetrahedra.
 
-    They have the values of points and simplices; segments are left out. With ``order=2`` all are
-    an UnstructuredGrid.
+    They contain the values of points and simplices; segments are left out. With ``order=2``, all
+    are an UnstructuredGrid.
     """
     pyvista = require("pyvista", extra="pyvista", what="to_pyvista")
     parts = parts_of(mesh)

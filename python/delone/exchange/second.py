@@ -1,7 +1,7 @@
 """Simplices of second order: a node in the middle of each edge, the same for all that share it.
 
 Nodes are the points, then one for each edge, in the order of the edges by their points. Those of a
-simplex are its corners and then its edges, in the order of VTK, which meshio has as well.
+simplex are its corners and then its edges, in VTK's order, which meshio also uses.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["SIDES", "as_order", "middles", "of_order"]
 
-# The edges of a segment, triangle and tetrahedron, by corners, in the order of VTK.
+# The edges of a segment, triangle and tetrahedron, by corners, in VTK's order.
 SIDES: dict[int, tuple[tuple[int, int], ...]] = {
     2: ((0, 1),),
     3: ((0, 1), (1, 2), (2, 0)),
@@ -38,7 +38,7 @@ def as_order(order: Any) -> int:
 
 
 def of_order(parts: Parts, order: int, of_nodes: Mapping[str, NDArray[Any]] | None = None) -> Parts:
-    """Return parts of that order, of which `of_nodes` are further values of all nodes.
+    """Return parts of that order; `of_nodes` are further values of all nodes.
 
     In the middle of an edge, real values of points are the means of both ends. Markers are those
     of the segment or face with this edge; other whole numbers are 0.
@@ -64,9 +64,9 @@ def of_order(parts: Parts, order: int, of_nodes: Mapping[str, NDArray[Any]] | No
 
 
 def middles(parts: Parts) -> tuple[Indices, tuple[NDArray[np.int64], NDArray[np.int64]]]:
-    """Return all edges, (e, 2), and the rows among them of those of simplices and of segments.
+    """Return all edges, (e, 2), and the rows of the edges of simplices and of segments.
 
-    Edges are sorted by their points; those of segments that are edges of no simplex are last.
+    Edges are sorted by their points; those of segments that are not edges of a simplex come last.
     """
     n = np.int64(len(parts.points))
     own = _keys(parts.simplices, n)
@@ -81,19 +81,19 @@ def middles(parts: Parts) -> tuple[Indices, tuple[NDArray[np.int64], NDArray[np.
 
 
 def _keys(simplices: Indices, n: np.int64) -> NDArray[np.int64]:
-    """A number for each edge of each simplex, the same from both ends."""
+    """A number for each edge of each simplex, the same in both directions."""
     pairs = np.sort(simplices.astype(np.int64)[:, SIDES[simplices.shape[1]]], axis=2)
     found: NDArray[np.int64] = pairs[..., 0] * n + pairs[..., 1]
     return found
 
 
 def _extended(values: NDArray[Any], edges: Indices) -> NDArray[Any]:
-    """Return values of points with those in the middle of edges behind them."""
+    """Return the values of points, followed by those in the middle of edges."""
     a, b = values[edges[:, 0]], values[edges[:, 1]]
     if values.dtype.kind != "f":
         return np.concatenate((values, np.zeros_like(a)))
     with np.errstate(over="ignore", invalid="ignore"):
         found = (a + b) / 2
-        # The sum of the largest numbers is infinite; halves are exact there.
+        # The sum of the largest numbers is infinite; their halves are exact.
         found = np.where(np.isinf(found), a / 2 + b / 2, found)
     return np.concatenate((values, found.astype(values.dtype)))

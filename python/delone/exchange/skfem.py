@@ -19,11 +19,10 @@ __all__ = ["to_skfem"]
 
 
 def to_skfem(mesh: Given, *, order: int = 1) -> Any:
-    """Return a `skfem.MeshTri` of triangles in 2-D or a `skfem.MeshTet`; of order 2 their second.
+    """Return a `skfem.MeshTri` of triangles in 2-D or a `skfem.MeshTet`, of first or second order.
 
-    Subdomains are ``"region 0"`` and so on where simplices have a ``region``; boundaries are
-    segments or marked faces, ``"marker 0"`` and so on where these have a ``marker``, else
-    ``"segments"``.
+    Subdomains are ``"region 0"`` and so on if simplices have a ``region``. Boundaries are segments
+    or marked faces: ``"marker 0"`` and so on if these have a ``marker``, otherwise ``"segments"``.
     """
     skfem = require("skfem", extra="fem", what="to_skfem")
     parts = parts_of(mesh)
@@ -45,7 +44,7 @@ def to_skfem(mesh: Given, *, order: int = 1) -> Any:
 
 
 def _second(skfem: Any, mesh: Any, parts: Parts) -> Any:
-    """Return a mesh of second order with the same nodes as meshio and others get.
+    """Return a mesh of second order with the same nodes as for meshio and others.
 
     scikit-fem numbers nodes as degrees of freedom: points, then edges, in its own order.
     """
@@ -54,7 +53,7 @@ def _second(skfem: Any, mesh: Any, parts: Parts) -> Any:
     edges, _ = middles(parts._replace(segments=None))
     whole = of_order(parts._replace(of_points={}, segments=None), 2).points
     rows = _facets(edges.T, np.asarray(mesh.facets if triangles else mesh.edges).T)
-    # Points after the last corner are not among its vertices.
+    # Points after the last corner are not vertices in scikit-fem.
     corners = parts.points[: mesh.nvertices]
     places = np.concatenate((corners, whole[len(parts.points) :][rows]))
     made.doflocs = np.ascontiguousarray(places.T)
@@ -72,7 +71,7 @@ def _boundaries(parts: Parts, facets: NDArray[Any]) -> dict[str, NDArray[np.int6
 def _groups(
     values: NDArray[Any], numbers: NDArray[np.int64], name: str
 ) -> dict[str, NDArray[np.int64]]:
-    """The numbers that have each value."""
+    """The indices of each value."""
     return {f"{name} {value}": numbers[values == value] for value in np.unique(values).tolist()}
 
 

@@ -1,9 +1,9 @@
 """Interactive views of 2-D meshes, in notebooks and in the browser: `delone.explore`.
 
-`scene` turns an object into arrays for the view, `state` moves points and triangulates again,
-`widget` is the notebook widget (extra ``explore``), and `server` serves the page of the command
-``delone explore``. The view is JavaScript without dependencies: view.js, which has its interface at
-its head, and the modules that it imports.
+`scene` turns an object into arrays for the view, `state` moves points and retriangulates, `widget`
+is the notebook widget (extra ``explore``), and `server` serves the page of the command
+``delone explore``. The view is JavaScript without dependencies: view.js, which begins with a
+description of its interface, and the modules that it imports.
 """
 
 from __future__ import annotations

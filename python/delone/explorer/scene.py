@@ -1,8 +1,9 @@
 """Scenes: what the view shows of an object, as named arrays in one block of bytes.
 
 A block begins with the length of a header in 4 bytes (little-endian), then the header (JSON, padded
-with spaces to a multiple of 8 bytes in all), then the arrays, each padded to a multiple of 8 bytes.
-The header has the kind and the place of each array under ``"arrays"``, and plain values.
+with spaces so that both take a multiple of 8 bytes), then the arrays, each padded to a multiple of
+8 bytes. The header contains the type and the position of each array under ``"arrays"``, and plain
+values.
 """
 
 from __future__ import annotations
@@ -34,7 +35,8 @@ if TYPE_CHECKING:
 
 __all__ = ["QUALITIES", "Scene", "as_explorable", "packed", "scene_of"]
 
-# What triangles can be colored by, with the range of the colors; None for the range of the values.
+# Measures by which triangles can be colored, with the range of the colors; None for the range of
+# the values.
 QUALITIES: dict[str, tuple[float, float] | None] = {
     "smallest_angle": (0.0, 60.0),
     "largest_angle": (60.0, 180.0),
@@ -48,7 +50,7 @@ _CLASSES = "Delaunay, ConstrainedDelaunay, Mesh, RegularTriangulation, PeriodicD
 
 
 class Scene(NamedTuple):
-    """The arrays of the view; rows of `points` are those that it draws."""
+    """The arrays of the view; it draws the rows of `points`."""
 
     points: Floats  # (k, 2)
     triangles: Indices  # (m, 3)
@@ -87,7 +89,7 @@ def as_explorable(mesh: Any) -> Explorable:
 
 
 def scene_of(mesh: Explorable, values: ArrayLike | None, quality: str) -> Scene:
-    """Return the scene of an object; `values` has a number for each of its points."""
+    """Return the scene of an object; `values` contains a number for each of its points."""
     as_choice(quality, tuple(QUALITIES), name="quality")
     heights = as_values(values, mesh.npoints, name="values")
     if isinstance(mesh, Voronoi):

@@ -1,9 +1,9 @@
 """The server of the command ``delone explore``: one page on 127.0.0.1, at a secret address.
 
 The address contains a random token, which all requests need. Requests must name 127.0.0.1 or
-localhost as their host, so that a page of another site cannot reach this server under a name of its
-own (DNS rebinding), and the origin of a request that changes something must be the page itself. All
-that can be asked for is in a table: no path of a request reaches the file system.
+localhost as their host, so that a page of another site cannot reach this server under its own name
+(DNS rebinding), and the origin of a request that changes something must be the page itself.
+Everything that can be requested is in a table: no path in a request reaches the file system.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ _HEADERS = {
     "Cache-Control": "no-store",
     "Cross-Origin-Opener-Policy": "same-origin",
     "Cross-Origin-Resource-Policy": "same-origin",
-    # The address has the token in it.
+    # The address contains the token.
     "Referrer-Policy": "no-referrer",
     "X-Content-Type-Options": "nosniff",
 }
-# A number of a row and two numbers as JSON; more is not read.
+# A row number and two numbers as JSON; more is not read.
 _MOST_BYTES = 1024
 # A client that is silent for longer is disconnected.
 _PATIENCE = 20.0  # seconds
@@ -139,13 +139,13 @@ class _Handler(BaseHTTPRequestHandler):
             self._answer(HTTPStatus.OK, scene, "application/octet-stream")
 
     def _allowed(self) -> str | None:
-        """Return what a request asks for, after its token; None if it was refused."""
+        """Return the part of a request after its token; None if it was rejected."""
         if self.headers.get_all("Host", []) not in [[host] for host in self.server.hosts()]:
             self.send_error(HTTPStatus.FORBIDDEN)
             return None
         parts = self.path.split("/")
         given = parts[1] if len(parts) == 3 and not parts[0] else ""
-        # In time that does not depend on how much of the token is right.
+        # In time that does not depend on how much of the token is correct.
         if not secrets.compare_digest(
             given.encode("latin-1", "replace"), self.server.token.encode()
         ):
@@ -163,10 +163,10 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(body)
 
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
-        """Answer with the number and the name of an error alone: nothing of the request."""
+        """Answer with only the number and the name of an error, and nothing from the request."""
         status = HTTPStatus(code)
         self.close_connection = True
         self._answer(status, f"{status.value} {status.phrase}\n".encode())
 
     def log_message(self, format: str, *args: Any) -> None:
-        """Print nothing: the address in a log would be the token."""
+        """Print nothing: a logged address would reveal the token."""

@@ -39,7 +39,7 @@ class Exploration:
         self, mesh: Any, *, values: ArrayLike | None = None, quality: str = "smallest_angle"
     ) -> None:
         self.mesh: Explorable = as_explorable(mesh)
-        # Those of the rows that were given; points that a triangulation adds have none.
+        # The values of the given rows; points added by a triangulation have none.
         self._values = (
             None if values is None else as_values(values, self.mesh.npoints, name="values")
         )
@@ -56,7 +56,7 @@ class Exploration:
         return self.mesh.npoints - added
 
     def described(self) -> str:
-        """Return what the object is, for titles and screen readers."""
+        """Return a description of the object, for titles and screen readers."""
         if isinstance(self.mesh, Voronoi):
             return f"Voronoi diagram of {counted(self.mesh.npoints, 'site')}"
         points = counted(self.mesh.npoints, "point")
@@ -82,7 +82,7 @@ class Exploration:
         return packed(self._scene, header)
 
     def move(self, vertex: Any, x: Any, y: Any) -> bytes:
-        """Move a point of the scene, triangulate again, and return the scene.
+        """Move a point of the scene, retriangulate, and return the scene.
 
         If that is not possible, the error says why, and nothing changes.
         """

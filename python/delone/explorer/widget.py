@@ -1,4 +1,4 @@
-"""The function `delone.explore`: a widget for notebooks, made of an exploration and the view."""
+"""The function `delone.explore`: a notebook widget that combines an exploration and the view."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _LAYERS = (
     *("triangles", "quality", "values", "circles"),
     *("dual", "hull", "constraints", "points"),
 )
-# In the order in which they need each other.
+# In the order of their dependencies.
 _MODULES = ("mesh.js", "colors.js", "paint.js", "view.js", "scene.js", "widget.js")
 
 
@@ -60,7 +60,7 @@ def explore(
         the point that were picked, -1 for none, and the coordinates x and y; after a point has
         moved, the rows of triangles change, and no triangle is selected. ``widget.mesh`` is the
         object that is shown, with the moved points; ``widget.layers`` the state of the layers,
-        which can be set. ``widget.move(row, x, y)`` moves a point as the mouse does.
+        which can be set. ``widget.move(row, x, y)`` moves a point like the mouse.
 
     Raises
     ------
@@ -79,12 +79,12 @@ def explore(
 
     Notes
     -----
-    Arrays are sent to the notebook as binary buffers, some 150 bytes per point. Moving a point
-    triangulates all points again, with the same options, in this process: some 40 ms for 10,000
-    points. If a point cannot be moved there, for example because segments would cross, the error
-    message is shown and the object does not change. Points of a `Mesh`, and points that a
-    triangulation has added to the given ones, cannot be moved. The widget is for viewing; its
-    display is rounded to pixels.
+    Arrays are sent to the notebook as binary buffers, about 150 bytes per point. Moving a point
+    retriangulates all points with the same options in this process, which takes about 40 ms for
+    10,000 points. If a point cannot be moved there, for example because segments would cross, the
+    error message is shown and the object does not change. Points of a `Mesh`, and points that a
+    triangulation added, cannot be moved. The widget is for viewing; its display is rounded to
+    pixels.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def _as_layers(layers: Mapping[str, bool] | None) -> dict[str, bool]:
 
 
 def source() -> str:
-    """Return the modules of the view as one, which a widget needs: without their imports."""
+    """Return the modules of the view as one, without their imports, as a widget needs."""
     text = "\n".join(script(name) for name in _MODULES)
     return re.sub(r"^import \{[^}]*\} from \"\./\w+\.js\";$", "", text, flags=re.MULTILINE)
 
@@ -144,12 +144,12 @@ def _widget_class() -> Any:
             return self._state.mesh
 
         def move(self, row: int, x: float, y: float) -> None:
-            """Move a point and triangulate again; if that is not possible, raise the error."""
+            """Move a point and retriangulate; if that is not possible, raise the error."""
             self._show(self._state.move(row, x, y))
             self.send({"number": "", "error": ""})
 
         def _show(self, scene: bytes) -> None:
-            """Send a scene with other triangles: the one that was picked has no number there."""
+            """Send a scene with different triangles; the picked one has no number there."""
             self.scene = scene
             self.selected = self.selected | {"triangle": -1}
 

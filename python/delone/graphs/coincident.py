@@ -1,4 +1,4 @@
-"""Rows of points with the same coordinates: which they are, and edges at all of them."""
+"""Rows of points with the same coordinates: which rows they are, and edges at all of them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def repeated(points: Floats) -> Indices:
 def clique(edges: Indices, vertex: Indices) -> Indices:
     """Return edges between all rows of two joined vertices and all rows of one vertex.
 
-    `vertex` has the first coincident row of each row, (n,).
+    `vertex` contains the first coincident row of each row, (n,).
     """
     order = np.argsort(vertex, kind="stable")
     size = np.bincount(vertex, minlength=len(vertex))

@@ -60,7 +60,7 @@ class Graph(Stored, Exchanged):
     kind : str
         The name of the graph.
     ndim, npoints, nedges : int
-        Numbers of coordinates, points (duplicates included) and edges.
+        Numbers of coordinates, points (including duplicates) and edges.
 
     Raises
     ------
@@ -73,9 +73,9 @@ class Graph(Stored, Exchanged):
 
     Notes
     -----
-    The functions of `delone.graphs` make graphs in which coincident rows are one vertex: the first
-    one has the edges, the others are in `duplicates`. `components` counts them with their vertex,
-    and `with_duplicates` joins them.
+    The functions of `delone.graphs` return graphs in which coincident rows are one vertex: the
+    first one has the edges, the others are in `duplicates`. `components` counts them with their
+    vertex, and `with_duplicates` joins them.
 
     Nothing is repaired: a graph may be disconnected, and ``repr`` shows the number of components.
     All arrays are read-only; attributes that are not listed above are computed on first use and
@@ -115,7 +115,7 @@ class Graph(Stored, Exchanged):
         self._refer(points)
 
     def _set(self, points: Floats, edges: Indices, duplicates: Indices, **others: Any) -> None:
-        """Set everything, with `directed`, `kind` and `workers`; afterward nothing can be set."""
+        """Set everything, including `directed`, `kind` and `workers`; then nothing can be set."""
         self._hold(
             points=sealed(points), edges=sealed(edges), duplicates=sealed(duplicates), **others
         )
@@ -131,7 +131,7 @@ class Graph(Stored, Exchanged):
         kind: str = "",
         workers: int | None = None,
     ) -> Self:
-        """Return the graph of arrays that are what the attributes say."""
+        """Return the graph of arrays that are already in the form of the attributes."""
         made = cls.__new__(cls)
         made._set(points, edges, duplicates, directed=directed, kind=kind, workers=workers)
         return made
@@ -190,7 +190,7 @@ class Graph(Stored, Exchanged):
 
     @property
     def npoints(self) -> int:
-        """Number of points, duplicates included."""
+        """Number of points, including duplicates."""
         return len(self._points)
 
     @property
@@ -230,7 +230,7 @@ class Graph(Stored, Exchanged):
         Returns
         -------
         ndarray of int32, shape (n,)
-            The component of each point. Components are numbered from 0 on by their first rows; a
+            The component of each point. Components are numbered from 0 by their first rows; a
             duplicate is in that of its vertex.
 
         Notes
@@ -329,7 +329,7 @@ class Graph(Stored, Exchanged):
         points = np.ascontiguousarray(self._points[chosen])
         place = np.full(self.npoints, -1, dtype=np.int32)
         place[chosen] = np.arange(len(chosen), dtype=np.int32)
-        # A vertex and the first of its duplicates in the new order change places.
+        # A vertex and the first of its duplicates in the new order are exchanged.
         vertex, at = np.unique(self.duplicate_of[chosen], return_index=True)
         first = chosen[at]
         place[vertex], place[first] = place[first], place[vertex]
@@ -399,7 +399,8 @@ class Graph(Stored, Exchanged):
         Returns
         -------
         scipy.sparse.csr_array, shape (n, n)
-            Symmetric unless the graph is directed; row i has the neighbors of point i, ascending.
+            Symmetric unless the graph is directed; row i contains the neighbors of point i,
+            ascending.
 
         Raises
         ------
@@ -426,7 +427,7 @@ class Graph(Stored, Exchanged):
         Returns
         -------
         networkx.Graph or networkx.DiGraph
-            Nodes are the rows from 0 on, duplicates included, with their coordinates as attribute
+            Nodes are the rows from 0, including duplicates, with their coordinates as attribute
             ``pos``; edges have their ``length``, also as ``weight``, the default of most NetworkX
             algorithms.
 
@@ -590,7 +591,7 @@ def _as_rows(rows: ArrayLike, npoints: int) -> NDArray[np.int64]:
     if array.ndim != 1:
         raise ShapeError(f"rows must have shape (k,), got {array.shape}")
     if array.dtype.kind not in "iu":
-        raise DtypeError(f"rows must hold integers or booleans, got dtype {array.dtype}")
+        raise DtypeError(f"rows must contain integers or booleans, got dtype {array.dtype}")
     if int(array.min()) < 0 or int(array.max()) >= npoints:
         raise InputError(
             f"rows must be from 0 to {npoints - 1}, got {array.min()} to {array.max()}"

@@ -1,4 +1,4 @@
-"""Lengths of edges, and comparisons of them, which are exact."""
+"""Lengths of edges, and their exact comparison."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from delone._base.types import Floats, Indices
 
 
-# More than the relative error of a rounded length, and than the absolute one of the smallest.
+# More than the relative error of a rounded length, and more than the absolute error of the
+# smallest.
 _ROUNDED, _SMALLEST = 2.0**-48, 2.0**-1070
 
 __all__ = ["lengths_of", "lowest", "squares", "up_to"]
@@ -52,20 +53,20 @@ def up_to(points: Floats, edges: Indices, limit: float, workers: int | None) -> 
 def lowest(points: Floats, edges: Indices, lengths: Floats, share: float) -> Indices:
     """Return the edges that are not longer than the one at a rank, given in percent.
 
-    Rounded lengths leave only those next to that of the rank, which are compared as fractions.
+    Rounded lengths leave only those close to that of the rank, which are compared as fractions.
     """
     if not len(edges):
         return edges
     rank = max(math.ceil(Fraction(share) * len(edges) / 100), 1) - 1
     at_rank = min(float(np.partition(lengths, rank)[rank]), sys.float_info.max)
-    # Differences and roots are rounded a few times each; among the smallest doubles by a unit.
+    # Differences and roots are rounded a few times each; among the smallest doubles, by one unit.
     slack = at_rank * _ROUNDED + _SMALLEST
     shorter = lengths < at_rank - slack
     near = np.flatnonzero(~shorter & ~(lengths > at_rank + slack))
     squared, which = _exact_squares(points, edges[near])
     order = sorted(range(len(squared)), key=squared.__getitem__)
     counts = np.bincount(which, minlength=len(squared))[order]
-    # The length at the rank, and all that are equal to it.
+    # The length at the rank, and all equal ones.
     last = int(np.searchsorted(np.cumsum(counts), rank - np.count_nonzero(shorter), side="right"))
     longest = squared[order[last]]
     kept = shorter
@@ -74,14 +75,14 @@ def lowest(points: Floats, edges: Indices, lengths: Floats, share: float) -> Ind
 
 
 def _exact_squares(points: Floats, edges: Indices) -> tuple[list[Fraction], NDArray[np.intp]]:
-    """Squared lengths of edges as fractions, and the one of each edge; equal steps have one."""
+    """Distinct squared lengths of edges as fractions, and the one of each edge."""
     tails, heads = points[edges[:, 0]], points[edges[:, 1]]
     with np.errstate(over="ignore", invalid="ignore"):
         step = heads - tails
         # What rounding took from the difference, exactly.
         back = step - heads
         lost = (heads - (step - back)) + (-tails - back)
-    # Where differences are beyond the doubles, by the coordinates themselves.
+    # If differences are beyond the range of doubles, use the coordinates themselves.
     keys = np.hstack((step, lost) if np.isfinite(lost).all() else (tails, heads))
     rows, which = np.unique(keys, axis=0, return_inverse=True)
     ndim = points.shape[1]

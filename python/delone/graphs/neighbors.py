@@ -32,7 +32,7 @@ def nearest_neighbors(
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Finite coordinates in any unit; of a triangulation or hull, the points.
+        Finite coordinates in any unit; for a triangulation or hull, its points.
     k : int
         From 1 to the number of distinct points minus one.
     directed : bool, optional
@@ -105,7 +105,7 @@ def sphere_of_influence(
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Finite coordinates in any unit; of a triangulation or hull, the points.
+        Finite coordinates in any unit; for a triangulation or hull, its points.
     boundary : {"closed", "open"}, optional
         Whether two spheres that only touch are neighbors (``"closed"``) or not.
     workers : int, optional
@@ -154,7 +154,7 @@ def sphere_of_influence(
 
 
 def _require_k(k: int, rows: int, duplicates: int) -> None:
-    """Refuse a number of neighbors that not every distinct point has."""
+    """Reject a number of neighbors that not every distinct point has."""
     most = rows - duplicates - 1
     if 1 <= k <= most:
         return

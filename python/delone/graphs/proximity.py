@@ -38,8 +38,8 @@ def delaunay_graph(points: Points, *, workers: int | None = None, planar: bool =
     Returns
     -------
     Graph
-        The edges of ``Delaunay(points)``. Points on one line are joined to a path, and coplanar 3-D
-        points by the triangulation of their plane. A single point has no edges.
+        The edges of ``Delaunay(points)``. Points on one line are joined into a path, and coplanar
+        3-D points by the triangulation of their plane. A single point has no edges.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def delaunay_graph(points: Points, *, workers: int | None = None, planar: bool =
 
     See Also
     --------
-    Graph : Makes a graph of any edges, such as ``Graph(mesh.points, mesh.edges)``.
+    Graph : Creates a graph of any edges, such as ``Graph(mesh.points, mesh.edges)``.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""The Delaunay graph from which other graphs are filtered, also of points that span no area."""
+"""The Delaunay graph from which other graphs are filtered, even for points that span no area."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Skeleton:
 
     @property
     def adjacency(self) -> tuple[Floats, Indices, Indices, Indices]:
-        """Points, edges, and the neighbors of rows: what the functions of the core take.
+        """Points, edges, and the neighbors of rows: the arguments of the core's functions.
 
         The points are in a unit in which squares are doubles, as in `tiling`.
         """
@@ -67,7 +67,7 @@ class Skeleton:
 
 
 def coordinates(points: Points, *, ndim: int | None, planar: bool) -> Floats:
-    """Return finite points that nobody else can change; of a triangulation or graph, its points."""
+    """Return finite points that cannot be changed; for a triangulation or graph, its points."""
     if not isinstance(points, Stored):
         own = own_copy(points, ndim=ndim)
         warn_of_degrees(points, own, planar=planar)
@@ -92,7 +92,7 @@ def coordinates(points: Points, *, ndim: int | None, planar: bool) -> Floats:
 def skeleton(
     points: Points, *, workers: int | None, planar: bool, ndim: int | None = None
 ) -> Skeleton:
-    """Return the Delaunay graph of points; a `Delaunay` triangulation is used as it is."""
+    """Return the Delaunay graph of points; a `Delaunay` triangulation is used directly."""
     own = coordinates(points, ndim=ndim, planar=planar)
     threads = as_workers(workers)
     if isinstance(points, Delaunay):

@@ -45,14 +45,14 @@ def minimum_spanning_tree(
 
     See Also
     --------
-    Graph.with_duplicates : Connects coincident rows, too, by edges of length zero.
+    Graph.with_duplicates : Also connects coincident rows, by edges of length zero.
 
     Notes
     -----
     Kruskal's algorithm (1956) on Delaunay edges, which contain the tree (M. I. Shamos and D. Hoey,
     "Closest-point problems", 1975). Lengths are compared exactly. Of edges with the same length,
     the one whose lexicographically smaller end, then whose other end, has the smaller coordinates
-    comes first: that is an order of all pairs of points, so one set of points has one tree,
+    comes first. This is a total order of the pairs of points, so a set of points has one tree,
     whatever the order of its rows, and scaling by a power of two leaves it unchanged.
 
     Coincident rows are one vertex, the first; the others have no edges and are in

@@ -23,7 +23,7 @@ __all__ = [
     "thin",
 ]
 
-_DRAWABLE = 1e-305, 1e305  # matplotlib scales and pads by factors of up to a hundred
+_DRAWABLE = 1e-305, 1e305  # matplotlib scales and pads by factors of up to 100
 _MOST_DOTS = 2000
 _DOT = "#17324d"
 
@@ -41,7 +41,7 @@ def new_axes(ax: Any) -> Any:
 
 
 def require_bounds(low: Floats, high: Floats) -> None:
-    """Refuse coordinates for which the transforms of matplotlib overflow."""
+    """Reject coordinates for which the transforms of matplotlib overflow."""
     far = max(np.abs(low).max(), np.abs(high).max())
     # Halves, since the extent itself may overflow.
     near = (high / 2 - low / 2).max()
@@ -76,7 +76,7 @@ def thin(count: int, most: float = 1.0) -> float:
 
 
 def draw_dots(ax: Any, points: Floats, wanted: bool | None, *, count: int | None = None) -> None:
-    """Draw points, for None only if they (or `count`) are few enough to tell them apart."""
+    """Draw points; with None, only if they (or `count`) are few enough to be distinguishable."""
     if wanted or (wanted is None and (len(points) if count is None else count) <= _MOST_DOTS):
         size = float(np.clip(60 / np.sqrt(max(len(points), 1)), 0.8, 5.0))
         ax.plot(*points.T, "o", color=_DOT, markersize=size, markeredgewidth=0, zorder=4)
@@ -111,7 +111,7 @@ def axis_names(crs: str | None) -> tuple[str, str]:
         import pyproj
 
         axes = pyproj.CRS.from_user_input(crs).axis_info
-    except Exception:  # a label is not worth an error
+    except Exception:  # a missing label is not worth an error
         return names["east"], names["north"]
     for axis in axes:
         if axis.direction in names:

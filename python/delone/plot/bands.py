@@ -42,7 +42,7 @@ def plot_bands(
     box = corners.min(axis=0), corners.max(axis=0)
     require_bounds(*box)
     ax = new_axes(ax)
-    # Each ring ends with its first point, and closes its part of the path.
+    # Each ring ends with its first point, which closes its part of the path.
     outlines = []
     for rings in polygons:
         codes = [[path.MOVETO, *[path.LINETO] * (len(ring) - 2), path.CLOSEPOLY] for ring in rings]

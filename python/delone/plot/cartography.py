@@ -1,6 +1,6 @@
 """Constrained triangulations as maps: a color for each region, bold lines for segments.
 
-Regions take the colors of a palette in turn, the largest first, and skip those that a neighbor has:
+Regions take the colors of a palette in turn, the largest first, and skip those of their neighbors:
 a greedy coloring, in the order of D. J. A. Welsh and M. B. Powell, "An upper bound for the
 chromatic number of a graph and its application to timetabling problems", 1967, by area instead of
 degree.
@@ -32,7 +32,7 @@ _PALETTE = (
 )  # fmt: skip
 _NO_LABEL = "#f1f1f1"
 _SEGMENT, _EDGE = "#16324f", "#5f6f7e"
-# The renderer of matplotlib fails on a single line with very many corners.
+# matplotlib's renderer fails on a single line with very many corners.
 _PART = 20_000
 
 
@@ -72,7 +72,7 @@ def _adjacency(
 def draw_regions(ax: Any, mesh: Segmented, pixels: int | None) -> None:
     """Draw triangles in the colors of their regions, or an image of `pixels` on its longer side."""
     colors = require("matplotlib.colors", extra="plot", what="drawing")
-    # The last color is for triangles without a label, whose number is -1.
+    # The last color is for triangles without a label, which have number -1.
     rgb = np.array([colors.to_rgb(each) for each in (*_PALETTE, _NO_LABEL)])
     color = color_of_regions(mesh)
     if pixels is None:
@@ -131,7 +131,7 @@ def _kept_segments(mesh: Segmented) -> Indices:
 
 
 def _line(points: Floats, pairs: Indices) -> Floats:
-    """Return one line through all pairs, with NaN between pairs that do not follow each other."""
+    """Return one line through all pairs, with NaN between pairs that are not connected."""
     lifted = np.ones(len(pairs), dtype=bool)
     lifted[1:] = pairs[1:, 0] != pairs[:-1, 1]
     steps = np.column_stack((np.full(len(pairs), -1), pairs)).ravel()

@@ -28,9 +28,9 @@ _EDGE = "#35506b"
 # Parameters of PyVista's `add_mesh` that are not options here, and options that it does not name.
 _TAKEN = frozenset({"self", "mesh", "kwargs"})
 _UNNAMED = frozenset({"feature_angle", "vertex_color", "vertex_opacity", "vertex_style"})
-# Unbounded cells are drawn as far as this share of the longer side of the box of the sites.
+# Unbounded cells are drawn up to this fraction of the longer side of the box of the sites.
 _MARGIN = 0.1
-# And at least as far as this number of spacings of their coordinates.
+# And at least up to this number of spacings of their coordinates.
 _SPACINGS = 8
 
 
@@ -94,14 +94,14 @@ def _box(diagram: Cells2) -> tuple[Floats, Floats]:
     low, high = diagram.points.min(axis=0), diagram.points.max(axis=0)
     with np.errstate(over="ignore"):
         extent = max(float((high - low).max()), *(each or 0.0 for each in diagram.periods or (0,)))
-        # The box of sites on a line far from the origin has a width, too.
+        # Even the box of sites on a line far from the origin has a width.
         least = _SPACINGS * float(np.spacing(np.abs((low, high)).max()))
         margin = max(_MARGIN * extent or 1.0, least)
         return low - margin, high + margin
 
 
 def _window(shown: Cells2, rings: list[list[Floats]]) -> tuple[Floats, Floats]:
-    """Return the limits: those of the clip, or with periods those of the cells."""
+    """Return the limits: those of the clip or, with periods, those of the cells."""
     if shown.periods is None:
         bounds = np.array(getattr(shown.clip, "bounds", shown.clip))
         return bounds[:2], bounds[2:]
@@ -110,7 +110,7 @@ def _window(shown: Cells2, rings: list[list[Floats]]) -> tuple[Floats, Floats]:
 
 
 def _path(rings: list[Floats]) -> Any:
-    """Return rings as one path of matplotlib."""
+    """Return rings as one matplotlib path."""
     make = require("matplotlib.path", extra="plot", what="drawing").Path
     if not rings:
         return make(np.empty((0, 2)))
@@ -141,7 +141,7 @@ def plot_cells3(
 
 
 def _known(options: dict[str, Any]) -> dict[str, Any]:
-    """Return options that `add_mesh` of PyVista takes; refuse others, and unknown colormaps."""
+    """Return options that PyVista's `add_mesh` takes; reject others, and unknown colormaps."""
     pyvista = require("pyvista", extra="pyvista", what="drawing in 3-D")
     known = (_UNNAMED | set(inspect.signature(pyvista.Plotter.add_mesh).parameters)) - _TAKEN
     for name in options:

@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 __all__ = ["bounds_with_circles", "draw_circles", "require_few"]
 
 _MOST_CIRCLES = 3000
-_FEW_CIRCLES = 60  # few enough to show each one whole, with its center
+_FEW_CIRCLES = 60  # few enough to show each circle completely, with its center
 _CIRCLE = "#d98b2b"
 
 
 def require_few(mesh: Triangles) -> None:
-    """Refuse more triangles than circles can be distinguished."""
+    """Reject more triangles than circles can be distinguished."""
     if mesh.nsimplex > _MOST_CIRCLES:
         raise InputError(
             f"the circles of {mesh.nsimplex} triangles would hide each other; "
@@ -52,7 +52,7 @@ def draw_circles(ax: Any, mesh: Triangles) -> None:
 
 
 def bounds_with_circles(mesh: Triangles) -> tuple[Floats, Floats]:
-    """Return the low and high limits that show the circles, as far as the points stay visible."""
+    """Return the low and high limits that show the circles, while the points remain visible."""
     low, high = mesh.min_bound, mesh.max_bound
     centers, radii = _circles(mesh)
     # The circles of flat triangles are of any size.

@@ -1,4 +1,4 @@
-"""Colors of values: a scale that fits most of them, light and shadow, and the color bar."""
+"""Colors of values: a scale that covers most of them, light and shadow, and the color bar."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _WATER = ("#0b1f4b", "#143f7d", "#2266a3", "#4695c0", "#86c3d4", "#cfe9dc")
 
 
 def as_cmap(cmap: Any) -> Any:
-    """Return a colormap of matplotlib by its name; None for None."""
+    """Return a matplotlib colormap by its name; None for None."""
     matplotlib = require("matplotlib", extra="plot", what="drawing")
     colors = require("matplotlib.colors", extra="plot", what="drawing")
     if cmap is None or isinstance(cmap, colors.Colormap):
@@ -33,7 +33,7 @@ def as_cmap(cmap: Any) -> Any:
 
 
 def scale(values: Floats, cmap: Any) -> Any:
-    """Return a color scale that fits all but the lowest and the highest hundredth of the values."""
+    """Return a color scale that covers all but the lowest and the highest percent of the values."""
     colors = require("matplotlib.colors", extra="plot", what="drawing")
     cm = require("matplotlib.cm", extra="plot", what="drawing")
     known = values[np.isfinite(values)]
@@ -49,7 +49,7 @@ def scale(values: Floats, cmap: Any) -> Any:
 
 
 def shaded(rgb: Floats, light: Floats) -> Floats:
-    """Darken away from the sun, lighten toward it; flat ground almost keeps its color."""
+    """Darken away from the sun, lighten toward it; flat ground hardly changes its color."""
     strength = (0.30 + 0.95 * light)[..., None]
     return np.clip(np.where(strength < 1, rgb * strength, 1 - (1 - rgb) / strength), 0, 1)
 
@@ -61,7 +61,7 @@ def show(ax: Any, rgba: Floats, extent: tuple[float, float, float, float]) -> No
 
 
 def add_bar(ax: Any, mapped: Any, values: Floats, label: str) -> None:
-    """Add the color bar of a scale, pointed at an end if values lie beyond it."""
+    """Add the color bar of a scale, with a pointed end if values lie beyond it."""
     below = np.nanmin(values) < mapped.norm.vmin
     above = np.nanmax(values) > mapped.norm.vmax
     extend = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}

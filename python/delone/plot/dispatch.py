@@ -106,7 +106,7 @@ def plot(
 
     - ``values``, array_like of shape (n,) or (m,): color by a number for each point or simplex
     - ``cmap``, ``colorbar``: the colors of values, the color bar
-    - ``cut``, ``"x"``, ``"y"`` or ``"z"``: omit the farther half along this axis
+    - ``cut``, ``"x"``, ``"y"`` or ``"z"``: omit the half with the larger coordinates on this axis
     - ``shrink``, up to 1: the fraction of its size at which each simplex is drawn
     - ``below``: draw only the tetrahedra whose smallest dihedral angle is below this many degrees,
       within the translucent surface

@@ -55,8 +55,8 @@ def plot_globe(
     points : ndarray of float64, shape (n, 3)
         Unit vectors, drawn as dots.
     arcs : tuple of ndarray
-        For each the unit vectors where it starts and where it leads from there, (r, 3) each, and
-        its length in radians, (r,).
+        For each arc, the unit vectors of its start and of its direction there, (r, 3) each, and its
+        length in radians, (r,).
     values : array_like, shape (count,), or None
         A number for each polygon.
     count : int
@@ -123,7 +123,7 @@ def _center(points: Floats) -> tuple[float, float]:
 
 
 def _frame(view: tuple[float, float]) -> Floats:
-    """The unit vectors to the right, up and toward the viewer, above a place in degrees."""
+    """The unit vectors to the right, up and toward the viewer, above a position in degrees."""
     try:
         lon, lat = np.radians(np.array(view, dtype=float))
     except (TypeError, ValueError):
@@ -136,7 +136,7 @@ def _frame(view: tuple[float, float]) -> Floats:
 
 
 def _samples(arcs: tuple[Floats, Floats, Floats], steps: int) -> Floats:
-    """Places along arcs, (r, steps + 1, 3)."""
+    """Positions along arcs, (r, steps + 1, 3)."""
     start, ahead, length = arcs
     turn = np.linspace(0, 1, steps + 1)[None, :, None] * length[:, None, None]
     found: Floats = np.cos(turn) * start[:, None] + np.sin(turn) * ahead[:, None]
@@ -151,7 +151,7 @@ def _steps(length: Floats) -> NDArray[np.intp]:
 
 
 def _front(chains: Floats, frame: Floats) -> Floats:
-    """The chords between neighbors in chains that are in front, projected, (s, 2, 2)."""
+    """The projected chords of chains that are in front, (s, 2, 2)."""
     seen = chains @ frame.T
     ahead = seen[..., 2] > -1e-3
     both = ahead[:, 1:] & ahead[:, :-1]

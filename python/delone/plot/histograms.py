@@ -104,7 +104,7 @@ def draw_histograms(
     if bound is not None:
         ax.axvline(bound, color=_BOUND, linewidth=1.2, linestyle="--", label=f"goal {bound:g}°")
     ax.set(xlabel="smallest dihedral angle in degrees", ylabel="tetrahedra", yscale="log")
-    # Room above the bars for the legend.
+    # Space above the bars for the legend.
     most = max(int(np.max(each, initial=1)) for each in counts.values())
     ax.set(xlim=(bounds[0], bounds[-1]), ylim=(0.7, 5 * most))
     ax.spines[["top", "right"]].set_visible(False)

@@ -103,7 +103,7 @@ def image(mesh: Simplices | Cells3, **options: Any) -> NDArray[np.uint8]:
 
 @contextmanager
 def _drawn(mesh: Any, options: dict[str, Any]) -> Iterator[Any]:
-    """Draw on a plotter without a window, and close it in the end."""
+    """Draw on a plotter without a window, and finally close it."""
     if kind_of(mesh) in ("triangles", "hull", "periodic", "cells2"):
         raise InputError(f"this {type(mesh).__name__} is 2-D: delone.plot.plot draws it")
     with quiet():

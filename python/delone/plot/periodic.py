@@ -34,7 +34,7 @@ def plot_periodic(
     dots = as_optional_flag(vertices, name="vertices")
     corners = mesh.corners
     start, end = _period(mesh)
-    # A direction without a period shows as much as the triangles do.
+    # In a direction without a period, the limits are those of the triangles.
     low = np.fmin(corners.min(axis=(0, 1)), start)
     high = np.fmax(corners.max(axis=(0, 1)), end)
     require_bounds(low, high)
@@ -64,7 +64,7 @@ def _period(mesh: Periodic) -> tuple[Floats, Floats]:
 
 
 def _draw_box(ax: Any, ends: Floats, shown: Floats) -> None:
-    """Draw the sides of a period, those along a direction without a period left out."""
+    """Draw the sides of a period, except those along a direction without a period."""
     for axis in (0, 1):
         along = ends[:, 1 - axis] if np.isfinite(ends[0, 1 - axis]) else shown[:, 1 - axis]
         for at in ends[np.isfinite(ends[:, axis]), axis].tolist():

@@ -91,7 +91,7 @@ def draw_picture(
     dpi: int = 160,
     **options: Any,
 ) -> None:
-    """Draw into the file itself; `save_picture` goes through a temporary file."""
+    """Draw directly into the file; `save_picture` uses a temporary file."""
     _require_format(path.suffix)
     figure_module = require("matplotlib.figure", extra="plot", what="drawing")
     require_flat(mesh)
@@ -112,7 +112,7 @@ def draw_picture(
 
 
 def _require_format(suffix: str) -> None:
-    """Refuse the suffix of a file in no format that matplotlib writes."""
+    """Reject the suffix of a file if matplotlib does not write its format."""
     bases = require("matplotlib.backend_bases", extra="plot", what="drawing")
     known = bases.FigureCanvasBase.get_supported_filetypes()
     if suffix[1:].lower() not in known:

@@ -62,7 +62,7 @@ def quiet() -> Any:
 
 
 def aim(plotter: Any) -> None:
-    """Turn the camera away from the axes, so that no face is seen edge on."""
+    """Turn the camera away from the axes, so that no face is seen edge-on."""
     plotter.camera_position = "xz"
     plotter.camera.azimuth, plotter.camera.elevation = 40, 20
     plotter.reset_camera()

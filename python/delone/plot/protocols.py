@@ -1,4 +1,4 @@
-"""What an object must have to be drawn: protocols in place of the classes of delone."""
+"""What an object must have to be drawn: protocols instead of delone's classes."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ class Segmented(Triangles, Protocol):
 
 
 class Outlined(Protocol):
-    """Triangles that are kept of a 2-D triangulation."""
+    """The triangles of a 2-D triangulation that are kept."""
 
     @property
     def points(self) -> Floats:
@@ -162,7 +162,7 @@ class Periodic(Protocol):
 
     @property
     def periods(self) -> tuple[float | None, float | None]:
-        """The periods in x and y; None for none."""
+        """The periods in x and y; None for a direction without a period."""
 
     @property
     def corners(self) -> Floats:
@@ -182,7 +182,7 @@ class Cells2(Protocol):
 
     @property
     def weights(self) -> Floats | None:
-        """The weights of the sites, (n,); None without."""
+        """The weights of the sites, (n,); None without weights."""
 
     @property
     def clip(self) -> Any:
@@ -235,7 +235,7 @@ def is_quality_mesh(mesh: Any) -> bool:
 def kind_of(thing: Any) -> str:
     """Tell what an object is drawn as; "" for anything else.
 
-    Surfaces of triangles in 3-D are "tetrahedra" as well.
+    Triangular surfaces in 3-D are also "tetrahedra".
     """
     d, corners = (_columns(thing, name) for name in ("points", "simplices"))
     if has(thing, "edges", "lengths") and not corners:
@@ -254,7 +254,7 @@ def kind_of(thing: Any) -> str:
 
 
 def hint(thing: Any) -> str:
-    """Return what to do in place of drawing an object that is nothing that can be drawn."""
+    """Return what to do instead of drawing an object that cannot be drawn."""
     return "use its own plot()" if hasattr(thing, "plot") else "draw delone.Delaunay(points)"
 
 

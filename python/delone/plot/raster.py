@@ -123,7 +123,7 @@ def plot_difference(
     label: str = "difference",
     title: str | None = None,
 ) -> Any:
-    """Draw differences in colors that are white at 0, and of one strength at both ends."""
+    """Draw differences in colors that are white at 0, with equal intensity at both ends."""
     bar, colors = as_flag(colorbar, name="colorbar"), as_cmap(cmap or "RdBu_r")
     normalize = require("matplotlib.colors", extra="plot", what="drawing").Normalize
     mappable = require("matplotlib.cm", extra="plot", what="drawing").ScalarMappable
@@ -160,7 +160,7 @@ def draw_raster(
     size: float = 10.0,
     dpi: int = 160,
 ) -> None:
-    """Draw a raster as `plot_raster` does into a PNG or SVG file, `size` inches on its longer side.
+    """Draw a raster like `plot_raster`, to a PNG or SVG file with `size` inches on its longer side.
 
     The reference system names the axes if pyproj is installed.
     """
@@ -185,7 +185,7 @@ def draw_difference(
     size: float = 10.0,
     dpi: int = 160,
 ) -> None:
-    """Draw differences as `plot_difference` does into a PNG or SVG file."""
+    """Draw differences like `plot_difference`, to a PNG or SVG file."""
     figure_module = require("matplotlib.figure", extra="plot", what="drawing")
     left, right, bottom, top = _extent(x, y)
     figsize = figure_size(right - left, top - bottom, size, with_bar=True)

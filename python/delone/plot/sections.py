@@ -1,4 +1,4 @@
-"""Drawings of cross sections, one beside another on equal scales."""
+"""Drawings of cross sections, side by side on equal scales."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 __all__ = ["draw_sections"]
 
-# Inches of one section.
+# The size of one section in inches.
 _WIDTH, _HEIGHT = 3.2, 1.9
-# Sections in one figure: more cannot be read, and their axes need minutes.
+# Maximum number of sections in one figure: more are not readable, and their axes take minutes.
 _MOST = 200
 
 

@@ -23,11 +23,12 @@ if TYPE_CHECKING:
 __all__ = ["Raster", "facet_light", "facet_values", "point_density", "rasterize", "relief"]
 
 _BLOCK = 1 << 20
-# Below this share of pixels with points, triangles are larger than pixels and are drawn as planes.
+# Below this fraction of pixels with points, triangles are larger than pixels and are drawn as
+# planes.
 _CROWDED = 0.5
 # From the northwest and above: with light from below, hills look like hollows.
 _SUN = np.array([-0.5, 0.5, 0.7071067811865476])
-# The steep tenth of a surface is drawn as a slope of this tangent.
+# The steepest tenth of a surface is drawn with at least this slope.
 _STEEP = 1.2
 
 
@@ -87,13 +88,13 @@ def relief(raster: Raster) -> Floats:
     if min(raster.values.shape) < 2:
         return np.full(raster.values.shape, _SUN[2])
     north, east = np.array(np.gradient(raster.values, raster.cell))
-    # Beside the hull one side of the difference is missing: flat there.
+    # Next to the hull, one side of the difference is missing, so it is drawn flat.
     inside = np.isfinite(raster.values)
     return _light(np.nan_to_num(-east), np.nan_to_num(-north), inside)
 
 
 def facet_light(points: Floats, z: Floats, simplices: NDArray[np.int32]) -> Floats:
-    """Return how bright the sun makes each triangle, (m,), as `relief` does for pixels."""
+    """Return how bright the sun makes each triangle, (m,), like `relief` for pixels."""
     a, b, c = (points[simplices[:, k]] for k in range(3))
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
     uz, vz = z[simplices[:, 1]] - z[simplices[:, 0]], z[simplices[:, 2]] - z[simplices[:, 0]]
@@ -178,7 +179,7 @@ def _interpolated(mesh: Triangles, values: Floats, xi: Floats) -> Floats:
     with np.errstate(all="ignore"):
         twice = ux * vy - uy * vx
         s, t = (px * vy - py * vx) / twice, (ux * py - uy * px) / twice
-    # Rounding may be large in a sliver; its values stay between those of its corners.
+    # Rounding may be large in a sliver; its values remain between those of its corners.
     s, t = np.clip(np.nan_to_num(s), 0.0, 1.0), np.clip(np.nan_to_num(t), 0.0, 1.0)
     za, zb, zc = (values[corners[:, k]] for k in range(3))
     found = np.full(len(xi), np.nan)

@@ -1,4 +1,4 @@
-"""Line styles and colors of callers, which matplotlib takes as properties of its artists."""
+"""Line styles and colors of callers, which become properties of matplotlib's artists."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["EDGES", "require_style", "restyle"]
 
 # What the artists of edges or cells are marked with.
 EDGES = "edges"
-# Properties that place an artist, or that a drawing needs for itself.
+# Properties that position an artist, or that a drawing uses itself.
 _RESERVED = {
     "animated",
     "array",
@@ -36,7 +36,7 @@ _RESERVED = {
 
 
 def require_style(style: Mapping[str, Any], what: str, known: Iterable[str]) -> None:
-    """Refuse what is neither an option, which are the `known` ones, nor a property of lines."""
+    """Reject what is neither one of the `known` options nor a property of lines."""
     if not style:
         return
     collections = require("matplotlib.collections", extra="plot", what="drawing")

@@ -1,7 +1,7 @@
 """3-D plots of tetrahedra and of surfaces of triangles with PyVista.
 
-Tetrahedra hide each other, so half of them can be left out in front of a plane, and each can be
-shrunk about its center.
+Tetrahedra hide each other, so those beyond a plane can be left out, and each can be shrunk
+toward its center.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["plot"]
 
 _AXES = {"x": 0, "y": 1, "z": 2}
-_VTK_TETRA = 10  # the number of this kind of cell
+_VTK_TETRA = 10  # VTK's number of this type of cell
 _FACE, _EDGE, _SKIN = "#9ecae1", "#08306b", "#2f6f9f"
 
 
@@ -45,8 +45,8 @@ def plot(
 ) -> Any:
     """Draw tetrahedra or a surface of triangles; for the options see `delone.plot.plot`.
 
-    If there are as many simplices as points, `values` are those of points. With `below`, they are
-    by default the smallest dihedral angles.
+    If there are as many simplices as points, `values` belong to the points. With `below`, they are
+    the smallest dihedral angles by default.
     """
     pyvista = require("pyvista", extra="pyvista", what="drawing in 3-D")
     as_choice(cut, ("none", *_AXES), name="cut")
@@ -79,7 +79,7 @@ def plot(
 
 
 def _require_simplices(mesh: Any) -> None:
-    """Refuse anything but 3-D simplices, and name what draws it."""
+    """Reject anything but 3-D simplices, and name what draws it."""
     kind = kind_of(mesh)
     if kind == "tetrahedra":
         return
@@ -88,7 +88,7 @@ def _require_simplices(mesh: Any) -> None:
 
 
 def _in_front(mesh: Simplices, cut: str) -> NDArray[np.bool_]:
-    """Return the simplices whose center is in the nearer half of the box of the points."""
+    """Return the simplices whose center is in the lower half of the box of the points."""
     if cut == "none":
         return np.ones(len(mesh.simplices), dtype=bool)
     along = mesh.points[:, _AXES[cut]]
@@ -140,7 +140,7 @@ def _draw_simplices(plotter: Any, grid: Any, shrink: float, look: dict[str, Any]
     whole = shrink == 1
     if not whole:
         grid = grid.shrink(shrink)
-    # Some light from all sides shows the colors in the shade.
+    # Ambient light shows the colors in the shade.
     plotter.add_mesh(grid, show_edges=whole, edge_color=_EDGE, line_width=1, ambient=0.4, **look)
 
 

@@ -1,4 +1,4 @@
-"""2-D triangulations on axes: as triangles, or as an image where these are too small to see."""
+"""2-D triangulations on axes: as triangles, or as an image if these are too small to see."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["plot", "require_drawable", "require_flat"]
 
-# A triangle of fewer pixels than this is not seen as a triangle.
+# A triangle of fewer pixels than this is not recognizable.
 _VISIBLE = 14.0
 _INK, _RIM = "#35506b", "#b3372f"
 
@@ -79,7 +79,7 @@ def plot(
 
 
 def require_flat(mesh: Any) -> None:
-    """Refuse anything but a 2-D triangulation, and name what draws it."""
+    """Reject anything but a 2-D triangulation, and name what draws it."""
     kind = kind_of(mesh)
     if kind == "triangles":
         return
@@ -92,7 +92,7 @@ def require_flat(mesh: Any) -> None:
 
 
 def require_drawable(mesh: Triangles, heights: Floats | None) -> None:
-    """Refuse what the transforms of matplotlib overflow on, and heights that show nothing."""
+    """Reject coordinates that overflow in matplotlib's transforms, and heights without effect."""
     if heights is not None and not (finite := np.isfinite(heights)).all():
         rows = np.flatnonzero(~finite)
         if mesh.nsimplex and not finite[mesh.simplices].all(axis=1).any():
@@ -105,7 +105,8 @@ def _draw_areas(
 ) -> None:
     """Draw regions, the surface, or edges; as an image if the triangles are too small to see."""
     size = pixels(ax, mesh.min_bound, mesh.max_bound)
-    # Areas are an image where triangles cannot be seen; asked for, edges are drawn over it.
+    # Areas are drawn as an image if triangles are too small to see; requested edges are drawn on
+    # top.
     dense = size[0] * size[1] < _VISIBLE * mesh.nsimplex
     constrained = segmented(mesh)
     if constrained is not None and (z is None or not constrained.nsimplex):
@@ -145,7 +146,7 @@ def _draw_image(
 
 def _draw_density(ax: Any, mesh: Triangles, size: int, cmap: Any, colorbar: bool) -> None:
     colors = require("matplotlib.colors", extra="plot", what="drawing")
-    # A coarser grid than the screen's: else most of it would be one point or none.
+    # A coarser grid than the screen's: otherwise, most cells would contain one point or none.
     fewer = int(np.clip(np.sqrt(mesh.npoints / 4), 50, size))
     raster = point_density(mesh, fewer)
     image = ax.imshow(

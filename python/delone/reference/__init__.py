@@ -2,11 +2,11 @@
 
 Everything here uses Python's arbitrary-precision integers and `fractions.Fraction`, so that no
 result depends on rounding, and follows the textbook literally where the fast core does not. It is
-the oracle of the tests of the package, and meant to be read; no other module of the package uses
-it. `bowyer_watson` also triangulates in 3-D, with the predicates of `space`, and `natural_weights`
+the oracle of the package's tests, and meant to be read; no other module of the package uses it.
+`bowyer_watson` also triangulates in 3-D, with the predicates of `space`, and `natural_weights`
 supports Laplace weights in 3-D; the rest is 2-D.
 
-The five points that every textbook draws, a rectangle and one point inside:
+The five points found in every textbook, a rectangle and one point inside:
 
 >>> from delone.reference import bowyer_watson, circumcircle
 >>> points = [(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)]

@@ -7,7 +7,7 @@ canonical circle test, until no flip is possible. Crossing segments are rejected
 Sloan, S. W. (1993), "A fast algorithm for generating constrained Delaunay triangulations",
 Computers & Structures 47 (3), 441-450. Sloan processes the crossing edges in turn and postpones
 those whose quadrilateral is not convex; here the next edge is chosen so that it always is (see
-`insert_segment`), and so the loop provably ends.
+`insert_segment`), so the loop provably terminates.
 
 Uniqueness of the result is proved by Chew, L. P. (1989), "Constrained Delaunay triangulations",
 Algorithmica 4, 97-108.
@@ -77,7 +77,7 @@ def constrained_delaunay(
     Raises
     ------
     CrossingSegmentsError
-        Two segments meet in a point that is an end of neither; it names all such pairs.
+        Two segments meet at a point that is an end of neither; the error names all such pairs.
     InputError
         A segment refers to a row that does not exist.
     NonFiniteError, DegenerateInputError, ShapeError
@@ -86,9 +86,9 @@ def constrained_delaunay(
     Notes
     -----
     Every edge that is not a subsegment is locally Delaunay, with ties broken canonically as defined
-    by `incircle_canonical`, so the result depends only on coordinates. O(n²) tests for the Delaunay
-    triangulation, O(n) for each segment, O(s²) for s subsegments that might cross and O(k²) flips
-    for each that crosses k edges. Sloan (1993), Chew (1989).
+    by `incircle_canonical`, so the result depends only on coordinates. The Delaunay triangulation
+    takes O(n²) tests, each segment O(n), s subsegments that might cross O(s²), and each subsegment
+    that crosses k edges O(k²) flips. Sloan (1993), Chew (1989).
 
     Examples
     --------
@@ -116,10 +116,10 @@ def constrained_delaunay(
 def pieces(
     points: Sequence[ExactPoint], segments: Iterable[Sequence[int]]
 ) -> dict[Edge, list[int]]:
-    """Split segments at all points on them; return the pieces with the rows that they come from.
+    """Split segments at all points on them; return the pieces with their source rows.
 
-    In ascending order, the smaller vertex first, and vertices are the first rows of their points. A
-    segment of zero length has no piece.
+    Pieces are in ascending order, with the smaller vertex first, and vertices are the first rows of
+    their points. A segment of zero length has no pieces.
     """
     first = {points[row]: row for row in first_rows(points)}
     sources: dict[Edge, list[int]] = {}
@@ -141,8 +141,8 @@ def refuse_crossings(
 ) -> None:
     """Raise an error if pieces, which have no vertex in their interior, cross.
 
-    It names the rows of each pair once, the smaller first, in ascending order, and the points in
-    which they meet. `points` are as given, `exact` are scaled to integers.
+    It names the rows of each pair once, the smaller first, in ascending order, and the points where
+    they meet. `points` are as given, `exact` are scaled to integers.
     """
     found: dict[tuple[int, int], tuple[float, float]] = {}
     for one, other in combinations(sources, 2):
@@ -164,7 +164,7 @@ def refuse_crossings(
 def meeting(
     a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[Any]
 ) -> tuple[float, float]:
-    """Return the point in which the lines ab and cd, which are not parallel, meet, rounded once."""
+    """Return the point where the lines ab and cd, which are not parallel, meet, rounded once."""
     (ax, ay), (bx, by), (cx, cy), (dx, dy) = map(exact_point, (a, b, c, d))
     ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
     t = Fraction((cx - ax) * vy - (cy - ay) * vx) / (ux * vy - uy * vx)
@@ -190,7 +190,7 @@ def insert_segment(points: Sequence[ExactPoint], apex: dict[Edge, int], a: int, 
     The next crossing edges to flip are those that end in the vertex w farthest to the left of ab;
     of these, the one whose other end is farthest to the right is flipped first; among equally far
     ones, the one farthest along ab. Therefore w is a corner of the convex hull of all triangles
-    that ab crosses, and the other end is a corner of the hull of those among them that meet in w:
+    that ab crosses, and the other end is a corner of the hull of those among them that meet at w:
     at both ends the two triangles of the edge form an angle below 180 degrees, so together they
     form a strictly convex quadrilateral. A flip removes an edge from w and adds none to it, and the
     new edge ends in vertices that had crossing edges before, or in a and b. Each vertex on the left

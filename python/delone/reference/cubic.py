@@ -38,11 +38,11 @@ def clough_tocher(
     values : sequence of three numbers
         Values at the corners.
     gradients : sequence of three pairs of numbers
-        Derivatives by x and y at the corners.
+        Derivatives with respect to x and y at the corners.
     beyond : sequence of three points or None
         The opposite vertex across the edge opposite each corner; None at the boundary.
     query : sequence of two numbers
-        A point of the triangle, its boundary included.
+        A point of the triangle, including its boundary.
 
     Returns
     -------
@@ -90,9 +90,9 @@ def _net(
 ) -> dict[tuple[Any, ...], Fraction]:
     """The ordinates by position.
 
-    ``edge, i, j``: on the edge from corner i to corner j, a third of the way; ``spoke, i``: as much
-    from corner i to the centroid; ``middle, k``: within the part opposite corner k; ``inner, i``:
-    two thirds from corner i to the centroid; ``center``: there.
+    ``edge, i, j``: on the edge from corner i to corner j, a third of the way; ``spoke, i``: a third
+    of the way from corner i to the centroid; ``middle, k``: within the part opposite corner k;
+    ``inner, i``: two thirds from corner i to the centroid; ``center``: there.
     """
     net: dict[tuple[Any, ...], Fraction] = {}
     for i in range(3):

@@ -117,8 +117,8 @@ def incircle(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[A
 
     Notes
     -----
-    The sign of a determinant: each point is lifted to the paraboloid z = x² + y², and d is inside
-    the circle if and only if its lifted image lies below the plane through the other three.
+    This is the sign of a determinant: each point is lifted to the paraboloid z = x² + y², and d is
+    inside the circle if and only if its lifted image lies below the plane through the other three.
 
     Examples
     --------
@@ -240,7 +240,7 @@ def sign(number: ExactNumber) -> int:
 
 
 def exact_rows(points: Sequence[Sequence[Any]], ndim: int = 2) -> list[tuple[Any, ...]]:
-    """Return points as exact integers: times the least common multiple of their denominators.
+    """Return points as exact integers, multiplied by the least common multiple of denominators.
 
     That does not change any orientation, circle or sphere test, and integers are several times
     faster than fractions.

@@ -51,8 +51,8 @@ def lawson(
     A flip replaces the diagonal uv of the quadrilateral u, q, v, p by pq. It is made only if q is
     inside the circle of u, v, p, and then the quadrilateral is strictly convex: the part of the
     circle beyond uv lies within the angle at p. Each flip lowers the surface of the lifted (and
-    symbolically perturbed) triangles, so no triangulation repeats and the loop ends, after O(n²)
-    flips. Lawson (1977).
+    symbolically perturbed) triangles, so no triangulation repeats and the loop terminates after
+    O(n²) flips. Lawson (1977).
 
     Examples
     --------
@@ -115,7 +115,7 @@ def triangles_of(apex: dict[Edge, int]) -> list[Triangle]:
 def apexes(points: Sequence[ExactPoint], triangles: Iterable[Sequence[int]]) -> dict[Edge, int]:
     """Map each directed edge to the third vertex of the triangle on its left.
 
-    These are three entries per triangle, and flips need no other topology.
+    There are three entries per triangle, and flips need no other topology.
     """
     apex: dict[Edge, int] = {}
     for triangle in triangles:

@@ -1,6 +1,6 @@
 """Bowyer-Watson: insert points one by one, each into the cavity that it sees.
 
-There is no super-triangle. A triangle that is merely large is wrong for some input, so the outside
+There is no super-triangle. A triangle of any finite size is wrong for some input, so the outside
 of the hull is covered by *ghost* triangles instead: one for each hull edge, with a third vertex at
 infinity. The "circle" of a ghost is the open half-plane beyond its edge, and the loop below treats
 both kinds of triangle alike.
@@ -40,7 +40,7 @@ def bowyer_watson(points: Sequence[Sequence[Any]]) -> list[Any]:
     -------
     list of tuple of int
         Triangles as counter-clockwise triples of row numbers, each starting with its smallest, in
-        ascending order. In 3-D positively oriented tetrahedra, with ascending row numbers except
+        ascending order. In 3-D, positively oriented tetrahedra, with ascending row numbers except
         that the last two are exchanged if the orientation requires it. Of equal points only the
         first appears.
 

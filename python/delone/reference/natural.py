@@ -1,11 +1,12 @@
 """Natural neighbor weights from their definition: Voronoi cells, clipped in exact arithmetic.
 
 The cell that a query would have in the Voronoi diagram is clipped from a square by half-planes, one
-for each site; the area that a site loses to it is clipped from the cell by the half-planes of that
+for each site; the area that a site loses to it is clipped from that cell by the half-planes of the
 site. The fraction of the area lost is Sibson's weight (R. Sibson, "A vector identity for the
-Dirichlet tessellation", 1980). The length of the edge between query and site over their distance is
-Laplace's (N. H. Christ, R. Friedberg and T. D. Lee, "Weights of links and plaquettes in a random
-lattice", 1982). Both are rational. Time is O(n²) for each query. For 3-D see `natural_space`.
+Dirichlet tessellation", 1980). The length of the edge between query and site, divided by their
+distance, is Laplace's (N. H. Christ, R. Friedberg and T. D. Lee, "Weights of links and plaquettes
+in a random lattice", 1982). Both are rational. Time is O(n²) for each query. For 3-D see
+`natural_space`.
 """
 
 from __future__ import annotations

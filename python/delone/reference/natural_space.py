@@ -1,7 +1,7 @@
 """Laplace weights in 3-D from their definition: faces of a Voronoi cell, in exact arithmetic.
 
-The face between the cells of a query and a site is clipped from a rectangle in the plane half-way
-between them, by one half-space for each other site. Its area over the distance of the two is the
+The face between the cells of a query and a site is clipped from a rectangle in the plane halfway
+between them, by one half-space for each other site. Its area divided by their distance is the
 weight (N. H. Christ, R. Friedberg and T. D. Lee, "Weights of links and plaquettes in a random
 lattice", 1982). An area in an inclined plane is not rational, but if the rectangle has the sides u
 and v x u, the area divided by |v| is. Time is at most O(n³) for each query.

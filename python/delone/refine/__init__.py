@@ -1,7 +1,7 @@
-"""Quality mesh generation: domains filled with triangles of bounded angles and sizes.
+"""Quality mesh generation: domains filled with triangles with bounded angles and sizes.
 
-`refine` has the function `mesh`, `meshed` the class Mesh, `domains` the input of the core, `sizing`
-size functions, `adaptivity` and `smoothing` change meshes, `report` describes the result.
+`refine` contains the function `mesh`, `meshed` the class Mesh, `domains` the input of the core,
+`sizing` size functions, `adaptivity` and `smoothing` change meshes, `report` describes the result.
 """
 
 from delone.refine.meshed import Mesh

@@ -2,7 +2,7 @@
 
 To refine, the core gets a maximum area for each marked triangle. To coarsen, points that were added
 inside are removed: points of marked triangles, no two of them neighbors. Points whose removal would
-leave an angle below the bound are inserted again.
+leave an angle below the bound are reinserted.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 A `Domain` is both the input and the output of the core, so refinement can be repeated. A line is
 the part of an input segment between two consecutive input vertices; the subsegments into which it
-is split refer to it by its row. A mesh is converted back to a domain by triangulating it again: the
+is split refer to it by its row. A mesh is converted back to a domain by retriangulation: the
 triangles to the left of a subsegment keep their region.
 """
 
@@ -118,8 +118,9 @@ def of_constrained(
 ) -> Domain:
     """Return the domain of a constrained triangulation: the triangles that it keeps.
 
-    `region` is of these triangles, markers and `frozen` (not to be split) of its input segments and
-    points. Hull edges that bound the domain without a segment become lines without a source.
+    `region` belongs to these triangles, markers and `frozen` (not to be split) to its input
+    segments and points. Hull edges that bound the domain without a segment become lines without a
+    source.
     """
     made, points = base._made, base.points
     simplices = made.simplices
@@ -138,7 +139,7 @@ def of_constrained(
     fixed = np.zeros(len(ends), dtype=bool)
     fixed[owner[frozen[rows]]] = True
     markers = np.zeros(len(ends), dtype=np.int32)
-    # The marker is that of the first row that has one: the last value assigned remains.
+    # The marker is that of the first row that has one: the last assigned value remains.
     marked = np.flatnonzero(segment_markers[rows])[::-1]
     markers[owner[marked]] = segment_markers[rows[marked]]
     geometries = np.full(len(ends), -1, dtype=np.int32)
@@ -210,7 +211,7 @@ def started(
 
 
 def extended(domain: Domain, made: _core.RefinedMesh) -> tuple[Domain, Counts]:
-    """Return the domain that the core made of another one, and the numbers of added points."""
+    """Return the domain that the core made from another one, and the numbers of added points."""
     lines = domain.lines
     added, on = made.added, made.on
     markers = np.where(on >= 0, lines.markers[on] if len(lines.markers) else 0, 0)
@@ -291,8 +292,7 @@ def triangulated(
     label is -1 in components without such an edge.
     """
     count = as_workers(workers)
-    # In this unit, triangles have the same order, in which sums are taken, as with usual
-    # magnitudes.
+    # In this unit, triangles, and therefore sums, have the same order as with usual magnitudes.
     points = points / unit_of(points)
     made, _ = _core.constrained2(points, segments, False, False, 0, "auto", count)
     walls = made.simplices, made.neighbors, made.constrained
@@ -302,7 +302,7 @@ def triangulated(
 def labels_beside(
     walls: tuple[Indices, Indices, Bools], edges: Indices, labels: Indices, npoints: int
 ) -> Indices:
-    """Return labels of triangles from labels of directed edges, to whose left they are.
+    """Return labels of triangles from labels of directed edges; each is to the left of its edge.
 
     `walls` are triangles, their neighbors, and which of their sides separate components. The label
     is -1 in components without one of `edges`, (e, 2).

@@ -104,7 +104,7 @@ class Mesh(MeshState):
         Notes
         -----
         Points, segments, markers and regions are inherited; the report counts all added points.
-        Triangles near marked ones change as far as the bound on angles requires.
+        Triangles near marked ones change if the bound on angles requires it.
 
         Examples
         --------
@@ -169,9 +169,9 @@ class Mesh(MeshState):
         max_iter : int, optional
             Number of iterations.
         method : {"lloyd", "odt", "laplace"}, optional
-            The target of each point: the centroid of its Voronoi cell, as far as the point's
-            triangles cover it; the mean of the circumcenters of its triangles, weighted by area, as
-            in an optimal Delaunay triangulation (ODT); or the mean of its neighbors.
+            The target of each point: the centroid of the part of its Voronoi cell that its
+            triangles cover; the mean of the circumcenters of its triangles, weighted by area, as in
+            an optimal Delaunay triangulation (ODT); or the mean of its neighbors.
 
         Returns
         -------
@@ -186,9 +186,9 @@ class Mesh(MeshState):
 
         Notes
         -----
-        All points move at once, and edges are flipped until the mesh is Delaunay again. Where a
-        triangle would be inverted, or an angle would fall below the bound, points move only part of
-        the way. Bounds on areas are not enforced.
+        All points move simultaneously, and edges are flipped until the mesh is Delaunay again.
+        Where a triangle would be inverted, or an angle would fall below the bound, points move only
+        part of the way. Bounds on areas are not enforced.
 
         Examples
         --------

@@ -87,8 +87,8 @@ def mesh(
         Segments are edges of the mesh or chains of edges. This is always the case; the only valid
         value is True.
     delaunay : bool, optional
-        Make every triangle Delaunay, also across segments, at the cost of more points: the
-        diametral circles of subsegments are emptied, not only lenses in them.
+        Make every triangle Delaunay, even across segments, at the cost of more points: the
+        diametral circles of subsegments are emptied, not only the lenses inside them.
     smooth : int, optional
         Number of iterations of ``Mesh.smooth`` at the end.
     holes, regions : array_like, optional
@@ -106,7 +106,7 @@ def mesh(
         Whether crossing segments are split or raise an error: by default geometries are split, and
         arrays raise an error.
     progress : callable, optional
-        Called from time to time with the number of added points and the smallest angle in degrees.
+        Called regularly with the number of added points and the smallest angle in degrees.
     workers : int, optional
         Number of threads; by default one per core. The result does not depend on it.
     planar : bool, optional
@@ -139,17 +139,17 @@ def mesh(
     -----
     Delaunay refinement (J. Ruppert 1995) with the diametral lenses of L. P. Chew (1993),
     off-centers (A. Üngör 2004), splits at powers of two around sharp corners, and the rule of
-    Miller, Pav and Walkington (2005) for triangles there. It terminates in practice for angles up
-    to 33 degrees (close relatives provably up to 20.7 and 26.6 degrees, see the mathematics page),
-    unless `max_points` stops it earlier. A needle between lines, such as a triangle of height h
-    over a side of length 1, takes about 0.5 / h points at 25 degrees and 0.1 / h at 5, unless its
-    sides happen to be split in the same way, as sides of equal length are: then one point may be
-    enough. Needles are refined last. Refinement takes about a microsecond per triangle, and memory
-    is linear.
+    Miller, Pav and Walkington (2005) for the triangles there. It terminates in practice for angles
+    up to 33 degrees (close relatives provably up to 20.7 and 26.6 degrees, see the mathematics
+    page), unless `max_points` stops it earlier. A needle between lines, such as a triangle of
+    height h over a side of length 1, takes about 0.5 / h points at 25 degrees and 0.1 / h at 5,
+    unless its sides happen to be split in the same way, like sides of equal length: then one point
+    may be enough. Needles are refined last. Refinement takes about a microsecond per triangle, and
+    memory is linear.
 
-    Next to fixed segments no bound holds, and with sizes, angles there may become far smaller than
-    those of the input: points are added as close to the segment as the size requires, but the
-    segment must not be split. Sizes equal to the lengths of the fixed segments avoid this.
+    Next to fixed segments, no bound holds, and if sizes are given, angles there may become far
+    smaller than those of the input: points are added as close to the segment as the size requires,
+    but the segment must not be split. Sizes equal to the lengths of the fixed segments avoid this.
 
     Points on segments are rounded to doubles, so a segment may bend there by the rounding error.
 
@@ -301,7 +301,7 @@ def _base(
         raise DtypeError(f"domain must be {_DOMAINS}, got None")
     else:
         _refuse_points(domain)
-        # A ring of coordinates that crosses itself is rather a set of points.
+        # A ring of coordinates that crosses itself is more likely a set of points.
         is_ring = geodata.rings_of_numbers(domain, "domain") is not None
         how = crossing or ("raise" if is_ring else "split")
         base = inside_of(domain, crossing=how, workers=workers, planar=planar)

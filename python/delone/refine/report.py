@@ -3,8 +3,8 @@
 Small angles remain where two input lines meet at a small angle: between the lines, and next to the
 circles around the corner on which both are split (triangles that the rule of Miller, Pav and
 Walkington leaves unrefined). Needles between lines that would take more points than the budget
-allows are also left as they are. Lines that must not be split and a limit on points leave other
-small angles.
+allows are also left unrefined. Lines that must not be split and a limit on points leave other small
+angles.
 
 G. L. Miller, S. E. Pav and N. J. Walkington (2005), "When and why Delaunay refinement algorithms
 work", International Journal of Computational Geometry & Applications 15.
@@ -62,9 +62,9 @@ class MeshReport(ReadOnly):
         (a segment that must not be split), ``"budget"`` (the limit on points) or ``"other"`` (lines
         that are too close to each other for doubles, or points that were removed or moved later).
     needles : ndarray of float64, shape (q, 2)
-        A position in each needle that was left as it is, ascending. In a needle, lines are so close
-        to each other, over such a length, that good angles would take more than the share of
-        `max_points` for needles.
+        A position in each needle that was left unrefined, ascending. In a needle, lines are so
+        close to each other, over such a length, that good angles would take more than the fraction
+        of `max_points` for needles.
     on_segments, for_angles, for_sizes : int
         Numbers of points that were added on segments, inside for angles, and inside for sizes.
     exhausted : bool
@@ -174,7 +174,7 @@ def reported(
         cause[inside], corner[inside] = _NEEDLE, -1
         near = np.zeros(len(points), dtype=bool)
         near[simplices[needle >= 0]] = True
-        # From one bad triangle to the next; few are outside needles.
+        # From one bad triangle to the next; few of them are outside needles.
         while (more := (cause >= _FIXED) & near[simplices[rows]].any(axis=1)).any():
             cause[more] = _NEEDLE
             near[simplices[rows[more]]] = True
@@ -200,7 +200,7 @@ def judged(
     """Return the triangles below a bound, ascending, and the extreme angles; 180 and 0 if none.
 
     Linear. Angles are computed only for the few triangles that may have the extreme ones; `quality`
-    compares triangles whose squares are beyond the range of doubles.
+    handles triangles whose squares are beyond the range of doubles.
     """
     cosine = quality.squared_cosine(min_angle)
     judged = _core.judge2(points, simplices, cosine)

@@ -50,7 +50,7 @@ def rounds(domain: Domain, sizes: tuple[Any, Any], limits: Limits) -> tuple[Doma
     """Refine a domain until no triangle is too large; `sizes` are `max_area`, `size` of `mesh`."""
     unit = domains.unit_of(domain.points)
     if unit != 1:
-        # Compare areas in a unit in which they are doubles, whatever the lengths.
+        # Compare areas in a unit in which they are in the range of doubles, whatever the lengths.
         scaled = domain._replace(points=domain.points / unit)
         found, counts = _rounds(scaled, Sizing(*sizes, domain.regions, unit), limits)
         points = found.points * unit

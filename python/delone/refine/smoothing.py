@@ -1,8 +1,8 @@
-"""Smoothing: free points of a mesh move by Lloyd's method, its Delaunay dual, or to the mean.
+"""Smoothing: free points of a mesh move by Lloyd's method, by its Delaunay dual, or to the mean.
 
 The core moves them and flips edges, so the mesh stays constrained Delaunay; see `refine/smooth`
 there. `rebuilt` and `worse` serve changes that remove or add points: the remaining ones are
-triangulated again, and the triangles that became worse are found.
+retriangulated, and the triangles that became worse are found.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ def smoothed(mesh: M, max_iter: int, method: str) -> M:
     """Return a mesh whose free points have moved; see ``Mesh.smooth``."""
     as_choice(method, METHODS, name="method")
     rounds = as_limit(max_iter, name="max_iter")
-    # In this unit, areas and squared lengths are doubles. Where it rounds new places among
-    # subnormal doubles, the mesh is smoothed as it is.
+    # In this unit, areas and squared lengths are in the range of doubles. If the conversion would
+    # round new positions to subnormal doubles, the mesh is smoothed in its own unit.
     unit = domains.unit_of(mesh.points)
     made = _smoothed(mesh, mesh.points / unit, rounds, method)
     points = made.points * unit
@@ -71,8 +71,8 @@ def rebuilt(
 ) -> tuple[Domain | None, NDArray[np.intp]]:
     """Triangulate new positions of the points of a mesh, with its subsegments and regions.
 
-    `row` has the row of each old point in `points`, -1 if removed; ends of subsegments stay. If
-    points coincide, lie on a subsegment or left their region, None and their rows are returned.
+    `row` contains the row of each old point in `points`, -1 if removed; ends of subsegments remain.
+    If points coincide, lie on a subsegment or leave their region, None and their rows are returned.
     """
     edges, label = mesh._directed
     segments = row[mesh.segments]
@@ -116,7 +116,7 @@ def _astray(
 def worse(mesh: MeshState, domain: Domain, number: NDArray[np.intp]) -> NDArray[np.intp]:
     """Return the vertices, in a domain, of triangles below the bound that the mesh did not have.
 
-    `number` has the point of the mesh for each point of the domain, -1 for new points.
+    `number` contains the point of the mesh for each point of the domain, -1 for new points.
     """
     inside = domain.simplices[domain.labels >= 0]
     rows = quality.below(domain.points, inside, float(mesh._bound[0]))

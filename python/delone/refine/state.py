@@ -1,6 +1,6 @@
 """The arrays of a mesh: triangles of a domain, and the lines under their segments.
 
-A mesh holds only its own triangles. To change it, the whole convex hull is triangulated again as a
+A mesh contains only its own triangles. To change it, the whole convex hull is retriangulated as a
 `Domain`, which includes the triangles outside, and the core refines that.
 """
 
@@ -168,8 +168,8 @@ class MeshState(HullTiling):
     def region(self) -> Indices:
         """The region of each triangle, (m,).
 
-        With region seeds their label, -1 without one; with geometries the number of the geometry;
-        otherwise as in `ConstrainedDelaunay.region`.
+        With region seeds, their label, or -1 without one; with geometries, the number of the
+        geometry; otherwise, as in `ConstrainedDelaunay.region`.
         """
         return self._region
 
@@ -180,7 +180,7 @@ class MeshState(HullTiling):
 
     @property
     def point_markers(self) -> Indices:
-        """The marker of each point, (n,): its own, or that of a segment that it lies on; else 0."""
+        """The marker of each point, (n,): its own, or that of a segment that it lies on, or 0."""
         return self._point_markers
 
     @property
@@ -251,8 +251,8 @@ class MeshState(HullTiling):
     def geometry_of_segment(self) -> Indices:
         """The geometry that each of `segments` came from, (q,); -1 for arrays.
 
-        For a segment that several geometries share, the first one. `segment_markers` distinguishes
-        the rings of one geometry.
+        For a segment that several geometries share, it is the first one. `segment_markers`
+        distinguishes the rings of one geometry.
         """
         return sealed(self._line_geometries[self._segment_line])
 

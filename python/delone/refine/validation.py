@@ -1,4 +1,4 @@
-"""Validation of meshes: triangles that fit each other and are Delaunay except across segments."""
+"""Validation of meshes: triangles that fit together and are Delaunay except across segments."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ __all__ = ["MeshValidation", "validate"]
 class MeshValidation(ValidationReport):
     """The result of ``Mesh.validate()``: truthy if the mesh is correct.
 
-    The fields are those of `ValidationReport`, but `hull` has the boundary edges that are not part
-    of a segment, `delaunay` and `ties` leave out pairs of triangles with a segment between them,
-    and `count` is always empty.
+    The fields are those of `ValidationReport`, but `hull` contains the boundary edges that are not
+    part of a segment, `delaunay` and `ties` leave out pairs of triangles with a segment between
+    them, and `count` is always empty.
 
     Examples
     --------

@@ -2,7 +2,7 @@
 
 Reduced grids are stored this way in files with CF conventions. Cells between the same parallels
 become one row for the core, from west to east. A cell that overlaps another one in its row becomes
-a row of its own.
+a separate row.
 """
 
 from __future__ import annotations

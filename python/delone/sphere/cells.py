@@ -29,7 +29,7 @@ class Cells:
     cell: Indices
     starts: Indices
     entries: Indices
-    # The edges that ridges cross, with the corners beside them, (r, 4); for lunes, measures.
+    # The edges that ridges cross, with the corners next to them, (r, 4); for lunes, measures.
     around: Indices | None
     measures: tuple[Floats, Floats] | None
     simplex_vertex: Indices

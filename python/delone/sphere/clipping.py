@@ -243,7 +243,7 @@ def _without_slivers(mesh: ConstrainedDelaunay, component: Indices, cell: Indice
     of_thin = np.flatnonzero(thin[here])
     of_thin = of_thin[np.argsort(-length[of_thin], kind="stable")]
     found, open_ = cell.copy(), thin.copy()
-    # Each round settles the parts next to settled ones; enclosed parts stay as they are.
+    # Each round settles the parts next to settled ones; enclosed parts remain unchanged.
     for _ in range(count):
         beside = of_thin[
             open_[here[of_thin]] & ~open_[there[of_thin]] & (found[there[of_thin]] >= 0)

@@ -1,7 +1,7 @@
 """Which polygon contains each region of the sphere.
 
 Crossing an odd number of a polygon's rings switches between its inside and its outside, as in the
-plane. But a sphere has no region that is outside of everything: the direction of the outer rings,
+plane. But a sphere has no region that is outside everything: the direction of the outer rings,
 or the smaller area, determines which of the two sides is inside.
 """
 

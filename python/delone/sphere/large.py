@@ -212,7 +212,7 @@ def _replaced(arrays: Arrays, given: dict[int, Floats]) -> Arrays:
         return arrays
     places, sizes, counts, hollow = [], [], [], []
     last = 0
-    # The cells between those that are replaced stay as they are.
+    # The cells between those that are replaced remain unchanged.
     for row in [*given, len(cells) - 1]:
         a, b = int(cells[last]), int(cells[row])
         places.append(vectors[rings[a] : rings[b]])

@@ -48,7 +48,7 @@ class Overlaps(SharedAreas[Weights], Stored):
     DtypeError
         An argument is not a `Grid`.
     MemoryError
-        The system refuses the memory of the result.
+        There is not enough memory for the result.
 
     Notes
     -----

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def assert_vertices(mesh: Mesh | SpaceMesh, simplices: Indices, noun: str = "triangle") -> None:
-    """Assert that the vertices are all distinct points, and of equal points only the first."""
+    """Assert that the vertices are all distinct points, and only the first of equal points."""
     used = np.zeros(len(mesh.points), dtype=bool)
     used[simplices] = True
     is_first = mesh.first == np.arange(len(mesh.points))
@@ -102,7 +102,7 @@ def assert_neighbors(mesh: Mesh, neighbors: ArrayLike) -> None:
     array = np.asarray(neighbors)
     if array.size == 0:
         array = array.astype(np.int64).reshape(-1, 3)
-    require(array.dtype.kind in "iu", f"neighbors must hold integers, got dtype {array.dtype}")
+    require(array.dtype.kind in "iu", f"neighbors must contain integers, got dtype {array.dtype}")
     require(
         array.shape == mesh.triangles.shape,
         f"neighbors must have shape {mesh.triangles.shape}, got {array.shape}",

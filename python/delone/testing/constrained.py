@@ -182,7 +182,7 @@ def assert_constrained_delaunay(
         By default four times the distance from the largest absolute coordinate to the next double.
     canonical : bool, optional
         Whether cocircular vertices must be fanned from their lexicographically smallest one, as far
-        as segments let them. False accepts every constrained Delaunay triangulation.
+        as segments permit. False accepts every constrained Delaunay triangulation.
 
     Raises
     ------
@@ -261,7 +261,7 @@ def _flags(mesh: ConstrainedMesh, exact: Mesh) -> Bools:
     flags = np.asarray(mesh.constrained)
     if flags.size == 0:
         flags = flags.astype(bool).reshape(-1, 3)
-    require(flags.dtype == bool, f"constrained must hold bools, got dtype {flags.dtype}")
+    require(flags.dtype == bool, f"constrained must contain booleans, got dtype {flags.dtype}")
     shape = exact.triangles.shape
     require(flags.shape == shape, f"constrained must have shape {shape}, got {flags.shape}")
     return flags

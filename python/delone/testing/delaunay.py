@@ -59,7 +59,7 @@ def assert_delaunay(
     In 3-D: tetrahedra are positively oriented, and each face is used once from either side; the
     boundary is one closed surface, convex at each edge; Euler's formula and the volume hold; each
     inner face is locally Delaunay, and canonical if five points share a sphere; for up to 64
-    points, also no sphere contains a point.
+    points, it is also checked that no sphere contains a point.
 
     O(n log n) exact operations; 10,000 points take well under a second. The local test is
     sufficient by a theorem of B. Delaunay (1934), "Sur la sphère vide".

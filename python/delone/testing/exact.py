@@ -41,7 +41,7 @@ class Mesh(NamedTuple):
         return cls(points, triangles, x, y, *ranked(points), exponent)
 
     def mirrored(self) -> Indices:
-        """The place of each row in the order by ascending x, then descending y."""
+        """The position of each row in the order by ascending x, then descending y."""
         place = np.empty(len(self.points), dtype=np.int64)
         flat = self.points + 0.0
         place[np.lexsort((-flat[:, 1], flat[:, 0]))] = np.arange(len(place))
@@ -97,7 +97,7 @@ def ranked(points: NDArray[np.float64]) -> tuple[Indices, Indices, Indices]:
 
 
 def integers_of(points: NDArray[np.float64]) -> tuple[Integers, int]:
-    """Coordinates, (n, d), times the power of two that makes the finest of them an integer."""
+    """Coordinates, (n, d), multiplied by the power of two that makes all of them integers."""
     fraction, exponent = np.frexp(points)
     mantissa = np.ldexp(fraction, 53).astype(np.int64)
     exponent = exponent.astype(np.int64) - 53

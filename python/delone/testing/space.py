@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
     from delone.testing.exact import Indices
 
-# The face opposite each corner, with the corner on its inner side: counter-clockwise from outside.
+# The face opposite each corner, with the corner on its inner side: counter-clockwise as seen from
+# outside.
 _FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]
 # Up to this number of points, every tetrahedron is tested against every point.
 _FEW = 64
@@ -38,7 +39,7 @@ def insphere(mesh: SpaceMesh, corners: Indices, e: Any) -> Any:
 
 
 def insphere_of_tie(mesh: SpaceMesh, corners: Indices, e: int) -> int:
-    """The sign for five cospherical points, determined by the smallest point that matters."""
+    """The sign for five cospherical points, determined by the smallest relevant point."""
     five = [*corners.tolist(), e]
     for k in np.argsort(mesh.rank[five]).tolist():
         if k == 4:

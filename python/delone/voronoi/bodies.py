@@ -20,7 +20,7 @@ class Body(NamedTuple):
     """One cell: its corners, its faces as rows of them, and the ridge of each face.
 
     Faces are counter-clockwise as seen from outside; the ridge of a face of the clip is negative.
-    An unbounded cell has its vertices for corners, and no faces.
+    The corners of an unbounded cell are its vertices; it has no faces.
     """
 
     vertices: Floats
@@ -93,7 +93,7 @@ class Bodies:
 
 
 def _cut(cells: ClippedCells3, number: int) -> Body:
-    """Return one of the cells that the clip has cut."""
+    """Return one of the cells cut by the clip."""
     begin, end = cells.point_starts[number : number + 2]
     first, last = cells.face_starts[number : number + 2]
     bounds = cells.corner_starts[first : last + 1]

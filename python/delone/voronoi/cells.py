@@ -1,6 +1,6 @@
 """What the cells of both dimensions have in common: the sites, the whole diagram and the clip.
 
-`delone.Voronoi` holds the cells of one dimension, `plane` or `space`, which have the same methods.
+`delone.Voronoi` stores the cells of one dimension, `plane` or `space`, which have the same methods.
 """
 
 from __future__ import annotations
@@ -58,8 +58,8 @@ class Cells:
     def _lost(self, empty: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Return which empty cells rounding has emptied: those whose site is inside the clip.
 
-        A cell without weights contains its site and a neighborhood of it. With weights it is
-        unknown.
+        A cell without weights contains its site and a neighborhood of it. With weights, this is not
+        known.
         """
         found = np.zeros(len(empty), dtype=bool)
         rows = np.flatnonzero(empty)

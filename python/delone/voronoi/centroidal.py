@@ -50,8 +50,9 @@ _SHARES = np.array([9 / 40] + [(155 - _ROOT) / 1200] * 3 + [(155 + _ROOT) / 1200
 
 
 _METHODS = ("lloyd", "l-bfgs")
-# Steps that L-BFGS remembers, as Liu et al. do; shorter and shorter tries before it gives one up;
-# the share of the slope by which energy has to fall; what rounding may take from that, of energy.
+# Steps that L-BFGS remembers, as in Liu et al.; successively shorter attempts before a direction is
+# abandoned; the fraction of the slope by which the energy must decrease; the relative rounding
+# error allowed for the energy.
 _MEMORY, _TRIES, _FALL, _ROUNDING = 7, 4, 1e-4, 1e-14
 
 
@@ -71,16 +72,16 @@ class LloydResult(ReadOnly):
         Whether no site was farther than `tol` from the centroid of its cell before the last step;
         False without `tol`.
     displacements : ndarray of float64, shape (iterations,)
-        The greatest distance of a site from the centroid of its cell, before each step. With
-        Lloyd's method this is the greatest step.
+        The largest distance of a site from the centroid of its cell, before each step. With Lloyd's
+        method, this is the largest step.
     energies : ndarray of float64, shape (iterations + 1,)
         The integral of density times squared distance to the nearest site, before the first step
         and after each.
     empty : ndarray of int64, shape (k,)
-        Sites that have no cell within the clip, so that they did not move in the last step.
+        Sites without a cell within the clip, which therefore did not move in the last step.
     evaluations : int
-        Number of diagrams that were computed: one more than steps, and those of the steps that
-        L-BFGS rejected.
+        Number of diagrams that were computed: one more than the number of steps, plus those of the
+        steps that L-BFGS rejected.
 
     Examples
     --------
@@ -132,7 +133,7 @@ def lloyd(
         How to compute steps: move each site to its centroid, or use a quasi-Newton method, which
         needs fewer steps to converge.
     progress : callable, optional
-        Called after each step with its number (from 1), the greatest distance of a site from the
+        Called after each step with its number (from 1), the largest distance of a site from the
         centroid of its cell before it, and the energy.
     workers : int, optional
         Maximum number of threads; by default one per core.
@@ -216,7 +217,7 @@ def _iterated(
     quasi_newton: bool,
     progress: Callable[[int, float, float], object] | None,
 ) -> LloydResult:
-    """Move the sites of a diagram until they converge, or the steps are used up."""
+    """Move the sites of a diagram until they converge or reach the maximum number of steps."""
     workers = diagram._workers
     at = _state(diagram, density)
     displacements: list[float] = []
@@ -283,7 +284,7 @@ class _State(NamedTuple):
 
     @property
     def gradient(self) -> Floats:
-        """The derivative of the energy by each coordinate."""
+        """The derivative of the energy with respect to each coordinate."""
         slopes: Floats = 2 * self.masses[:, None] * (self.sites - self.centers)
         return slopes
 
@@ -299,14 +300,14 @@ class _Memory:
         self._steps.clear()
 
     def learn(self, before: _State, after: _State) -> None:
-        """Add a step along which the energy is convex; others would spoil the estimate."""
+        """Add a step along which the energy is convex; others would corrupt the estimate."""
         step, change = after.sites - before.sites, after.gradient - before.gradient
         product = float((step * change).sum())
         if product > 0:
             self._steps.append((step, change, product))
 
     def direction(self, at: _State) -> Floats:
-        """Return the step to where the gradient should vanish: at first that of Lloyd's method."""
+        """Return the step to where the gradient should vanish: initially that of Lloyd's method."""
         with np.errstate(divide="ignore"):
             inverse = np.where(at.masses > 0, 0.5 / at.masses, 0.0)[:, None]
         rest = at.gradient
@@ -329,7 +330,7 @@ class _Memory:
 def _descent(
     at: _State, memory: _Memory, density: Density | None, workers: int | None
 ) -> tuple[_State | None, int]:
-    """Return a step of L-BFGS that decreases the energy and keeps all cells, and the tries."""
+    """Return an L-BFGS step that lowers the energy and keeps all cells, and the tries."""
     step = memory.direction(at)
     slope = float((at.gradient * step).sum())
     filled = int((at.masses > 0).sum())

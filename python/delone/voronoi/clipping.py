@@ -3,7 +3,7 @@
 A cell is convex, and most cells of a clipped diagram lie entirely inside or outside. The core cuts
 all cells to a box slightly larger than the outline, finds the cells near the outline, and joins the
 others into groups on one side of it; one point of each group decides which side. Only the cells
-near the outline are cut to it: by the core if exact signs leave no doubt (`pieces`), by shapely if
+near the outline are cut to it: by the core if exact signs decide (`pieces`), by shapely if
 corners and edges of both coincide (`overlay`).
 """
 
@@ -35,8 +35,8 @@ _OUTSIDE, _INSIDE, _CUT = 0, 1, 2
 class Clipped:
     """The clipped cells, convex polygons in the order of the cells, and their measures.
 
-    `ridges` has the ridge along which each edge lies. `areas` and `perimeters`, (c,), are infinite
-    for unbounded cells; `centroids`, (c, 2), are NaN for unbounded and empty ones.
+    `ridges` contains the ridge along which each edge lies. `areas` and `perimeters`, (c,), are
+    infinite for unbounded cells; `centroids`, (c, 2), are NaN for unbounded and empty ones.
     """
 
     def __init__(
@@ -123,7 +123,7 @@ class _Bounded(Clipped):
 
 
 class _InOutline(Clipped):
-    """Cells cut to an outline: by the core if exact signs leave no doubt, otherwise by shapely."""
+    """Cells cut to an outline: by the core if exact signs decide, otherwise by shapely."""
 
     def __init__(self, whole: Clipped, clip: Clip, workers: int) -> None:
         super().__init__(whole.starts, whole.corners, whole.ridges, whole.ridge_count, workers)
@@ -172,7 +172,7 @@ class _InOutline(Clipped):
             rows, traced = self._pieces.polygons()
             wrong = np.flatnonzero(~shapely_or_say().is_valid(traced))
             if len(wrong):
-                # Rings that touch themselves, or do so because of rounding.
+                # Rings that touch themselves, possibly because of rounding.
                 traced[wrong] = self._overlay(rows[wrong], self._pieces.corners)
             rows = np.concatenate((rows, self._doubtful))
             order = np.argsort(rows)
@@ -191,7 +191,7 @@ class _InOutline(Clipped):
         lengths[self.ridges[inside]] = self._edge_lengths()[inside]
         ridges, traced = self._pieces.ridge_lengths(self.ridge_count)
         lengths[ridges] = traced / self._scale
-        # A ridge between two doubtful cells occurs twice, with the same result.
+        # A ridge between two undecided cells occurs twice, with the same result.
         doubtful = np.zeros(len(self._side), dtype=bool)
         doubtful[self._doubtful] = True
         known = np.zeros(self.ridge_count, dtype=bool)
@@ -306,7 +306,7 @@ def _in_strip(
 ) -> Clipped:
     """Return cells with one period, each around its site, cut in the other direction."""
     at, at_weights, cells_alone = torus.unrolled(points, weights, dual, periods)
-    # Wider than any cell: none extends further than its neighbors.
+    # Wider than any cell: none extends farther than its neighbors.
     reach = np.concatenate((at, dual.cells.vertices))
     low, high = reach.min(axis=0), reach.max(axis=0)
     with np.errstate(over="ignore"):
@@ -315,7 +315,7 @@ def _in_strip(
     largest = float(np.finfo(np.float64).max)
     left, bottom, right, top = np.clip(bounds, -largest, largest).tolist()
     cut = _core.voronoi_clip2(at, at_weights, cells_alone, (left, bottom, right, top), workers)
-    # The ridges of the cells alone are their entries.
+    # The entries are the ridges of the cells.
     entries, of_entries = cut.ridges, np.append(dual.cells.region_ridges, -1)
     ridges = np.where(entries < 0, -1, of_entries[entries]).astype(np.int32)
     return Clipped(cut.starts, cut.corners, ridges, len(dual.cells.sites), workers)

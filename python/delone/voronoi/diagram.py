@@ -1,7 +1,7 @@
 """The class Voronoi: diagrams in 2 to 8 dimensions as immutable arrays.
 
-A diagram holds the cells of its dimension, `plane`, `space` or `higher`, which have the arrays of
-the core and the same methods. What follows from them is computed on first use and kept.
+A diagram stores the cells of its dimension, `plane`, `space` or `higher`, which contain the arrays
+of the core and have the same methods. What follows from them is computed on first use and kept.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ _WITHOUT = "cells with more coordinates have vertices and ridges, without measur
 
 
 class Voronoi(Stored, Drawn):
-    """The Voronoi diagram of points with two to eight coordinates; in 2-D and 3-D also clipped.
+    """The Voronoi diagram of points with two to eight coordinates; can be clipped in 2-D and 3-D.
 
     Parameters
     ----------
@@ -115,10 +115,10 @@ class Voronoi(Stored, Drawn):
         of the plane, and its ``circumcenters`` are the vertices of the diagram in this plane. Or
         points with more coordinates lie in a flat, as for `Delaunay`.
     NonFiniteError
-        A coordinate or weight is NaN or infinite; ``error.rows`` has the rows.
+        A coordinate or weight is NaN or infinite; ``error.rows`` lists the rows.
     ShapeError, DtypeError
-        `points` is not a real array of shape (n, d) with d from 2 to 8, or there are not as many
-        weights.
+        `points` is not a real array of shape (n, d) with d from 2 to 8, or the number of weights is
+        different.
     InputError
         `clip` has no area or volume, is unbounded, is none of the above, or is invalid; the message
         says where. Or `periods` do not fit the points or the clip. Or there is one of these, or
@@ -137,7 +137,7 @@ class Voronoi(Stored, Drawn):
         The reference system of the points or of `clip` is known, and that of the other is not.
     ThinCellWarning
         When measures or polygons are computed: cells are only a few units in the last place wide,
-        so rounding makes their areas or volumes meaningless; ``warning.rows`` has their rows.
+        so rounding makes their areas or volumes meaningless; ``warning.rows`` contains their rows.
 
     Notes
     -----
@@ -161,9 +161,9 @@ class Voronoi(Stored, Drawn):
 
     With a `clip`, measures, centroids, neighbors and cells are those of the clipped cells; the
     attributes listed above remain those of the whole diagram. In a 2-D box the exact signed areas
-    of the rings of `cell` sum to that of the box without any rounding. `polygons` has these rings
-    where they are valid. Rounded corners make a ring invalid only if the cell is a few units in the
-    last place wide; it is then in `thin_cells`, unless its area is below the range of doubles.
+    of the rings of `cell` sum to that of the box without any rounding. `polygons` contains these
+    rings if they are valid. Rounded corners make a ring invalid only if the cell is a few units in
+    the last place wide; it is then in `thin_cells`, unless its area is below the range of doubles.
 
     In 3-D, cells whose vertices all lie inside the clip are not changed. Each of the other cells is
     the clip polyhedron, cut by the planes of the neighbors one after another. An area or volume
@@ -177,8 +177,8 @@ class Voronoi(Stored, Drawn):
     once. This takes O(k^2) expected time for k half-spaces, about half a second for 300.
 
     With more than three coordinates a diagram has vertices, ridges and cells, but no measures,
-    clip, rays or pictures. A ridge may have any number of vertices, also one and infinity. The
-    number of vertices grows as that of simplices: ask `delone.estimate` first.
+    clip, rays or pictures. A ridge may have any number of vertices, including one and infinity. The
+    number of vertices grows like that of simplices: call `delone.estimate` first.
 
     Without a clip, `plot` draws a 2-D diagram in the bounding box of the sites, enlarged by 10 %.
     In 3-D, it draws bounded and clipped cells, or the sites if there are none.
@@ -294,14 +294,14 @@ class Voronoi(Stored, Drawn):
     def clip(self) -> Any:
         """Where cells end; None without a clip.
 
-        In 2-D a box ``(xmin, ymin, xmax, ymax)`` or a geometry of shapely, in 3-D a
+        In 2-D, a box ``(xmin, ymin, xmax, ymax)`` or a shapely geometry; in 3-D, a
         `delone.voronoi.Polyhedron`.
         """
         return self._cells.public_clip
 
     @property
     def npoints(self) -> int:
-        """Number of points, duplicates included."""
+        """Number of points, including duplicates."""
         return len(self.points)
 
     @property
@@ -321,7 +321,7 @@ class Voronoi(Stored, Drawn):
 
     @property
     def triangulation(self) -> Delaunay | RegularTriangulation | PeriodicDelaunay | None:
-        """The triangulation whose dual this is; None if all sites lie on one line."""
+        """The triangulation that is dual to this diagram; None if all sites lie on one line."""
         return self._cells.mesh
 
     @property
@@ -355,8 +355,8 @@ class Voronoi(Stored, Drawn):
     def ridge_vertices(self) -> list[list[int]]:
         """The vertices of each ridge; -1, which comes first, if it is unbounded.
 
-        In 2-D two, in 3-D all around it, counter-clockwise as seen from its second site, in more
-        dimensions ascending.
+        In 2-D, there are two; in 3-D, they are in order around the ridge, counter-clockwise as seen
+        from its second site; in more dimensions, ascending.
         """
         return as_lists(*self.ridge_rows)
 
@@ -431,7 +431,7 @@ class Voronoi(Stored, Drawn):
     @property
     @kept
     def _left(self) -> Any:
-        """The clipped cells; without a clip the whole ones."""
+        """The clipped cells; without a clip, the whole cells."""
         found = self._measured.left
         thin.warn(self._rows_of(self._measured.thin()), self._measured.measure)
         return found
@@ -464,7 +464,7 @@ class Voronoi(Stored, Drawn):
         """Areas of the clipped cells, in 3-D of their surfaces, (n,), in the square of the unit.
 
         Infinite for an unbounded cell, 0 for an empty cell and for hidden sites. Rows with the same
-        coordinates share one cell, and each has its area.
+        coordinates share one cell, and each row gets its area.
         """
         return self._by_row(self._left.areas)
 
@@ -650,7 +650,7 @@ class Voronoi(Stored, Drawn):
 
     @only(2, "geopandas has no polyhedra")
     def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
-        """Convert the cells to a table of geopandas (extra ``geo``); 2-D only.
+        """Convert the cells to a geopandas table (extra ``geo``); 2-D only.
 
         Parameters
         ----------
@@ -714,7 +714,7 @@ class Voronoi(Stored, Drawn):
 
     @only(FLAT_OR_SOLID, "meshio has no cells of more dimensions; use `save`")
     def to_meshio(self) -> Any:
-        """Convert the bounded or clipped cells to a mesh of meshio (extra ``mesh``).
+        """Convert the bounded or clipped cells to a meshio mesh (extra ``mesh``).
 
         Returns
         -------
@@ -738,7 +738,7 @@ class Voronoi(Stored, Drawn):
 
     @property
     def _with_measures(self) -> PlaneCells | SpaceCells:
-        """The cells, after a warning of thin ones."""
+        """The cells, after a warning about thin ones."""
         _ = self._left
         return self._measured
 

@@ -33,7 +33,7 @@ _SMALLEST, _LARGEST = 2.0**-900, 2.0**900
 def of_chain(points: Floats, chain: Indices) -> Diagram2:
     """Return the diagram of distinct sites on one line, half-planes and strips, as from the core.
 
-    `chain` has the rows of the sites in their order along the line; it is not empty.
+    `chain` contains the rows of the sites in their order along the line; it is not empty.
     """
     k = len(chain)
     ridges = np.arange(k - 1, dtype=np.int32)
@@ -77,8 +77,8 @@ def _directions(a: Floats, b: Floats) -> Floats:
 def foot(a: Floats, b: Floats, weights: Floats | None = None) -> Floats:
     """Return where bisectors intersect the lines through their sites, (k, 2); `weights` is (k, 2).
 
-    If that is beyond the range of doubles: the point of the bisector nearest to the origin of the
-    plane, and infinity if that is beyond it, too. Sites differ in each row.
+    If that is beyond the range of doubles, return the point of the bisector nearest to the origin
+    of the plane, or infinity if that is also beyond the range. Sites differ in each row.
     """
     with np.errstate(all="ignore"):
         total = a + b
@@ -96,7 +96,7 @@ def foot(a: Floats, b: Floats, weights: Floats | None = None) -> Floats:
 
 
 def _exact_foot(a: list[float], b: list[float], u: float, v: float) -> list[float]:
-    """Return the same in fractions; beyond the range the point of the bisector nearest to 0."""
+    """Return the same in fractions; beyond the range, the point of the bisector nearest to 0."""
     p, q = [Fraction(x) for x in a], [Fraction(x) for x in b]
     d = [y - x for x, y in zip(p, q, strict=True)]
     square = d[0] * d[0] + d[1] * d[1]

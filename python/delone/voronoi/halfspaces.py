@@ -5,12 +5,12 @@ with a coordinate t in addition to x, y and z, and the intersection, with t >= 0
 extreme rays with t > 0 are the corners, those with t = 0 the directions in which it is unbounded.
 The rays come from the double description method (T. S. Motzkin, H. Raiffa, G. L. Thompson and R. M.
 Thrall, "The double description method", in: Contributions to the Theory of Games II, 1953; K.
-Fukuda and A. Prodon, "Double description method revisited", 1996), in integers, which doubles times
-powers of two are.
+Fukuda and A. Prodon, "Double description method revisited", 1996), in integers: doubles multiplied
+by powers of two.
 
 Half-spaces are inserted in a shuffled order, so that k of them create and remove O(k) rays in
-expectation; each is compared with all rays, O(k^2) in all, mostly in floating point. Many planes
-through one corner cost more: O(k^3) at worst.
+expectation; each is compared with all rays, O(k^2) in total, mostly in floating point. Many planes
+through one corner cost more: O(k^3) in the worst case.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ if TYPE_CHECKING:
 
 __all__ = ["common_part"]
 
-# Products of values whose sum is at most 8: if they are larger, their floating-point sign is right.
+# Products of values whose sum is at most 8: if they are larger, their floating-point sign is
+# correct.
 _CERTAIN = 1e-14
 # The number of the half-space t >= 0; the others are numbered from 0.
 _END = -1
@@ -54,8 +55,8 @@ def common_part(halfspaces: Floats) -> tuple[Floats, list[list[int]], list[int]]
     """Return the corners and faces of the intersection of half-spaces, and the row of each face.
 
     Rows are a x + b y + c z + d <= 0, finite, (a, b, c) not 0. Corners ascend, correctly rounded;
-    faces are counter-clockwise as seen from outside, the least corner first; rows ascend, of equal
-    ones the first.
+    faces are counter-clockwise as seen from outside, the smallest corner first; rows ascend, and
+    equal ones are listed once, by the first.
     """
     first: dict[Row, int] = {}
     for number, row in enumerate(halfspaces.tolist()):
@@ -108,14 +109,14 @@ def _normal(a: Row, b: Row, c: Row) -> Row:
 def _rays(halfspaces: dict[int, Row]) -> list[_Ray]:
     """Return the extreme rays of the cone.
 
-    If the normals do not span 3-D, the cone contains lines, and has no extreme rays; half-spaces of
-    axes cut these in half. That does not change whether there are points or volume, and leaves an
-    unbounded direction.
+    If the normals do not span 3-D, the cone contains lines and has no extreme rays; half-spaces
+    along the axes cut these lines in half. That does not change whether there are points or volume,
+    and an unbounded direction remains.
     """
     rows: dict[int, Row] = {_END: (0, 0, 0, -1)} | halfspaces
     rows |= {-2 - k: row for k, row in enumerate(_AXES[:3])}
     basis: list[int] = []
-    # t >= 0 comes first, and axes only if nothing else is left.
+    # t >= 0 comes first, and the axes only if nothing else is left.
     for number in [_END, *halfspaces, -2, -3, -4]:
         if len(basis) < 4 and _independent([rows[i] for i in (*basis, number)]):
             basis.append(number)
@@ -202,7 +203,7 @@ class _Cone:
         return ray
 
     def _beside(self, j: int) -> list[int]:
-        """Return the rays adjacent to one: no other ray is on all half-spaces that both are on."""
+        """Return the rays adjacent to one: no other ray is on all boundaries that both are on."""
         on = self._ray(j).on
         seen: dict[int, int] = {}
         for i in on:
@@ -226,7 +227,7 @@ class _Cone:
 
 
 def _unit(numbers: Row) -> list[float]:
-    """Return a vector in doubles, its largest component 1."""
+    """Return a vector in doubles whose largest component is 1."""
     largest = max(map(abs, numbers))
     return [x / largest for x in numbers]
 

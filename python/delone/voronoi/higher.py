@@ -1,7 +1,7 @@
 """The cells of a diagram in four to eight dimensions: their vertices, without measures.
 
-The core computes the arrays. The vertices of a ridge have no cyclic order from 4-D on, so they
-are in ascending order.
+The core computes the arrays. From 4-D on, the vertices of a ridge have no cyclic order, so they are
+in ascending order.
 """
 
 from __future__ import annotations

@@ -16,23 +16,23 @@ if TYPE_CHECKING:
 
 __all__ = ["nearest"]
 
-# Of the sum of absolute products: five roundings, of 2**-53 each, with room.
+# Relative to the sum of absolute products: five roundings of 2**-53 each, with a margin.
 _ROUNDING = 2.0**-50
-# Sums above this have lost less to underflow than `_ROUNDING` allows.
+# Sums above this lose less to underflow than `_ROUNDING` allows.
 _SMALLEST = 2.0**-960
 
 
 def nearest(points: Floats, chain: Indices, xi: ArrayLike) -> Indices:
     """Return the rows of the nearest sites, (...): the smaller of two, -1 for queries not finite.
 
-    `chain` has the rows of the sites in their order along the line; it is not empty.
+    `chain` contains the rows of the sites in their order along the line; it is not empty.
     """
     queries = as_vectors(xi, points.shape[1], name="xi")
     flat = queries.reshape(-1, points.shape[1])
     rows = np.flatnonzero(np.isfinite(flat).all(axis=1))
     at = flat[rows]
     # Bisectors are parallel and in the order of the sites: binary search for the first one that a
-    # point is not beyond, which halves what is left.
+    # point is not beyond.
     low, high = np.zeros(len(rows), dtype=np.int64), np.full(len(rows), len(chain) - 1)
     while len(going := np.flatnonzero(low < high)):
         middle = (low[going] + high[going]) // 2

@@ -35,10 +35,10 @@ __all__ = [
     "unit_of",
 ]
 
-# The box around an outline is larger by this share of its extent.
+# The box around an outline is larger by this fraction of its extent.
 _MARGIN = 2.0**-6
 _POLYGON, _MULTIPOLYGON = 3, 6
-# Coordinates of magnitudes between these are passed to GEOS as they are.
+# Coordinates of magnitudes between these are passed to GEOS unchanged.
 _SMALL, _LARGE = 2.0**-100, 2.0**100
 
 
@@ -51,11 +51,11 @@ class Clip:
 
     @property
     def name(self) -> str:
-        """What it is, in a few words."""
+        """A short description."""
         return "a box" if self.outline is None else f"a {self.outline.geom_type}"
 
     def holds(self, points: Floats) -> NDArray[np.bool_]:
-        """Tell which points are inside, the boundary included."""
+        """Tell which points are inside, including the boundary."""
         left, bottom, right, top = self.bounds
         x, y = points.T
         found: NDArray[np.bool_] = (left <= x) & (x <= right) & (bottom <= y) & (y <= top)
@@ -84,7 +84,7 @@ class Clip:
         shapely = shapely_or_say()
         rings = shapely.get_rings(shapely.get_parts(self.scaled))
         corners, ring = shapely.get_coordinates(rings, return_index=True)
-        # Equal corners in a row, the first one at the end included, are one.
+        # Consecutive equal corners, including the first and the last, are merged.
         last = np.append((ring[1:] != ring[:-1]), True)
         same = np.append((corners[1:] == corners[:-1]).all(axis=1), False)
         kept = ~(last | same)
@@ -110,7 +110,7 @@ def as_clip(
     fix: bool,
     periods: tuple[float | None, float | None] | None = None,
 ) -> Clip | None:
-    """Return the clip that a caller of `Voronoi` gave; None, or a `Clip`, as it is."""
+    """Return the clip that a caller of `Voronoi` gave; None and a `Clip` are returned unchanged."""
     if clip is None or isinstance(clip, Clip):
         return clip
     if periods is not None:
@@ -170,21 +170,21 @@ def _strip(clip: Any, points: Floats, periods: tuple[float | None, float | None]
 
 
 def _together(geometries: Any) -> Any:
-    """Return all polygons of a table as one; invalid ones stay so, and are reported later."""
+    """Return all polygons of a table as one; invalid ones are kept, and reported later."""
     shapely = shapely_or_say()
     found = np.array([each for each in geometries if each is not None], dtype=object)
     if len(found) == 1:
         return found[0]
     others = np.setdiff1d(shapely.get_type_id(found), (_POLYGON, _MULTIPOLYGON))
     if len(others):
-        raise InputError("clip must hold polygons, and nothing else")
+        raise InputError("clip must contain only polygons")
     if shapely.is_valid(found).all():
         return shapely.union_all(found)
     return shapely.multipolygons(shapely.get_parts(found))
 
 
 def _geometry(clip: Any) -> Any:
-    """Return a geometry of shapely, converted if necessary, or None for input of another kind."""
+    """Return a shapely geometry, converted if necessary, or None for other kinds of input."""
     if hasattr(clip, "geometry") and hasattr(clip.geometry, "values"):
         return _together(clip.geometry.values)
     if hasattr(clip, "geom_type"):
@@ -197,7 +197,7 @@ def _geometry(clip: Any) -> Any:
 
 
 def _of_mapping(mapping: Any) -> Any:
-    """Return a geometry from a GeoJSON-like mapping, a feature or collection included."""
+    """Return a geometry from a GeoJSON-like mapping, including features and collections."""
     shape = shapely_or_say().geometry.shape
     mapping = getattr(mapping, "__geo_interface__", mapping)
     try:

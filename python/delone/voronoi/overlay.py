@@ -24,11 +24,11 @@ __all__ = ["as_polygons", "intersections", "with_shared_corners"]
 
 # Outlines with fewer corners than this are not halved, nor are fewer polygons than this.
 _FEW_CORNERS, _FEW_POLYGONS = 256, 8
-# The box around polygons is larger by this share of its extent.
+# The box around polygons is larger by this fraction of its extent.
 _MARGIN = 2.0**-6
 _POLYGON = 3
-# Corners within this share of the largest coordinate, 64 units in the last place, are merged if
-# they are at most so many places apart in the direction in which they are sorted.
+# Corners within this fraction of the largest coordinate, 64 units in the last place, are merged if
+# they are at most this many positions apart in the order in which they are sorted.
 _SAME, _PLACES = 2.0**-46, 4
 
 
@@ -51,7 +51,7 @@ def as_polygons(starts: Indices, corners: Floats) -> NDArray[Any]:
 def _make_sound(polygons: NDArray[Any], starts: Indices, corners: Floats) -> None:
     """Replace cells whose corners are not in convex order, because of rounding, by their hulls.
 
-    Cells a few units in the last place wide may have lost their area, too: they become empty.
+    Cells a few units in the last place wide may also have lost their area: they become empty.
     """
     shapely = shapely_or_say()
     after = next_corner(starts, len(corners))
@@ -86,7 +86,7 @@ def _halve(
     outline: Any,
     found: NDArray[Any],
 ) -> None:
-    """Intersect some of the geometries; each call has half as many as the one before it."""
+    """Intersect some of the geometries; each call gets half as many as the previous one."""
     shapely = shapely_or_say()
     if len(rows) <= _FEW_POLYGONS or shapely.get_num_coordinates(outline) <= _FEW_CORNERS:
         found[rows] = shapely.intersection(geometries[rows], outline)
@@ -105,7 +105,7 @@ def _halve(
 def with_shared_corners(cut: NDArray[Any], corners: Floats, outline: Any) -> NDArray[Any]:
     """Merge corners that differ only by rounding: crossings that were computed more than once.
 
-    Corners of whole cells and of the outline stay at their places.
+    Corners of whole cells and of the outline do not move.
     """
     shapely = shapely_or_say()
     places, owner = shapely.get_coordinates(cut, return_index=True)
@@ -113,7 +113,7 @@ def with_shared_corners(cut: NDArray[Any], corners: Floats, outline: Any) -> NDA
         return cut
     distinct, number = np.unique(_as_complex(places), return_inverse=True)
     known = np.isin(distinct, _as_complex(np.vstack((corners, shapely.get_coordinates(outline)))))
-    # Known corners first: merged corners get the least number.
+    # Known corners first: merged corners get the smallest number.
     rank = np.empty(len(distinct), dtype=np.int64)
     by_rank = np.argsort(~known, kind="stable")
     rank[by_rank] = np.arange(len(distinct))

@@ -26,9 +26,9 @@ _DOUBTFUL, _NOTHING, _WHOLE, _PARTS = -1, 0, 1, 2
 class Pieces:
     """Parts of cells, each an outer ring and its holes, in the units of the outline.
 
-    For each cell `doubtful` tells whether exact signs do not decide what is left, `traced` whether
-    parts are left; measures are those of the cells that have parts. `corners` are those of all
-    rings.
+    For each cell, `doubtful` tells whether exact signs fail to decide what is left, and `traced`
+    whether parts are left; measures are those of the cells that have parts. `corners` are those of
+    all rings.
     """
 
     def __init__(self, rows: NDArray[np.int64], found: CellPieces2) -> None:
@@ -40,7 +40,7 @@ class Pieces:
         self.centroids = found.measures.centroids
 
     def sides(self, outside: int, inside: int, cut: int) -> NDArray[np.int8]:
-        """Return a number for each cell, by whether nothing, all, or a part of it is left."""
+        """Return a number for each cell: whether nothing, all, or a part of it is left."""
         left = self._found.left
         found = np.where(left == _NOTHING, outside, np.where(left == _WHOLE, inside, cut))
         return found.astype(np.int8)
@@ -97,7 +97,7 @@ def cut(
     *,
     workers: int,
 ) -> Pieces:
-    """Cut some convex cells, `rows`, ascending and none without corners, to an outline.
+    """Cut some convex cells to an outline: `rows`, ascending, none without corners.
 
     The first three arrays are those of all cells: corners in the units of the outline, and the
     ridge along each edge.

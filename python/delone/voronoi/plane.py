@@ -100,7 +100,7 @@ class PlaneCells(Cells):
         return one_gap(self.dual.region_starts, self.dual.region_vertices)
 
     def ridge_offsets(self) -> Indices:
-        """Return by how many periods the second site of each ridge is moved."""
+        """Return the number of periods by which the second site of each ridge is moved."""
         if self.repeated is not None:
             return self.repeated.moved
         return np.zeros((len(self.dual.sites), 2), dtype=np.int32)
@@ -134,7 +134,7 @@ class PlaneCells(Cells):
         return found
 
     def _sites_of(self, ridges: NDArray[Any]) -> tuple[Floats, Floats]:
-        """Return the coordinates of the two sites of some ridges, as the first sees the second."""
+        """Return the coordinates of the two sites of some ridges, as seen from the first site."""
         a, b = self.points[self.dual.sites[ridges]].swapaxes(0, 1)
         if self.periods is None:
             return a, b
@@ -143,7 +143,7 @@ class PlaneCells(Cells):
 
     @cached_property
     def left(self) -> Clipped:
-        """The clipped cells; without a clip the bounded ones."""
+        """The clipped cells; without a clip, the bounded ones."""
         return clipping.cells(
             self.points,
             self.weights,
@@ -153,7 +153,7 @@ class PlaneCells(Cells):
             workers=self._threads,
         )
 
-    # What thin cells have no meaningful value of.
+    # The measures that are meaningless for thin cells.
     measure = "areas"
 
     def thin(self) -> NDArray[np.bool_]:
@@ -178,12 +178,12 @@ class PlaneCells(Cells):
         )
 
     def to_pyvista(self) -> Any:
-        """Return the bounded or clipped cells as polygons of PyVista."""
+        """Return the bounded or clipped cells as PyVista polygons."""
         starts, corners, values = self._polygons()
         return polygons_to_pyvista(starts, corners, values)
 
     def to_meshio(self) -> Any:
-        """Return the bounded or clipped cells as polygons of meshio."""
+        """Return the bounded or clipped cells as meshio polygons."""
         starts, corners, values = self._polygons()
         return polygons_to_meshio(starts, corners, values)
 

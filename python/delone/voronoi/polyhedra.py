@@ -29,7 +29,7 @@ __all__ = ["Polyhedron", "as_polyhedron", "loaded", "saved"]
 # The faces of a box, whose corners are numbered by bits, counter-clockwise as seen from outside: x
 # low, x high, y low, and so on.
 _FACES = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
-# At most so many points are in a box, and so many planes are compared with all boxes together.
+# The maximum number of points in a box, and of planes that are compared with all boxes together.
 _BOX, _BATCH = 64, 256
 _BOX_NAME, _SOLID_NAME = "a box", "a convex polyhedron"
 _CHOICES = (
@@ -51,7 +51,7 @@ class Polyhedron:
     planes : ndarray of float64, shape (f, 4)
         For each face n and c: the interior is ``n @ x <= c``.
     name : str
-        What it is, in a few words.
+        A short description.
 
     Examples
     --------
@@ -70,18 +70,18 @@ class Polyhedron:
 
     @property
     def bounds(self) -> Floats:
-        """The least and the greatest coordinates, (2, 3)."""
+        """The smallest and the largest coordinates, (2, 3)."""
         return np.stack((self.points.min(axis=0), self.points.max(axis=0)))
 
     def holds(self, points: Floats) -> NDArray[np.bool_]:
-        """Tell which points are inside, the boundary included."""
+        """Tell which points are inside, including the boundary."""
         beyond: NDArray[np.bool_] = points @ self.planes[:, :3].T > self.planes[:, 3]
         found: NDArray[np.bool_] = ~np.any(beyond, axis=1)
         return found
 
 
 def as_polyhedron(clip: Any, points: Floats) -> Polyhedron | None:
-    """Return the clip that a caller of `Voronoi` gave; None, or a `Polyhedron`, as it is."""
+    """Return the clip that a caller of `Voronoi` gave; None and a `Polyhedron` are unchanged."""
     if clip is None or isinstance(clip, Polyhedron):
         return clip
     if isinstance(clip, str):
@@ -140,7 +140,7 @@ def _hull(points: Floats) -> Polyhedron:
     own = np.maximum.reduceat(
         (np.repeat(normal, lengths, axis=0) * points[used[corners]]).sum(axis=1), starts[:-1]
     )
-    # No corner may be outside a plane by its rounding.
+    # Rounding must not place a corner outside a plane.
     offset = _farthest(normal, points[used], own)
     return Polyhedron(
         points=points[used],
@@ -152,16 +152,16 @@ def _hull(points: Floats) -> Polyhedron:
 
 
 def _farthest(normals: Floats, points: Floats, least: Floats) -> Floats:
-    """Return the greatest product of each normal with any of the points: `least` or a little more.
+    """Return the largest product of each normal with any of the points: `least` or slightly more.
 
-    Only points in boxes that extend so far are considered.
+    Only points in boxes that extend that far are considered.
     """
     boxes = _in_boxes(points)
     middle, half = (boxes.max(axis=1) + boxes.min(axis=1)) / 2, np.ptp(boxes, axis=1) / 2
     found = least.copy()
     for rows in np.array_split(np.arange(len(normals)), max(1, len(normals) // _BATCH)):
         bound = normals[rows] @ middle.T + np.abs(normals[rows]) @ half.T
-        # A bound of the rounding of products and sums.
+        # A bound on the rounding error of products and sums.
         bound += 2.0**-48 * (np.abs(normals[rows]) @ np.abs(boxes).max(axis=1).T)
         plane, box = np.nonzero(bound >= least[rows, None])
         reached = np.einsum("ik,ijk->ij", normals[rows[plane]], boxes[box]).max(axis=1)
@@ -196,7 +196,7 @@ def _common(halfspaces: Floats) -> Polyhedron:
             "the intersection of the half-spaces of clip is so thin that its corners, rounded to "
             "doubles, span no volume"
         ) from None
-    # Scaled by powers of two, so that planes are those that were given; with components of at most
+    # Scaled by powers of two, so that planes are exactly the given ones; with components of at most
     # 1/4 their products with corners stay within the range of doubles.
     power = np.frexp(largest[rows])[1] + 2
     planes = np.ldexp(halfspaces[rows], -power[:, None])

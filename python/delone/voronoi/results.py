@@ -17,9 +17,9 @@ __all__ = ["Cell", "Neighbors", "PolyhedralCell", "Rays", "as_site"]
 class Rays(NamedTuple):
     """The unbounded ridges, with their origins and directions.
 
-    In 2-D a ridge between two sites alone, or between neighbors among collinear sites, is a line:
-    it has two rays, in opposite directions from one origin. In 3-D each unbounded ridge has two
-    rays, between which it lies.
+    In 2-D, the ridge between two sites without others, or between neighbors among collinear sites,
+    is a line: it has two rays, in opposite directions from one origin. In 3-D each unbounded ridge
+    has two rays, between which it lies.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class Cell:
         Row of the site.
     vertices : ndarray of float64, shape (k, 2)
         The vertices of the whole cell, counter-clockwise. Those of an unbounded cell begin after
-        the ray that comes in and end before the one that goes out.
+        the incoming ray and end before the outgoing one.
     bounded : bool
         Whether the whole cell is bounded.
     parts : tuple of tuple of ndarray of float64, shape (j, 2)
@@ -122,7 +122,7 @@ class PolyhedralCell:
     site : int
         Row of the site.
     vertices : ndarray of float64, shape (k, 3)
-        The corners of the clipped cell; without a clip the vertices of the whole cell.
+        The corners of the clipped cell; without a clip, the vertices of the whole cell.
     bounded : bool
         Whether the whole cell is bounded.
     faces : tuple of ndarray of int32
@@ -161,7 +161,7 @@ class PolyhedralCell:
 
 
 def as_site(i: Any, count: int) -> int:
-    """Return the row of one of `count` sites, from 0 on; negative ones count from the end."""
+    """Return the row of one of `count` sites, from 0; negative ones count from the end."""
     try:
         row = operator.index(i)
     except TypeError:

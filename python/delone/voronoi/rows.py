@@ -31,7 +31,8 @@ def of_pairs(
 def as_lists(indptr: Indices, indices: Indices) -> list[list[int]]:
     """Return compressed rows as lists."""
     starts, entries = indptr.tolist(), indices.tolist()
-    # Lists of integers have no cycles, and looking for some takes longer than making the lists.
+    # Lists of integers have no reference cycles, and searching for them takes longer than making
+    # the lists.
     collects = gc.isenabled()
     gc.disable()
     try:
@@ -42,7 +43,7 @@ def as_lists(indptr: Indices, indices: Indices) -> list[list[int]]:
 
 
 def one_gap(starts: Indices, entries: Indices) -> tuple[Indices, Indices]:
-    """Return cyclic rows with each run of -1 written once, also a run across the end.
+    """Return cyclic rows with each run of -1 written once, including a run across the end.
 
     The arrays themselves if no two gaps are adjacent.
     """
@@ -56,7 +57,7 @@ def one_gap(starts: Indices, entries: Indices) -> tuple[Indices, Indices]:
     repeated = gaps & before
     if not repeated.any():
         return starts, entries
-    # A row of nothing but gaps keeps the first.
+    # A row that contains only gaps keeps the first.
     total = np.concatenate(([0], np.cumsum(repeated)))
     infinite = filled & (total[starts[1:]] - total[starts[:-1]] == sizes)
     repeated[starts[:-1][infinite]] = False

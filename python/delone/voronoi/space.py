@@ -88,10 +88,10 @@ class SpaceCells(Cells):
         return self.dual.region_starts, self.dual.region_vertices
 
     def rays(self) -> Rays:
-        """The unbounded ridges, two rows for each, whose directions lead away.
+        """The unbounded ridges, two rows for each, whose directions point outward.
 
-        In the first row the boundary of the ridge comes in from infinity, in the second it goes
-        out.
+        In the first row, the boundary of the ridge comes from infinity; in the second, it goes to
+        infinity.
         """
         starts, entries = self.dual.ridge_starts.astype(np.int64), self.dual.ridge_entries
         first, last = starts[:-1], starts[1:] - 1
@@ -105,10 +105,10 @@ class SpaceCells(Cells):
 
     @cached_property
     def left(self) -> Bodies:
-        """The clipped cells; without a clip the bounded ones."""
+        """The clipped cells; without a clip, the bounded ones."""
         return Bodies(self.points, self.weights, self.dual, self.clip, self._threads)
 
-    # What thin cells have no meaningful value of.
+    # The measures that are meaningless for thin cells.
     measure = "volumes"
 
     def thin(self) -> NDArray[np.bool_]:
@@ -134,11 +134,11 @@ class SpaceCells(Cells):
         )
 
     def to_pyvista(self) -> Any:
-        """Return the bounded or clipped cells as polyhedra of PyVista."""
+        """Return the bounded or clipped cells as PyVista polyhedra."""
         return polyhedra_to_pyvista(*self._bodies())
 
     def to_meshio(self) -> Any:
-        """Return the bounded or clipped cells as polyhedra of meshio."""
+        """Return the bounded or clipped cells as meshio polyhedra."""
         return polyhedra_to_meshio(*self._bodies())
 
     def _bodies(self) -> tuple[list[Body], Arrays]:

@@ -2,7 +2,7 @@
 
 A corner is rounded by up to 4 units in the last place of each coordinate. That changes the area of
 a cell by up to that times its extent along the other axis, on either side. If the area is not
-greater, not one digit of it is known, and it may be 0.
+larger than that, none of its digits is known, and it may be 0.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ __all__ = ["ThinCellWarning", "among", "warn"]
 
 # Four units in the last place, on either side, of numbers up to 1.
 _ROUNDING = 2.0**-49
-# The least of normal numbers.
+# The smallest normal number.
 _SMALLEST = float(np.finfo(np.float64).tiny)
 _MOST_ROWS = 8
 
@@ -31,7 +31,7 @@ _MOST_ROWS = 8
 class ThinCellWarning(UserWarning):
     """Cells are so thin that rounded corners do not determine their areas or volumes.
 
-    ``rows`` has the sites, as `Voronoi.thin_cells` does.
+    ``rows`` contains the sites, like `Voronoi.thin_cells`.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class ThinCellWarning(UserWarning):
 def among(
     areas: Floats, perimeters: Floats, starts: NDArray[np.int32], corners: Floats
 ) -> NDArray[np.bool_]:
-    """Return which 2-D cells are thin: those with a perimeter whose area may be all rounding.
+    """Return which 2-D cells are thin: they have a perimeter, but rounding may hide their area.
 
     `starts` and `corners` are those of the cells before they are cut to an outline.
     """
@@ -76,7 +76,7 @@ def among(
 
 
 def warn(rows: NDArray[np.int32], measures: str) -> None:
-    """Warn of thin cells, if there are any, at the line that called the package."""
+    """Warn about thin cells, if there are any, at the line that called the package."""
     if not len(rows):
         return
     some: list[Any] = rows[:_MOST_ROWS].tolist()
@@ -87,7 +87,7 @@ def warn(rows: NDArray[np.int32], measures: str) -> None:
         ThinCellWarning(
             f"{count} only a few units in the last place of the coordinates wide "
             f"({row} {listed}): rounded corners do not determine such {measures}, which may be 0. "
-            "thin_cells has the rows. Subtract an offset that all points share before they are "
+            "thin_cells lists the rows. Subtract an offset that all points share before they are "
             "rounded, or merge such sites",
             rows,
         ),

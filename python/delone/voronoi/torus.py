@@ -1,14 +1,14 @@
 """Diagrams of periodic sites: the arrays of `dual` from a periodic triangulation.
 
-A vertex of the periodic diagram has translates; those around a site are listed at their places. A
-corner of a triangle that is moved by some periods sees the circumcenter moved back by as many. If
-triangles share their circumcenter, which is decided exactly, the shift of each relative to the
-first of them is known.
+A vertex of the periodic diagram has translates; those around a site are listed at their positions.
+Seen from a corner of a triangle that is moved by some periods, the circumcenter is moved back by as
+many. If triangles share their circumcenter, which is decided exactly, the shift of each relative to
+the first of them is known.
 
 With one period the hull is a strip: its two borders are parallel to the period, and the ridges that
 cross them are rays perpendicular to it. The cells of sites on one line along the period are strips.
 
-A `PeriodicDual` has the arrays of any diagram, and what the periods add to them.
+A `PeriodicDual` contains the arrays of any diagram, and those that the periods require.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["PeriodicDual", "of_line", "of_periodic", "require_room", "unrolled"]
 
 _AFTER, _BEFORE = [1, 2, 0], [2, 0, 1]
-# Of an entry that is an end at infinity.
+# For an entry that is an end at infinity.
 _GAP = -1
 
 
@@ -39,16 +39,16 @@ class PeriodicDual(NamedTuple):
     """The diagram of periodic sites."""
 
     cells: Diagram2
-    # (r, 2): by how many periods the second site of each ridge is moved, seen from the first. The
-    # ends of a ridge lie where its first site sees them.
+    # (r, 2): the number of periods by which the second site of each ridge is moved, as seen from
+    # the first. The ends of a ridge are at their positions as seen from its first site.
     moved: Indices
     # (e,): for each entry of a cell the site across the ridge from there to the next.
     beside: Indices
-    # (e, 2): by how many periods that site is moved, seen from the cell.
+    # (e, 2): the number of periods by which that site is moved, as seen from the cell.
     beside_moved: Indices
 
     def sealed(self, cells: Diagram2) -> PeriodicDual:
-        """Return the same with arrays that cannot be written to, and `cells`, which are sealed."""
+        """Return the same with read-only arrays, and the sealed `cells`."""
         return PeriodicDual(cells, *map(sealed, self[1:]))
 
 
@@ -117,8 +117,8 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> PeriodicDual:
 def _across(mesh: PeriodicDelaunay) -> tuple[NDArray[Any], ...]:
     """Return what lies across each edge; an edge without a neighbor is its own partner.
 
-    Whether there is a neighbor, the edge as seen from there, that triangle, its corner, and by how
-    many periods it is moved relative to its own place.
+    The arrays are: whether there is a neighbor, the edge as seen from there, that triangle, its
+    corner, and the number of periods by which it is moved from its own position.
     """
     bounded = mesh.partners >= 0
     partners = np.where(bounded, mesh.partners, np.arange(mesh.partners.size).reshape(-1, 3))
@@ -168,7 +168,7 @@ def _centers(
 
 
 def _outward(mesh: PeriodicDelaunay, sites: Indices) -> Floats:
-    """Return the directions in which ridges cross the border on which sites lie."""
+    """Return the directions in which ridges cross the border that contains the sites."""
     axis = 1 if mesh.periods[1] is None else 0
     heights = mesh.points[sites, axis]
     found = np.zeros((len(sites), 2))
@@ -181,14 +181,14 @@ def of_line(
 ) -> PeriodicDual:
     """Return the diagram of sites on one line along their only period: strips.
 
-    `chain` has the rows of the sites in their order along the line; it is not empty.
+    `chain` contains the rows of the sites in their order along the line; it is not empty.
     """
     k = len(chain)
     axis = 0 if periods[1] is None else 1
     ridges = np.arange(k, dtype=np.int32)
     moved = np.zeros((k, 2), dtype=np.int32)
     moved[-1, axis] = 1
-    # The direction of a ridge has its first site to the left.
+    # The first site of a ridge is to the left of its direction.
     along = np.array([0.0, 1.0] if axis == 0 else [-1.0, 0.0])
     region = np.full(len(points), -1, dtype=np.int32)
     region[chain] = ridges
@@ -222,10 +222,10 @@ def unrolled(
     dual: PeriodicDual,
     periods: tuple[float | None, float | None],
 ) -> tuple[Floats, Floats | None, Diagram2]:
-    """Return the cells of one period, each with its own ridges, as a diagram without a period.
+    """Return the cells of one period, each with its own ridges, as a diagram without periods.
 
-    After the sites come, for each entry of a cell, the site across its ridge, at the place where
-    the cell sees it. The ridges are the entries.
+    After the sites come, for each entry of a cell, the site across its ridge, at its position as
+    seen from the cell. The ridges are the entries.
     """
     lengths = np.array([length or 0.0 for length in periods])
     cells = dual.cells
@@ -310,9 +310,9 @@ def _cells(
 ) -> tuple[Indices, Indices, Rows, NDArray[np.bool_]]:
     """Return sites, where the entries of each begin, and the corner (3 t + k) of each entry.
 
-    All sites are circled at once, one triangle per step, so that there are as many steps as the
-    largest number of triangles around one site. On a border the path begins there, with an entry
-    for the end at infinity; the last result marks these.
+    All sites are circled in parallel, one triangle per step, so the number of steps is the largest
+    number of triangles around one site. On a border, the path begins there, with an entry for the
+    end at infinity; the last result marks these.
     """
     across = partners[:, _AFTER].astype(np.int64)
     after = np.where(across < 0, -1, across // 3 * 3 + (across % 3 + 1) % 3).reshape(-1)

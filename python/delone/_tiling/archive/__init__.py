@@ -1,6 +1,6 @@
 """Saving and loading: NumPy's .npz files, with every array checked when it is read.
 
-`file` writes and reads, `kinds` has the layouts, `checks` the checks of their content.
+`file` writes and reads, `kinds` contains the layouts, `checks` the checks of their content.
 """
 
 from delone._tiling.archive.file import read, refusal, write

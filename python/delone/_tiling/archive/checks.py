@@ -1,7 +1,7 @@
-"""Checks of the arrays of a file, in linear time: whatever methods rely upon.
+"""Checks of the arrays of a file, in linear time: everything that methods rely on.
 
-Reading takes nothing on trust: every index is compared with what it counts, and simplices with each
-other, so that walks in the core end and stay inside. Whether simplices are Delaunay is not checked:
+Reading trusts nothing: every index is checked against its range, and simplices against each other,
+so that walks in the core terminate and stay inside. Whether simplices are Delaunay is not checked:
 ``validate()`` proves it.
 """
 
@@ -144,7 +144,7 @@ def _check_refinement(**arrays: NDArray[Any]) -> int:
     require(len(counts) == 5 and len(bounds) == 4, "the report is incomplete")
     check_range("refinement", counts, 0, 2**31)
     require(counts[4] <= 1, "refinement does not end with a flag")
-    require((bounds >= 0).all(), "refinement_bounds has one below 0")
+    require((bounds >= 0).all(), "refinement_bounds contains a value below 0")
     for name in ("too_large", "above_ratio"):
         check_range(name, arrays[name], 0, len(arrays["simplices"]))
         require((np.diff(arrays[name]) > 0).all(), f"{name} is out of order")
@@ -154,14 +154,16 @@ def _check_refinement(**arrays: NDArray[Any]) -> int:
 
 
 def _check_recovery(*, most: int, **arrays: NDArray[Any]) -> None:
-    """Check the report of a recovery, which added so many points at most."""
+    """Check the report of a recovery, which added at most that many points."""
     require(len(arrays["recovery"]) == 11, "the report is incomplete")
     check_range("recovery", arrays["recovery"], 0, 2**63)
     require(arrays["recovery"][0] <= most, "the report counts other added points")
     check_range("duplicate_points", arrays["duplicate_points"], 0, len(arrays["points"]))
     check_range("recut", arrays["recut"], 0, len(arrays["points"]))
     check_range("recut_source", arrays["recut_source"], 0, 2**31)
-    require(len(arrays["recut"]) == len(arrays["recut_source"]), "recut has not one source each")
+    require(
+        len(arrays["recut"]) == len(arrays["recut_source"]), "recut and recut_source do not match"
+    )
     check_range("imprinted", arrays["imprinted"], 0, 2**31)
     largest = arrays["imprint_distance"]
     require(len(largest) == 1 and np.isfinite(largest).all(), "the report is incomplete")
@@ -178,9 +180,11 @@ def _check_improvement(**arrays: NDArray[Any]) -> None:
     require(len(arrays["before"]) == len(arrays["after"]) == classes, "histograms do not match")
     require(len(arrays["below"]) == len(arrays["cause"]), "rows and causes do not match")
     require(len(angles) == 5 and len(counts) == 10, "the report is incomplete")
-    # The goal, then the smallest before and after, then the largest before and after.
-    require((angles >= 0).all() and (angles <= 180).all(), "angles has one outside 0 to 180")
-    require((angles[1:3] <= angles[3:]).all(), "angles has a smallest one above the largest")
+    # The goal, then the smallest angle before and after, then the largest before and after.
+    require(
+        (angles >= 0).all() and (angles <= 180).all(), "angles contains a value outside 0 to 180"
+    )
+    require((angles[1:3] <= angles[3:]).all(), "a smallest angle is above the largest")
     require((bounds >= 0).all() and (bounds[1:] > bounds[:-1]).all(), "bounds are out of order")
     check_range("counts", counts, 0, 2**63)
     require(counts[9] <= 1, "counts does not end with a flag")
@@ -195,13 +199,13 @@ def _check_improvement(**arrays: NDArray[Any]) -> None:
 
 
 def check_input(**arrays: NDArray[Any]) -> None:
-    """Check input that is computed again."""
+    """Check input from which the results are recomputed."""
     require(len(arrays["points"]) > 0, "it has no points")
     require(np.isfinite(arrays["points"]).all(), "a coordinate is not finite")
 
 
 def check_shape(**arrays: NDArray[Any]) -> None:
-    """Check the input of a shape that is computed again."""
+    """Check the input from which a shape is recomputed."""
     check_input(**arrays)
     alpha = arrays["alpha"]
     require(len(alpha) == 1 and not np.isnan(alpha).any(), "alpha is not one number")
@@ -217,14 +221,14 @@ def check_kept(
     neighbors: NDArray[np.int32],
     kept: NDArray[np.bool_],
 ) -> None:
-    """Check simplices of which some are kept; points that span nothing have none."""
+    """Check simplices, some of which are kept; points that span nothing have none."""
     require(len(kept) == len(simplices), "kept and simplices do not match")
     if len(simplices):
         _check_simplices(points, simplices, neighbors)
         _check_joined(simplices, neighbors)
     else:
         require(np.isfinite(points).all(), "a coordinate is not finite")
-        require(not len(neighbors), "it has neighbors of no simplices")
+        require(not len(neighbors), "it has neighbors but no simplices")
 
 
 def check_contours(**arrays: NDArray[Any]) -> None:
@@ -233,7 +237,7 @@ def check_contours(**arrays: NDArray[Any]) -> None:
     _check_starts("starts", arrays["starts"], len(points), len(level), 2)
     require(len(arrays["index"]) == len(level), "index and lines do not match")
     require(np.isfinite(levels).all() and (np.diff(levels) > 0).all(), "levels are out of order")
-    require(np.isin(level, levels).all(), "a line has a level that is not there")
+    require(np.isin(level, levels).all(), "a line has a level that does not exist")
     _check_counts(points, arrays["counts"], 4)
 
 
@@ -251,14 +255,16 @@ def check_bands(**arrays: NDArray[Any]) -> None:
 
 
 def _check_starts(name: str, starts: NDArray[np.int64], end: int, count: int, least: int) -> None:
-    """Check the starts of parts, each of which has at least so many entries."""
-    require(len(starts) == count + 1 and count >= 0, f"{name} has not one start for each part")
+    """Check the starts of parts, each of which has at least that many entries."""
+    require(
+        len(starts) == count + 1 and count >= 0, f"{name} does not have one start for each part"
+    )
     require(starts[0] == 0 and starts[-1] == end, f"{name} does not run from 0 to {end}")
     require((np.diff(starts) >= least).all(), f"{name} has a part of fewer than {least}")
 
 
 def _check_counts(points: NDArray[np.float64], counts: NDArray[np.int64], length: int) -> None:
-    """Check that points are finite, and the numbers of what is left out."""
+    """Check that points are finite, and the counts of what is left out."""
     require(np.isfinite(points).all(), "a coordinate is not finite")
     require(len(counts) == length and (counts >= 0).all(), f"counts is not {length} numbers")
 
@@ -274,15 +280,15 @@ def check_live(**arrays: NDArray[Any]) -> None:
         ("handles", handles, total, len(points)),
         ("segments", segments, segments_total, len(arrays["ends"])),
     ):
-        require(0 <= end < 2**32 - 1, f"{name} has a next one that is out of range")
+        require(0 <= end < 2**32 - 1, f"{name} has a next number that is out of range")
         check_range(name, given, 0, end)
         require((np.diff(given) > 0).all(), f"{name} is out of order")
         require(len(given) == items, f"{name} does not have {items} entries")
     require((np.diff(arrays["added"]) > 0).all(), "added is out of order")
-    require(np.isin(arrays["added"], handles).all(), "added has a handle that is not there")
+    require(np.isin(arrays["added"], handles).all(), "added has a handle that does not exist")
     ends = arrays["ends"].ravel()
     own = handles[~np.isin(handles, arrays["added"])]
-    require(np.isin(ends, own).all(), "a segment has an end that is not there")
+    require(np.isin(ends, own).all(), "a segment has an end that does not exist")
     flat = points.shape[1] == 2
     require(flat or not len(segments) + segments_total + split, "it has segments in 3-D")
 
@@ -306,7 +312,7 @@ def check_graph(
     duplicates: NDArray[np.int32],
     directed: NDArray[np.bool_],
 ) -> None:
-    """Check the edges of a graph, and which rows repeat others."""
+    """Check the edges of a graph, and which rows are duplicates."""
     require(np.isfinite(points).all(), "a coordinate is not finite")
     check_range("edges", edges, 0, len(points))
     require(len(directed) == 1, "directed is not one flag")
@@ -320,7 +326,7 @@ def check_graph(
     require(np.array_equal(duplicates, expected), "duplicates are not those of points")
 
 
-# The plane of a face contains its corners up to this share of the products that make the sum.
+# The plane of a face contains its corners up to this fraction of the products that are summed.
 _ROUNDING = 2.0**-40
 
 
@@ -330,10 +336,10 @@ def _check_polyhedron(
     faces: NDArray[np.int32],
     planes: NDArray[np.float64],
 ) -> None:
-    """Check that faces close a surface, and that planes are theirs."""
+    """Check that faces close a surface, and that the planes match them."""
     if not len(planes):
         empty = len(corners) == len(starts) == len(faces) == 0
-        require(empty, "it has a polyhedron without planes")
+        require(empty, "the polyhedron has no planes")
         return
     require(np.isfinite(corners).all() and np.isfinite(planes).all(), "the clip is not finite")
     require(len(starts) == len(planes) + 1, "faces and planes do not match")
@@ -357,14 +363,14 @@ def _check_simplices(
     """Check ranges, then that neighbors are mutual and simplices positively oriented."""
     require(np.isfinite(points).all(), "a coordinate is not finite")
     require(len(simplices) > 0, "it has no simplices")
-    require(neighbors.shape == simplices.shape, "it has no neighbors of simplices")
+    require(neighbors.shape == simplices.shape, "it has simplices but no neighbors")
     check_range("simplices", simplices, 0, len(points))
     check_range("neighbors", neighbors, -1, len(simplices))
     _check_sound(points, simplices, neighbors)
 
 
 def _check_joined(simplices: NDArray[np.int32], neighbors: NDArray[np.int32]) -> None:
-    """Check that simplices with a common side are neighbors; a convex boundary implies it."""
+    """Check that simplices with a common side are neighbors; a convex boundary implies this."""
     rows = unjoined(simplices, neighbors)
     if len(rows):
         kind = "triangle" if simplices.shape[1] == 3 else "tetrahedron"
@@ -380,7 +386,7 @@ def _check_closed(boundary: NDArray[np.int32], npoints: int, *, convex: bool = F
 def _is_closed(
     tail: NDArray[np.int32], head: NDArray[np.int32], npoints: int, *, once: bool
 ) -> bool:
-    """Return whether edges are there equally often in both directions, and, if required, once."""
+    """Return whether edges occur equally often in both directions, and, if required, once."""
     tail, head = tail.astype(np.int64), head.astype(np.int64)
     keys, reverse = np.sort(tail * npoints + head), np.sort(head * npoints + tail)
     return bool((keys == reverse).all() and (not once or (keys[1:] > keys[:-1]).all()))
@@ -389,7 +395,7 @@ def _is_closed(
 def _check_sound(
     points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
 ) -> None:
-    """Check that neighbors are mutual and simplices positively oriented; their range is known."""
+    """Check that neighbors are mutual and simplices positively oriented, given their range."""
     fault = _core.fault(points, simplices, neighbors, as_workers(None))
     if fault is None:
         return
@@ -401,7 +407,7 @@ def _check_sound(
 
 
 def check_range(name: str, indices: NDArray[np.int32], lowest: int, end: int) -> None:
-    """Check that indices are from `lowest` up to below `end`."""
+    """Check that indices are at least `lowest` and below `end`."""
     inside = indices.size == 0 or (indices.min() >= lowest and indices.max() < end)
     require(inside, f"{name} has an index outside {lowest} to {end - 1}")
 
@@ -441,7 +447,7 @@ def check_segments(
 ) -> None:
     """Check that segments, of which the last points were added, fit the triangles."""
     n, m = len(arrays["points"]), len(arrays["simplices"])
-    require(arrays["constrained"].shape == (m, 3), "it has no flags of edges")
+    require(arrays["constrained"].shape == (m, 3), "it has no edge flags")
     check_range("input", arrays["input"], 0, ninput)
     check_range("segments", arrays["segments"], 0, n)
     _check_flags(arrays)
@@ -474,7 +480,7 @@ def _check_flags(arrays: Mapping[str, NDArray[Any]]) -> None:
     edges = edge_keys(simplices[:, [1, 2, 0]], simplices[:, [2, 0, 1]], n)
     keys = np.sort(edge_keys(segments[:, 0], segments[:, 1], n))
     require((keys[1:] > keys[:-1]).all(), "a subsegment is repeated")
-    require((among(edges, keys) == arrays["constrained"]).all(), "flags of edges are wrong")
+    require((among(edges, keys) == arrays["constrained"]).all(), "edge flags are wrong")
     require(among(keys, edges.ravel()).all(), "a subsegment is not an edge")
 
 
@@ -490,7 +496,7 @@ def _check_sources(arrays: Mapping[str, NDArray[Any]]) -> None:
 
 
 def _check_vertices(arrays: Mapping[str, NDArray[Any]], ninput: int, conforming: bool) -> None:
-    """Check that rows contain the vertices that are listed, and that others were added."""
+    """Check that rows contain the listed vertices, and that the others were added."""
     through, crossings = arrays["through"], arrays["crossings"]
     n = len(arrays["points"])
     first = np.arange(n)
@@ -520,7 +526,7 @@ def check_mesh(**arrays: NDArray[Any]) -> None:
     n, m, lines = len(points), len(simplices), len(arrays["ends"])
     _check_simplices(points, simplices, neighbors)
     _check_joined(simplices, neighbors)
-    require(arrays["sides"].shape == simplices.shape, "it has no sides of triangles")
+    require(arrays["sides"].shape == simplices.shape, "it has no triangle sides")
     for name, indices, least, end in (
         ("sides", arrays["sides"], -1, lines),
         ("on", arrays["on"], -1, lines),
@@ -555,7 +561,7 @@ def check_mesh(**arrays: NDArray[Any]) -> None:
 
 
 def _check_sides(arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Check that triangles are mutual and agree on the lines and regions between them."""
+    """Check that neighbors are mutual and agree on the lines and regions between them."""
     simplices, neighbors = arrays["simplices"], arrays["neighbors"]
     sides, region = arrays["sides"], arrays["region"]
     inner = neighbors >= 0
@@ -566,7 +572,7 @@ def _check_sides(arrays: Mapping[str, NDArray[Any]]) -> None:
         simplices[across] != simplices[t, (k + 1) % 3][:, None]
     ) & (simplices[across] != simplices[t, (k + 2) % 3][:, None])  # fmt: skip
     other = sides[across, back.argmax(axis=1)]
-    require((other == sides[t, k]).all(), "two triangles disagree about the line between them")
+    require((other == sides[t, k]).all(), "two triangles disagree on the line between them")
     same = (region[across] == region[t]) | (other >= 0)
     require(same.all(), "a region ends where there is no line")
 
@@ -586,4 +592,4 @@ def _check_lines(arrays: Mapping[str, NDArray[Any]]) -> None:
     points = np.bincount(on[on >= 0], minlength=len(ends))
     require((subsegments == points + 1).all(), "on does not match the subsegments of a line")
     require((arrays["point_source"][on >= 0] < 0).all(), "on has a point of the input")
-    require(arrays["counts"][0] >= (on >= 0).sum(), "counts has fewer points than lie on segments")
+    require(arrays["counts"][0] >= (on >= 0).sum(), "counts lacks points that lie on segments")

@@ -64,7 +64,7 @@ def check_overlaps(**arrays: NDArray[Any]) -> None:
 def check_grid(**arrays: NDArray[Any]) -> None:
     """Check that starts partition corners or meridians, and that shape, mask and edges fit."""
     shape, mask = arrays["shape"], arrays["mask"]
-    require(0 < len(shape) < 4 and bool((shape >= 0).all()), "shape is not one of cells")
+    require(0 < len(shape) < 4 and bool((shape >= 0).all()), "shape is not a shape of cells")
     count = math.prod(shape.tolist())
     if "meridians" in arrays:
         tangents, starts, numbers = (arrays[name] for name in ("places", "starts", "numbers"))
@@ -104,7 +104,7 @@ def check_grid(**arrays: NDArray[Any]) -> None:
 
 
 def _check_starts(name: str, starts: NDArray[Any], count: int, *, least: int = 0) -> None:
-    """Check that numbers partition so many entries, into parts of a least size."""
+    """Check that numbers partition that many entries into parts of at least a given size."""
     whole = len(starts) > 0 and starts[0] == 0 and starts[-1] == count
     require(bool(whole and (np.diff(starts) >= least).all()), f"{name} is not a partition")
 

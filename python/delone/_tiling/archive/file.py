@@ -40,9 +40,9 @@ def write(path: str | os.PathLike[str], arrays: Mapping[str, NDArray[Any]], name
 
 
 def read(path: str | os.PathLike[str], name: str) -> dict[str, NDArray[Any]]:
-    """Read the arrays of an object of a class, as given to `write`; damage is a FileFormatError."""
+    """Read the arrays of an object, as given to `write`; damage raises FileFormatError."""
     source = _path(path)
-    # Opening a pipe would wait for its writer.
+    # Opening a pipe would block until something writes to it.
     if source.exists() and not source.is_file() and not source.is_dir():
         raise OSError(f"{source} is not a regular file")
     with source.open("rb") as file:
@@ -74,7 +74,7 @@ def _parsed(file: IO[bytes], path: Path, kinds: tuple[Kind, ...]) -> dict[str, N
     return arrays | {name: np.array(str(text)) for name, text in texts.items()}
 
 
-# What damage makes zipfile raise: OSError where it seeks below zero, RuntimeError for a
+# What zipfile raises for damaged files: OSError where it seeks below zero, RuntimeError for a
 # member that claims to be encrypted.
 _DAMAGE = (
     zipfile.BadZipFile,
@@ -146,7 +146,7 @@ def _header(file: IO[bytes], name: str) -> tuple[tuple[int, ...], np.dtype[Any]]
         version = np.lib.format.read_magic(file)
         require(version == (1, 0), f"{name} is an array file of version {version}")
         shape, fortran, dtype = np.lib.format.read_array_header_1_0(file)
-    # NumPy parses the header as Python, so a damaged one raises whatever its parser does.
+    # NumPy parses the header as Python, so a damaged header raises whatever its parser raises.
     except (ValueError, SyntaxError, TypeError, tokenize.TokenError) as error:
         raise ContradictionError(f"{name}: {error}") from error
     require(not fortran or len(shape) < 2, f"{name} is in Fortran order")

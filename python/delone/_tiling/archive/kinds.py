@@ -44,7 +44,7 @@ def _delaunay(ndim: int) -> dict[str, tuple[str, int]]:
     return _simplices(ndim) | {"duplicates": ("<i4", 2)}
 
 
-# Areas that cells share.
+# Common areas of cells.
 _AREAS = {
     "indptr": ("<i8", 0),
     "indices": ("<i4", 0),
@@ -54,7 +54,7 @@ _AREAS = {
     "source_sums": ("<f8", 0),
     "target_sums": ("<f8", 0),
 }
-# Segments, and what they came from.
+# Segments and their sources.
 _ARCS = {
     "constrained": ("|b1", 3),
     "segments": ("<i4", 2),
@@ -170,7 +170,7 @@ def _input(
     check: Callable[..., None] = checks.check_input,
     **further: tuple[str, int],
 ) -> Kind:
-    """Return the layout of a class that is computed again from its input."""
+    """Return the layout of a class that is recomputed from its input."""
     return Kind(f"delone.{name} {ndim}-D", {"points": ("<f8", ndim)} | further, check)
 
 
@@ -212,7 +212,7 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
     ),
     "PeriodicDelaunay": (_input("PeriodicDelaunay", 2, weights=_WEIGHTS, periods=_PERIODS),),
     "Voronoi": (
-        # The clip is a box or an outline, as WKB; what is not there is empty.
+        # The clip is a box or an outline, as WKB; what does not exist is empty.
         _input(
             "Voronoi",
             2,
@@ -280,7 +280,7 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
                 "level": ("<f8", 0),
                 "index": ("|b1", 0),
                 "levels": ("<f8", 0),
-                # Triangles, short lines, small lines and points of lines that are left out.
+                # Triangles, short lines, small lines and points of lines that are omitted.
                 "counts": ("<i8", 0),
             },
             checks.check_contours,

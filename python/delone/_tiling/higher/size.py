@@ -3,7 +3,7 @@
 Two estimates need only the number of points. For uniform points, the expected number of simplices
 per point is known (J. Møller, "Lectures on random Voronoi tessellations", 1994). The number of
 facets is at most that of a cyclic polytope (P. McMullen, "The maximum numbers of faces of a convex
-polytope", 1970). If the smaller of the two needs only a small share of the memory, no sample is
+polytope", 1970). If the smaller of the two needs only a small fraction of the memory, no sample is
 needed. Otherwise samples of increasing size are triangulated, and the sizes of the last two are
 extrapolated.
 """
@@ -32,7 +32,7 @@ __all__ = ["peak_bytes", "require_room", "sample_size"]
 _ROW, _COORDINATE = 4, 8
 # The core keeps a record per simplex, and the array of records grows by doubling.
 _GROWTH = 2.5
-# Inputs that are expected to need less than this share of the limit are not sampled.
+# Inputs that are expected to need less than this fraction of the limit are not sampled.
 _SMALL = 1 / 8
 # Samples have up to half of the points, and the last has this many simplices: a few seconds.
 _MOST = 100_000
@@ -123,7 +123,7 @@ def _extrapolated(points: Floats, *, hull: bool) -> int | None:
     """Predict the number of simplices from samples; None if points are too few or degenerate.
 
     If the number of points doubles, the number of simplices grows by a power of two. The exponent
-    decreases toward 1 with the share of points near the boundary, which is n^(-1/d).
+    decreases toward 1 with the fraction of points near the boundary, which is n^(-1/d).
     """
     n, d = points.shape
     order = np.random.default_rng(0).permutation(n)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from delone._base.types import Floats, Indices
 
 
-# So few sizes that taking them apart would cost more.
+# So few sizes that splitting them would cost more.
 _FEW = 1000
 # The exponent of the largest power of two that is a double.
 _LARGEST = 1023
@@ -52,7 +52,7 @@ def summed(parts: list[float]) -> float:
 
 
 def shares(sizes: Floats) -> list[float]:
-    """Return numbers with exactly the same sum, few of them where sizes are alike.
+    """Return numbers with exactly the same sum, few of them if sizes are similar.
 
     S. M. Rump, T. Ogita, S. Oishi, "Accurate floating-point summation part I", SIAM Journal on
     Scientific Computing 31 (2008). Terminates: the largest number left falls by a factor of 2^34.

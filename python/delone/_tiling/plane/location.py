@@ -17,9 +17,9 @@ __all__ = ["Stretch", "across_line", "along", "located", "on_edges", "stretches"
 class Stretch(NamedTuple):
     """Consecutive triangles along a segment, all kept or all removed."""
 
-    # As the tiling of the hull numbers them.
+    # In the numbering of the tiling of the hull.
     whole: Indices
-    # As those that are kept are numbered; -1 if they are removed.
+    # In the numbering of kept triangles; -1 if they are removed.
     kept: Indices
 
     @property
@@ -50,11 +50,11 @@ def along(
     a: Floats,
     b: Floats,
 ) -> Indices:
-    """Return the triangles along a segment from a to b, as `number` numbers them.
+    """Return the triangles along a segment from a to b, in the numbering of `number`.
 
-    `index` and `tiling` are of the whole hull. `number` has the row of each triangle among those
-    that are kept, -1 if removed and at the end; None keeps all. Unless it is None, a and b must
-    differ.
+    `index` and `tiling` are those of the whole hull. `number` contains the row of each triangle
+    among those that are kept, -1 if removed and at the end; None keeps all. Unless it is None, a
+    and b must differ.
     """
     kept = [part.kept for part in stretches(index, tiling, number, a, b) if part.is_kept]
     return np.concatenate([np.empty(0, dtype=np.int32), *kept])
@@ -67,7 +67,7 @@ def stretches(
     a: Floats,
     b: Floats,
 ) -> list[Stretch]:
-    """Return the triangles as `along` does, in parts, and those between that are removed."""
+    """Return the triangles like `along`, in parts, and the removed ones between them."""
     met = index.along(a, b)
     if number is None:
         return [Stretch(met, met)] if len(met) else []

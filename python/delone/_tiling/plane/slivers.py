@@ -1,8 +1,8 @@
-"""Triangles that are thinner than the resolution of coordinates, and those of them at an outline.
+"""Triangles that are thinner than the resolution of coordinates, and those at an outline.
 
-Points along a straight line that is not parallel to an axis lie on it up to rounding only, so a
+Points along a straight line that is not parallel to an axis lie on it only up to rounding, so a
 hull has triangles there whose height is a few units in the last place. Their sides join points that
-are far apart and skip those between them: what is derived from them says nothing of the data.
+are far apart and skip those between them: nothing that is derived from them describes the data.
 """
 
 from __future__ import annotations
@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["at_outline", "shapes", "without"]
 
-# A triangle is thin if its height is below so many units in the last place of its coordinates, and
-# below such a share of its longest side. It is straight if the sine of its largest angle is small.
+# A triangle is thin if its height is below this many units in the last place of its coordinates,
+# and below this fraction of its longest side. It is straight if the sine of its largest angle is
+# small.
 _UNITS = 16
 _SHARE = 2.0**-20
 _BENT = 2.0**-16
@@ -32,10 +33,10 @@ _LEAST = 1e-290
 
 
 class Shapes(NamedTuple):
-    """What is thin among triangles."""
+    """Which triangles are thin."""
 
     thin: Bools
-    # Thin, and the middle one of the corners is on the line of the others up to rounding.
+    # Thin, and the middle corner is on the line of the others up to rounding.
     straight: Bools
     # The corner opposite the longest side.
     longest: Rows
@@ -44,7 +45,7 @@ class Shapes(NamedTuple):
 def shapes(points: Floats, simplices: Indices) -> Shapes:
     """Return which triangles are thin.
 
-    Triangles whose area no double can represent beside the largest coordinates are not thin.
+    Triangles whose area no double can represent relative to the largest coordinates are not thin.
     """
     corners = points[simplices]
     # Units of the largest coordinate, without rounding: nothing overflows.
@@ -62,8 +63,8 @@ def shapes(points: Floats, simplices: Indices) -> Shapes:
 def at_outline(points: Floats, simplices: Indices, neighbors: Indices) -> Bools:
     """Return the straight triangles that can be left out one by one at the outline.
 
-    Each has its longest side at the outline once those before it are left out. Those at a corner of
-    which all triangles would be left out are kept.
+    Each has its longest side at the outline once those before it are left out. Triangles at a
+    corner are kept if all triangles of the corner would be left out.
     """
     dropped = np.zeros(len(simplices), dtype=bool)
     front = np.flatnonzero((neighbors < 0).any(axis=1))

@@ -1,9 +1,9 @@
 """Topology of triangles: boundary, half-edges, incidences.
 
-Needs neither coordinates nor predicates. The input must be a triangulation as the core exports it:
-triangles are counter-clockwise, `neighbors[t, k]` is across the edge opposite vertex k, -1 outside,
-and the boundary is one cycle. All functions are linear in the number of triangles, apart from
-sorting.
+This module needs neither coordinates nor predicates. The input must be a triangulation as the core
+exports it: triangles are counter-clockwise, `neighbors[t, k]` is across the edge opposite vertex k,
+-1 outside, and the boundary is one cycle. All functions are linear in the number of triangles,
+apart from sorting.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _HEAD = np.array([2, 0, 1])
 
 
 def boundary_edges(simplices: Indices, neighbors: Indices) -> Indices:
-    """Return the edges with a triangle on one side only, their left, in the order of triangles."""
+    """Return the edges with a triangle only on their left, in the order of triangles."""
     parts = [np.nonzero(neighbors[block] < 0) for block in blocks(len(neighbors))]
     first = np.zeros(0, dtype=np.int64)
     starts = range(0, len(neighbors), ROWS)
@@ -74,9 +74,9 @@ def boundary_next(boundary: Indices, start: int) -> NDArray[np.int64]:
 
 
 def vertex_to_simplex(simplices: Indices, npoints: int) -> Indices:
-    """Return the first simplex that has each vertex, -1 if none has it; any number of corners."""
+    """Return the first simplex that has each vertex, or -1; for any number of corners."""
     found = np.full(npoints, -1, dtype=np.int32)
-    # If an index is repeated, the last value assigned remains.
+    # If an index is repeated, the last assigned value remains.
     triangles = np.arange(len(simplices) - 1, -1, -1, dtype=np.int32)
     found[simplices[::-1]] = triangles[:, None]
     return found

@@ -1,4 +1,4 @@
-"""Which faces of tetrahedra are given triangles, and the cells between these."""
+"""Which faces of tetrahedra are given triangles, and the cells between them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["Sides", "cells", "directions", "is_odd", "sides"]
 
 
 class Sides(NamedTuple):
-    """What the faces of tetrahedra are."""
+    """The given triangles among the faces of tetrahedra."""
 
     # (m, 4): the row of the triangle opposite each corner, or -1.
     face: Indices
@@ -37,11 +37,11 @@ def sides(simplices: Indices, faces: Indices, npoints: int) -> Sides:
 
 
 def directions(simplices: Indices, faces: Indices, face: Indices) -> NDArray[np.int8]:
-    """Return `Sides.out`, if it is known which triangle is opposite each corner; O(m)."""
+    """Return `Sides.out`, given the triangle opposite each corner; O(m)."""
     tetrahedron, corner = np.nonzero(face >= 0)
     outward = simplices[tetrahedron[:, None], np.array(FACES)[corner]]
     given = faces[face[tetrahedron, corner]]
-    # Turned so that both begin with the same vertex.
+    # Rotated so that both begin with the same vertex.
     first = np.argmax(given == outward[:, :1], axis=1)
     same = given[np.arange(len(given)), (first + 1) % 3] == outward[:, 1]
     out = np.ones(simplices.shape, dtype=np.int8)
@@ -60,6 +60,6 @@ def is_odd(simplices: Indices) -> NDArray[np.bool_]:
 
 
 def cells(neighbors: Indices, locked: NDArray[np.bool_]) -> Indices:
-    """Return the number of the cell of each tetrahedron: what is connected without locked faces."""
+    """Return the cell number of each tetrahedron; cells are separated by locked faces."""
     open_ones = np.where(locked, np.int32(-1), neighbors)
     return _core.alpha_labels(np.ones(len(neighbors), dtype=bool), open_ones)

@@ -165,7 +165,7 @@ def _corners(points: Floats) -> tuple[int, list[int], tuple[int, int, int]] | No
 
 
 def _apex(points: Floats, row: int, axis: int) -> Floats:
-    """Return a point off the plane, at a distance like that of the points from each other."""
+    """Return a point off the plane, at a distance similar to the distances between the points."""
     apex = points[[row]]
     with np.errstate(over="ignore"):
         size = float((points.max(axis=0) - points.min(axis=0)).max())

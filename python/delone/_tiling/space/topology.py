@@ -1,8 +1,8 @@
 """Topology of tetrahedra: faces, boundary, neighbors.
 
-Needs neither coordinates nor predicates. The input must be a triangulation as the core exports it:
-tetrahedra are positively oriented, `neighbors[t, k]` is across the face opposite vertex k, -1
-outside.
+This module needs neither coordinates nor predicates. The input must be a triangulation as the core
+exports it: tetrahedra are positively oriented, `neighbors[t, k]` is across the face opposite vertex
+k, -1 outside.
 """
 
 from __future__ import annotations

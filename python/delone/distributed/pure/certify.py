@@ -1,10 +1,10 @@
 """Which triangles are certain, and which tiles to query about the others.
 
-A triangle of the points that a tile knows belongs to the whole set if no point at all is in
-conflict with it: inside its circle, or on it where the tie is broken that way. Unknown points of
-other tiles lie outside the box of the tile, so a closed circumdisk inside the box, rounded outward
-by the core, is a proof. Every other disk is sent as a query to the tiles whose points it may meet
-beyond the box.
+A triangle of the points that a tile knows belongs to the triangulation of the whole set if no point
+of the set is in conflict with it: inside its circle, or on it if the tie is broken that way.
+Unknown points of other tiles lie outside the box of the tile, so a closed circumdisk inside the
+box, rounded outward by the core, is a proof. Every other disk is sent as a query to the tiles whose
+points it may meet beyond the box.
 """
 
 from __future__ import annotations
@@ -40,16 +40,17 @@ class Known:
     extents: Floats
 
     def certain(self, points: Floats, simplices: Indices, own: int, *, threads: int = 1) -> Bools:
-        """Return which triangles have their disk in the box and one of the first `own` points."""
+        """Return which triangles have one of the first `own` points, and their disk in the box."""
         left, bottom, right, top = self.box.tolist()
         return _core.within2(points, simplices, own, (left, bottom, right, top), threads)
 
     def questions(
         self, points: Floats, simplices: Indices, rows: Rows, among: Sequence[int] | None = None
     ) -> tuple[Rows, Rows]:
-        """Return pairs of a row of `simplices` and a tile to query: its disk may meet points of it.
+        """Return pairs of a row of `simplices` and a tile whose points its disk may contain.
 
-        `among` restricts the tiles. The part in the box is ignored: there all points are known.
+        `among` restricts the tiles. The part in the box is ignored, because all points there are
+        known.
         """
         disks = _core.disks2(points, simplices.take(rows, axis=0))
         low, high = disks[:, :2] - disks[:, 2:], disks[:, :2] + disks[:, 2:]
@@ -67,7 +68,7 @@ class Known:
 
     @staticmethod
     def _reaches(disks: Floats, extent: Floats) -> Bools:
-        """Whether a disk may meet a box; True if rounding leaves a doubt."""
+        """Whether a disk may meet a box; True if rounding leaves it undecided."""
         center, radius = disks[:, :2], disks[:, 2]
         with np.errstate(over="ignore"):
             off = np.maximum(np.maximum(extent[:, :2] - center, center - extent[:, 2:]), 0.0)

@@ -1,4 +1,4 @@
-"""Distribution of the source: each point goes to its tile, and copies go to first halos."""
+"""Distribution of the source: each point goes to its tile, and copies go to initial halos."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tiles: the half-open cells of a k-d tree over a sample, and the first halo of each.
+"""Tiles: the half-open cells of a k-d tree over a sample, and the initial halo of each.
 
 A cell includes its lower sides and leaves its upper ones to its neighbors, so each point of the
 plane lies in exactly one cell, and equal points are in the same tile. Cuts are coordinates of
@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 
 __all__ = ["HALO", "Tiles", "plant", "strips"]
 
-# Points in the first halo of a tile, in units of the square root of the number of its points. Half
-# as many leave several times as many triangles to query about, twice as many hardly fewer.
+# Points in the initial halo of a tile, in units of the square root of the number of its points.
+# With half as many, there are several times as many triangles to query about; with twice as many,
+# hardly fewer.
 HALO = 11.0
 
 
@@ -141,9 +142,9 @@ def _cut(points: Floats, count: int) -> tuple[int, float] | None:
 def strips(tiles: Tiles, sample: Floats, count: int) -> Floats:
     """Return the box that each tile knows initially: its cell, and a strip along each side.
 
-    A strip is as wide as the one inside the cell that contains one side's share of the halo, by the
-    sample of `count` points, but not so wide that it contains far more than that: the density on
-    the other side of a cut may be much higher.
+    A strip is as wide as the one inside the cell that contains one side's share of the halo,
+    according to the sample of `count` points, but not so wide that it contains far more than that:
+    the density on the other side of a cut may be much higher.
     """
     owner = tiles.locate(sample)
     order = np.argsort(owner, kind="stable")

@@ -2,13 +2,13 @@
 
 Work is divided by level, not by area: a line of a level depends on the triangles that this level
 crosses, wherever they are. So the triangles of a few levels are gathered from all tiles and drawn
-at once, and no line has to be joined. A line has about one point for each triangle, so these
-triangles need little more memory than the line itself. Lines wait on disk until those of all levels
-are drawn.
+together, and no line has to be joined. A line has about one point for each triangle, so these
+triangles need little more memory than the line itself. Lines are kept on disk until those of all
+levels are drawn.
 
-Two things depend on more than one level. Where rounded lines would cross, points are united in the
-cell between two levels, so triangles are drawn with the level below and the one above, too. And
-triangles thinner than the resolution of coordinates may be left out at the outline; so all thin
+Two things depend on more than one level. Where rounded lines would cross, points are merged in the
+cell between two levels, so triangles are also drawn with the level below and the one above.
+Triangles thinner than the resolution of coordinates may be left out at the outline, so all thin
 triangles and their neighbors are in each part, and what is left out in one part is left out in all.
 """
 
@@ -46,9 +46,9 @@ if TYPE_CHECKING:
 
 __all__ = ["CROSSINGS", "contours", "parts"]
 
-# Crossings of triangles and levels that are drawn at once, each with about 250 bytes of memory.
+# Crossings of triangles and levels that are drawn together, each with about 250 bytes of memory.
 CROSSINGS = 1_000_000
-# Triangles of a tile whose edges are compared at once.
+# Triangles of a tile whose edges are compared together.
 _TRIANGLES = 1 << 18
 
 
@@ -68,7 +68,7 @@ class _Scan(NamedTuple):
 
 
 class _Part(NamedTuple):
-    """A file with the lines of some levels, or what is in their way."""
+    """A file with the lines of some levels, or what prevents drawing them."""
 
     lines: str
     tangled: Rows
@@ -99,8 +99,8 @@ def parts(  # noqa: PLR0917
     value: str,
     executor: Any,
 ) -> Iterator[Contours]:
-    """Return the contours of all tiles, those of a few levels at once."""
-    # Levels and limits are checked before the first lines are asked for.
+    """Return the contours of all tiles, a few levels at a time."""
+    # Levels and limits are checked before the first lines are requested.
     wanted = _wanted(tin, given, finish, max_points, value)
     return _parts(tin, finish, wanted, value, executor)
 
@@ -127,7 +127,7 @@ def _wanted(
     max_points: int,
     value: str,
 ) -> tuple[Floats, Bools, _Scan]:
-    """Return levels, which of them are index contours, and what crosses them."""
+    """Return levels, which of them are index contours, and the crossing triangles."""
     tin._require(value)
     most = as_count(max_points, name="max_points") // finish.factor
     levels, marked = levels_of(partial(_extremes, tin, value), *given)
@@ -161,7 +161,7 @@ def _outline(tin: TileFolder, dropped: Rows) -> Floats:
 
 
 def _together(files: list[str], left_out: int, outline: Floats | None) -> Drawn:
-    """Put the lines of files together."""
+    """Combine the lines of files."""
     none = np.empty(0, dtype=np.int64)
     sizes, numbers = [none], [none]
     for file in files:
@@ -179,7 +179,7 @@ def _together(files: list[str], left_out: int, outline: Floats | None) -> Drawn:
 
 
 def _extremes(tin: TileFolder, value: str) -> tuple[float, float]:
-    """The least and the greatest value; each point is a corner of a triangle."""
+    """The smallest and the largest value; each point is a corner of a triangle."""
     low, high = math.inf, -math.inf
     for number in range(tin.ntiles):
         path = tin.store.path(tile_names(number)[0])
@@ -212,7 +212,8 @@ def _thin(tile: Tile) -> Rows:
     """The triangles that are thin."""
     a, b, c = (tile.points[corner] for corner in tile.simplices.T)
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
-    # Few remain: areas of all triangles without rounding errors would take much longer.
+    # Few remain; computing the areas of all triangles without rounding errors would take much
+    # longer.
     slack = 1024 * np.spacing(np.abs(tile.points).max(initial=0.0))
     most = np.abs(ux) + np.abs(uy) + np.abs(vx) + np.abs(vy)
     some = np.flatnonzero(~(np.abs(ux * vy - uy * vx) > slack * most))
@@ -241,7 +242,7 @@ def _drawn(
     The results are files, one for each part, and the triangles that are left out.
     """
     ranges = _ranges(scan.crossings)
-    # On a cluster, other machines have to see the files.
+    # On a cluster, other machines must be able to read the files.
     place = None if isinstance(executor, str) else tin.path
     with TemporaryDirectory(prefix=".contours-", dir=place) as folder:
         dealt = [
@@ -262,7 +263,7 @@ def _untangled(
 ) -> tuple[list[str], Rows]:
     """Draw lines, and return their files with the triangles that are left out.
 
-    Each round leaves out or collapses at least one triangle, or is the first that unites points
+    Each round leaves out or collapses at least one triangle, or is the first that merges points
     that are far apart, as in `delone.terrain.slivers.drawn`.
     """
     none = np.empty(0, dtype=np.int64)
@@ -283,7 +284,7 @@ def _untangled(
 
 
 def _ranges(crossings: Rows) -> list[tuple[int, int]]:
-    """Ranges of levels that are drawn at once: one level, or several with few crossings."""
+    """Ranges of levels that are drawn together: one level, or several with few crossings."""
     found, start, count = [], 0, 0
     for k, number in enumerate(crossings.tolist()):
         if k > start and count + number > CROSSINGS:

@@ -1,8 +1,8 @@
 """Rasters from tiled triangulations: linear interpolation into a file, tile by tile.
 
-Each node gets its value from the triangle of the whole set that contains it, whichever tile has it,
-so there are no seams. Values are stored in a temporary file next to the target, so that the memory
-needed is that of one tile.
+Each node gets its value from the triangle of the whole set that contains it, whichever tile
+contains that triangle, so there are no seams. Values are stored in a temporary file next to the
+target, so that the memory needed is that of one tile.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ if TYPE_CHECKING:
 
 __all__ = ["Shown", "write_dem"]
 
-# What a raster may have.
+# What a raster may contain.
 WHAT = ("value", "slope", "aspect", "hillshade")
 # Nodes per block.
 _BLOCK = 1 << 18
 
 
 class Shown(NamedTuple):
-    """What a raster has: values, or a measure of triangles and the light for it."""
+    """What a raster contains: values, or a measure of triangles and the light for it."""
 
     what: str
     azimuth: float

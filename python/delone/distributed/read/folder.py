@@ -51,7 +51,7 @@ class TileFolder:
 
     @property
     def npoints(self) -> int:
-        """The number of points, duplicates included."""
+        """The number of points, including duplicates."""
         return int(self.manifest["points"])
 
     @property

@@ -1,7 +1,7 @@
 """Some triangles of all tiles, as one mesh in memory.
 
-A triangle has one number in all tiles, and a vertex is its row in the source, so tiles need not be
-aligned: what they have in common is what has the same number.
+A triangle has the same number in all tiles, and a vertex is identified by its row in the source, so
+tiles need not be aligned: common parts have the same numbers.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ def gathered(
 def surface_of(patch: Patch, crs: str | None) -> TIN:
     """Return a TIN of the triangles.
 
-    Each of them is a triangle of the Delaunay triangulation of their corners, too: no point is in
+    Each of them is also a triangle of the Delaunay triangulation of their corners: no point is in
     its circumcircle, and of points on it the first one in lexicographic order is among its corners.
     """
     none = np.empty((0, 2), dtype=np.int32)

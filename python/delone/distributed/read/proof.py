@@ -1,11 +1,11 @@
 """Exact validation of a tiled triangulation, with one tile in memory at a time.
 
-Triangles are counter-clockwise; each edge has one triangle on either side or lies on the boundary;
-the boundary is one convex cycle: therefore the triangles tile the hull. There are 2 n - 2 - h of
-them for n distinct points and h on the boundary: therefore each point is a vertex. Each inner edge
-is locally Delaunay with ties by coordinates: therefore the triangulation is Delaunay and canonical
-(B. Delaunay, "Sur la sphère vide", 1934). Besides one tile, memory is needed for the edges and
-vertices that tiles have in common, and a byte for each row in a window of all rows.
+Triangles are counter-clockwise, each edge has one triangle on either side or lies on the boundary,
+and the boundary is one convex cycle: therefore the triangles tile the hull. There are 2 n - 2 - h
+of them for n distinct points and h on the boundary: therefore each point is a vertex. Each inner
+edge is locally Delaunay with ties by coordinates: therefore the triangulation is Delaunay and
+canonical (B. Delaunay, "Sur la sphère vide", 1934). Besides one tile, memory is needed for the
+edges and vertices that tiles have in common, and a byte for each row in a window of all rows.
 
 The manifest is compared with the files: hashes, counts, boxes, numbers.
 """
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 __all__ = ["TiledReport", "prove"]
 
-# Rows that are looked at together for points that two tiles own: 256 MB.
+# Rows that are checked together for points that two tiles own: 256 MB.
 _WINDOW = 1 << 28
 
 
@@ -67,7 +67,7 @@ class TiledReport:
 
 
 class _Edges(NamedTuple):
-    """Edges of tiles that have no other side in them."""
+    """Edges of tiles with a triangle of the tile on one side only."""
 
     # (k, 2): the rows of the source at both ends.
     ends: Rows
@@ -235,8 +235,8 @@ def _inner(tile: Tile, owner: Rows) -> list[str]:
     t, k, beyond = t[once], k[once], beyond[once]
     u, v = simplices[t, (k + 1) % 3], simplices[t, (k + 2) % 3]
     other = simplices[beyond]
-    # One corner of each is enough: a triangle with a repeated corner would have the edge in both
-    # directions, one of them as its neighbor has it, which is not a valid neighborhood.
+    # One corner of each is enough: a triangle with a repeated corner would contain the edge in both
+    # directions, one of which is that of its neighbor, so the neighborhood would be invalid.
     q = other[(other != u[:, None]) & (other != v[:, None])]
     a, b, c, d = (np.ascontiguousarray(points[w]) for w in (u, v, simplices[t, k], q))
     wrong = np.flatnonzero(_core.incircle(a, b, c, d, True) > 0)
@@ -255,7 +255,7 @@ def _neighbors(tile: Tile, found: list[str]) -> NDArray[np.int32]:
 
 
 def _open_edges(tile: Tile) -> _Edges:
-    """The edges of a tile that have no other side in it."""
+    """The edges of a tile with a triangle of the tile on one side only."""
     simplices = tile.simplices
     t, k = np.nonzero(_neighbors(tile, []) < 0)
     rows = np.stack([simplices[t, (k + j) % 3] for j in (1, 2, 0)], axis=1)

@@ -1,11 +1,11 @@
-"""Simplification of a tiled triangulation: each tile on its own, without cracks between them.
+"""Simplification of a tiled triangulation: each tile separately, without cracks between tiles.
 
 Tiles meet along the cuts of their tree, which are parallel to an axis. First, the profile of the
-surface along each cut is simplified, using only the triangles along it. Its points are fixed where
-a cut ends at another one, and at the hull. Then each tile inserts points between the lines around
-it. These lines stay, so both sides of a cut have the same edges. Points on a cut are within half of
-the error of its line, which leaves room for rounding; all others are within the error, as in one
-piece.
+surface along each cut is simplified, using only the triangles along it. Points where a cut ends at
+another one, or at the hull, are fixed. Then each tile inserts points between the lines around it.
+These lines are kept, so both sides of a cut have the same edges. Points on a cut are within half of
+the error of its line, which leaves room for rounding; all others are within the error, as without
+tiles.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _EPS = float(np.finfo(np.float64).eps)
 
 
 class _Cut(NamedTuple):
-    """A cut of the tree: the axis perpendicular to it, its place, and where it ends."""
+    """A cut of the tree: the axis perpendicular to it, its position, and where it ends."""
 
     axis: int
     place: float
@@ -47,7 +47,7 @@ class _Cut(NamedTuple):
     high: float
 
     def points(self, way: Floats) -> Floats:
-        """Return places along the cut."""
+        """Return positions along the cut."""
         across = np.full(len(way), self.place)
         return np.column_stack((across, way) if self.axis == 0 else (way, across))
 
@@ -118,7 +118,7 @@ def _own(tin: TileFolder, number: int, value: str) -> Floats:
     """The points that a tile owns, (n, 3); of those that coincide, the first."""
     tile = tin.tile(number)
     ids = tile.ids[tile.owned]
-    # Negative zeros are zeros.
+    # Negative zeros count as zeros.
     points = np.column_stack((tile.points, heights_of(tile, value)))[tile.owned] + 0.0
     order = np.lexsort((ids, points[:, 1], points[:, 0]))
     same = (np.diff(points[order, :2], axis=0) == 0).all(axis=1)
@@ -149,11 +149,11 @@ def _within(line: Floats, cell: Floats) -> Floats:
 
 
 def _profile(path: str, value: str, cut: _Cut, own: Floats) -> Floats:
-    """The heights of the surface along a cut, (n, 3), with all points of the survey on it."""
+    """The heights of the surface along a cut, (n, 3), including all survey points on it."""
     ends = cut.points(np.array([cut.low, cut.high]))
     heights = profile(TileFolder._at(path), ends, value)
     table = np.column_stack((heights.points, heights.z))[~np.isnan(heights.z)]
-    # The cut is parallel to an axis, so only the place along it is rounded.
+    # The cut is parallel to an axis, so only the position along it is rounded.
     table[:, cut.axis] = cut.place
     both = np.concatenate((own, table[cut.on(table)]))
     _, first = np.unique(both[:, 1 - cut.axis], return_index=True)
@@ -162,7 +162,7 @@ def _profile(path: str, value: str, cut: _Cut, own: Floats) -> Floats:
 
 
 def _meeting(cuts: list[_Cut], lines: list[Floats]) -> list[tuple[Floats, Bools]]:
-    """Return the lines with the ends of others on them, and which points are such ends.
+    """Return the lines including the ends of other lines on them, and which points are such ends.
 
     Where lines meet, the height is that of the first one, which is nearer to the root.
     """
@@ -184,11 +184,11 @@ def _meeting(cuts: list[_Cut], lines: list[Floats]) -> list[tuple[Floats, Bools]
 def _simplified_lines(
     cuts: list[_Cut], lines: list[tuple[Floats, Bools]], error: float
 ) -> list[Floats]:
-    """Return the points of lines that stay: all others are within half of the error."""
+    """Return the points of lines that are kept: all others are within half of the error."""
     simple = []
     for cut, (points, fixed) in zip(cuts, lines, strict=True):
         slack = 8 * _EPS * float(np.abs(points[:, 2]).max(initial=0.0))
-        # If rounding could matter, all points stay.
+        # If rounding could matter, all points are kept.
         kept = thinned(points[:, 1 - cut.axis], points[:, 2], fixed, error / 2)
         simple.append(points if error / 2 <= slack else points[kept])
     return simple
@@ -240,7 +240,7 @@ def _edges(lines: list[Floats]) -> tuple[Floats, Indices]:
 
 
 def _together(pieces: list[_Piece], crs: str | None) -> TIN:
-    """Return the surface of all pieces, whose borders are edges of it."""
+    """Return the surface of all pieces, whose borders are among its edges."""
     starts = np.cumsum([0, *(len(piece.points) for piece in pieces)])
     every = np.concatenate([piece.points for piece in pieces])
     _, first, same = np.unique(every[:, :2], axis=0, return_index=True, return_inverse=True)

@@ -71,10 +71,10 @@ class TiledSurface(TileFolder):
         level crosses more than a million triangles. Triangles and lines of each group are kept in
         temporary files until all lines are drawn.
 
-        Where rounded lines would cross, points of them are united, and which one of several points
-        stays depends on the order of the triangles. So if levels are so near each other that lines
-        are only a few units in the last place apart, coordinates may differ from those of a TIN by
-        as much as points are moved there: up to 2,250 such units in tests.
+        Where rounded lines would cross, their points are merged, and which one of several points
+        remains depends on the order of the triangles. So if levels are so close that lines are only
+        a few units in the last place apart, coordinates may differ from those of a TIN by the
+        distance that points are moved there: up to 2,250 such units in tests.
 
         Examples
         --------
@@ -105,7 +105,7 @@ class TiledSurface(TileFolder):
         values: str = "z",
         executor: Any = "serial",
     ) -> Iterator[Contours]:
-        """Yield contour lines that need not fit into memory together, a few levels at a time.
+        """Yield contour lines that need not all fit into memory, a few levels at a time.
 
         Parameters
         ----------
@@ -115,7 +115,8 @@ class TiledSurface(TileFolder):
         Yields
         ------
         Contours
-            The lines of some levels, in the order of the levels; `levels` of each has all of them.
+            The lines of some levels, in the order of the levels; the `levels` of each contain all
+            levels.
 
         Raises
         ------
@@ -124,7 +125,7 @@ class TiledSurface(TileFolder):
 
         See Also
         --------
-        contours : All lines at once, also smoothed and simplified, which needs all levels.
+        contours : All lines together, optionally smoothed and simplified, which needs all levels.
 
         Examples
         --------
@@ -233,7 +234,7 @@ class TiledSurface(TileFolder):
         Parameters
         ----------
         max_error : float
-            The greatest vertical distance of a point from the new surface.
+            The largest vertical distance of a point from the new surface.
         values : str, optional
             The name of the attribute; by default heights.
         executor : {"serial"} or dask.distributed.Client, optional
@@ -258,11 +259,11 @@ class TiledSurface(TileFolder):
         Notes
         -----
         Along the cuts between tiles, the profile of the surface is simplified first, to half of the
-        error. Both tiles beside a cut get the same line, so there are no cracks. Then each tile is
-        simplified as by `delone.terrain.TIN.simplify`, with the lines around it as edges that stay.
-        The bound holds exactly at all points, including those on cuts; where points coincide, at
-        the first of them. Where a cut crosses an edge of the surface, its line may have a point
-        that is not a point of the survey; the height of such a point is rounded.
+        error. The tiles on both sides of a cut get the same line, so there are no cracks. Then each
+        tile is simplified as by `delone.terrain.TIN.simplify`, and the lines around it remain
+        edges. The bound holds exactly at all points, including those on cuts; where points
+        coincide, at the first of them. Where a cut crosses an edge of the surface, its line may
+        have a point that is not a point of the survey; the height of such a point is rounded.
 
         Memory is that of one tile and of the result. Because of the lines, the result has more
         triangles than a surface that is simplified in one piece. It depends on the tiles, but not

@@ -128,7 +128,7 @@ def read_columns(path: Path, wanted: Mapping[str, str | Sequence[str]]) -> dict[
 
 
 def _require(right: NDArray[np.bool_], path: Path, column: str, fault: str) -> None:
-    """Reject a file with the first row that is invalid."""
+    """Reject a file and name the first invalid row."""
     if not right.all():
         rows = np.flatnonzero(~right.reshape(len(right), -1).all(axis=1))
         raise FileFormatError(f"{path}: {column} of row {rows[0]} {fault}")

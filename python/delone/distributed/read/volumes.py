@@ -26,7 +26,7 @@ __all__ = ["profile", "volume"]
 
 
 class _Side:
-    """What `goal_of` asks of a surface: its reference system and units."""
+    """What `goal_of` needs from a surface: its reference system and units."""
 
     def __init__(self, crs: str | None) -> None:
         self.crs, self.units = crs, None
@@ -97,7 +97,7 @@ def _near(tin: TileFolder, extent: list[float]) -> list[int]:
 
 
 def profile(tin: TileFolder, line: Any, value: str) -> Profile:
-    """Return the heights along a line, which needs the triangles along it alone."""
+    """Return the heights along a line, which needs only the triangles along it."""
     tin._require(value)
     points = line_of(line, name="line", crs=tin.crs)
     low, high = points.min(axis=0).tolist(), points.max(axis=0).tolist()

@@ -1,7 +1,7 @@
 """Cost model of a run, with a few measured constants.
 
-The constants are those of ``benchmarks/tiles.py``; the page on planning in the guide shows
-how well they fit.
+The constants are measured by ``benchmarks/tiles.py``; the guide's page on planning shows how
+accurate they are.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Tasks on a Dask cluster (extra ``dask``): local processes, or machines that share a file system.
 
 Dask starts the workers, distributes the tasks and reassigns those of a worker that died. Tasks
-exchange data in the files of the run, so that any worker can repeat a task, and the scheduler holds
-only names and small summaries.
+exchange data in the files of the run, so that any worker can repeat a task, and the scheduler
+stores only names and small summaries.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _LONGEST = 120.0
 class DaskExecutor:
     """Tasks on the workers of a Dask client that is connected to a scheduler.
 
-    The workers must see the folder of the output, and files of the source, under the same names.
+    The workers must have access to the output folder, and to source files, under the same names.
     """
 
     threads = 1

@@ -132,7 +132,7 @@ class Run:
         dealt = self._stage("deal", self._pieces())
         slices, counts = collect(self.store, len(layout.tiles), sorted(dealt.items()))
         self._check_sizes(slices)
-        # Distributed points are not scanned again.
+        # Points that have been distributed are not scanned again.
         self.store.remove("work/pieces")
         threads = self.executor.threads
         begun = self._stage("begin", {t: (runs, threads) for t, runs in enumerate(slices)})

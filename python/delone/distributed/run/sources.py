@@ -95,7 +95,7 @@ class Source:
     """All pieces of a source, in the order of their rows, and how many rows the files declare.
 
     `identity` must not change if a run is resumed: names, sizes and times of files, or a hash.
-    `array` has the points themselves, with heights in a third column.
+    `array` contains the points themselves, with heights in a third column.
     """
 
     pieces: tuple[Piece, ...]

@@ -34,7 +34,8 @@ if TYPE_CHECKING:
 
 __all__ = ["MOST", "TASKS", "note_of", "perform"]
 
-# Points that a tile returns per circle: one makes more rounds, many are sent in vain.
+# Points that a tile returns per circle: with one, there are more rounds; with many, most are
+# useless.
 MOST = 16
 
 

@@ -1,8 +1,8 @@
 """A worker process: reads tasks from its standard input until it ends, and returns summaries.
 
-It is a fresh interpreter, because a fork of a process with threads may deadlock. It imports
-nothing from the program that started it, so that program need not guard its main module. When
-that program ends, however it does, so does the input.
+It is a fresh interpreter, because a fork of a process with threads may deadlock. It imports nothing
+from the program that started it, so that program need not guard its main module. The input ends
+when that program ends, for whatever reason.
 """
 
 from __future__ import annotations

@@ -70,7 +70,7 @@ class Store:
         self.root = Path(root)
 
     def path(self, name: str) -> Path:
-        """Return the path of a file; one that a link leads out of the folder is rejected."""
+        """Return the path of a file; a path that leaves the folder through a link is rejected."""
         path = self.root / name
         real, inside = os.path.realpath(path), os.path.realpath(self.root)
         if os.path.commonpath((real, inside)) != inside:

@@ -1,7 +1,7 @@
 """A lock for one run at a time in an output; the system releases it when a process ends.
 
-The file says who holds it. As the system holds the lock, a killed process leaves none, whatever the
-file contains, and two runs that find such a file cannot both acquire it.
+The file says who holds it. Because the system manages the lock, a killed process does not leave one
+behind, whatever the file contains, and two runs that find such a file cannot both acquire it.
 """
 
 from __future__ import annotations

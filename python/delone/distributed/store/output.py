@@ -40,8 +40,8 @@ def write_tile(  # noqa: PLR0917
 ) -> dict[str, Any]:
     """Write the certain triangles of a tile, whose own rows come first in `rows`.
 
-    `certain`, (m, 3), has positions in `rows` and is overwritten. `late` has triangles of later
-    rounds: `kept`, as numbers in the source, and the `seen` rows of their vertices.
+    `certain`, (m, 3), contains positions in `rows` and is overwritten. `late` contains triangles of
+    later rounds: `kept`, as numbers in the source, and the `seen` rows of their vertices.
     """
     vertices, triangles = _joined(rows, own, certain, late)
     points = coordinates(vertices)

@@ -188,7 +188,7 @@ _MANIFEST = _record(
 def check_manifest(found: Any, path: Path) -> None:
     """Reject an invalid manifest; the message names the file and the first invalid field."""
     try:
-        # In another format everything may be different.
+        # In another format, everything may be different.
         if not isinstance(found, dict) or found.get("format") != FORMAT:
             raise _WrongFieldError(f"it is not {FORMAT!r:.80}")
         _MANIFEST(found, "")
