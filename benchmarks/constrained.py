@@ -1,4 +1,4 @@
-"""Delone's constrained triangulations and polygons beside those of other libraries.
+"""Delone's constrained triangulations and polygons compared with other libraries.
 
 Tables: the land polygons of Natural Earth (where ``--coastline`` or the environment variable
 DELONE_COASTLINE names ``ne_10m_land.geojson``, gzipped or not), a million points and a fractal

@@ -1,4 +1,4 @@
-"""Counts instructions of fixed jobs, and compares them with the counts that are stored beside this.
+"""Counts instructions of fixed jobs, and compares them with the counts stored next to this file.
 
     python benchmarks/counts.py [--update] [JOB ...]
 
@@ -6,7 +6,7 @@ A count is no time: it is nearly the same on every machine, whatever else that d
 callgrind counts what `crates/core/examples/counts.rs` does inside of its jobs. Code for newer
 processors is left out by the feature `baseline`, as callgrind knows no AVX-512.
 
-Exit codes: 0 if no job takes more than the tolerance, or if valgrind is not there, which a line
+Exit codes: 0 if no job takes more than the tolerance, or if valgrind is not installed, which a line
 says; 1 if one does. A compiler of another version makes other code: then counts are printed and
 nothing fails.
 """
@@ -82,7 +82,7 @@ def is_notable(now: int, before: int | None) -> bool:
 
 
 def compare(counts: dict[str, int], stored: dict[str, int], *, same: bool) -> int:
-    """Print counts beside those that are stored; return the exit code."""
+    """Print counts next to the stored ones; return the exit code."""
     for job, now in counts.items():
         print(line(job, now, stored.get(job)))
     changed = [job for job, now in counts.items() if is_notable(now, stored.get(job))]

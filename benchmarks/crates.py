@@ -1,4 +1,4 @@
-"""Delone's core beside the Rust crates spade and delaunator, and beside CGAL: the same points.
+"""Delone's core compared with the Rust crates spade and delaunator, and CGAL, on the same points.
 
 Builds benchmarks/peers, hands it each point set as a file, and prints a table of medians. Each
 crate runs in processes of its own, and so does CGAL, where its headers are installed: the first run

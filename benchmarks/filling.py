@@ -1,4 +1,4 @@
-"""Tetrahedra inside closed surfaces: seconds, memory and points added, beside TetGen if installed.
+"""Tetrahedra inside closed surfaces, also by TetGen if installed: seconds, memory, added points.
 
 ``python benchmarks/filling.py sphere:6 roofs part.stl`` takes noisy spheres (each level has four
 times the triangles of the one before; level 8 has 1.3 million), the shipped lidar roofs closed to a

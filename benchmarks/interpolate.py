@@ -36,7 +36,7 @@ def median(call: Call, runs: int) -> float:
 
 
 def patient(call: Callable[[Any], Any], queries: Any) -> tuple[Call, int]:
-    """Return a call with as many of the queries as there is patience for, and their number."""
+    """Return a call with as many of the queries as are practical, and their number."""
     # The first call may have to make what later ones use.
     call(queries[:1])
     each = median(lambda: call(queries[:FEW]), 1) / FEW

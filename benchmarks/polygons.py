@@ -1,4 +1,4 @@
-"""The insides of polygons: delone beside the mapbox_earcut wheel, with the error of the area.
+"""The insides of polygons: delone and the mapbox_earcut wheel, with the error of the area.
 
 Small calls are timed in batches of at least a tenth of a second, the peers in turns in one process.
 The error compares the exact sum of the triangles' areas with the exact area inside by the even-odd

@@ -1,4 +1,4 @@
-"""Quality meshes beside those of other libraries: seconds, counts, angles.
+"""Quality meshes compared with those of other libraries: seconds, counts, angles.
 
 delone, the package ``triangle``, spade, CGAL's mesher and, where it is installed, gmsh mesh a
 fractal ring and, where ``--coastline`` or the environment variable DELONE_COASTLINE names the land

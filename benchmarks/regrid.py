@@ -1,4 +1,4 @@
-"""Conservative weights on the sphere beside YAC; how they are applied, and memory; in turns.
+"""Conservative weights on the sphere compared with YAC, their application, and memory; in turns.
 
 Both make their cells from the same arrays of corners in the timed call, and use one thread. YAC is
 left out where it is not installed; it needs an MPI library, such as the package ``openmpi``. Memory

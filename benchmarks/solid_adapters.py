@@ -1,7 +1,7 @@
 """One call per peer on a closed surface: a `Surface` in, tetrahedra out.
 
 As in `adapters`; but what goes to the judge are counts: tetrahedra, points added and triangles of
-the input that are faces of tetrahedra. Each peer works in processes of its own, TetGen too.
+the input that are faces of tetrahedra. Each peer, including TetGen, works in processes of its own.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Triangulations of directions beside stripy, SciPy and delone's own in the plane; in turns.
+"""Triangulations of directions compared with stripy, SciPy and delone's own in the plane; in turns.
 
 The directions are uniform on the sphere, and points as many are uniform in a square. Beside stripy
 both take longitudes and latitudes in radians; otherwise delone takes vectors. stripy and SciPy are

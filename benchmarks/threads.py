@@ -1,4 +1,4 @@
-"""Two threads beside two processes: how much of a second core reaches delone.
+"""Two threads compared with two processes: how much of a second core reaches delone.
 
 Cores share caches, memory and often one physical core, whose clock may rise while the other half
 rests. So a speed-up of two is not to be had everywhere. The ceiling is what two processes of one

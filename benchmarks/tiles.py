@@ -2,7 +2,7 @@
 
 Three tables. The first: seconds and peak memory of the serial executor and of `Delaunay`, both from
 an npy file to the same Parquet files, at one size of tile and growing numbers of points; each in a
-process of its own, in turns, medians; beside them `Delaunay` from the file alone, with nothing
+process of its own, in turns, medians; for comparison, `Delaunay` from the file alone, with nothing
 written. The second: what tiles exchange on clustered, gridded and track-like data. The
 third, where a lidar file is named: two Dask workers with 1.5 GB each, without and with one of them
 killed. All triangulations are compared with the one in memory, triangle for triangle.

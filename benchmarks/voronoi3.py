@@ -1,4 +1,4 @@
-"""Diagrams of space and interpolation in it, beside SciPy.
+"""3-D diagrams and 3-D interpolation, compared with SciPy.
 
     python benchmarks/voronoi3.py [--n 100000] [--queries 100000] [--runs 3]
 

@@ -1,4 +1,4 @@
-"""Delone beside the other Python packages: the same array in, arrays out.
+"""Delone compared with the other Python packages: the same array in, arrays out.
 
 Each peer works in processes of its own, whose first call is cold and the others warm; the peers
 take turns, round by round. The medians stand in one table per point set, with the peak memory of

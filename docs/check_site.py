@@ -5,7 +5,7 @@ what a browser loads by itself (scripts, styles, fonts, pictures, frames) must b
 site. Scripts are searched for calls that load a literal address of another site. The words that
 users search for are in `TERMS`: the index of the search must have each.
 
-With ``--live`` each figure that readers can change must have the compiled core beside it: nothing
+With ``--live`` each figure that readers can change must have the compiled core next to it: nothing
 half-alive is published.
 """
 
@@ -235,7 +235,7 @@ def check_search(root: Path) -> Iterator[Fault]:
 
 
 def check_live(root: Path) -> Iterator[Fault]:
-    """Yield the figures without the compiled core; a site without such figures is a fault, too."""
+    """Yield the figures without the compiled core; a site without such figures is also a fault."""
     number = 0
     for file in pages(root):
         page = Page()

@@ -75,7 +75,7 @@ html_theme_options = {
     "footer_start": ["copyright"],
     "footer_end": [],
 }
-# Pages without others beside them.
+# Pages without a list of related pages.
 html_sidebars = {name: [] for name in ("index", "howto", "compared", "benchmarks", "changelog")}
 
 autosummary_generate = True

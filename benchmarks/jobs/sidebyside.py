@@ -60,7 +60,7 @@ class Runs:
 def compare(
     about: str | None, ways: dict[str, Way], parser: argparse.ArgumentParser | None = None
 ) -> None:
-    """Run all ways, or inside of a process of its own, one."""
+    """Run all ways or, inside its own process, one."""
     parser = parser or argparse.ArgumentParser()
     parser.description, parser.formatter_class = about, argparse.RawDescriptionHelpFormatter
     parser.add_argument("--runs", type=int, default=3, help="runs of each way")

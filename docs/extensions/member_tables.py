@@ -3,7 +3,7 @@
 The table stands below the description of the class and above its parameters. It has what the page
 has: public members with docstrings, also inherited ones, but not those of exceptions and tuples.
 Classes with few members have none, and the members that `_templates/autosummary/class.rst` leaves
-out are left out here, too.
+out are also left out here.
 """
 
 from __future__ import annotations

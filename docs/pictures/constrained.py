@@ -40,7 +40,7 @@ def island() -> None:
     inside = from_geometry(both, boundary="outline", holes=[lake.mean(axis=0)], conforming=True)
     _, grid = plt.subplots(2, 2, figsize=(10, 7.9), layout="constrained")
     titles = (
-        "Delaunay triangulation of the points;\norange: segments that are not there",
+        "Delaunay triangulation of the points;\norange: segments that are not edges",
         "constrained: all segments, bold, are edges;\na color for each region",
         'boundary="outline", and the lake a hole',
         "conforming: orange vertices make all\nsegments Delaunay edges",

@@ -6,7 +6,7 @@ import numpy as np
 from delone import datasets, sphere
 from delone.interpolate import Linear
 
-# Sites on the globe, and waves in each field, some 5000 km long.
+# Sites on the globe, and waves in each field, about 5000 km long.
 SITES = 4000
 WAVES = 20
 NUMBER = 8.0

@@ -66,7 +66,7 @@ print(
 
 
 def data_folder():
-    """Return the folder ``data`` beside the examples, even when this runs as a notebook."""
+    """Return the folder ``data`` next to the examples, even when this runs as a notebook."""
     here = Path(__file__).parent if "__file__" in globals() else Path.cwd()
     return next(folder / "data" for folder in (here, *here.parents) if (folder / "data").is_dir())
 

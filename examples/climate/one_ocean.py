@@ -2,9 +2,9 @@
 The ocean as one cell
 =====================
 
-No hemisphere contains the ocean. The corners of such a cell do not determine which side of them it is, but the order in
-which they run does: pass ``winding``. Here the coast of Antarctica is the outer ring, and all other land masses are holes.
-The mean of a field over this cell uses the exact part of each grid cell.
+No hemisphere contains the ocean. The corners of such a cell do not determine on which side of them it is, but their
+order does: pass ``winding``. Here the coast of Antarctica is the outer ring, and all other land masses are holes. The
+mean of a field over this cell uses the exact part of each grid cell.
 
 Install: ``pip install "delone[geo,plot]"``.
 """

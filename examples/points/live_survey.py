@@ -3,7 +3,7 @@ A survey in progress: edit points and breaklines, and undo
 ==========================================================
 
 A survey is triangulated while it is measured: points arrive in batches, a curb is drawn as a breakline, and a wrong
-point is removed with the line that ends there. Each group of changes is one edit, which other readers see all at once
+point is removed with the line that ends there. Each group of changes is one edit, which other readers see as a whole
 (:class:`~delone.Dynamic`). Heights are stored by handle, so they stay correct whatever is inserted or removed.
 
 Install: ``pip install "delone[plot]"``.

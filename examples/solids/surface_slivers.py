@@ -2,8 +2,8 @@
 Slivers at a surface
 ====================
 
-Points on a sphere have a triangulation of slivers: all vertices are on the surface, so none may move, and flips
-improve little. Added points inside make the tetrahedra usable for finite elements.
+The triangulation of points on a sphere consists of slivers: all vertices are on the surface, so none may move, and
+flips improve little. Added points inside make the tetrahedra usable for finite elements.
 
 Install: ``pip install "delone[plot]"``.
 """

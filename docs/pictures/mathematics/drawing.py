@@ -65,7 +65,7 @@ def circumcircle(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> tuple[Points, floa
 
 
 def label(ax: Axes, point: ArrayLike, text: str, shift: ArrayLike, color: str = INK) -> None:
-    """A name beside a point, shifted by points of print."""
+    """A name next to a point, shifted by typographic points."""
     ax.annotate(
         text, point, shift, textcoords="offset points", color=color, ha="center", va="center"
     )
