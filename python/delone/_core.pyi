@@ -1325,7 +1325,7 @@ class RefinedMesh:
         """The line under the edge opposite each vertex, or -1, (m, 3)."""
     @property
     def labels(self) -> NDArray[np.int32]:
-        """The label of each triangle, -1 outside of the domain, (m,)."""
+        """The label of each triangle, -1 outside the domain, (m,)."""
     @property
     def needles(self) -> NDArray[np.int32]:
         """The number of the unrefined needle that contains each triangle, or -1, (m,)."""

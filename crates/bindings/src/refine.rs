@@ -128,7 +128,7 @@ pub struct RefinedMesh {
     pub neighbors: Table<i32>,
     /// The line under the edge opposite each vertex, or -1, (m, 3).
     pub sides: Table<i32>,
-    /// The label of each triangle, -1 outside of the domain, (m,).
+    /// The label of each triangle, -1 outside the domain, (m,).
     pub labels: Column<i32>,
     /// The number of the unrefined needle that contains each triangle, or -1, (m,).
     pub needles: Column<i32>,

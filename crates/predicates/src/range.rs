@@ -1,5 +1,5 @@
-//! What the exponents of coordinates allow: the range of expansions, the lattice of differences,
-//! integer widths.
+//! The limits set by the exponents of coordinates: the range of expansions, the lattice of
+//! differences, integer widths.
 
 use crate::expansion::two_difference;
 

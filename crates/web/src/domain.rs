@@ -1,4 +1,4 @@
-//! The part of a constrained triangulation that segments enclose, outside of holes.
+//! The part of a constrained triangulation that segments enclose, outside holes.
 
 use std::collections::HashSet;
 

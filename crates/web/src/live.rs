@@ -1,4 +1,4 @@
-//! A triangulation that is edited in place: what a page asks while a point is dragged.
+//! A triangulation that is edited in place: what a page requests while a point is dragged.
 
 use delone_core::live::plane::Plane;
 use delone_core::base::watch::Watch;

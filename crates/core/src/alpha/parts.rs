@@ -1,4 +1,4 @@
-//! Connected components of simplices that have facets in common.
+//! Connected components of simplices with common facets.
 
 use crate::base::error::Result;
 use crate::base::memory::{filled, with_room};

@@ -1,4 +1,4 @@
-//! Fallible allocation: if memory is refused, the core reports an error and never aborts.
+//! Fallible allocation: if memory is not available, the core reports an error and never aborts.
 //!
 //! Large arrays ask the kernel for huge pages. In a triangulation of a million points, the first
 //! touch of fresh memory costs 40 ns per point with 4 KiB pages and 20 ns with 2 MiB pages: hence

@@ -1,4 +1,5 @@
-//! The foundation of all rooms: errors, arrays, points, boxes, refused memory, interruption and workers.
+//! The foundation of all rooms: errors, arrays, points, boxes, failed allocations, interruption and
+//! workers.
 
 pub mod arrays;
 pub(crate) mod boxes;

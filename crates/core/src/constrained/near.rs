@@ -1,4 +1,5 @@
-//! What comes as near to a segment as its rounding: the vertices whose pixel it meets (see `split`).
+//! What is as close to a segment as its rounding error: the vertices whose pixels it meets (see
+//! `split`).
 //!
 //! Which vertices these are must not depend on the mesh, or points far away would change the result.
 //! So the search is not a walk along the segment: between it and such a vertex there may be others, and a

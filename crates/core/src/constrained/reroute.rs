@@ -1,4 +1,4 @@
-//! A few crossing segments: only they are inserted again, and the others stay where they are.
+//! A few crossing segments: only they are reinserted, and the others stay where they are.
 //!
 //! Segments blocked by a marked edge wait until all others are inserted. The marked edges that each
 //! crosses give the rows that it crosses; with the pairs among those that wait these are all pairs,

@@ -1,4 +1,5 @@
-//! What the insertion of segments asks of vertices: the plane and the sphere differ in this only.
+//! What the insertion of segments needs to know about vertices: the plane and the sphere differ
+//! only in this.
 //!
 //! In the plane segments are straight; on the sphere they are the shorter arcs of great circles. The
 //! arguments of `segment` carry over. The vertices on one side of an arc are in an open half-space,

@@ -1,4 +1,5 @@
-//! Finds the given points that lie deepest in circumcircles, and reports whether these are all.
+//! Finds the given points that lie deepest in circumcircles, and reports whether these are all of
+//! them.
 //!
 //! A k-d tree with the bounding box of the points in each node (J. L. Bentley, "Multidimensional
 //! binary search trees", 1975) finds candidates by disks rounded outward. Whether a candidate is in

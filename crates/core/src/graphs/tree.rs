@@ -1,5 +1,5 @@
 //! A tree of bounding boxes over distinct points along the curve (see `base::boxes`), and distances
-//! whose roundings are allowed for.
+//! that allow for rounding errors.
 
 use delone_predicates::{Point2, Point3};
 

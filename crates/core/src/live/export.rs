@@ -1,4 +1,4 @@
-//! The present triangulation as arrays, equal to those of a fresh build up to their order.
+//! The current triangulation as arrays, equal to those of a new build up to their order.
 
 use super::Live;
 use super::kernel::Kernel;

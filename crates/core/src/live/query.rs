@@ -1,4 +1,4 @@
-//! Queries of the present triangulation: the simplex of a point, and the nearest vertex.
+//! Queries of the current triangulation: the simplex of a point, and the nearest vertex.
 
 use delone_predicates::Sign;
 

@@ -1,4 +1,4 @@
-//! Rows of coordinates and the vertices that they are at: any number of rows share one vertex.
+//! Rows of coordinates and their vertices: any number of rows share one vertex.
 //!
 //! The rows of a vertex form a ring in ascending order, from the smallest, its head, which the vertex
 //! stores. Rows are numbered in the order of their insertion, and a number is never used again.

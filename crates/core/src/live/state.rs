@@ -1,4 +1,4 @@
-//! Snapshots of a live triangulation, and what has changed since the last look.
+//! Snapshots of a live triangulation, and what has changed since the last call.
 
 use delone_predicates::lexicographic;
 

@@ -1,4 +1,4 @@
-//! Convex hulls: facets alone, each point outside kept with one facet that it sees.
+//! Convex hulls: only facets, and for each point outside one facet that it sees.
 //!
 //! The cells are the ghosts of a triangulation without its simplices. In place of the corner behind a
 //! facet there is one of D + 1 points that are not on one plane (`Inside`). The point that is farthest

@@ -1,4 +1,4 @@
-//! Whether a determinant of integers is zero, given a proven bound of its magnitude.
+//! Whether a determinant of integers is zero, given a proven bound on its magnitude.
 //!
 //! It is zero if it vanishes modulo primes whose product exceeds the bound: the product divides it
 //! then. H. Brönnimann, I. Z. Emiris, V. Y. Pan, S. Pion, "Sign determination in residue number

@@ -1,4 +1,4 @@
-//! Points outside of a hull in the making, and their insertion.
+//! Points outside a hull under construction, and their insertion.
 
 use super::cavity::Room;
 use super::cell::{INFINITE, Mesh};

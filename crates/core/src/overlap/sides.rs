@@ -1,5 +1,6 @@
 //! Cells with sides between corners, and the sides by their boxes: in a tree if there are many, so
-//! that a question about one place of a polygon with thousands of corners looks only at the sides there.
+//! that a query about one position of a polygon with thousands of corners looks only at the sides
+//! there.
 
 use std::sync::OnceLock;
 

@@ -1,4 +1,5 @@
-//! Signs that decide which corners and sides of two grids are where, exactly and without ties.
+//! Signs that decide the relative positions of corners and sides of two grids, exactly and without
+//! ties.
 //!
 //! # Ties
 //!

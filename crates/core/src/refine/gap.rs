@@ -1,4 +1,4 @@
-//! Gaps between a line and an apex beside it, and the length over which another line faces it
+//! Gaps between a line and an apex next to it, and the length over which another line faces it
 //! there.
 
 use delone_predicates::{Point2, lexicographic};

@@ -1,5 +1,5 @@
 //! Refinement in rounds, for sizes that only the caller can evaluate: the mesh stays here, and the
-//! caller is asked about new triangles alone.
+//! caller is asked only about new triangles.
 //!
 //! In each round, no triangle becomes smaller than a fraction of what it was, so that variable
 //! sizes are sampled before triangles are smaller than the distance over which sizes change. A

@@ -1,5 +1,4 @@
-//! The bounds of the filters against integers: none is exceeded, and none has much more room than
-//! that.
+//! The bounds of the filters against integers: none is exceeded, and none is much too large.
 //!
 //! A wrong sign requires a near tie whose rounding errors all have the same sign. Random ties come
 //! nowhere near the bounds, so only luck would reveal a bound that is too small. Therefore these

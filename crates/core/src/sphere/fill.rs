@@ -1,4 +1,4 @@
-//! Inserts the directions of a block, one after the other.
+//! Inserts the directions of a block, one after another.
 //!
 //! The order is that of `delaunay::plane::bowyer_watson`. Here, no other method takes over if
 //! cavities are large. Each insertion terminates, so the build terminates for any input, but it may

@@ -1,4 +1,4 @@
-//! Joins two triangulations, of the directions on both sides of a plane, to one of the whole
+//! Joins two triangulations, of the directions on both sides of a plane, into one of the whole
 //! sphere.
 //!
 //! Each is convex on the sphere, with a ring of ghosts. Between the rings is a ring of triangles:

@@ -1,4 +1,4 @@
-//! Clips cells to a box, unbounded cells included.
+//! Clips cells, including unbounded ones, to a box.
 //!
 //! Each cell is convex and is clipped by the four half-planes of the box one after the other (I. E.
 //! Sutherland and G. W. Hodgman, "Reentrant polygon clipping", 1974). An unbounded cell has corners

@@ -1,4 +1,4 @@
-//! Clips convex cells by an outline, where exact predicates leave no doubt.
+//! Clips convex cells by an outline, where exact predicates decide.
 //!
 //! The outline is a set of rings with the inside to the left of each. Four exact orientations
 //! decide whether a segment of it crosses an edge of a cell; the crossing is rounded once. From

@@ -1,4 +1,4 @@
-//! The condensed tree of a hierarchy: clusters of a least size, and where their rows leave them.
+//! The condensed tree of a hierarchy: clusters of a minimum size, and where their rows leave them.
 //!
 //! R. J. G. B. Campello, D. Moulavi, A. Zimek and J. Sander, "Hierarchical density estimates for
 //! data clustering, visualization, and outlier detection" (2015). From the root down, each level

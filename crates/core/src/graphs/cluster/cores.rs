@@ -1,4 +1,4 @@
-//! Core distances: how far the k-th nearest row is, the row of the point itself included.
+//! Core distances: how far the k-th nearest row is, including the row of the point itself.
 
 use super::link::Span;
 use crate::base::error::Result;

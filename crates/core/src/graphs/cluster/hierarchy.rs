@@ -1,4 +1,4 @@
-//! The edges of a spanning tree in the order of their weights, and the merges that they are.
+//! The edges of a spanning tree in the order of their weights, and the merges that they represent.
 //!
 //! J. C. Gower and G. J. S. Ross, "Minimum spanning trees and single linkage cluster analysis"
 //! (1969). Edges are sorted by rounded squares; runs that are too near to each other are then put

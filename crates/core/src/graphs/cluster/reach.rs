@@ -1,4 +1,4 @@
-//! A minimum spanning tree of all pairs of points by mutual reachability: the largest of their
+//! A minimum spanning tree of all pairs of points by mutual reachability: the maximum of their
 //! distance and both core distances (R. J. G. B. Campello, D. Moulavi and J. Sander, 2013).
 //!
 //! O. Boruvka's algorithm (1926) on a tree of boxes (W. B. March, P. Ram and A. G. Gray, "Fast

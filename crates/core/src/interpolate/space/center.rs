@@ -1,4 +1,4 @@
-//! Centers of spheres through the query and three of its neighbors, with bounds of their errors.
+//! Centers of spheres through the query and three of its neighbors, with bounds on their errors.
 
 pub use crate::base::vector::{cross, dot, minus, plus};
 use delone_predicates::Point3;

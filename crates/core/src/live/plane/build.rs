@@ -1,4 +1,4 @@
-//! Builds a live triangulation from all of its points at once, by the method for static points.
+//! Builds a live triangulation from all of its points, by the method for static points.
 
 use delone_predicates::Point2;
 

@@ -1,4 +1,4 @@
-//! Takes segments out of the mesh: those that are removed or moved, and those that cross them.
+//! Removes segments from the mesh: those that are removed or moved, and those that cross them.
 //!
 //! Segments that cross are taken out together, with all that cross those, and so are their
 //! crossings: a *component*. A crossing may be a point of the input, and then a segment that bends

@@ -1,4 +1,4 @@
-//! Marks on edges: parts of segments, which stay edges.
+//! Marks on edges: parts of segments, which remain edges.
 //!
 //! The last word of a record has two bits for each edge, the same on both of its sides: whether a
 //! segment runs along it, and whether one does that is not straight (see `segments::Crossed`).

@@ -1,4 +1,4 @@
-//! Triangulates all points and segments again if segments cross.
+//! Retriangulates all points and segments if segments cross.
 //!
 //! Crossings are rounded, and what that leads to is decided by `constrained` (see its `split`).
 //! Here its pieces become marked edges, its added vertices get rows, and the segments that are no

@@ -1,4 +1,4 @@
-//! What a live triangulation does in 3-D only.
+//! The operations of a live triangulation that are specific to 3-D.
 
 use delone_predicates::{Point3, Sign, nearer3, orient3d};
 

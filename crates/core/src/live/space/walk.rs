@@ -1,4 +1,4 @@
-//! Where a point is: a start that is near, and a visibility walk (see `delaunay::space::cavity`).
+//! Locates a point: a start nearby, then a visibility walk (see `delaunay::space::cavity`).
 //!
 //! A walk starts where the last one ended. If that is far away, vertices are sampled, as many as balance
 //! the walk from the nearest of them (E. P. Mücke, I. Saias and B. Zhu, "Fast randomized point location

@@ -1,4 +1,4 @@
-//! Records of tetrahedra, in two arrays that are exported as they are.
+//! Records of tetrahedra, in two arrays that are exported unchanged.
 
 use crate::base::arrays::FACETS;
 use crate::base::error::{Error, Result};

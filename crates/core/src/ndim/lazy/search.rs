@@ -1,5 +1,5 @@
-//! The simplex that contains a query: proposed by the linear program, proven, and found by exact steps
-//! where nothing is proposed.
+//! The simplex that contains a query: proposed by the linear program, proven, and found by exact
+//! steps if nothing is proposed.
 
 use std::ops::Range;
 use std::sync::OnceLock;

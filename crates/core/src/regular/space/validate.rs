@@ -1,4 +1,4 @@
-//! Is this the 3-D regular triangulation of weighted points? See `regular::validate`, which
+//! Exact validation of a 3-D regular triangulation; see `regular::validate`, which
 //! explains why the checks suffice.
 
 use delone_predicates::{Sign, orient3d};

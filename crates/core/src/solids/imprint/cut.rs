@@ -1,4 +1,4 @@
-//! Cuts triangles at the vertices on them and at the lines that they have in common with others.
+//! Cuts triangles at the vertices on them and at the lines that they share with others.
 //!
 //! A triangle becomes the constrained Delaunay triangulation, in a projection along an axis, of what is
 //! on it. Its border is the chain of vertices on its edges, which all triangles at these edges share.

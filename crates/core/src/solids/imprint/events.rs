@@ -1,4 +1,4 @@
-//! What pairs of triangles have in common, within the tolerance: vertices on edges and faces, and
+//! Common parts of pairs of triangles, within the tolerance: vertices on edges and faces, and
 //! points where edges cross edges and faces.
 
 use delone_predicates::{Point3, lexicographic};

@@ -1,5 +1,5 @@
-//! Surfaces that cross or overlap, cut at each other: afterward their triangles have only vertices and
-//! edges in common, or all three vertices.
+//! Cuts surfaces that cross or overlap where they meet, so that their triangles share only vertices
+//! and edges, or all three vertices.
 //!
 //! Points where edges cross edges and faces are rounded, and what is nearer than a tolerance, which
 //! exceeds the rounding errors, is joined: vertices, vertices on edges and in faces, edges that cross.

@@ -1,4 +1,5 @@
-//! Surfaces cut at themselves: conforming, the same for every order, near their sources.
+//! Surfaces cut where they cross themselves: conforming, the same for every order, close to their
+//! sources.
 
 use super::*;
 use crate::solids::surface::check;

@@ -1,4 +1,4 @@
-//! The quality of a tetrahedron: the sines of its dihedral angles, with bounds of their rounding
+//! The quality of a tetrahedron: the sines of its dihedral angles, with bounds on their rounding
 //! errors.
 //!
 //! With the face vectors N (twice their areas, inward) and the determinant D, six times the volume,

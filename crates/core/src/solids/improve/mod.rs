@@ -1,5 +1,5 @@
 //! Improves tetrahedral meshes: edge and face removal, smoothing, edge contraction and vertex insertion,
-//! while the worst tetrahedron gets better. `relax` coarsens and smooths them instead.
+//! as long as the worst tetrahedron improves. `relax` coarsens and smooths them instead.
 //!
 //! L. A. Freitag and C. Ollivier-Gooch, "Tetrahedral mesh improvement using swapping and
 //! smoothing", International Journal for Numerical Methods in Engineering 40 (1997); J. R.

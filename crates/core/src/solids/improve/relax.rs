@@ -1,5 +1,5 @@
-//! Coarser meshes, and meshes whose vertices are at the means of what is around them: changes that
-//! need not improve the worst tetrahedron, as long as it stays above the bound.
+//! Coarsening and smoothing: changes that need not improve the worst tetrahedron, as long as it stays
+//! above the bound.
 //!
 //! The *optimal Delaunay* position of a vertex, the mean of the circumcenters of its tetrahedra weighted by
 //! their volumes, is from L. Chen and J. Xu, "Optimal Delaunay triangulations", Journal of Computational Mathematics 22 (2004);

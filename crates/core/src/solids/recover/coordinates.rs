@@ -1,4 +1,4 @@
-//! Coordinates that may be wider than a double: exact, with a double beside them for filters.
+//! Coordinates that may be wider than a double: exact, with doubles next to them for filters.
 //!
 //! # The bound of the filter
 //!

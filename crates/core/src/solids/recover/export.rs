@@ -1,4 +1,4 @@
-//! From the mesh to rows, with a check of everything that is promised.
+//! From the mesh to rows, with a check of all guarantees.
 
 use std::collections::BTreeSet;
 

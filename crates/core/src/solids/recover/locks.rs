@@ -1,4 +1,4 @@
-//! Which edges and faces of the mesh are parts of the input, and must stay.
+//! Which edges and faces of the mesh are parts of the input, and must be kept.
 //!
 //! Nearly all of them are whole segments and faces of the input, which are found among those with
 //! the same first vertex. Most queries are for others: a bit that no row has set answers these in a

@@ -1,4 +1,5 @@
-//! Where a point sees all faces around it: near the center of its kernel, in doubles if any fit.
+//! A position from which all surrounding faces are visible: near the center of the kernel, in
+//! doubles if any fit.
 
 use std::collections::BTreeSet;
 

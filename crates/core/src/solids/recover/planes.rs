@@ -1,11 +1,12 @@
-//! Other triangles first where faces of one plane are missing: its constrained Delaunay triangulation.
+//! If faces in one plane are missing, recovers other triangles first: those of the plane's
+//! constrained Delaunay triangulation.
 //!
-//! Edges of Delaunay triangulations in 3-D are Delaunay in each plane, too, so fewer of these triangles
-//! must be recovered than of others. Those of the input come back later (`swap`).
+//! Edges of Delaunay triangulations in 3-D are also Delaunay in each plane, so fewer of these
+//! triangles must be recovered than of others. Those of the input are restored later (`swap`).
 //!
 //! Edges are flipped until none is wrong (C. L. Lawson, "Software for C1 surface interpolation", 1977).
-//! That ends, as each flip lowers the lifted surface; where four vertices are on a circle, the edge
-//! at the smallest vertex is correct, as if that vertex were lifted a little less.
+//! This terminates because each flip lowers the lifted surface; where four vertices are on a
+//! circle, the edge at the smallest vertex is correct, as if that vertex were lifted a little less.
 
 use std::collections::HashMap;
 

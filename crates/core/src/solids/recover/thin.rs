@@ -1,4 +1,4 @@
-//! Takes away free points that are not needed.
+//! Removes free points that are not needed.
 
 use super::mesh::Corners;
 use super::work::Work;

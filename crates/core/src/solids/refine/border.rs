@@ -1,4 +1,4 @@
-//! Points on segments and facets, for the sake of sizes.
+//! Points on segments and facets, added for sizes.
 
 use delone_predicates::Point3;
 

@@ -1,4 +1,4 @@
-//! Facets: walls in one plane, and the segments where these end.
+//! Facets: walls in one plane, and the segments that bound them.
 
 use std::collections::HashSet;
 

@@ -1,4 +1,5 @@
-//! Walks: the tetrahedron or the wall where a point is, seen from another place.
+//! Walks: the tetrahedron that contains a point, or the wall that hides it, seen from another
+//! position.
 
 use delone_predicates::{Point3, Sign, orient3d};
 

@@ -1,4 +1,4 @@
-//! The requests: what is too large or of bad shape, worst first, and what is done about it.
+//! The requests: what is too large or badly shaped, worst first, and how it is improved.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

@@ -1,4 +1,4 @@
-//! The edges of triangles: which triangles meet at each, and in which directions they pass it.
+//! The edges of triangles: which triangles meet at each, and in which directions they traverse it.
 
 use crate::base::error::Result;
 use crate::base::memory::{filled, push, with_room};

@@ -1,4 +1,4 @@
-//! All pairs of triangles that cross or touch otherwise than at shared vertices and edges.
+//! All pairs of triangles that cross, or touch except at shared vertices and edges.
 //!
 //! [`meeting`] finds the candidates.
 

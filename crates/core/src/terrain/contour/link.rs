@@ -1,4 +1,4 @@
-//! Joins directed edges into lines and rings that visit no place twice.
+//! Joins directed edges into lines and rings that never visit a point twice.
 //!
 //! The edges bound a region, which is to their left, except where the outline cuts them off. An
 //! edge whose reverse is present as well bounds nothing, and both are dropped. Where several edges

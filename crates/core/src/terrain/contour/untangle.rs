@@ -1,4 +1,4 @@
-//! Merges nodes that rounding has put on the wrong side of a contour.
+//! Merges nodes that rounding moved to the wrong side of a contour.
 //!
 //! The contours cut a triangle into *cells* of three to five places; fans cut cells into small
 //! triangles. If each small triangle is positively oriented or collapsed to an edge or a point,

@@ -1,4 +1,4 @@
-//! The worst points of triangles, greatest error first.
+//! The worst points of triangles, largest error first.
 //!
 //! A heap of small entries with four children each: a triangle that changes leaves its old entry
 //! behind, which is removed when it comes first, or with all others when they are the majority.

@@ -1,5 +1,5 @@
-//! Copies of surfaces with points in the order in which triangles need them: what is needed together
-//! is together in memory, whatever order the rows of points have.
+//! Copies of surfaces with points in the order in which triangles need them: what is needed
+//! together is adjacent in memory, whatever the order of the rows of points.
 
 use crate::base::arrays::Triangles;
 use crate::base::error::Result;

@@ -1,4 +1,4 @@
-//! What all steps of an overlay take.
+//! The input of all steps of an overlay.
 
 use crate::base::arrays::Triangles;
 use delone_predicates::Point2;

@@ -1,5 +1,5 @@
-//! Walks from triangle to triangle of a surface, through those that have an area in common with a
-//! triangle of another one.
+//! Walks from triangle to triangle of a surface, through those that share area with a triangle of
+//! another surface.
 //!
 //! A walk starts at the center, and crosses each edge that enters the interior of the triangle:
 //! otherwise a line along a side of one of the two separates them. Signs are exact. Each triangle

@@ -1,4 +1,4 @@
-//! A convex polyhedron that is clipped by planes, in floating point.
+//! A convex polyhedron clipped by planes, in floating point.
 //!
 //! A new corner is interpolated on its edge, unless the caller provides it: on an edge between
 //! nearly parallel planes, the interpolated corner would satisfy the planes, but be far from the
