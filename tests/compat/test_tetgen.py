@@ -189,14 +189,14 @@ def test_make_manifold(capsys: pytest.CaptureFixture[str]) -> None:
     [
         ({"quality": False, "order": 3}, "order must be 1 or 2"),
         ({"quality": False, "plc": False}, "plc must be True"),
-        ({"quality": False, "bgmesh": object()}, "bgmesh: sizes are read from no other"),
-        ({"quality": False, "bgmeshfilename": "a.b"}, "bgmeshfilename is not supported: sizes"),
+        ({"quality": False, "bgmesh": object()}, "bgmesh must be a pyvista"),
+        ({"quality": False, "metric": True}, "metric=True needs sizes"),
         ({"quality": False, "fixedvolume": True}, "needs maxvolume"),
         ({"quality": False, "insertaddpoints": True}, "insertaddpoints is not supported"),
         ({"quality": False, "refine": True}, "refine is not supported"),
         ({"quality": False, "reversetetori": 1}, "positively oriented"),
         ({"quality": False, "qualtiy": True}, "no argument qualtiy"),
-        ({"switches": "pm"}, "sizes are read from no other"),
+        ({"switches": "pm"}, "the switch m needs sizes"),
         ({"switches": "po3"}, "o1 or o2"),
         ({"switches": "Y"}, "must contain p"),
         ({"switches": "p-"}, "'-'"),
@@ -348,3 +348,83 @@ def test_all_names_of_the_package() -> None:
             # Its defaults change nothing.
             options = {"quality": False, name: each.default} | {"quality": False}
             assert len(ours.tetrahedralize(**options)[1]) == 6
+
+
+def lattice(side: int) -> tuple[np.ndarray, np.ndarray]:
+    """A lattice over the cube and a little more, in tetrahedra of both orientations."""
+    steps = np.linspace(-0.5, 4.5, side)
+    points = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1).reshape(-1, 3)
+    simplices = delone.Delaunay(points).simplices.copy()
+    simplices[::2] = simplices[::2, [1, 0, 2, 3]]
+    return points, simplices
+
+
+def wanted(points: np.ndarray) -> np.ndarray:
+    """Small near one corner; linear, so that every mesh interpolates it exactly."""
+    return 0.3 + 0.1 * points.sum(axis=1)
+
+
+@pytest.mark.parametrize("how", ["arrays", "grid", "files"])
+def test_a_background_mesh_has_sizes(how: str, tmp_path: Path) -> None:
+    points, simplices = lattice(5)
+    lengths = wanted(points)
+    options: dict[str, Any] = {"bgmesh": (points, simplices, lengths)}
+    if how == "grid":
+        pyvista = pytest.importorskip("pyvista")
+        grid = pyvista.UnstructuredGrid({10: simplices}, points)
+        grid.point_data["target_size"] = lengths
+        options = {"bgmesh": grid}
+    elif how == "files":
+        node = [f"{len(points)} 3 0 0", *(f"{i} {x!r} {y!r} {z!r}" for i, (x, y, z) in
+                                          enumerate(points.tolist()))]  # fmt: skip
+        ele = [f"{len(simplices)} 4 0", *(f"{i} {a} {b} {c} {d}" for i, (a, b, c, d) in
+                                          enumerate(simplices.tolist()))]  # fmt: skip
+        mtr = [f"{len(points)} 1", *map(repr, lengths.tolist())]
+        for ending, lines in (("node", node), ("ele", ele), ("mtr", mtr)):
+            (tmp_path / f"sizes.b.{ending}").write_text("\n".join(lines) + "\n")
+        options = {"bgmeshfilename": str(tmp_path / "sizes.b")}
+    tet = tetgen.TetGen(*CUBE)
+    tet.tetrahedralize(order=1, mindihedral=20, minratio=1.5, **options)
+    mesh = tet.tetmesh
+    assert mesh is not None and mesh.validate().ok
+    # The same as with a function, up to the roundings of sizes.
+    exact = delone.tetrahedralize(
+        *CUBE, boundary="surface", inside="enclosed", size=wanted, radius_edge=1.5, min_angle=20
+    )
+    assert abs(mesh.nsimplex - exact.nsimplex) < 0.05 * exact.nsimplex
+    assert mesh.report.largest_size_ratio <= 1
+    centers = mesh.points[mesh.simplices].mean(axis=1)
+    near, far = (centers.sum(axis=1) < 3), (centers.sum(axis=1) > 9)
+    assert 3 * mesh.volumes[near].mean() < mesh.volumes[far].mean()
+    # Switches: m asks for the sizes, and without it they are not used.
+    by_switches = tet.tetrahedralize(switches="pq1.5/20m", **options)[1]
+    assert np.array_equal(by_switches, mesh.simplices)
+    assert len(tet.tetrahedralize(switches="p", **options)[1]) < 20
+
+
+def test_what_is_no_background_mesh(tmp_path: Path) -> None:
+    points, simplices = lattice(3)
+    lengths = wanted(points)
+    cases: list[tuple[Any, type[Exception], str]] = [
+        ((points, simplices, -lengths), delone.InputError, "must be above 0"),
+        ((points, simplices, lengths[1:]), delone.InputError, "values of shape"),
+        ((points, simplices), delone.InputError, "got 2 items"),
+        ((points, simplices + 1, lengths), delone.InputError, "simplices"),
+        ((points[:, :2], simplices, lengths), delone.ShapeError, "points"),
+        ((points * [1, 1, 0], simplices, lengths), delone.InputError, "no tetrahedron with"),
+        ((points, np.repeat(simplices, 3, axis=0), lengths), delone.InputError, "bgmesh: "),
+    ]
+    for given, error, words in cases:
+        with pytest.raises(error, match=words):
+            tetgen.TetGen(*CUBE).tetrahedralize(bgmesh=given)
+    with pytest.raises(delone.InputError, match="not both"):
+        tetgen.TetGen(*CUBE).tetrahedralize(bgmesh=cases[0][0], bgmeshfilename="a.b")
+    with pytest.raises(FileNotFoundError):
+        tetgen.TetGen(*CUBE).tetrahedralize(bgmeshfilename=str(tmp_path / "none.b"))
+    pyvista = pytest.importorskip("pyvista")
+    grid = pyvista.UnstructuredGrid({10: simplices}, points)
+    with pytest.raises(delone.InputError, match="target_size"):
+        tetgen.TetGen(*CUBE).tetrahedralize(bgmesh=grid)
+    voxels = pyvista.ImageData(dimensions=(2, 2, 2)).cast_to_unstructured_grid()
+    with pytest.raises(delone.InputError, match="tetrahedra only"):
+        tetgen.TetGen(*CUBE).tetrahedralize(bgmesh=voxels)

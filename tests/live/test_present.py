@@ -469,7 +469,9 @@ def test_pickles_cannot_claim_the_memory_of_many(monkeypatch: pytest.MonkeyPatch
     again, (saved, options) = live.__reduce__()
     for name in ("total", "segments_total"):
         bad = State(*saved)._replace(**{name: 2**31})
-        with pytest.raises(delone.InputError, match=r"accepts at most 10,000,000.*max_handles=2147"):
+        with pytest.raises(
+            delone.InputError, match=r"accepts at most 10,000,000.*max_handles=2147"
+        ):
             again(tuple(bad), options)
         with pytest.raises(
             delone.InputError, match="2,147,483,648 handles have been assigned, for 3"

@@ -16,6 +16,7 @@ import numpy as np
 from delone._base.arrays import as_count, as_flag, as_number, as_plain_array, as_points
 from delone._base.atomic import replacing
 from delone._tiling.space.locking import cells, sides
+from delone.compat.tetgen_sizes import background
 from delone.compat.tetgen_switches import Wishes, of_arguments, of_switches
 from delone.errors import DtypeError, FileFormatError, InputError, ShapeError
 from delone.exchange.parts import Parts
@@ -231,14 +232,19 @@ class TetGen:
             Whether `edges` contains all edges, instead of those of input faces.
         switches : str, optional
             TetGen's switches, which replace all other arguments: p is necessary; ``q1.4/20 a0.1 Y
-            A S M O o2 f e Q`` and those of output are accepted; m and r are rejected.
-        bgmesh : optional
-            Must be None: sizes are not read from another mesh.
+            A S M O o2 f e Q`` and those of output are accepted, and m with a background mesh; r is
+            rejected.
+        bgmesh : pyvista.UnstructuredGrid or tuple of three arrays, optional
+            A background mesh: tetrahedra with the point data ``"target_size"``, or ``(points,
+            simplices, lengths)`` with shapes (k, 3), (j, 4) and (k,). They are the sizes of
+            `delone.tetrahedralize`: linear in a tetrahedron, and that of the nearest position of
+            the mesh outside. Without `nobisect`, points are added on the surface for them.
         nomergefacet : bool, optional
             The same as `nobisect`: coplanar triangles are not merged.
         **others
-            Further arguments of the package ``tetgen``: `fixedvolume` and `maxvolume`, the largest
-            volume of a tetrahedron, and `varvolume`, whether those of regions apply without
+            Further arguments of the package ``tetgen``: `bgmeshfilename`, the path of a background
+            mesh without the suffixes .node, .ele and .mtr; `fixedvolume` and `maxvolume`, the
+            largest volume of a tetrahedron; `varvolume`, whether those of regions apply without
             `quality`. Those for output, silence and checks, and those that choose between
             algorithms, have no effect; others must have their defaults.
 
@@ -268,8 +274,9 @@ class TetGen:
         --------
         See `TetGen`.
         """
+        sizes = background(bgmesh, others.pop("bgmeshfilename", ""))
         wishes = (
-            of_switches(switches)
+            of_switches(switches, sized=sizes is not None)
             if switches
             else of_arguments(
                 plc=plc,
@@ -282,7 +289,7 @@ class TetGen:
                 regionattrib=regionattrib,
                 facesout=facesout,
                 edgesout=edgesout,
-                bgmesh=bgmesh,
+                sized=sizes is not None,
                 nomergefacet=nomergefacet,
                 others=others,
             )
@@ -296,7 +303,7 @@ class TetGen:
             holes=self._holes or None,
             regions=regions or None,
             face_markers=self._markers,
-            **self._bounds(wishes),
+            **self._bounds(wishes) | ({"size": sizes} if wishes.sized else {}),
             max_points=wishes.limit,
         )
         made = self.tetmesh

@@ -18,15 +18,14 @@ from delone.errors import DtypeError, InputError
 __all__ = ["Wishes", "of_arguments", "of_switches"]
 
 _SIZES = (
-    "sizes are read from no other mesh: tet.tetmesh.refine(size=(mesh, values)) takes a "
-    "triangulation with a length for each point"
+    "needs sizes: pass bgmesh or bgmeshfilename, or use tet.tetmesh.refine(size=...), which takes "
+    "functions, too"
 )
 _SWITCH = re.compile(r"([a-zA-Z])((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/[\d.]*)*|/[\d./]+)?")
 # Numbers from zero, silence, checks, files, neighbors, unused vertices, the tolerance of coplanar
 # points, and what TetGen later does to tetrahedra: they do not affect the guarantees.
 _WITHOUT_EFFECT = "zQVCFIJNEgkBOnTWxbUX"
 _REFUSED = {
-    "m": _SIZES,
     "r": "use tet.tetmesh.refine, or delone.improve for other tetrahedra",
     "i": "use extra_points of delone.tetrahedralize",
     "c": "the convex hull is not kept: use delone.Delaunay(points)",
@@ -46,10 +45,9 @@ _REFUSED = {
 _FURTHER: dict[str, tuple[Any, str]] = {
     **{"psc": (False, "s"), "refine": (False, "r"), "cdt": (False, "D"), "cdtrefine": (7, "")},
     **{"coarsen": (False, "R"), "weighted": (False, "w"), "flipinsert": (False, "L")},
-    **{"metric": (False, "m")},
     **{"insertaddpoints": (False, "i"), "diagnose": (False, "d"), "convex": (False, "c")},
     **{"voroout": (False, "v"), "maxvolume_length": (None, "")},
-    **{"bgmeshfilename": ("", "m"), "metric_scale": (1.0, "m"), "elem_growth_ratio": (0.0, "r")},
+    **{"metric_scale": (1.0, "m"), "elem_growth_ratio": (0.0, "r")},
     **{"reversetetori": (0, "o"), "coarsen_param": (0, ""), "coarsen_percent": (1.0, "")},
     **dict.fromkeys(
         (
@@ -86,6 +84,7 @@ class Wishes(NamedTuple):
     volume: float  # the largest volume, 0 for none
     by_region: bool  # largest volumes of regions
     second: bool  # elements of second order
+    sized: bool  # sizes of a background mesh
 
 
 def of_arguments(
@@ -100,15 +99,16 @@ def of_arguments(
     regionattrib: Any,
     facesout: Any,
     edgesout: Any,
-    bgmesh: Any,
+    sized: bool,
     nomergefacet: Any,
     others: dict[str, Any],
 ) -> Wishes:
     """Return what arguments request, or reject them."""
     wanted = as_flag(quality, name="quality")
-    if bgmesh is not None:
-        raise InputError(f"bgmesh: {_SIZES}")
     rest = dict(others)
+    metric = as_flag(rest.pop("metric", False), name="metric")
+    if metric and not sized:
+        raise InputError(f"metric=True {_SIZES}")
     fixed = as_flag(rest.pop("fixedvolume", False), name="fixedvolume")
     by_region = as_flag(rest.pop("varvolume", False), name="varvolume")
     volume = as_number(rest.pop("maxvolume", -1.0), name="maxvolume")
@@ -133,6 +133,7 @@ def of_arguments(
         volume=max(volume, 0.0),
         by_region=by_region,
         second=order == 2,
+        sized=sized,
     )
 
 
@@ -146,8 +147,8 @@ def _check(name: str, value: Any) -> None:
         raise InputError(f"the argument {name} is not supported: {reason}")
 
 
-def of_switches(switches: str) -> Wishes:
-    """Return what a string of switches requests, or reject it."""
+def of_switches(switches: str, *, sized: bool) -> Wishes:
+    """Return what a string of switches requests, or reject it; `sized` if there are sizes."""
     rest = _SWITCH.sub("", switches)
     if rest:
         raise InputError(f"switches has {rest!r:.80}, which is not a switch")
@@ -157,10 +158,12 @@ def of_switches(switches: str) -> Wishes:
             raise InputError(f"the switch {letter} is not supported: {_REFUSED[letter]}")
         if letter == "o" and number not in ("", "1", "2"):
             raise InputError(f"the switch o is o1 or o2, not o{number}: {_REVERSED}")
-        if letter not in "pYASMofeqa" + _WITHOUT_EFFECT:
+        if letter not in "pYASMofeqam" + _WITHOUT_EFFECT:
             raise InputError(f"the switch {letter} is not known")
     if "p" not in found:
         raise InputError("switches must contain p: delone.Delaunay triangulates points alone")
+    if "m" in found and not sized:
+        raise InputError(f"the switch m {_SIZES}")
     # q has a ratio and, after a slash, an angle.
     ratio, _, angle = found.get("q", "").partition("/")
     return Wishes(
@@ -176,6 +179,7 @@ def of_switches(switches: str) -> Wishes:
         volume=_number(found.get("a", ""), 0.0, "a"),
         by_region="a" in found and not found["a"],
         second=found.get("o") == "2",
+        sized="m" in found,
     )
 
 
