@@ -8,10 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from pyarrow import parquet
 
-from delone import datasets, distributed
+from delone import ConstrainedDelaunay, datasets, distributed
+from delone._tiling.plane import topology
 from delone.distributed.read import simplifying
-from delone.errors import InputError
+from delone.distributed.read.assembling import Piece, assembled
+from delone.distributed.store.output import tile_names
+from delone.errors import FileFormatError, InputError, InternalError
 from delone.terrain import TIN
 
 if TYPE_CHECKING:
@@ -129,6 +133,75 @@ def test_there_is_no_crack(tiled: Any) -> None:
     assert (parallel | hull).all() and parallel.any() and tin.soft.all()
 
 
+def test_triangles_are_those_of_all_points_with_the_lines(tiled: Any) -> None:
+    tiles, points = tiled
+    for share in (0.2, 0.01):
+        tin = tiles.simplify(max_error=share * float(np.ptp(points[:, 2])))
+        mesh = ConstrainedDelaunay(tin.points, tin.breaklines, planar=True)
+        every, some = (
+            {tuple(sorted(each)) for each in found.tolist()}
+            for found in (mesh.simplices, tin.simplices)
+        )
+        left_out = {tuple(sorted(each)) for each in tin._left_out().tolist()}
+        assert every == some | left_out and not some & left_out
+        assert len(every) == len(tin.simplices) + len(tin._left_out())
+        # What is left out is beyond the hull of the survey, up to rounding.
+        assert tin.areas.sum() == pytest.approx(mesh.areas.sum(), rel=1e-12)
+        assert len(np.unique(tin.points, axis=0)) == len(np.unique(tin.simplices)) == tin.npoints
+        # Each line is a segment, and no segment is on the hull.
+        pairs = {tuple(sorted(each)) for each in mesh.segments.tolist()}
+        assert pairs == set(map(tuple, tin.breaklines.tolist()))
+        outer = topology.boundary_edges(mesh.simplices, mesh.neighbors)
+        assert not pairs & {tuple(sorted(each)) for each in outer.tolist()}
+
+
+def test_rounded_ends_of_cuts_leave_triangles_out(tmp_path: Path) -> None:
+    points = straight()
+    tiles = distributed.triangulate(points, tmp_path / "tin", tile_points=len(points) // 12)
+    tin = tiles.simplify(max_error=0.05)
+    assert len(tin._left_out()) > 0
+    assert tin.validate()
+    # What is beside them does not depend on them: the edges between are lines.
+    ends = [[1, 2], [2, 0], [0, 1]]
+    inner, outer = (
+        {frozenset(edge) for edge in each[:, ends].reshape(-1, 2).tolist()}
+        for each in (tin.simplices, tin._left_out())
+    )
+    assert inner & outer <= set(map(frozenset, tin.breaklines.tolist()))
+
+
+def square(x: float, z: float = 0.0) -> Piece:
+    corners = np.array([(x, 0, 0), (x + 1, 0, 0), (x + 1, 1, z), (x, 1, 0)])
+    simplices = np.array([(0, 1, 2), (0, 2, 3)], dtype=np.int32)
+    return Piece(corners, simplices, np.array([(-1, 1, -1), (-1, -1, 0)], dtype=np.int32))
+
+
+def triangle(*corners: tuple[float, float, float]) -> Piece:
+    alone = np.full((1, 3), -1, dtype=np.int32)
+    return Piece(np.array(corners), np.array([(0, 1, 2)], dtype=np.int32), alone)
+
+
+def test_pieces_that_do_not_fit_are_an_error() -> None:
+    made = assembled([square(0), square(1)], None)
+    assert len(made.points) == 6 and made.kept.all() and len(made.segments) == 1
+    assert topology.neighbors(made.simplices, 6).tolist() == made.neighbors.tolist()
+    for pieces, message in (
+        ([square(0), square(0)], "overlap"),
+        (
+            [
+                triangle((1, 0, 0), (2, 0, 0), (1, 1, 0)),
+                square(0),
+                triangle((1, 0, 0), (2, 1, 0), (1, 1, 0)),
+            ],
+            "overlap",
+        ),
+        ([square(0), square(2)], "borders of simplified tiles differ"),
+        ([square(0, z=1), square(1)], "different heights"),
+    ):
+        with pytest.raises(InternalError, match=message):
+            assembled(pieces, None)
+
+
 def test_one_tile_is_one_piece(tmp_path: Path) -> None:
     points = survey()[::4]
     tiles = distributed.triangulate(points, tmp_path / "tin")
@@ -164,6 +237,20 @@ def test_other_values_and_wrong_arguments(tmp_path: Path) -> None:
         tiles.simplify(max_error=-1)
     with pytest.raises(InputError, match="executor must be"):
         tiles.simplify(max_error=1, executor="threads")
+
+
+def test_tiles_that_were_replaced_are_an_error(tmp_path: Path) -> None:
+    tiles = distributed.triangulate(cliffs(), tmp_path / "tin", tile_points=120)
+    first, second = (tiles.store.path(tile_names(k)[0]) for k in range(2))
+    content = first.read_bytes()
+    first.write_bytes(content[: len(content) // 2])
+    with pytest.raises(FileFormatError, match="is truncated"):
+        tiles.simplify(max_error=1)
+    first.write_bytes(content)
+    table = parquet.read_table(second)
+    parquet.write_table(table.slice(0, 50), second)
+    with pytest.raises(FileFormatError, match="tile 1 does not have the points of its manifest"):
+        tiles.simplify(max_error=1)
 
 
 def test_a_cluster_gives_the_same(tmp_path: Path) -> None:

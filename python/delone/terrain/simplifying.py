@@ -32,7 +32,15 @@ if TYPE_CHECKING:
     from delone._base.types import Bools, Floats, Indices, Rows
     from delone.terrain.surface import Surface
 
-__all__ = ["KEEP", "Ground", "Simplification", "ground_of", "ground_of_points", "simplified"]
+__all__ = [
+    "KEEP",
+    "Ground",
+    "Simplification",
+    "ground_of",
+    "ground_of_points",
+    "inside_of",
+    "simplified",
+]
 
 KEEP = ("breaklines", "hard", "boundary")
 # Extents within this factor of 1, as powers of two, are not scaled.
@@ -327,7 +335,7 @@ def _part(ground: Ground, rows: Rows) -> _Part:
     order = np.argsort(keys)
     found = np.searchsorted(keys[order], _keys(mesh.segments, len(rows)))
     soft = ground.soft[order][found]
-    return _Part(mesh, _inside(mesh, number[ground.outline]), ground.z[rows], soft)
+    return _Part(mesh, inside_of(mesh, number[ground.outline]), ground.z[rows], soft)
 
 
 def _keys(edges: NDArray[np.integer], count: int) -> Rows:
@@ -335,7 +343,7 @@ def _keys(edges: NDArray[np.integer], count: int) -> Rows:
     return edge_keys(edges[..., 0], edges[..., 1], count)
 
 
-def _inside(mesh: ConstrainedDelaunay, outline: Indices) -> Bools:
+def inside_of(mesh: ConstrainedDelaunay, outline: Indices) -> Bools:
     """Which triangles are connected to the left side of the outline; all if there is none."""
     count = len(mesh.simplices)
     if not len(outline):

@@ -258,18 +258,15 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
     def _fill(self, arrays: Any, stages: Any, workers: int | None) -> None:
         known = {name: arrays.get(name, np.array("")) for name in ("crs", "units", "adjustments")}
         plain = {name: arrays[name] for name in self._ARRAYS}
-        number = np.cumsum(plain["kept"], dtype=np.int32) - 1
-        number = np.append(np.where(plain["kept"], number, -1), -1).astype(np.int32)
-        super()._fill(
-            plain
-            | {
-                "simplices": plain["all_simplices"][plain["kept"]],
-                "neighbors": number[plain["all_neighbors"][plain["kept"]]],
-            }
-            | known,
-            stages,
-            workers,
+        kept, simplices, neighbors = (
+            plain[name] for name in ("kept", "all_simplices", "all_neighbors")
         )
+        if not kept.all():
+            number = np.cumsum(kept, dtype=np.int32) - 1
+            number = np.append(np.where(kept, number, -1), -1).astype(np.int32)
+            simplices, neighbors = simplices[kept], number[neighbors[kept]]
+        given = plain | {"simplices": simplices, "neighbors": neighbors} | known
+        super()._fill(given, stages, workers)
 
     def _arrays(self) -> dict[str, NDArray[Any]]:
         known = {"crs": self._crs, "units": self._units, "adjustments": self._adjustments}

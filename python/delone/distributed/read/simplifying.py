@@ -17,13 +17,12 @@ import numpy as np
 from delone import _core
 from delone._base.counting import counted
 from delone._base.thinning import thinned
-from delone._tiling.plane import topology
-from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.distributed.read.assembling import Piece, assembled
 from delone.distributed.read.folder import TileFolder
-from delone.distributed.read.parts import heights_of
 from delone.distributed.read.tasks import mapped
+from delone.distributed.read.tile import read_vertices
 from delone.distributed.read.volumes import profile
-from delone.errors import DegenerateInputError, InputError, InternalError
+from delone.errors import DegenerateInputError, FileFormatError, InputError
 from delone.terrain.building import Built
 from delone.terrain.deviations import deviations
 from delone.terrain.simplifying import Ground, as_goal, simplified
@@ -58,13 +57,6 @@ class _Cut(NamedTuple):
         return found & (way >= self.low) & (way <= self.high)
 
 
-class _Piece(NamedTuple):
-    """The simplified surface of a tile."""
-
-    points: Floats  # (n, 3)
-    simplices: Indices
-
-
 def simplify(tin: TileFolder, max_error: float, value: str, executor: Any) -> TIN:
     """Return a surface within an error of all points, with the cuts between tiles as edges."""
     tin._require(value)
@@ -80,7 +72,7 @@ def simplify(tin: TileFolder, max_error: float, value: str, executor: Any) -> TI
         (*tile, [_within(simple[k], cell) for k in some], error)
         for tile, some, cell in zip(of_tiles, sides, cells, strict=True)
     ]
-    return _together(list(mapped(executor, _simplified_tile, tasks)), tin.crs)
+    return TIN._built(assembled(list(mapped(executor, _simplified_tile, tasks)), tin.crs), None)
 
 
 def prove(tin: TileFolder, surface: TIN, max_error: float, value: str = "z") -> list[Deviations]:
@@ -116,10 +108,13 @@ def _layout(tin: TileFolder) -> tuple[list[_Cut], Floats, list[list[int]]]:
 
 def _own(tin: TileFolder, number: int, value: str) -> Floats:
     """The points that a tile owns, (n, 3); of those that coincide, the first."""
-    tile = tin.tile(number)
-    ids = tile.ids[tile.owned]
+    places, columns = read_vertices(tin.store, tin.manifest, number, [value])
+    owned = columns["owned"]
+    if np.count_nonzero(owned) != tin.manifest["tiles"][number]["points"]:
+        raise FileFormatError(f"{tin.path}: tile {number} does not have the points of its manifest")
+    ids = columns["id"][owned]
     # Negative zeros count as zeros.
-    points = np.column_stack((tile.points, heights_of(tile, value)))[tile.owned] + 0.0
+    points = np.column_stack((places[owned], columns[value][owned].astype(np.float64))) + 0.0
     order = np.lexsort((ids, points[:, 1], points[:, 0]))
     same = (np.diff(points[order, :2], axis=0) == 0).all(axis=1)
     order = np.sort(np.concatenate((order[:1], order[1:][~same])))
@@ -196,13 +191,14 @@ def _simplified_lines(
 
 def _simplified_tile(
     path: str, value: str, number: int, lines: list[Floats], error: float
-) -> _Piece:
+) -> Piece:
     """Simplify a tile between the lines around it."""
     tin = TileFolder._at(path)
     border, segments = _edges(lines)
     # Points on a cut are within half of the error of its line, so they are never inserted.
     every = np.concatenate((border, _own(tin, number, value)))
-    nothing = _Piece(np.empty((0, 3)), np.empty((0, 3), dtype=np.int32))
+    none = np.empty((0, 3), dtype=np.int32)
+    nothing = Piece(np.empty((0, 3)), none, none)
     flat = np.ascontiguousarray(every[:, :2])
     if len(flat) < 3:
         return nothing
@@ -226,7 +222,12 @@ def _simplified_tile(
     )
     levels = simplified(ground, lambda built, _: built, error, None)
     made: Built = levels.surface(max_error=error)
-    return _Piece(np.column_stack((made.points, made.z)), made.simplices)
+    # Points that coincide with one of a line have no triangle.
+    used = np.zeros(len(made.points), dtype=bool)
+    used[made.simplices] = True
+    row = (np.cumsum(used) - 1).astype(np.int32)
+    points = np.column_stack((made.points[used], made.z[used]))
+    return Piece(points, row[made.simplices], made.neighbors)
 
 
 def _edges(lines: list[Floats]) -> tuple[Floats, Indices]:
@@ -237,39 +238,3 @@ def _edges(lines: list[Floats]) -> tuple[Floats, Indices]:
     rows = np.delete(np.arange(len(points)), np.cumsum(counts)[1:][counts[1:] > 0] - 1)
     pairs = np.column_stack((rows, rows + 1)).astype(np.int64)
     return points[first], same.reshape(-1)[pairs].astype(np.int32)
-
-
-def _together(pieces: list[_Piece], crs: str | None) -> TIN:
-    """Return the surface of all pieces, whose borders are among its edges."""
-    starts = np.cumsum([0, *(len(piece.points) for piece in pieces)])
-    every = np.concatenate([piece.points for piece in pieces])
-    _, first, same = np.unique(every[:, :2], axis=0, return_index=True, return_inverse=True)
-    rows = [
-        same.reshape(-1)[at : at + len(piece.points)]
-        for piece, at in zip(pieces, starts, strict=False)
-    ]
-    faces = [row[piece.simplices] for row, piece in zip(rows, pieces, strict=True)]
-    borders = [row[_border(piece)] for row, piece in zip(rows, pieces, strict=True)]
-    simplices = np.concatenate(faces).astype(np.int32)
-    segments = np.unique(np.sort(np.concatenate(borders), axis=1), axis=0).astype(np.int32)
-    flat = np.ascontiguousarray(every[first, :2])
-    mesh = ConstrainedDelaunay(flat, segments, planar=True)
-    kept = topology.triangles_among(mesh.simplices, simplices)
-    if np.count_nonzero(kept) != len(simplices):
-        raise InternalError("the borders of simplified tiles differ")
-    # Edges of the hull need no segment.
-    hull = topology.boundary_edges(mesh.simplices, mesh.neighbors)
-    keys, outer = (
-        topology.edge_keys(each[:, 0], each[:, 1], len(flat)) for each in (mesh.segments, hull)
-    )
-    inner = mesh.segments[~topology.among(keys, outer)]
-    soft = np.ones(len(inner), dtype=bool)
-    z = every[first, 2].copy()
-    built = Built(flat, z, mesh.simplices, mesh.neighbors, kept, inner, soft, crs, None)
-    return TIN._built(built, None)
-
-
-def _border(piece: _Piece) -> Indices:
-    """The edges of a piece that belong to one triangle only."""
-    beside = topology.neighbors(piece.simplices, len(piece.points))
-    return topology.boundary_edges(piece.simplices, beside)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from delone._base.types import Floats, Rows
     from delone.distributed.store.files import Store
 
-__all__ = ["Tile", "read_columns", "read_tile"]
+__all__ = ["Tile", "read_columns", "read_tile", "read_vertices"]
 
 _WHAT = "reading tiles"
 # Columns that are not attributes, with the kinds of their NumPy dtypes.
@@ -78,25 +78,34 @@ class Tile:
 
 def read_tile(store: Store, manifest: Mapping[str, Any], number: int) -> Tile:
     """Read a tile, without comparing its figures with the manifest; errors name the wrong file."""
-    of_vertices, of_triangles = (store.path(name) for name in tile_names(number))
+    of_triangles = store.path(tile_names(number)[1])
     names = [*(["z"] if manifest["heights"] else []), *manifest["attributes"]]
-    vertices = read_columns(of_vertices, _VERTICES | dict.fromkeys(names, "biuf"))
+    points, vertices = read_vertices(store, manifest, number, names)
     triangles = read_columns(of_triangles, _TRIANGLES)
-    points = np.stack([vertices["x"], vertices["y"]], axis=1).astype(np.float64, copy=False)
-    _require(np.isfinite(points), of_vertices, "x or y", "is not finite")
-    ids = vertices["id"]
-    _require((ids >= 0) & (ids < manifest["rows"]), of_vertices, "id", "is not a row of the source")
     simplices = np.stack([triangles[name] for name in "abc"], axis=1)
     held = (simplices >= 0) & (simplices < len(points))
     _require(held, of_triangles, "a, b or c", "is not a row of the vertices")
     return Tile(
         number,
         points,
-        ids.astype(np.int64),
+        vertices["id"].astype(np.int64),
         vertices["owned"],
         simplices.astype(np.int32, copy=False),
         {name: vertices[name] for name in names},
     )
+
+
+def read_vertices(
+    store: Store, manifest: Mapping[str, Any], number: int, names: Sequence[str]
+) -> tuple[Floats, dict[str, NDArray[Any]]]:
+    """Read the vertices of a tile and some of their attributes, without its triangles."""
+    path = store.path(tile_names(number)[0])
+    found = read_columns(path, _VERTICES | dict.fromkeys(names, "biuf"))
+    points = np.stack([found.pop("x"), found.pop("y")], axis=1).astype(np.float64, copy=False)
+    _require(np.isfinite(points), path, "x or y", "is not finite")
+    ids = found["id"]
+    _require((ids >= 0) & (ids < manifest["rows"]), path, "id", "is not a row of the source")
+    return points, found
 
 
 def read_columns(path: Path, wanted: Mapping[str, str | Sequence[str]]) -> dict[str, NDArray[Any]]:
