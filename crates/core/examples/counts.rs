@@ -12,19 +12,24 @@ use delone_core::base::watch::{IDLE, Watch};
 use delone_core::constrained::{Options, constrain};
 use delone_core::delaunay::plane::{Method, triangulate};
 use delone_core::delaunay::space as delaunay3;
+use delone_core::hull::hull3;
+use delone_core::interpolate::{Field, Kind, Order, natural_values};
 use delone_core::live::plane::Plane;
 use delone_core::locate::{Batch, Kept, Locator, find};
+use delone_core::overlap::{Grid, Polygons, overlaps};
+use delone_core::regular::regular;
+use delone_core::solids::improve;
 use delone_core::solids::recover::{Task, recover};
 use delone_core::terrain::contour;
 use delone_core::terrain::volume::{Other, Surface, volumes};
 use delone_core::{Point2, Point3};
-use delone_core::{alpha, graphs, sphere};
+use delone_core::{alpha, graphs, ndim, refine, sphere};
 
 type Outcome = Result<(), Box<dyn Error>>;
 type Job = fn() -> Outcome;
 
 /// A job with its name; its points are few, as callgrind takes fifty times as long.
-const JOBS: [(&str, Job); 15] = [
+const JOBS: [(&str, Job); 22] = [
     ("uniform", || planar(&uniform(20_000))),
     ("lattice", || planar(&lattice(100))),
     ("clusters", || planar(&clusters(10_000))),
@@ -40,6 +45,13 @@ const JOBS: [(&str, Job); 15] = [
     ("contours", contours),
     ("recover", surface),
     ("volumes", overlaid),
+    ("hull", rounded),
+    ("power", weighted),
+    ("natural", interpolated),
+    ("refine", refined),
+    ("improve", improved),
+    ("higher", higher),
+    ("overlaps", shared),
 ];
 
 fn main() -> Outcome {
@@ -259,6 +271,152 @@ fn overlaid() -> Outcome {
     let other = Sheet::of(uniform(4_000).split_off(2_000), |[x, y]| 1.0 - x * y)?;
     let other = Other::Surface(other.surface());
     counted(|| volumes(one.surface(), other, None, 1, &Watch::idle()))?;
+    Ok(())
+}
+
+/// The convex hull of points on a paraboloid, up to their rounding.
+fn rounded() -> Outcome {
+    let bowl: Vec<Point3> = uniform::<2>(4_000)
+        .into_iter()
+        .map(|[x, y]| [x, y, (x - 0.5) * (x - 0.5) + (y - 0.5) * (y - 0.5)])
+        .collect();
+    counted(|| hull3(&bowl, &Watch::idle()))?;
+    Ok(())
+}
+
+/// A regular triangulation with weights that hide some sites.
+fn weighted() -> Outcome {
+    let sites: Vec<[f64; 3]> = uniform(8_000);
+    let points: Vec<Point2> = sites.iter().map(|&[x, y, _]| [x, y]).collect();
+    let weights: Vec<f64> = sites.iter().map(|&[_, _, w]| w / 4_000.0).collect();
+    counted(|| regular(&points, &weights, 1, &Watch::idle()))?;
+    Ok(())
+}
+
+/// Natural neighbor interpolation.
+fn interpolated() -> Outcome {
+    let watch = &Watch::idle();
+    let points = uniform(2_000);
+    let queries: Vec<Point2> = uniform(6_000).split_off(2_000);
+    let values: Vec<f64> = points.iter().map(|&[x, y]: &Point2| x * y).collect();
+    let made = triangulate(&points, Method::Auto, 1, watch)?;
+    let given = Given {
+        points: &points,
+        simplices: &made.arrays.simplices,
+        neighbors: &made.arrays.neighbors,
+    };
+    let kept = Kept::of(&given, watch)?;
+    let batch = Batch {
+        locator: Locator::new(given, &kept, &IDLE),
+        queries: &queries,
+        workers: 1,
+        watch,
+    };
+    let field = Field::new(&given, &values, None, 1)?;
+    counted(|| natural_values(&batch, Kind::Sibson, field, &[], Order::Value))?;
+    Ok(())
+}
+
+/// A mesh of a square around points.
+fn refined() -> Outcome {
+    let watch = &Watch::idle();
+    let mut points: Vec<Point2> = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    points.extend(uniform::<2>(2_000));
+    let segments: Vec<[u32; 2]> = vec![[0, 1], [1, 2], [2, 3], [3, 0]];
+    let options = Options {
+        split: false,
+        conforming: false,
+        max_vertices: 0,
+        method: Method::Auto,
+        workers: 1,
+    };
+    let base = constrain(&points, &segments, options, watch)?;
+    let count = base.arrays.simplices.len();
+    let task = refine::Task {
+        points: &points,
+        simplices: &base.arrays.simplices,
+        neighbors: Some(&base.arrays.neighbors),
+        labels: &vec![0; count],
+        areas: &vec![f64::INFINITY; count],
+        segments: &segments,
+        lines: None,
+        frozen: &[false; 4],
+        min_angle: 30.0,
+        circles: false,
+        sizes_yield: false,
+        max_vertices: 100_000,
+    };
+    counted(|| refine::refine(task, watch))?;
+    Ok(())
+}
+
+/// Tetrahedra without slivers where that can be.
+fn improved() -> Outcome {
+    let watch = &Watch::idle();
+    let points: Vec<Point3> = uniform(250);
+    let made = delaunay3::triangulate(&points, 1, watch)?;
+    let task = improve::Task {
+        points: &points,
+        simplices: &made.arrays.simplices,
+        labels: &[],
+        fixed: &[],
+        removable: &vec![true; points.len()],
+        min_angle: 20.0,
+        flips: true,
+        smooth: true,
+        exude: false,
+        turn: false,
+        passes: 5,
+        most: 4,
+    };
+    counted(|| improve::improve(task, watch, &mut |_, _| Ok(())))?;
+    Ok(())
+}
+
+/// A triangulation in four dimensions.
+fn higher() -> Outcome {
+    counted(|| ndim::triangulate::<4, 5, 4>(&uniform(250), &IDLE))?;
+    Ok(())
+}
+
+/// The areas that the cells of two grids of a cube's sides share on the sphere, one of them turned.
+fn shared() -> Outcome {
+    let cells = |n: u32, turn: bool| {
+        let at = |k: u32| f64::from(2 * k) / f64::from(n) - 1.0;
+        let mut vectors: Vec<Point3> = Vec::new();
+        for (face, i, j) in (0..6 * n * n).map(|k| (k / (n * n), k / n % n, k % n)) {
+            for (i, j) in [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)] {
+                let (a, b) = (at(i), at(j));
+                let [x, y, z] = [
+                    [1.0, a, b],
+                    [-a, 1.0, b],
+                    [-1.0, -a, b],
+                    [a, -1.0, b],
+                    [-b, a, 1.0],
+                    [b, a, -1.0],
+                ][face as usize];
+                // A rotation by rational numbers.
+                let turned = [0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y, z];
+                vectors.push(if turn { turned } else { [x, y, z] });
+            }
+        }
+        vectors
+    };
+    let (one, other) = (cells(7, false), cells(9, true));
+    let starts = |n: usize, step: i64| (0..=n as i64).map(|k| k * step).collect::<Vec<i64>>();
+    let rings = [starts(one.len() / 4, 4), starts(other.len() / 4, 4)];
+    let cells = [starts(one.len() / 4, 1), starts(other.len() / 4, 1)];
+    let holes = [vec![false; one.len() / 4], vec![false; other.len() / 4]];
+    let grid = |i: usize| {
+        Grid::Polygons(Polygons {
+            vectors: if i == 0 { &one } else { &other },
+            rings: &rings[i],
+            cells: &cells[i],
+            holes: &holes[i],
+        })
+    };
+    let (p, q) = (grid(0), grid(1));
+    counted(|| overlaps(&p, &q, 1, &Watch::idle()))?;
     Ok(())
 }
 
