@@ -124,7 +124,7 @@ def test_surfaces_that_cannot_be_filled(tmp_path, command):
         (("--hole", "9,9,9"), "holes: 1 seed outside"),
         (("--inside", "odd"), "inside must be one of"),
         (("-o", "a.svg"), "cannot store tetrahedra"),
-        (("-o", "a.su2", "--order", "2"), ".su2 files have no second order"),
+        (("-o", "a.su2", "--order", "2"), ".su2 files cannot store second-order elements"),
         (("-o", "a.vtu", "--order", "3"), "order must be 1 or 2"),
     ],
 )

@@ -128,7 +128,7 @@ def code_of(error: BaseException) -> Exit:
     return next((code for kind, code in codes if isinstance(error, kind)), Exit.INTERNAL)
 
 
-_ATTRIBUTE = re.compile(r"; `error\.\w+` ha[^;]*")
+_ATTRIBUTE = re.compile(r"; `error\.\w+` (?:ha|list|contain)[^;]*")
 _QUOTES = str.maketrans("", "", "'\"")
 _OPTION = re.compile(
     r"""\b(crossing|duplicates|extrapolate|inside|nan)=((?:["'][\w-]+["'](?:, | or )?)+)"""

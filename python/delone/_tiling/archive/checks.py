@@ -184,7 +184,7 @@ def _check_improvement(**arrays: NDArray[Any]) -> None:
     require(
         (angles >= 0).all() and (angles <= 180).all(), "angles contains a value outside 0 to 180"
     )
-    require((angles[1:3] <= angles[3:]).all(), "angles contains a smallest one above the largest")
+    require((angles[1:3] <= angles[3:]).all(), "in angles, a smallest one is above the largest")
     require((bounds >= 0).all() and (bounds[1:] > bounds[:-1]).all(), "bounds are out of order")
     check_range("counts", counts, 0, 2**63)
     require(counts[9] <= 1, "counts does not end with a flag")
