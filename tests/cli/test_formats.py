@@ -56,7 +56,7 @@ def test_a_drawing_of_contours(folder, figures, command):
     lines = ezdxf.readfile("a.dxf").modelspace().query("POLYLINE")
     assert len(lines) == found["lines"] == len(geopandas.read_file("a.gpkg"))
     code, _, message = command(*CALL, "--bands", "-o", "b.dxf")
-    assert code != 0 and "drawings have contours, not the areas between" in message
+    assert code != 0 and "drawings contain contours, not the areas between" in message
     code, _, message = command(*CALL, "-o", "b.txt")
     assert code != 0 and "can only be written to .dxf .gpkg" in message
 
@@ -112,6 +112,6 @@ def test_long_names_of_columns_are_shortened_with_a_note(folder, command):
         *("volume", "a b.csv", 2, "--crs", "EPSG:28992", "--regions", "lots.gpkg"),
         *("-o", "v.shp"),
     )
-    assert code == 0 and "the column 'region_area' is 'region_are'" in notes
+    assert code == 0 and "the column 'region_area' is written as 'region_are'" in notes
     table = geopandas.read_file("v.shp")
     assert table[["name_of_th", "name_of_t2"]].values.tolist() == [["x", "y"]]

@@ -241,9 +241,12 @@ def test_tiles_in_place_of_a_file(folder, figures, command):
     for wrong, message in (
         (["contours", tiles, "--interval", 1, "--snap", 1, "--max-edge", 2], "--max-edge, --snap"),
         (["contours", tiles, "--interval", 1, "--bands"], "--bands is for files"),
-        (["contours", tiles, "--interval", 1, "--crs", "EPSG:28992"], "--crs: the tiles have"),
+        (
+            ["contours", tiles, "--interval", 1, "--crs", "EPSG:28992"],
+            "--crs: the tiles already have",
+        ),
         (["profile", tiles, line, "--other", file], "--other and --interval"),
-        (["volume", file, tiles], "swap both"),
+        (["volume", file, tiles], "swap the two"),
     ):
         code, _, err = command(*wrong)
         assert code == 2

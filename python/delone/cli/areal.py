@@ -153,8 +153,8 @@ def _methods(given: dict[str, str | None]) -> dict[str, str]:
             found[name] = method
     if _COVERED in found:
         raise Failure(
-            f"the output has a column {_COVERED}, the fraction that is covered: rename that of "
-            "the source",
+            f"the output has a column {_COVERED}, the covered fraction: rename that column of the "
+            f"source",
             Exit.USAGE,
         )
     return found

@@ -96,8 +96,8 @@ def cluster_points(
     min_samples: Annotated[
         int | None,
         typer.Option(
-            help="hdbscan, dbscan: number of nearby points, itself included, that makes a point "
-            "dense; by default the value of --min-cluster-size, or 5."
+            help="hdbscan, dbscan: number of points nearby, including the point itself, that "
+            "makes a point dense; by default the value of --min-cluster-size, or 5."
         ),
     ] = None,
     selection: Annotated[
@@ -198,7 +198,7 @@ def _require_own(method: Method, given: dict[str, Any]) -> None:
     """Reject options of other methods, and require those without a default."""
     require_own("--method", method, given, _OWN)
     if method is Method.DBSCAN and given["--eps"] is None:
-        raise Failure("--method dbscan needs --eps, the distance of neighbors", Exit.USAGE)
+        raise Failure("--method dbscan needs --eps, the distance between neighbors", Exit.USAGE)
     if method is Method.SINGLE and (given["--height"] is None) == (given["--n-clusters"] is None):
         needs = "needs --height or --n-clusters, and not both"
         raise Failure(f"--method single-linkage {needs}", Exit.USAGE)

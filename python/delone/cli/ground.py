@@ -51,7 +51,9 @@ def find_ground(
     ] = False,
     edge: Annotated[
         float | None,
-        typer.Option(help="Insert no points into triangles with shorter edges; 1 m by default."),
+        typer.Option(
+            help="Do not insert points into triangles with shorter edges; 1 m by default."
+        ),
     ] = None,
     thickness: Annotated[
         float | None, typer.Option(help="Noise in the heights of the ground; 0.1 m by default.")

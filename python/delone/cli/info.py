@@ -98,7 +98,7 @@ def _described(
 ) -> tuple[dict[str, Any], list[Row]]:
     """Read a file and return figures and rows of its contents; `crs` replaces that of the file.
 
-    Points are 3-D (`space`) by default as `delone.cli.solid.is_space` decides.
+    By default, `delone.cli.solid.is_space` decides whether points are 3-D (`space`).
     """
     with reading():
         tiles = _header(source) if is_point_tiles(source) and source.exists() else None

@@ -242,7 +242,7 @@ def _read(  # noqa: PLR0917
     if value is not None:
         return survey, np.asarray(survey.attributes[value]), value
     if survey.z is None:
-        raise Failure(f"{source}: which column is to be interpolated? Give --value", Exit.USAGE)
+        raise Failure(f"{source}: which column should be interpolated? Give --value", Exit.USAGE)
     return survey, survey.z, "z"
 
 

@@ -27,7 +27,7 @@ def note(message: str | None, *, quiet: bool = False) -> None:
 def noting(*, quiet: bool = False) -> Iterator[None]:
     """Print warnings about units, reference systems and what is left out as notes.
 
-    A plain ``UserWarning`` becomes a note, too; all others are passed on.
+    A plain ``UserWarning`` also becomes a note; all others are passed on.
     """
     kinds = (UnitsWarning, CRSWarning, LeftOutWarning)
     with warnings.catch_warnings(record=True) as caught:

@@ -95,7 +95,7 @@ def renaming(renamed: Mapping[str, str]) -> str | None:
         return None
     pairs = ", ".join(f"{old!r:.60} as {new!r:.70}" for old, new in renamed.items())
     what = counted(len(renamed), "column")
-    return f"{what} of the input would have the name of another; written: {pairs}"
+    return f"{what} of the input would have the name of another column; written: {pairs}"
 
 
 def _free(name: str, taken: Sequence[str] | Mapping[str, Any]) -> str:

@@ -155,7 +155,7 @@ def _duplicates(duplicates: dict[str, Any]) -> str:
 def print_text(text: str) -> None:
     """Print text on standard output.
 
-    If that is closed, the message of the failure is empty, as nothing can be reported there.
+    If that is closed, the failure has an empty message, because nothing can be reported there.
     """
     try:
         print(text, flush=True)

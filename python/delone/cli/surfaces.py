@@ -222,14 +222,15 @@ def surface(
 ) -> TIN:
     """Read points and lines, or a surface, and triangulate them.
 
-    Format options may be meant for `others`, which will be read with them, too; `aligned` says that
+    Format options may be meant for `others`, which will also be read with them; `aligned` says that
     one of these has alignments with curves.
     """
     say(f"reading {source.name}")
     files = (source, *options.inputs(), *others)
     if options.chord is not None and not (aligned or any(map(_is_drawing, files))):
         raise Failure(
-            "--chord is for DXF files and for alignments, and none is among the inputs", Exit.USAGE
+            "--chord is for DXF files and for alignments, and the inputs contain neither",
+            Exit.USAGE,
         )
     for option, given in (("--step", options.step != 1), ("--nodata", options.nodata is not None)):
         if given and not any(map(is_raster, (source, *others))):
@@ -240,7 +241,7 @@ def surface(
             Exit.USAGE,
         )
     if options.voids and options.max_edge is None:
-        raise Failure("--voids needs --max-edge, the longest edge that spans nothing", Exit.USAGE)
+        raise Failure("--voids needs --max-edge: longer edges span a void", Exit.USAGE)
     lined: dict[str, Any] = {"max_edge": options.max_edge, "voids": options.voids}
     survey: PointSet | SurfaceFile
     with reading(quiet=options.quiet), watch.stage("read"):
@@ -260,7 +261,9 @@ def surface(
             path = getattr(options, name)
             lined[name] = None if path is None else _lines(path, options)
     if isinstance(survey, PointSet) and survey.z is None:
-        raise Failure(f"{source}: no column has heights: name it with --columns x,y,z", Exit.USAGE)
+        raise Failure(
+            f"{source}: no column contains heights: name it with --columns x,y,z", Exit.USAGE
+        )
     survey = referenced(survey, options.crs, planar=options.planar, quiet=options.quiet)
     say(f"triangulating {len(survey.points):,} points")
     policies = ("duplicates", "crossing", "tolerance", "snap", "units", "workers")

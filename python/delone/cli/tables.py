@@ -78,7 +78,7 @@ def write_table(
 
 
 def _with_short_names(table: Any) -> Any:
-    """Return a table whose columns have names that Shapefiles can have, and say so."""
+    """Return a table with column names that Shapefiles allow; print a note about changed names."""
     names: dict[str, str] = {}
     for name in map(str, table.columns.drop(table.geometry.name)):
         short, number = name[:_SHORT], 1
@@ -88,5 +88,8 @@ def _with_short_names(table: Any) -> Any:
             short = f"{name[: _SHORT - len(str(number))]}{number}"
         names[name] = short
         if short != name:
-            note(f"Shapefiles have short names: the column {name!r:.80} is {short!r}")
+            note(
+                f"Shapefiles allow only short names: the column {name!r:.80} is written as "
+                f"{short!r}"
+            )
     return table.rename(columns=names)

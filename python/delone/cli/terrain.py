@@ -330,9 +330,7 @@ def volume(
         within_other = replace(options, layer=other_layer or options.layer)
         goal = _goal(other, within_other, watch, say)
         if isinstance(tin, TIN) and isinstance(goal, distributed.TiledDelaunay):
-            raise Failure(
-                "a folder of tiles is compared as the first surface: swap both", Exit.USAGE
-            )
+            raise Failure("a folder of tiles must be the first surface: swap the two", Exit.USAGE)
         say("computing volumes")
         with watch.stage("volume"), noting(quiet=options.quiet):
             found: Volume | Volumes
@@ -362,7 +360,9 @@ def _check(output: list[Path], source: Path, options: SurfaceOptions, *, bands: 
             if path.suffix.lower() != ".dxf":
                 ready_table(path, "contours", also=".dxf")
             elif bands:
-                raise Failure(f"{path}: drawings have contours, not the areas between", Exit.USAGE)
+                raise Failure(
+                    f"{path}: drawings contain contours, not the areas between them", Exit.USAGE
+                )
             else:
                 require("ezdxf", extra="dxf", what="writing DXF")
                 check_target(path)

@@ -268,7 +268,7 @@ def _figures(mesh: TetMesh) -> dict[str, Any]:
 
 
 def _imprint(report: RecoveryReport) -> dict[str, Any]:
-    """Return the figures on faces that were cut at each other, if they were."""
+    """Return the figures on faces that were cut where they meet, if any."""
     if not len(report.imprinted):
         return {}
     return {"imprint": {"parts": len(report.imprinted), "distance": report.imprint_distance}}

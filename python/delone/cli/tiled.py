@@ -41,7 +41,9 @@ def surface_or_tiles(
     allowed = (*_PRINTING, *_OTHERS) if others else _PRINTING
     refuse_for_tiles(vars(options), allowed)
     if options.crs is not None:
-        raise Failure("--crs: the tiles have the reference system that delone tile got", Exit.USAGE)
+        raise Failure(
+            "--crs: the tiles already have the reference system given to delone tile", Exit.USAGE
+        )
     with reading(quiet=options.quiet), watch.stage("open"):
         found = distributed.open(source)
         if not found.manifest["heights"]:

@@ -134,7 +134,7 @@ def _outline(clip: str, crs: str | None) -> Any:
             pass
     shapely = require("shapely", extra="geo", what="reading an outline")
     if not Path(clip).exists():
-        raise Failure(f"{clip}: not a file, nor box, nor four numbers", Exit.INPUT)
+        raise Failure(f"{clip}: neither a file, nor box, nor four numbers", Exit.INPUT)
     found = read_geometries(clip)
     geometries = found.geometries[~shapely.is_missing(found.geometries)]
     if not len(geometries) or not np.isin(shapely.get_type_id(geometries), _AREAS).all():

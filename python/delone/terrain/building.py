@@ -117,7 +117,7 @@ def build(
     if limit is not None and not limit > 0:
         raise InputError(f"max_edge must be above 0, got {max_edge!r:.80}")
     if as_flag(voids, name="voids") and limit is None:
-        raise InputError("voids=True needs max_edge, the longest edge that spans nothing")
+        raise InputError("voids=True needs max_edge: longer edges span a void")
     points = _points_of(xyz)
     system = system_of(crs, xyz)
     if system is None:
