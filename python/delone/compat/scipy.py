@@ -20,7 +20,8 @@ triangles in delone's order.
 * Complex numbers, masked points, and integers that float64 cannot represent are rejected rather
 than rounded or unmasked. A masked query is treated as NaN, and is therefore in no simplex.
 * Option ``Qu`` sets `furthest_site`; SciPy leaves it False.
-* `add_points` inserts the points; the simplices are the same, in another order.
+* `add_points` of 2-D and 3-D triangulations inserts the points; the simplices are the same, but
+  may be in a different order.
 
 `Voronoi` and `voronoi_plot_2d` are exported here; `delone.compat.scipy_voronoi` documents their
 differences. So are `ConvexHull` of `delone.compat.scipy_hull`, `HalfspaceIntersection` of
