@@ -62,5 +62,5 @@ points, simplices = triangulate_polygon(land)
 u, v = points[simplices[:, 1:]].swapaxes(0, 1) - points[simplices[:, 0]]
 area = np.sum(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
 north = mesh.areas[mesh.region == 1].sum()
-print(f"area {area:.4f}, of it {north:.4f} north of the road")
+print(f"area {area:.4f}, of which {north:.4f} is north of the road")
 assert np.isclose(area, mesh.areas.sum())

@@ -3,8 +3,8 @@ Map coordinates: points that SciPy loses
 ========================================
 
 Points in a square kilometer, in UTM coordinates rounded to millimeters, are triangulated by SciPy and by delone. The
-coordinates are large compared with the distances between the points. SciPy silently drops some points; in the result
-of delone, every distinct point is a vertex. Both results are checked with exact predicates.
+coordinates are large compared with the distances between the points. SciPy silently drops some points; in delone's
+result, every distinct point is a vertex. Both results are checked with exact predicates.
 
 Install: ``pip install "delone[plot]" scipy``.
 """

@@ -26,7 +26,7 @@ model = Grid(np.maximum(hills, dike), x, y)
 crest = [(0.5, 100.05, 9), (199.5, 119.95, 9)]
 
 # %%
-# The bound of ``simplify`` holds at every point of the original surface, which are the centers of cells here.
+# The bound of ``simplify`` holds at every point of the original surface; these points are the centers of cells here.
 # Breaklines are kept, so the crest of the dike remains sharp.
 
 tin = TIN.from_raster(model, breaklines=[crest])

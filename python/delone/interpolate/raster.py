@@ -351,7 +351,7 @@ def _is_one(given: Any) -> bool:
 
 
 def _cells(low: float, high: float, cell: float) -> int:
-    """How many cells cover a length; an excess by a rounding of the coordinates adds none."""
+    """How many cells cover a length; an excess within rounding error does not add a cell."""
     length, side = exact(high) - exact(low), exact(cell)
     count = math.ceil(length / side)
     if count > sys.float_info.max:

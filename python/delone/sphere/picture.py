@@ -29,7 +29,7 @@ def plot_mesh(mesh: Any, ax: Any, points: bool | None, options: dict[str, Any]) 
 
 
 def plot_diagram(diagram: Any, ax: Any, points: bool | None, options: dict[str, Any]) -> Any:
-    """Draw a diagram; values are those of rows."""
+    """Draw a diagram; there is a value for each row."""
     from delone.plot.globe import plot_globe
 
     sites, left = diagram.points, diagram._left

@@ -67,7 +67,7 @@ class Clip:
 
     @cached_property
     def unit(self) -> float:
-        """The power of two by which the outline is multiplied, as `unit_of`."""
+        """The power of two by which the outline is multiplied; see `unit_of`."""
         return unit_of(shapely_or_say().get_coordinates(self.outline))
 
     @cached_property
