@@ -130,6 +130,14 @@ PHRASES = (
     "for good",
     "what there is",
     "each so many",
+    "are outside of",
+    "lie outside of",
+    "strictly outside of",
+    "strictly inside of",
+    "what becomes of",
+    "leave no doubt",
+    "nearer than this",
+    "as an object of",
 )
 # Also in the table: phrases that a pattern finds without false alarms.
 PATTERNS = (
@@ -145,7 +153,7 @@ PATTERNS = (
     r"(?:geometries|polygons|pipelines|tables) of (?:shapely|geopandas|scikit-learn)",
     r"one \w+ after the other",
     r"(?:mesh|meshes|graphs?|plotters?|datasets?|accessors?|axes) of (?:xarray|PyVista|NetworkX"
-    r"|matplotlib|scikit-fem|trimesh|libpysal)",
+    r"|matplotlib|scikit-fem|trimesh|libpysal|meshio|UGRID|DOLFINx)",
 )
 AFTER_THERE = re.compile(r"\bthere\W*$", re.IGNORECASE)
 BRITISH = (

@@ -170,7 +170,7 @@ def test_nodes_of_quadrilaterals_and_targets() -> None:
     assert found.target_dims == ("cell",)
     cf = xarray.Dataset(coords={"lon": ("lon", [0.0, 1], {"units": "degrees_east"}),
                                 "lat": ("lat", [0.0, 1], {"units": "degrees_north"})})  # fmt: skip
-    with pytest.raises(delone.InputError, match="meshes of UGRID and FESOM, and this is CF"):
+    with pytest.raises(delone.InputError, match="UGRID and FESOM meshes, and this is CF"):
         Grid.from_dataset(cf, infer_bounds=True, cells="nodes")
     with pytest.raises(delone.InputError, match="cells must be"):
         Grid.from_dataset(ds, cells="edges")

@@ -30,7 +30,7 @@ def to_dolfinx_arrays(mesh: Given, *, order: int = 1) -> dict[str, NDArray[Any]]
     ``order=2``, cells and facets have all their nodes, which ``distribute_entity_data`` needs.
     """
     parts = parts_of(mesh)
-    kind_of(parts, what="a mesh of DOLFINx", kinds=("triangles", "surface", "tetrahedra"))
+    kind_of(parts, what="a DOLFINx mesh", kinds=("triangles", "surface", "tetrahedra"))
     pairs, rows = facet_segments(parts)
     region = parts.of_simplices.get("region", np.zeros(len(parts.simplices)))
     marker = parts.of_segments.get("marker")

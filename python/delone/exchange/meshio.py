@@ -38,7 +38,7 @@ def to_meshio(mesh: Given, *, order: int = 1) -> Any:
     """
     meshio = require("meshio", extra="mesh", what="to_meshio")
     parts = parts_of(mesh)
-    kind = kind_of(parts, what="a mesh of meshio")
+    kind = kind_of(parts, what="a meshio mesh")
     parts = of_order(parts, as_order(order))
     cells = [(_CELLS[kind][parts.order - 1], parts.simplices)]
     if parts.segments is not None:

@@ -95,8 +95,7 @@ def read_cells(given: Any, choices: Choices) -> Cells:
     found = _read(given, choices)
     if choices.cells is not None and found.format not in {"UGRID", "FESOM"}:
         raise InputError(
-            f"cells={choices.cells!r:.20} is for meshes of UGRID and FESOM, and this is "
-            f"{found.format}"
+            f"cells={choices.cells!r:.20} is for UGRID and FESOM meshes, and this is {found.format}"
         )
     if found.coords is not None and found.columns is None:
         return found._replace(centers=_centers(variables_of(given), found, choices))
