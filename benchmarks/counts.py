@@ -3,7 +3,7 @@
     python benchmarks/counts.py [--update] [JOB ...]
 
 A count is no time: it is nearly the same on every machine, whatever else that does. Valgrind's
-callgrind counts what `crates/core/examples/counts.rs` does inside of its jobs. Code for newer
+callgrind counts what `crates/core/examples/counts.rs` does inside its jobs. Code for newer
 processors is left out by the feature `baseline`, as callgrind knows no AVX-512.
 
 Exit codes: 0 if no job takes more than the tolerance, or if valgrind is not installed, which a line

@@ -22,7 +22,7 @@ BATCH = 0.1
 
 
 class Filler(NamedTuple):
-    """A peer: prepares its input outside of the clock, is called, and yields points, triangles."""
+    """A peer: prepares its input outside the clock, is called, and yields points, triangles."""
 
     name: str
     prepare: Callable[[Rings], tuple[Any, ...]]

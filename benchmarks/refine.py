@@ -64,7 +64,7 @@ def outline(points: np.ndarray) -> lines.Lines:
 
 
 def area(given: lines.Lines) -> float:
-    """The area inside of a ring."""
+    """The area inside a ring."""
     x, y = given.points.T
     return abs(float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))) / 2
 

@@ -32,7 +32,7 @@ from browser import Browser  # noqa: E402
 
 SAMPLES = {"random": 500, "many": 10_000, "most": 100_000}
 MOVES = 200
-# A point goes around an ellipse, inside of the points.
+# A point goes around an ellipse, inside the points.
 CODE = """(async () => {
   const page = await window.deloneTry;
   const { picture, hand } = page;

@@ -98,7 +98,7 @@ def shapely_cells() -> Adapter:
 
 
 def delone_cut() -> Adapter:
-    """Delone's polygons inside of the outline."""
+    """Delone's polygons inside the outline."""
     from delone import Voronoi, __version__
 
     def call(given: tuple[Any, Any]) -> Any:

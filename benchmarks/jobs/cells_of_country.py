@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def _input(given: argparse.Namespace) -> tuple[Any, np.ndarray]:
-    """The largest part of a country, and stations inside of it."""
+    """The largest part of a country, and stations inside it."""
     with stage("read"):
         import geopandas
         import numpy as np

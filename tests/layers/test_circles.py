@@ -2,7 +2,7 @@
 
 Paths are read from the sources, in `use` and in expressions, and followed through what a module
 exports again to the file that defines it; a folder that merely exports what its files define knows
-none of them. Tests inside of a file do not count.
+none of them. Tests inside a file do not count.
 """
 
 from __future__ import annotations

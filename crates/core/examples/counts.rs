@@ -1,5 +1,5 @@
 //! Runs one job on fixed input, to count its instructions: `counts JOB`; without a job, the names
-//! of all. `benchmarks/counts.py` runs it under callgrind, which collects inside of [`counted`].
+//! of all. `benchmarks/counts.py` runs it under callgrind, which collects inside [`counted`].
 //!
 //! Inputs are made by arithmetic alone, without a mathematical library: they are the same bits on
 //! every system. One thread does all the work.

@@ -23,7 +23,7 @@ pub struct Findings<const D: usize> {
     pub neighbors: Vec<u32>,
     /// Facets of the boundary at which it is not convex or not closed.
     pub hull: Vec<[u32; D]>,
-    /// Distinct points that are not vertices; with weights, those outside of all simplices.
+    /// Distinct points that are not vertices; with weights, those outside all simplices.
     pub missing: Vec<u32>,
     /// Points with weights that are in no simplex and should be. They, and those with weights that are
     /// missing, are sought only if there is no other fault.

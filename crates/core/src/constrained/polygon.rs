@@ -1,7 +1,7 @@
 //! The triangles inside arbitrary rings: crossings become vertices, and winding numbers decide what
 //! is inside.
 //!
-//! A single simple ring is filled by `ring`. Otherwise the winding number is 0 outside of the hull
+//! A single simple ring is filled by `ring`. Otherwise the winding number is 0 outside the hull
 //! and changes by one at each edge of a ring, so a flood fill over the triangles computes it:
 //! linear time after the triangulation.
 //!

@@ -17,7 +17,7 @@
 //! Avis, "On a convex hull algorithm for polygons and its application to triangulation problems",
 //! Pattern Recognition 15, 1982), even if an edge dangles into it and a vertex occurs twice.
 //! Lawson's flips then make it Delaunay: O(k^2) for k crossed edges in the worst case, and about k
-//! log k for points that are not adversarial. Triangles outside of the cavity do not change, since
+//! log k for points that are not adversarial. Triangles outside the cavity do not change, since
 //! the constrained Delaunay triangulation is unique and only a segment blocks visibility.
 
 use delone_predicates::Sign;

@@ -20,7 +20,7 @@ const KEPT: usize = 1 << 14;
 #[derive(Debug)]
 pub struct Journal<T> {
     is_on: bool,
-    /// The number of items at the start of the edit; those after them are new. 0 outside of edits.
+    /// The number of items at the start of the edit; those after them are new. 0 outside edits.
     guarded: usize,
     /// Items that have been replaced, and their places.
     old: Vec<(u32, T)>,

@@ -61,7 +61,7 @@ pub trait Kernel<const D: usize, const N: usize>:
     /// Whether `p` spans a simplex with vertices in one line or plane.
     fn spans(&self, flat: &[u32], p: [f64; D]) -> bool;
 
-    /// The simplex that contains `q`, or a ghost with `q` strictly outside of its hull facet.
+    /// The simplex that contains `q`, or a ghost with `q` strictly outside its hull facet.
     fn find(&mut self, q: [f64; D], watch: &Watch) -> Result<u32>;
 
     /// Where `q` is.

@@ -86,7 +86,7 @@ impl Counts {
 pub enum Place {
     /// At a vertex.
     At(u32),
-    /// In a simplex or on its boundary, or strictly outside of the hull facet of a ghost.
+    /// In a simplex or on its boundary, or strictly outside the hull facet of a ghost.
     In(u32),
 }
 

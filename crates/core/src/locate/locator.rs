@@ -53,8 +53,8 @@ pub trait Dimension<const D: usize, const N: usize>: Sized + Send + Sync {
     /// The first of the simplices that can be reached around the facet, edge or vertex at `place`.
     fn first_around(given: &Given<D, N>, place: Place<N>) -> First<N>;
 
-    /// Whether little proves `q` to be outside of all simplices, after a query that was strictly
-    /// outside of boundary facet `last`.
+    /// Whether little proves `q` to be outside all simplices, after a query that was strictly
+    /// outside boundary facet `last`.
     #[inline]
     fn is_outside(
         _locator: &Locator<Self, D, N>,

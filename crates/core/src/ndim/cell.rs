@@ -23,7 +23,7 @@ const ODD: u32 = 1 << 31;
 /// From this many bytes on, more cells are made only if the system seems to have the memory.
 const PLAUSIBLE_FROM: usize = 1 << 26;
 
-/// A simplex, or a ghost outside of a facet of the hull.
+/// A simplex, or a ghost outside a facet of the hull.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct Cell<const D: usize, const V: usize> {
@@ -83,7 +83,7 @@ pub struct Mesh<const D: usize, const V: usize, const P: usize> {
 
 /// What a convex hull has in place of the simplices behind its facets.
 pub struct Inside {
-    /// Sites that are not all on one plane: none of them is outside of a facet.
+    /// Sites that are not all on one plane: none of them is outside a facet.
     pub sites: Vec<u32>,
     /// For each facet, one of them that is not on its plane.
     pub far: Vec<u32>,

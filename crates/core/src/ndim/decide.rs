@@ -46,7 +46,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
         }
     }
 
-    /// Whether a point is outside of a facet of a hull. On its plane, with the site inside in the
+    /// Whether a point is outside a facet of a hull. On its plane, with the site inside in the
     /// place of the infinite vertex, the rule of ties decides alone: a point that the corners
     /// enclose is never the smallest, so it is not outside, and extreme points only become
     /// vertices. Otherwise the sphere through these corners decides first.

@@ -6,7 +6,7 @@ use crate::base::error::Result;
 use crate::base::memory::{filled, push};
 use crate::base::watch::Pace;
 
-/// Points outside of facets, as linked lists.
+/// Points outside facets, as linked lists.
 struct Waiting {
     /// The first point of each facet.
     head: Vec<u32>,

@@ -172,7 +172,7 @@ impl Work {
         Ok(pieces)
     }
 
-    /// Refines until nothing is bad, first outside of needles, then in those that the budget
+    /// Refines until nothing is bad, first outside needles, then in those that the budget
     /// allows; returns false if the limit on vertices was reached.
     pub fn run(&mut self, watch: &Watch, tell: Tell) -> Result<bool> {
         self.isolate_needles()?;
@@ -184,7 +184,7 @@ impl Work {
         Ok(done)
     }
 
-    /// Refines until nothing is bad outside of needles.
+    /// Refines until nothing is bad outside needles.
     fn refine(&mut self, watch: &Watch, tell: Tell) -> Result<bool> {
         // Everything is looked at once; afterward only what a new vertex has changed.
         for t in 0..self.marked.triangles() {
@@ -383,7 +383,7 @@ impl Work {
         if holds(p, [a, b]) && holds(q, [b, a]) {
             return Some(Place::On);
         }
-        // Otherwise inside of one of the two triangles, if there is one on the other side, too.
+        // Otherwise inside one of the two triangles, if there is one on the other side, too.
         let inside = |apex: u32, [a, b]: [Point2; 2]| {
             let at = self.at(apex);
             apex != inf && left(a, b, x) && left(b, at, x) && left(at, a, x)
@@ -395,7 +395,7 @@ impl Work {
     }
 
     /// Inserts the vertex `w` on the subsegment `e`. Edges to flip are on the stack, including
-    /// those of `w` itself, since a rounded point may be outside of the circumcircle of a thin
+    /// those of `w` itself, since a rounded point may be outside the circumcircle of a thin
     /// triangle.
     fn split_at(&mut self, e: Code, w: u32) {
         let mut mesh = self.marked.patch();

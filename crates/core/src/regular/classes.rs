@@ -355,7 +355,7 @@ fn reverse(([a, b], [x, y]): Edge) -> Edge {
     ([b, a], [-x, -y])
 }
 
-/// Final triangles, and those of `around` that lie outside of them.
+/// Final triangles, and those of `around` that lie outside them.
 fn joined(
     given: &Given<'_, 2, 3>,
     inner: &Inner,

@@ -174,7 +174,7 @@ fn ring(
     Err(Error::Internal("a ring of ghosts does not close".into()))
 }
 
-/// A side of each ring, where the arc between the first ends of both is outside of the rings: it
+/// A side of each ring, where the arc between the first ends of both is outside the rings: it
 /// leaves both at once, and they are convex.
 fn bridge(directions: &Directions, [above, below]: &[Vec<Side>; 2]) -> Option<[usize; 2]> {
     let right = |a: u32, b: u32, p: u32| directions.orient([a, b, p]) == Sign::Negative;

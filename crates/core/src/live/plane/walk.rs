@@ -32,7 +32,7 @@ impl Mesh {
         Ok(here.map_or(Place::In(t), Place::At))
     }
 
-    /// The triangle whose closed area contains `q`, or a ghost with `q` strictly outside of its hull
+    /// The triangle whose closed area contains `q`, or a ghost with `q` strictly outside its hull
     /// edge.
     #[inline]
     pub fn find(&mut self, q: Point2, watch: &Watch) -> Result<u32> {

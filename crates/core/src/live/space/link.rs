@@ -11,7 +11,7 @@ use crate::live::store::Record;
 use crate::mesh::space::{Code, LIMIT, corner, tetrahedron};
 
 impl Mesh {
-    /// Opens the facets of the rim, seen from inside of the hole.
+    /// Opens the facets of the rim, seen from inside the hole.
     pub fn open_rim(&mut self) -> Result<()> {
         for i in 0..self.patch.rim.len() {
             let e = self.patch.rim[i];

@@ -12,7 +12,7 @@ use crate::mesh::space::{Code, FACETS};
 /// A facet that waits for its other side.
 #[derive(Debug, Clone, Copy)]
 pub enum Side {
-    /// A facet of the mesh outside of the hole.
+    /// A facet of the mesh outside the hole.
     Outer(Code),
     /// A facet of a new tetrahedron: `4 i + k`, the corner k of the i-th.
     Made(Code),
@@ -66,7 +66,7 @@ impl Patch {
         let i = self.made.len() as u32;
         push(&mut self.made, corners)?;
         for (k, facet) in (0..).zip(FACETS) {
-            // From outside of the tetrahedron.
+            // From outside the tetrahedron.
             let [a, b, c] = facet.map(|j| corners[j]);
             self.meet([b, a, c], Side::Made(4 * i + k))?;
         }

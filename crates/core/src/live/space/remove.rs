@@ -16,7 +16,7 @@
 //! has not been computed from both sides.
 //!
 //! Ghosts are found from their finite facets only: at each facet with an infinite corner two ghosts
-//! meet, or a ghost and one outside of the hole. All of them are found, since each part of the hole in
+//! meet, or a ghost and one outside the hole. All of them are found, since each part of the hole in
 //! which there are finite tetrahedra has a finite facet on its boundary: otherwise only ghosts would
 //! be around that part, so it would be the whole triangulation, and there would be no tetrahedron at v.
 //!

@@ -37,7 +37,7 @@ impl Mesh {
         Ok(here.map_or(Place::In(t), Place::At))
     }
 
-    /// The tetrahedron that contains `q`, or a ghost with `q` strictly outside of its hull facet.
+    /// The tetrahedron that contains `q`, or a ghost with `q` strictly outside its hull facet.
     pub fn find(&mut self, q: Point3, watch: &Watch) -> Result<u32> {
         let corners = self.corners(self.last);
         let first = usize::from(corners[0] == INFINITE);

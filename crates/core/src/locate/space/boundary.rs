@@ -36,7 +36,7 @@ pub struct Boundary {
     /// Each boundary face, ascending.
     sides: Vec<Side>,
     /// Whether the tetrahedra fill one convex body, so that a point strictly outside a face is
-    /// outside of all.
+    /// outside all.
     pub convex: bool,
     /// For a convex body: the face across each edge, first across that from the first corner to the
     /// next.

@@ -370,7 +370,7 @@ impl Proven {
         )
     }
 
-    /// Whether all points of a box are outside of the sphere for certain.
+    /// Whether all points of a box are outside the sphere for certain.
     ///
     /// Let P^ be the power with the rounded center. It is a sum over coordinates, each convex, so its
     /// least value in the box is where each is nearest to the center: up to u, as the box is within
@@ -391,7 +391,7 @@ impl Proven {
         least > ROUNDED * 2.0 * bound + 4.0 * x.len() as f64 * U * U
     }
 
-    /// The sign of the power of a point: negative inside of the sphere.
+    /// The sign of the power of a point: negative inside the sphere.
     fn power(&mut self, at: &Around, p: u32) -> Result<i32> {
         if at.holds(p) {
             let (value, bound) = self.value(at.at(p), at.at(self.corners[0]));

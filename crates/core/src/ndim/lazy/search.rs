@@ -112,7 +112,7 @@ impl Search {
             return Ok(None);
         }
         let at = &Around::new(&self.sites, query)?;
-        // A query that is strictly inside of a simplex is in no other one, so the answer does not
+        // A query that is strictly inside a simplex is in no other one, so the answer does not
         // depend on the queries before.
         if let Some(last) = &mut worker.last
             && let (signs, _) = last.for_another_query().sides(at)?
@@ -349,7 +349,7 @@ impl Search {
         }
     }
 
-    /// The simplex across a facet of one; `None` outside of the hull.
+    /// The simplex across a facet of one; `None` outside the hull.
     ///
     /// The spheres through the facet are in an order, and each site beyond it is on one of them: the
     /// first is sought. A site in conflict with the present one is on an earlier one.

@@ -202,7 +202,7 @@ impl<'a> Around<'a> {
         })
     }
 
-    /// With the mean of `d + 1` sites as the query, which is inside of their simplex.
+    /// With the mean of `d + 1` sites as the query, which is inside their simplex.
     pub fn mean(sites: &'a Sites, of: &[u32]) -> Result<Self> {
         let count = of.len() as f64;
         let mean = |k: usize| of.iter().map(|&p| sites.at(p)[k]).sum::<f64>() / count;

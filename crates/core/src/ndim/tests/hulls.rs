@@ -72,7 +72,7 @@ fn check<const D: usize, const V: usize, const P: usize>(seeds: u64) -> [usize; 
                     assert!(!facet.contains(&theirs[back.unwrap()]));
                 }
             }
-            // A vertex is outside of the hull of all other points; another point is not.
+            // A vertex is outside the hull of all other points; another point is not.
             let places: std::collections::BTreeSet<_> =
                 vertices.iter().map(|&v| &at[v as usize]).collect();
             for p in 0..points.len() {

@@ -242,7 +242,7 @@ impl Events {
         for (one, &place) in met.iter().zip(&of) {
             push(&mut self.on, (one.on, names[place as usize]))?;
         }
-        // Ends of edges and corners of faces are not inside of them.
+        // Ends of edges and corners of faces are not inside them.
         self.on.retain(|&(on, v)| match on {
             On::Edge(e) => !edges.ends[e as usize].contains(&v),
             On::Face(f) => !work.faces[f as usize].ids.contains(&v),

@@ -135,7 +135,7 @@ fn is_beyond(
     })
 }
 
-/// The middle of the shortest connection of two segments, if it is strictly inside of both and at most
+/// The middle of the shortest connection of two segments, if it is strictly inside both and at most
 /// as long as the tolerance; `None` for parallel ones.
 pub fn crossing([p, q]: [Point3; 2], [r, s]: [Point3; 2], tolerance: f64) -> Option<Point3> {
     let (x, y) = nearest([p, q], [r, s])?;

@@ -1,7 +1,7 @@
 //! Edges of faces: split where tetrahedra cross them.
 //!
 //! The tetrahedra around a crossed face or a crossed edge form a region that is joined to a point
-//! of the segment inside of it. Each new point leaves fewer open tetrahedra on the rest of the
+//! of the segment inside it. Each new point leaves fewer open tetrahedra on the rest of the
 //! segment.
 
 use delone_predicates::Sign;

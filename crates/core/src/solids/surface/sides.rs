@@ -4,7 +4,7 @@
 //! and the facing side of the next one are in one region. If in the end front and back of a
 //! triangle are in different sets, they are in different regions of space: the triangles with one
 //! side in the set form a closed surface modulo 2, which any path from one side to the other
-//! crosses. So a component with k sets separates k - 1 regions from what is outside of it.
+//! crosses. So a component with k sets separates k - 1 regions from what is outside it.
 
 use std::cmp::Ordering;
 

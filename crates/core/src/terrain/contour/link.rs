@@ -4,7 +4,7 @@
 //! edge whose reverse is present as well bounds nothing, and both are dropped. Where several edges
 //! meet, each incoming one continues with the next outgoing one clockwise from it: between the two
 //! is a sector of the region. So regions that touch at a place get separate rings. A ring that
-//! still visits a place twice surrounds, between the two visits, a part outside of the region: it
+//! still visits a place twice surrounds, between the two visits, a part outside the region: it
 //! is cut there into two rings.
 
 use std::cmp::Ordering;

@@ -403,7 +403,7 @@ fn is_live(cells: &[Cell], entry: &Worst) -> bool {
     cell.worst == entry.point && cell.error == entry.error
 }
 
-/// Whether a corner is in a triangle outside of the hull.
+/// Whether a corner is in a triangle outside the hull.
 fn is_ghost(mesh: &Patch, corner: Code) -> bool {
     let inf = mesh.infinite();
     mesh.vertex(next(corner)) == inf || mesh.vertex(prev(corner)) == inf

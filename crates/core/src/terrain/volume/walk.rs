@@ -8,7 +8,7 @@
 //! Why all are found: from the center to a point that both have inside, a straight line within the
 //! triangle crosses edges which enter it, up to the boundary. If a walk reaches the boundary, or has
 //! its center outside, it also starts at all boundary triangles nearby: beyond a hole the line comes
-//! back across an edge of one of them. The center of a thin triangle may be rounded to outside of it:
+//! back across an edge of one of them. The center of a thin triangle may be rounded to outside it:
 //! then walks start at a corner, and cross edges that only touch the triangle, too.
 
 use crate::base::arrays::Triangles;
