@@ -14,7 +14,7 @@ Differences from SciPy:
 
 * Facets and corners ascend by their half-spaces. In 2-D and 3-D the vertices of a dual facet are in
 order around it, counter-clockwise as seen from outside; in more dimensions they ascend.
-* Half-spaces whose boundaries meet exactly in one point have one corner there. If they miss it by
+* Half-spaces whose boundaries meet exactly at one point have one corner there. If they miss it by
 rounding errors, there are several corners, which SciPy merges within a tolerance. * If the
 intersection is unbounded, the dual facet that represents this has an infinite intersection. SciPy
 returns a point outside the intersection there. * Corners are computed from the half-spaces, not
@@ -101,7 +101,7 @@ class HalfspaceIntersection:
 
     Notes
     -----
-    Whether the point is inside, which half-spaces are redundant, which boundaries meet in one
+    Whether the point is inside, which half-spaces are redundant, which boundaries meet at one
     point, and whether the intersection is bounded are decided exactly, for the given doubles; among
     half-spaces that are multiples of each other, the first one counts. Corners, dual points and
     measures are rounded. The time is that of a convex hull of the dual points: expected O(n log n)
