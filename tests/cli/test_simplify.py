@@ -75,7 +75,17 @@ def test_tiles_take_the_place_of_a_file(hill, command, figures):
     assert (found["points_before"], found["triangles_before"]) == (441, 800)
     assert 0.1 < found["error"] <= 0.5
     assert len(io.read_mesh(out).simplices) == small.nsimplex
-    assert figures("simplify", folder, "--max-error", 0.5)["error"] is None
-    for options in (["--max-triangles", 9], ["--max-error", 1, "--keep", "hard"]):
+    # Without a proof, the error is the bound.
+    assert figures("simplify", folder, "--max-error", 0.5, "--keep", "hard")["error"] == 0.5
+    found = figures("simplify", folder, "--max-triangles", 100)
+    small = distributed.open(folder).simplify(max_triangles=100)
+    assert found["triangles"] == small.nsimplex <= 100
+    assert np.array_equal(
+        distributed.open(folder).simplify(max_error=found["error"]).xyz, small.xyz
+    )
+    for options, message in (
+        (["--max-triangles", 9], "triangles of cuts between tiles and hull"),
+        (["--max-error", 1, "--keep", "lines"], "keep must be"),
+    ):
         code, _, err = command("simplify", folder, *options)
-        assert code == 2 and "folders of tiles take only --max-error" in err
+        assert code != 0 and message in err

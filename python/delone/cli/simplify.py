@@ -73,12 +73,7 @@ def simplify(
         if isinstance(tin, TIN):
             small, error = _one_piece(tin, goal, keep, watch, say, prove=prove)
         else:
-            if max_error is None or keep != _KEEP:
-                raise Failure(
-                    "folders of tiles take only --max-error, not --max-triangles or --keep",
-                    Exit.USAGE,
-                )
-            small, error = _tiles(tin, max_error, watch, say, prove=prove)
+            small, error = _tiles(tin, goal, keep, watch, say, prove=prove)
         write_all(writers, small, watch, say, z=small.z, crs=small.crs)
     figures = figures_of(source, small, output) | {
         "points_before": tin.npoints,
@@ -111,20 +106,22 @@ def _one_piece(
 
 def _tiles(
     tin: TiledDelaunay,
-    max_error: float,
+    goal: dict[str, Any],
+    keep: str,
     watch: Stopwatch,
     say: Callable[[str], None],
     *,
     prove: bool,
 ) -> tuple[TIN, float | None]:
-    """Return the simplified surface of tiles, and its error if it is proven."""
+    """Return the simplified surface of tiles, and its error if it is proven, else the bound."""
     with watch.stage("simplify"):
-        small = tin.simplify(max_error=max_error)
+        limits = goal["max_error"], goal["max_triangles"]
+        small, error = simplifying.simplify(tin, limits, keep, "z", "serial")
     if not prove:
-        return small, None
+        return small, error
     say("proving the error")
     with watch.stage("prove"):
-        found = simplifying.prove(tin, small, max_error)
+        found = simplifying.prove(tin, small, error)
         _require(found)
     return small, max(float(each.distances.max(initial=0.0)) for each in found)
 

@@ -15,9 +15,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
+from delone._base.arrays import as_choice
 from delone._base.counting import counted
 from delone._base.thinning import thinned
 from delone.distributed.read.assembling import Piece, assembled
+from delone.distributed.read.fitting import fitting
 from delone.distributed.read.folder import TileFolder
 from delone.distributed.read.tasks import mapped
 from delone.distributed.read.tile import read_vertices
@@ -25,12 +27,13 @@ from delone.distributed.read.volumes import profile
 from delone.errors import DegenerateInputError, FileFormatError, InputError
 from delone.terrain.building import Built
 from delone.terrain.deviations import deviations
-from delone.terrain.simplifying import Ground, as_goal, simplified
+from delone.terrain.simplifying import KEEP, Ground, as_goal, simplified
 from delone.terrain.tin import TIN
 
 if TYPE_CHECKING:
-    from delone._base.types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices, Rows
     from delone.terrain.deviations import Deviations
+    from delone.terrain.simplifying import Simplification
 
 __all__ = ["prove", "simplify"]
 
@@ -57,22 +60,59 @@ class _Cut(NamedTuple):
         return found & (way >= self.low) & (way <= self.high)
 
 
-def simplify(tin: TileFolder, max_error: float, value: str, executor: Any) -> TIN:
-    """Return a surface within an error of all points, with the cuts between tiles as edges."""
+class _Task(NamedTuple):
+    """Tiles with the profiles along the cuts between them."""
+
+    of_tiles: list[tuple[str, str, int]]
+    cuts: list[_Cut]
+    lines: list[tuple[Floats, Bools]]
+    cells: Floats
+    sides: list[list[int]]
+
+    def at(self, error: float) -> list[tuple[Any, ...]]:
+        """Return the arguments for each tile: with lines that are simplified for an error."""
+        simple = _simplified_lines(self.cuts, self.lines, error)
+        return [
+            (*tile, [_within(simple[k], cell) for k in some], error)
+            for tile, some, cell in zip(self.of_tiles, self.sides, self.cells, strict=True)
+        ]
+
+
+def simplify(
+    tin: TileFolder, goal: tuple[Any, Any], keep: str, value: str, executor: Any
+) -> tuple[TIN, float]:
+    """Return a surface within an error of all points, with cuts as edges, and this error.
+
+    The goal is an error or a number of triangles; see `fitting`. Tiles have no breaklines, so all
+    choices of what to keep are the same.
+    """
     tin._require(value)
-    error, _ = as_goal(max_error, None)
+    as_choice(keep, KEEP, name="keep")
+    error, most = as_goal(*goal)
+    task = _task(tin, value, executor)
+    if goal[0] is None:
+        least, greatest = np.array(list(mapped(executor, _heights, task.of_tiles))).T
+        heights = float(least.min()), float(greatest.max())
+
+        def count(error: float, coarser: list[float]) -> Rows:
+            found = mapped(executor, _counts, [(*one, coarser) for one in task.at(error)])
+            total: Rows = np.stack(list(found)).sum(axis=0)
+            return total
+
+        error = fitting(count, heights, tin.npoints, most)
+    pieces = list(mapped(executor, _simplified_tile, task.at(error)))
+    return TIN._built(assembled(pieces, tin.crs), None), error
+
+
+def _task(tin: TileFolder, value: str, executor: Any) -> _Task:
+    """Compute the profiles along the cuts."""
     cuts, cells, sides = _layout(tin)
     of_tiles = [(str(tin.path), value, number) for number in range(tin.ntiles)]
     scans = [(*tile, [cuts[k] for k in some]) for tile, some in zip(of_tiles, sides, strict=True)]
     given = np.concatenate([np.empty((0, 3)), *mapped(executor, _on_cuts, scans)])
     of_cuts = [(str(tin.path), value, cut, given[cut.on(given)]) for cut in cuts]
     lines = list(mapped(executor, _profile, of_cuts))
-    simple = _simplified_lines(cuts, _meeting(cuts, lines), error)
-    tasks = [
-        (*tile, [_within(simple[k], cell) for k in some], error)
-        for tile, some, cell in zip(of_tiles, sides, cells, strict=True)
-    ]
-    return TIN._built(assembled(list(mapped(executor, _simplified_tile, tasks)), tin.crs), None)
+    return _Task(of_tiles, cuts, _meeting(cuts, lines), cells, sides)
 
 
 def prove(tin: TileFolder, surface: TIN, max_error: float, value: str = "z") -> list[Deviations]:
@@ -189,23 +229,57 @@ def _simplified_lines(
     return simple
 
 
+def _heights(path: str, value: str, number: int) -> tuple[float, float]:
+    """The least and the greatest height of the points of a tile."""
+    z = _own(TileFolder._at(path), number, value)[:, 2]
+    return float(z.min(initial=np.inf)), float(z.max(initial=-np.inf))
+
+
+def _counts(  # noqa: PLR0917
+    path: str, value: str, number: int, lines: list[Floats], error: float, coarser: list[float]
+) -> Rows:
+    """Return how many triangles a tile has with an error, and with larger ones."""
+    levels = _levels(path, value, number, lines, error)
+    if levels is None:
+        return np.zeros(len(coarser), dtype=np.int64)
+    reached = np.minimum.accumulate(levels.errors)
+    # The first level with at most this error.
+    found: Rows = levels.triangles[np.searchsorted(-reached, -np.array(coarser))].astype(np.int64)
+    return found
+
+
 def _simplified_tile(
     path: str, value: str, number: int, lines: list[Floats], error: float
 ) -> Piece:
     """Simplify a tile between the lines around it."""
+    levels = _levels(path, value, number, lines, error)
+    if levels is None:
+        none = np.empty((0, 3), dtype=np.int32)
+        return Piece(np.empty((0, 3)), none, none)
+    made: Built = levels.surface(max_error=error)
+    # Points that coincide with one of a line have no triangle.
+    used = np.zeros(len(made.points), dtype=bool)
+    used[made.simplices] = True
+    row = (np.cumsum(used) - 1).astype(np.int32)
+    points = np.column_stack((made.points[used], made.z[used]))
+    return Piece(points, row[made.simplices], made.neighbors)
+
+
+def _levels(
+    path: str, value: str, number: int, lines: list[Floats], error: float
+) -> Simplification | None:
+    """Insert points of a tile until an error is reached; None if the tile has no area."""
     tin = TileFolder._at(path)
     border, segments = _edges(lines)
     # Points on a cut are within half of the error of its line, so they are never inserted.
     every = np.concatenate((border, _own(tin, number, value)))
-    none = np.empty((0, 3), dtype=np.int32)
-    nothing = Piece(np.empty((0, 3)), none, none)
     flat = np.ascontiguousarray(every[:, :2])
     if len(flat) < 3:
-        return nothing
+        return None
     try:
         corners, _ = _core.hull2(flat)
     except DegenerateInputError:
-        return nothing  # the cell and the hull share no area
+        return None  # the cell and the hull share no area
     fixed = np.arange(len(flat)) < len(border)
     fixed[corners] = True
     ground = Ground(
@@ -220,14 +294,7 @@ def _simplified_tile(
         None,
         None,
     )
-    levels = simplified(ground, lambda built, _: built, error, None)
-    made: Built = levels.surface(max_error=error)
-    # Points that coincide with one of a line have no triangle.
-    used = np.zeros(len(made.points), dtype=bool)
-    used[made.simplices] = True
-    row = (np.cumsum(used) - 1).astype(np.int32)
-    points = np.column_stack((made.points[used], made.z[used]))
-    return Piece(points, row[made.simplices], made.neighbors)
+    return simplified(ground, lambda built, _: built, error, None)
 
 
 def _edges(lines: list[Floats]) -> tuple[Floats, Indices]:

@@ -228,13 +228,28 @@ class TiledSurface(TileFolder):
         """
         return volumes.volume(self, other, region, values, executor)
 
-    def simplify(self, *, max_error: float, values: str = "z", executor: Any = "serial") -> TIN:
+    def simplify(
+        self,
+        *,
+        max_error: float | None = None,
+        max_triangles: int | None = None,
+        keep: str = "breaklines",
+        values: str = "z",
+        executor: Any = "serial",
+    ) -> TIN:
         """Return a surface with fewer points, within an error bound at all points of the tiles.
 
         Parameters
         ----------
-        max_error : float
+        max_error : float, optional
             The largest vertical distance of a point from the new surface.
+        max_triangles : int, optional
+            Instead, the number of triangles that the surface may have. Its error is from a scale
+            with eight steps for each factor of two, ``2 ** (k / 8)``: with the next smaller error
+            of this scale, the surface would have more triangles.
+        keep : {"breaklines", "hard", "boundary"}, optional
+            As for `delone.terrain.TIN.simplify`. Tiles have no breaklines, so all choices give the
+            same surface.
         values : str, optional
             The name of the attribute; by default heights.
         executor : {"serial"} or dask.distributed.Client, optional
@@ -249,8 +264,10 @@ class TiledSurface(TileFolder):
         Raises
         ------
         InputError
-            `max_error` is negative or not finite, there is no such attribute, one of its values is
-            NaN or infinite, or `executor` is neither.
+            Not exactly one of `max_error` and `max_triangles` is given, `max_error` is negative or
+            not finite, `max_triangles` is below the number of triangles that lines and hull need
+            with any error, there is no such attribute, one of its values is NaN or infinite, or
+            `keep` or `executor` is not one of its choices.
 
         See Also
         --------
@@ -265,9 +282,10 @@ class TiledSurface(TileFolder):
         coincide, at the first of them. Where a cut crosses an edge of the surface, its line may
         have a point that is not a point of the survey; the height of such a point is rounded.
 
-        Memory is that of one tile and of the result. Because of the lines, the result has more
-        triangles than a surface that is simplified in one piece. It depends on the tiles, but not
-        on the executor.
+        For `max_triangles`, tiles are simplified several times, often four to eight times, until
+        the error is known. Memory is that of one tile and of the result. Because of the lines, the
+        result has more triangles than a surface that is simplified in one piece. It depends on the
+        tiles, but not on the executor.
 
         Examples
         --------
@@ -281,4 +299,5 @@ class TiledSurface(TileFolder):
         ...     tin.simplify(max_error=1)
         <TIN of 86 points: 138 triangles, heights 0 to 50>
         """
-        return simplifying.simplify(self, max_error, values, executor)
+        goal = max_error, max_triangles
+        return simplifying.simplify(self, goal, keep, values, executor)[0]
