@@ -125,6 +125,52 @@ def test_the_page_has_pictures_and_numbers_and_loads_nothing(hill, figures, tmp_
                 assert any(part.startswith(f"{value:.10g}") for part in page.texts)
 
 
+@pytest.mark.filterwarnings("error")
+def test_volumes_to_several_surfaces(hill, figures, command, tmp_path):
+    table = np.loadtxt(hill, delimiter=",", skiprows=1)
+    others = [tmp_path / "plan" / "design.csv", tmp_path / "design.csv"]
+    others[0].parent.mkdir()
+    for path, rise in zip(others, (0.5, -1.25), strict=True):
+        moved = table + np.array([0, 0, rise])
+        np.savetxt(path, moved[::3], delimiter=",", header="x,y,z", comments="")
+    goals = [3, *others, 4.5]
+    options = [each for goal in goals for each in ("--volume", goal)]
+    found = figures("terrain", hill, *COMMON[:4], "--dem", 5, *options, "-o", tmp_path / "site")
+    products = found["products"][1:]
+    names = ["volume 3", "volume design", "volume design 2", "volume 4.5"]
+    assert [each["product"] for each in products] == names
+    assert [each.get("height", each.get("surface")) for each in products] == [
+        3, "design.csv", "design.csv", 4.5
+    ]  # fmt: skip
+    for goal, each in zip(goals, products, strict=True):
+        alone = figures("volume", hill, goal, *COMMON[:4])
+        for name in ("cut", "fill", "net", "area", "volume_units"):
+            assert each[name] == alone[name]
+    assert len({each["cut"] for each in products}) == 4
+    page = Page((tmp_path / "site" / "index.html").read_text(encoding="utf-8"))
+    pictures = [given["alt"] for tag, given in page.tags if tag == "img"]
+    assert [("level" in alt, "other surface" in alt) for alt in pictures[2:]] == [
+        (True, False), (False, True), (False, True), (True, False)
+    ]  # fmt: skip
+    assert len({given["src"] for tag, given in page.tags if tag == "img"}) == len(pictures)
+    # Each picture is that of the volume alone.
+    figures("terrain", hill, *COMMON[:4], "--volume", others[0], "-o", tmp_path / "one")
+    alone = Page((tmp_path / "one" / "index.html").read_text(encoding="utf-8"))
+    first, second = (
+        [given["src"] for tag, given in each.tags if tag == "img"] for each in (page, alone)
+    )
+    assert first[3] == second[1]
+    # The files of surfaces are inputs, which are not replaced.
+    raster = tmp_path / "site" / "dem.tif"
+    before = raster.read_bytes()
+    options = ["--dem", 4, "--volume", raster, "-o", tmp_path / "site"]
+    code, _, err = command("terrain", hill, *options)
+    assert (code, "replace the input" in err, raster.read_bytes()) == (2, True, before)
+    code, _, err = command("terrain", hill, "--volume", tmp_path / "none.csv", "-o", tmp_path / "x")
+    assert (code, "neither a file nor a height" in err) == (3, True)
+    assert not (tmp_path / "x").exists()
+
+
 HOSTILE = "<img src=x onerror=alert(1)>&\"'%41"
 
 

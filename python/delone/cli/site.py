@@ -33,6 +33,8 @@ from delone.cli.surfaces import (
     Survey,
     curves_of,
     figures_of,
+    height_of,
+    other_surface,
     print_figures,
     surface,
     with_surface,
@@ -66,6 +68,7 @@ class _Product:
     files: list[Path]
     figures: dict[str, Any] = field(default_factory=dict)
     found: Any = None
+    goal: float | TIN | None = None  # of a volume
 
 
 @with_surface
@@ -101,7 +104,11 @@ def terrain(
         typer.Option(help="File with one line, once or more: profile-NAME.csv, with a picture."),
     ] = None,
     volume: Annotated[
-        float | None, typer.Option(help="Volumes above and below this height, on the page.")
+        list[str] | None,
+        typer.Option(
+            metavar="HEIGHT|FILE",
+            help="Volumes above and below this height or surface, on the page; once or more.",
+        ),
     ] = None,
     smooth: Annotated[int, typer.Option(help="As for contours.")] = 0,
     min_length: Annotated[float, typer.Option(help="As for contours.")] = 0.0,
@@ -126,16 +133,22 @@ def terrain(
         raise Failure("--smooth and --min-length are for --contours", Exit.USAGE)
     if contours is None and bands is None and (min_area or simplify):
         raise Failure("--min-area and --simplify are for --contours and --bands", Exit.USAGE)
-    products = _wanted(folder, given, shades)
+    heights = {text: height_of(text) for text in volume or []}
+    products = _wanted(folder, given | {"heights": heights}, shades)
     watch = Stopwatch()
-    inputs = [source, *(profile or []), *options.inputs()]
+    beside = [*(profile or []), *(Path(text) for text in heights if heights[text] is None)]
+    inputs = [source, *beside, *options.inputs()]
     with spinner(options.silent) as say, _folder(folder, products, inputs):
         with reading(quiet=quiet):
             lines = [
                 read_geometries(path, **curves_of(path, options.chord, aligned=True))
                 for path in profile or []
             ]
-        tin = surface(source, options, watch, say, others=profile or [], aligned=bool(profile))
+        tin = surface(source, options, watch, say, others=beside, aligned=bool(profile))
+        goals = [_goal(text, heights[text], options, watch, say) for text in volume or []]
+        given["volume"] = goals
+        for product, goal in zip(products[len(products) - len(goals) :], goals, strict=True):
+            product.goal = goal
         for product, compute in zip(products, _computed(tin, given, shades, lines), strict=True):
             say(f"computing {product.name}")
             with watch.stage(product.name), noting(quiet=quiet):
@@ -171,21 +184,48 @@ def _wanted(folder: Path, given: dict[str, Any], shades: list[str]) -> list[_Pro
     ]
     if given["dem"] is not None:
         found += [_Product(name, [folder / f"{name}.tif"]) for name in ("dem", *shades)]
-    names: list[str] = []
-    for path in given["profile"] or []:
-        name, number = path.stem, 2
-        # Terminates, because there are finitely many names.
-        while name in names:
-            name, number = f"{path.stem} {number}", number + 1
-        names.append(name)
+    for name in _distinct([path.stem for path in given["profile"] or []]):
         found.append(_Product(f"profile {name}", [folder / f"profile-{name}.csv"]))
-    if given["volume"] is not None:
-        found.append(_Product("volume", [], {"height": given["volume"]}))
+    found += _volumes(given["volume"] or [], given["heights"])
     if not found:
         raise Failure(
             "give one or more of --contours, --bands, --dem, --profile and --volume", Exit.USAGE
         )
     return found
+
+
+def _volumes(texts: list[str], heights: dict[str, float | None]) -> list[_Product]:
+    """Return the volumes to heights and surfaces; names are needed if there are several."""
+    names = _distinct([Path(text).stem if heights[text] is None else text for text in texts])
+    found = []
+    for text, name in zip(texts, names, strict=True):
+        height = heights[text]
+        told = {"surface": Path(text).name} if height is None else {"height": height}
+        found.append(_Product("volume" if len(texts) == 1 else f"volume {name}", [], told))
+    return found
+
+
+def _distinct(given: list[str]) -> list[str]:
+    """Return names with a number behind those that were there before."""
+    names: list[str] = []
+    for stem in given:
+        name, number = stem, 2
+        # Ends, since the names are finitely many.
+        while name in names:
+            name, number = f"{stem} {number}", number + 1
+        names.append(name)
+    return names
+
+
+def _goal(
+    text: str,
+    height: float | None,
+    options: SurfaceOptions,
+    watch: Stopwatch,
+    say: Callable[[str], None],
+) -> float | TIN:
+    """Return the height or the surface of a volume."""
+    return other_surface(Path(text), options, watch, say) if height is None else height
 
 
 @contextmanager
@@ -235,8 +275,7 @@ def _computed(
         measures = ["height", *shades]
         found += [partial(tin.raster, what, resolution=cells) for what in measures]
     found += [partial(tin.profile, line) for line in lines]
-    if given["volume"] is not None:
-        found.append(lambda: tin.volume_to(given["volume"]))
+    found += [partial(tin.volume_to, goal) for goal in given["volume"]]
     return found
 
 
@@ -272,7 +311,7 @@ def _write(product: _Product, tin: TIN, watch: Stopwatch, say: Callable[[str], N
             "least": float(known.min()) if known.size else None,
             "greatest": float(known.max()) if known.size else None,
         }
-    elif name == "volume":
+    elif product.goal is not None:
         product.figures |= {
             each: getattr(found, each)
             for each in ("cut", "fill", "net", "area", "volume_units", "area_units")
@@ -332,10 +371,11 @@ def _section(tin: TIN, product: _Product) -> Section:
     title = {"dem": "DEM"}.get(name, name[:1].upper() + name[1:])
     draw: Callable[[Any], Any] = found.plot if hasattr(found, "plot") else found
     wide, high, alt = 6.0, None, f"Map of the {title}"
-    if name == "volume":
-        height = product.figures["height"]
-        draw = difference(tin.raster(resolution=_cell(tin)), height, units=tin.units).plot
-        alt = "Map of the heights above the level in red, which are to be cut, and below it in blue"
+    if product.goal is not None:
+        cells = tin.raster(resolution=_cell(tin))
+        draw = difference(cells, product.goal, crs=tin.crs, units=tin.units).plot
+        level = "level" if "height" in product.figures else "other surface"
+        alt = f"Map of what is above the {level} in red, which is to be cut, and below it in blue"
     elif name in ("dem", *_SHADES):
         if not np.isfinite(found.values).any():
             return Section(title, rows, files=files)
