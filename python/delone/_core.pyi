@@ -68,6 +68,7 @@ __all__ = [
     "__version__",
     "alpha_counts",
     "alpha_edges",
+    "alpha_faces",
     "alpha_flat",
     "alpha_labels",
     "alpha_rings2",
@@ -1655,6 +1656,16 @@ def alpha_edges(
     workers: int,
 ) -> NDArray[np.float64]:
     """The values of edges without cofaces."""
+
+def alpha_faces(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    simplices: NDArray[np.int32],
+    workers: int,
+) -> tuple[NDArray[np.float64], list[tuple[NDArray[np.int32], NDArray[np.float64]]]]:
+    """The values of simplices in four to eight dimensions, and `(faces, values)` of each
+    dimension below.
+    """
 
 def alpha_flat(
     points: NDArray[np.float64],

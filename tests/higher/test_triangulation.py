@@ -257,7 +257,6 @@ def test_others_refuse_more_dimensions_by_name() -> None:
         lambda: delone.graphs.delaunay_graph(mesh),
         lambda: delone.graphs.gabriel(mesh),
         lambda: delone.cluster.single_linkage(mesh),
-        lambda: delone.AlphaComplex(mesh),
         lambda: delone.concave_hull(mesh, ratio=0.5),
         lambda: delone.Dynamic(mesh),
         lambda: delone.Voronoi(mesh.points, clip="box"),

@@ -85,7 +85,7 @@ CORE: dict[str, set[str]] = {
     | GROUND,
     "refine": {"constrained", "delaunay", "measure", "mesh", "wide", "delone_predicates"} | GROUND,
     "locate": {"boxes", "order", "points", "parallel", "wide", "delone_predicates"} | GROUND,
-    "alpha": {"measure", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
+    "alpha": {"measure", "order", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "graphs": {"boxes", "order", "points", "parallel", "wide", "num_bigint", "delone_predicates"}
     | GROUND,
     "hull": {"order", "wide", "num_bigint", "delone_predicates"} | GROUND,

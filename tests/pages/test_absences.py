@@ -80,7 +80,7 @@ ABSENCES: dict[tuple[str, str], str] = {
     ): "cells from 4-D on have no measures, and Voronoi rejects a clip and weights there",
     (
         "guide/higher.rst",
-        "Alpha complexes, graphs and ``Dynamic``",
+        "Alpha shapes, graphs and ``Dynamic``",
     ): "their classes accept two or three coordinates",
     ("coming_from/matlab.rst", '"v4"'): "there are no radial basis functions",
     ("coming_from/scipy.rst", "``RBFInterpolator``"): "they need no triangulation",
@@ -229,7 +229,12 @@ def test_every_public_name_is_on_a_page() -> None:
             "tolerance",
             id="tolerance-4-D",
         ),
-        pytest.param(4, delone.AlphaComplex, r"\(n, 2\) or \(n, 3\)", id="alpha-4-D"),
+        pytest.param(
+            4,
+            lambda p: delone.concave_hull(p, ratio=0.5),
+            r"\(n, 2\) or \(n, 3\)",
+            id="concave-hull-4-D",
+        ),
         pytest.param(4, delone.Dynamic, r"\(n, 2\) or \(n, 3\)", id="dynamic-4-D"),
         pytest.param(4, graphs.gabriel, r"\(n, 2\) or \(n, 3\)", id="graph-4-D"),
         pytest.param(

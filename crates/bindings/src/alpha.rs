@@ -1,11 +1,14 @@
 //! Alpha complexes and concave hulls as arrays.
 
-use delone_core::alpha::{self, Limit, Sites};
+use delone_core::alpha::{self, Cloud, Limit, Sites};
 use delone_core::base::error::{Error, Result};
-use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, columns, flat, in_dimension, in_range, rows, table};
+use crate::arrays::{
+    Column, Table, column, columns, flat, flattened, in_dimension, in_many, in_range, rows, table,
+    wide,
+};
 use crate::errors::Outcome;
 use crate::given::{checked, finite_weights, simplices_of, unequal};
 use crate::signals::watched;
@@ -41,6 +44,31 @@ pub fn alpha_flat(
         })?;
         let edges = (table(py, found.edges)?, column(py, found.of_edges));
         Ok((column(py, found.triangles), edges))
+    })
+}
+
+/// The values of simplices in four to eight dimensions, and `(faces, values)` of each dimension below.
+#[pyfunction]
+pub fn alpha_faces(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> Outcome<(Column<f64>, Vec<Valued>)> {
+    in_many!(columns(&points), D, N, P => {
+        let cloud = Cloud {
+            points: flattened(&points, D, "points")?,
+            dimension: D,
+            weights: finite_weights(weights.as_ref(), points.shape()[0])?,
+        };
+        let simplices = simplices_of::<N>(&simplices, points.shape()[0])?.as_flattened();
+        let (values, below) =
+            watched(py, |watch| alpha::faces(cloud, simplices, workers, watch))?;
+        let listed = below.into_iter().enumerate().map(|(k, level)| {
+            Ok((wide(py, level.rows, k + 1)?, column(py, level.values)))
+        });
+        Ok((column(py, values), listed.collect::<Outcome<_>>()?))
     })
 }
 
@@ -94,14 +122,26 @@ pub fn alpha_counts(
     neighbors: PyReadonlyArray2<'_, i32>,
     outside: bool,
 ) -> Outcome<Column<i32>> {
-    in_dimension!(columns(&neighbors).wrapping_sub(1), D, N => {
-        let neighbors: &[[i32; N]] = rows(&neighbors, "neighbors")?;
-        in_range(neighbors, -1, neighbors.len(), "neighbors")?;
-        let order = flat(&order, "order")?;
-        in_range(order.as_chunks::<1>().0, 0, neighbors.len(), "order")?;
-        let found = watched(py, |watch| alpha::counts(order, neighbors, outside, watch))?;
-        Ok(column(py, found))
-    })
+    let order = flat(&order, "order")?;
+    let d = columns(&neighbors).wrapping_sub(1);
+    if d > 3 {
+        return in_many!(d, D, N, P => counted::<N>(py, order, &neighbors, outside));
+    }
+    in_dimension!(d, D, N => counted::<N>(py, order, &neighbors, outside))
+}
+
+/// The same for simplices with `N` corners.
+fn counted<const N: usize>(
+    py: Python<'_>,
+    order: &[i32],
+    neighbors: &PyReadonlyArray2<'_, i32>,
+    outside: bool,
+) -> Outcome<Column<i32>> {
+    let neighbors: &[[i32; N]] = rows(neighbors, "neighbors")?;
+    in_range(neighbors, -1, neighbors.len(), "neighbors")?;
+    in_range(order.as_chunks::<1>().0, 0, neighbors.len(), "order")?;
+    let found = watched(py, |watch| alpha::counts(order, neighbors, outside, watch))?;
+    Ok(column(py, found))
 }
 
 /// The component of each simplex that is kept, -1 of others.

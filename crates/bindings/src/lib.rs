@@ -58,8 +58,8 @@ mod _core {
 
     #[pymodule_export]
     use super::alpha::{
-        alpha_counts, alpha_edges, alpha_flat, alpha_labels, alpha_rings2, alpha_solid3,
-        alpha_torus2, alpha_vertices, erode,
+        alpha_counts, alpha_edges, alpha_faces, alpha_flat, alpha_labels, alpha_rings2,
+        alpha_solid3, alpha_torus2, alpha_vertices, erode,
     };
     #[pymodule_export]
     use super::cluster::{condensed, density, linkage};

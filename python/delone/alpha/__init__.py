@@ -1,4 +1,4 @@
-"""Alpha complexes, alpha shapes and concave hulls of points, in 2-D and 3-D.
+"""Alpha complexes of points in 2-D to 8-D, and alpha shapes and concave hulls in 2-D and 3-D.
 
 Values are squared radii: the doubles nearest to the exact ones. Which faces have their own value is
 decided exactly.

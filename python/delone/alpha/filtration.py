@@ -14,6 +14,8 @@ from delone._base.extras import require
 from delone._base.georeference import warn_of_degrees
 from delone._base.immutable import kept, own_copy, sealed
 from delone._tiling.complex import Stored, points_alone
+from delone._tiling.dimension import FLAT_OR_SOLID, only
+from delone._tiling.higher.dimension import MOST
 from delone.alpha.shape import AlphaShape
 from delone.alpha.values import Given, Valued, known_mesh, of_periodic, of_points, simplices_of
 from delone.errors import InputError
@@ -29,7 +31,12 @@ if TYPE_CHECKING:
 
 __all__ = ["AlphaComplex"]
 
-_NAMES = ("vertex", "edge", "triangle", "tetrahedron")
+_NAMES = (
+    ("vertex", "vertices"),
+    ("edge", "edges"),
+    ("triangle", "triangles"),
+    ("tetrahedron", "tetrahedra"),
+)
 
 
 class AlphaComplex(Stored):
@@ -37,8 +44,8 @@ class AlphaComplex(Stored):
 
     Parameters
     ----------
-    points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Finite coordinates in any unit. A `Delaunay`, a `RegularTriangulation` or a
+    points : array_like, shape (n, d), or a triangulation
+        Finite coordinates in any unit, two to eight. A `Delaunay`, a `RegularTriangulation` or a
         `PeriodicDelaunay` is used directly, with its weights and periods.
     weights : array_like, shape (n,), optional
         Finite weights in squared units of the points: squared radii of balls around them, as for
@@ -55,13 +62,13 @@ class AlphaComplex(Stored):
     NonFiniteError
         A coordinate or weight is NaN or infinite.
     ShapeError, DtypeError
-        `points` is not a real array of shape (n, 2) or (n, 3), or the number of weights is
+        `points` is not a real array of shape (n, d) with d from 2 to 8, or the number of weights is
         different.
     InputError
-        `periodic` is given with 3-D points or has no valid period, or points lie a period or more
-        apart.
+        `periodic` is given with points that are not 2-D or has no valid period, or points lie a
+        period or more apart.
     DegenerateInputError
-        Periodic points form no triangle.
+        Periodic points form no triangle, or points with four or more coordinates no simplex.
     MemoryError
         There is not enough memory.
     KeyboardInterrupt
@@ -84,9 +91,12 @@ class AlphaComplex(Stored):
     value is the double nearest to the exact one. Rounding is monotone, so no face has a larger
     value than a coface, and no repair is needed.
 
-    Degenerate points also have a complex: coplanar 3-D points have triangles and edges, points on
-    one line a path, a single point a vertex, and no points an empty complex. Rows that repeat
-    another row are not vertices. O(n log n) time in 2-D.
+    Degenerate points in 2-D and 3-D also have a complex: coplanar 3-D points have triangles and
+    edges, points on one line a path, a single point a vertex, and no points an empty complex. Rows
+    that repeat another row are not vertices. O(n log n) time in 2-D.
+
+    From 4-D on, most of the time and memory is for faces: a simplex has 2^(d + 1) - 2 of them, each
+    shared with others. `estimate` predicts the number of simplices. There is no `shape`.
 
     References
     ----------
@@ -141,7 +151,7 @@ class AlphaComplex(Stored):
             plain: Any = points
             if isinstance(points, Stored):
                 plain = points_alone(points, what="an alpha complex")
-            own = own_copy(plain, ndim=None)
+            own = own_copy(plain, ndim=None, most=MOST)
             warn_of_degrees(plain, own, planar=planar)
             require_finite(own)
             own_weights = None if weights is None else sealed(as_weights(weights, len(own)))
@@ -188,7 +198,7 @@ class AlphaComplex(Stored):
 
     @property
     def ndim(self) -> int:
-        """Number of coordinates, 2 or 3."""
+        """Number of coordinates."""
         return int(self._points.shape[1])
 
     @property
@@ -204,7 +214,7 @@ class AlphaComplex(Stored):
 
     @property
     def simplices(self) -> Indices:
-        """The triangles, in 3-D tetrahedra, of the triangulation, (m, d + 1)."""
+        """The triangles, in 3-D tetrahedra, or simplices of the triangulation, (m, d + 1)."""
         if self.dimension == self.ndim:
             return simplices_of(self._valued, self.ndim, self.ndim)[0]
         return sealed(np.empty((0, self.ndim + 1), dtype=np.int32))
@@ -215,15 +225,16 @@ class AlphaComplex(Stored):
         Parameters
         ----------
         k : int
-            The dimension: 0 for vertices, 1 for edges, 2 for triangles, 3 for tetrahedra.
+            The dimension: 0 for vertices, 1 for edges, 2 for triangles, 3 for tetrahedra, and so
+            on.
 
         Returns
         -------
         ndarray of int32, shape (m, k + 1)
-            Rows of `points`. Edges and the faces of tetrahedra have ascending rows, in ascending
-            order; those of the highest dimension are those of the triangulation. For periodic
-            points, one simplex of each class of translates; both ends of an edge may be the same
-            row.
+            Rows of `points`. Faces of triangles, tetrahedra and larger simplices have ascending
+            rows, in ascending order; those of the highest dimension are those of the triangulation.
+            For periodic points, one simplex of each class of translates; both ends of an edge may
+            be the same row.
 
         Raises
         ------
@@ -296,6 +307,7 @@ class AlphaComplex(Stored):
         """The distinct values of all simplices, ascending: where the shape changes."""
         return sealed(np.unique(np.concatenate(self._valued.values)))
 
+    @only(FLAT_OR_SOLID, "select rows of `simplices_of(k)` by `values_of(k)`")
     def shape(self, alpha: float) -> AlphaShape:
         """Return the simplices with values up to alpha.
 
@@ -335,7 +347,7 @@ class AlphaComplex(Stored):
         ----------
         components : int, optional
             The maximum number of parts; triangles (in 3-D, tetrahedra) with a common edge (face)
-            are in one part.
+            are in one part. From 4-D on, simplices with a common facet are.
         holes : bool, optional
             Whether the shape may have holes, in 3-D voids.
 
@@ -436,12 +448,14 @@ class AlphaComplex(Stored):
         return tree
 
     def _described(self) -> str:
-        plural = ("vertices", "edges", "triangles", "tetrahedra")
-        listed = (
-            f"{len(rows)} {_NAMES[k] if len(rows) == 1 else plural[k]}"
-            for k, rows in enumerate(self._valued.simplices)
-        )
+        listed = (_named(len(rows), k) for k, rows in enumerate(self._valued.simplices))
         return f"{counted(self.npoints, 'point')}: {', '.join(listed)}"
+
+
+def _named(count: int, k: int) -> str:
+    """A number of simplices of dimension `k` in words."""
+    names = _NAMES[k] if k < len(_NAMES) else (f"{k}-simplex", f"{k}-simplices")
+    return f"{count} {names[count != 1]}"
 
 
 def _again(

@@ -13,6 +13,7 @@ from delone import _core
 from delone._base.arrays import as_count
 from delone._base.duplicates import first_rows
 from delone._base.immutable import sealed
+from delone._tiling.dimension import FLAT_OR_SOLID
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, InputError
 from delone.periodic import PeriodicDelaunay, as_periods
@@ -58,8 +59,9 @@ class Given(NamedTuple):
         """Return the simplices and their values."""
         if self.periods is None:
             return of_points(self.points, self.weights, workers)
-        if self.points.shape[1] != 2:
-            raise InputError("periodic complexes are only available in 2-D: points are 3-D")
+        d = self.points.shape[1]
+        if d != 2:
+            raise InputError(f"periodic complexes are only available in 2-D: points are {d}-D")
         periods = as_periods(self.periods)
         mesh = PeriodicDelaunay(self.points, periods, weights=self.weights, workers=workers)
         return of_periodic(mesh, workers)
@@ -89,7 +91,8 @@ def of_points(points: Floats, weights: Floats | None, workers: int, mesh: Any = 
     """Return the complex of finite points; `mesh` is their triangulation, if known."""
     if mesh is not None:
         return _of_simplices(points, weights, mesh.simplices, mesh.neighbors, workers)
-    if not len(points):
+    is_higher = points.shape[1] not in FLAT_OR_SOLID
+    if not len(points) and not is_higher:
         return _of_chain(points, weights, np.empty(0, dtype=np.int32), workers)
     try:
         if weights is None:
@@ -101,6 +104,8 @@ def of_points(points: Floats, weights: Floats | None, workers: int, mesh: Any = 
             if not len(simplices):
                 return _of_chain(points, weights, chain, workers)
     except DegenerateInputError as error:
+        if is_higher:
+            raise
         plane = error.plane
         if plane is not None:
             return _of_simplices(points, weights, plane.simplices, plane.neighbors, workers)
@@ -159,6 +164,8 @@ def _seen(points: Floats, simplices: Indices) -> Indices:
 def _of_simplices(
     points: Floats, weights: Floats | None, simplices: Indices, neighbors: Indices, workers: int
 ) -> Valued:
+    if points.shape[1] not in FLAT_OR_SOLID:
+        return _of_higher(points, weights, simplices, neighbors, workers)
     given = points, weights, simplices, neighbors, workers
     upper: tuple[Indices, ...]
     upper_values: tuple[Floats, ...]
@@ -170,6 +177,14 @@ def _of_simplices(
         upper, upper_values = (simplices,), (triangles,)
     rows, own = _vertices(points, weights, edges, of_edges, _seen(points, edges))
     return Valued((rows, edges, *upper), (own, of_edges, *upper_values), neighbors)
+
+
+def _of_higher(
+    points: Floats, weights: Floats | None, simplices: Indices, neighbors: Indices, workers: int
+) -> Valued:
+    own, below = _core.alpha_faces(points, weights, simplices, workers)
+    faces, values = [rows for rows, _ in below], [found for _, found in below]
+    return Valued((*faces, simplices), (*values, own), neighbors)
 
 
 def _of_chain(points: Floats, weights: Floats | None, chain: Indices, workers: int) -> Valued:

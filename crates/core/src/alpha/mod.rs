@@ -12,6 +12,8 @@
 
 mod ball;
 mod erode;
+mod faces;
+mod gram;
 mod number;
 mod parts;
 mod rings;
@@ -21,6 +23,8 @@ mod triangles;
 mod vertices;
 
 pub use erode::{Limit, erode2, erode3};
+pub use faces::{Level, faces};
+pub use gram::Cloud;
 pub use parts::{counts, labels};
 pub use rings::{Rings, rings};
 pub use simplices::Sites;

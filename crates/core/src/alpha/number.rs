@@ -27,6 +27,8 @@ pub trait Number: Ring {
     fn one() -> Self;
     /// The square.
     fn squared(self) -> Self;
+    /// The number with the other sign.
+    fn negated(self) -> Self;
 }
 
 impl Number for BigInt {
@@ -37,6 +39,10 @@ impl Number for BigInt {
     fn squared(self) -> Self {
         &self * &self
     }
+
+    fn negated(self) -> Self {
+        -self
+    }
 }
 
 impl Number for i128 {
@@ -46,6 +52,10 @@ impl Number for i128 {
 
     fn squared(self) -> Self {
         self * self
+    }
+
+    fn negated(self) -> Self {
+        -self
     }
 }
 
@@ -133,6 +143,14 @@ impl<T: Rounded> Number for Rough<T> {
         Self {
             value: self.value * self.value,
             size,
+        }
+    }
+
+    #[inline]
+    fn negated(self) -> Self {
+        Self {
+            value: T::difference(0.0, 0.0) - self.value,
+            ..self
         }
     }
 }

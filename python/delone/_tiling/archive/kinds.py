@@ -257,7 +257,7 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
     ),
     "AlphaComplex": (
         _input("AlphaComplex", 2, weights=_WEIGHTS, periods=_PERIODS),
-        _input("AlphaComplex", 3, weights=_WEIGHTS),
+        *(_input("AlphaComplex", ndim, weights=_WEIGHTS) for ndim in (3, *HIGHER)),
     ),
     "AlphaShape": (
         _input(
