@@ -48,8 +48,9 @@ pub struct Work<'a> {
     /// The weight of each vertex.
     pub weights: Vec<f64>,
     task: Task<'a>,
-    /// Whether each vertex may be removed.
+    /// Whether each vertex may be removed, and whether any may.
     removable: Vec<bool>,
+    removes: bool,
     /// The quality below which a tetrahedron is improved.
     pub(super) bound: f64,
     ring: Ring,
@@ -88,6 +89,7 @@ impl<'a> Work<'a> {
             *may = task.removable.get(row as usize).copied().unwrap_or(false);
         }
         Ok(Self {
+            removes: removable.contains(&true),
             removable,
             contracted: filled(n, 0)?,
             clock: 1,
@@ -119,9 +121,8 @@ impl<'a> Work<'a> {
         // removed and added at the worst tetrahedra, and at less bad ones when those gain nothing
         // more.
         let mut ended = self.run_passes(None, watch, tell)?;
-        let removes = self.removable.contains(&true);
         for level in LEVELS {
-            if ended && (removes || self.counts.added < self.task.most) {
+            if ended && (self.removes || self.counts.added < self.task.most) {
                 ended = self.run_passes(Some(level * self.bound), watch, tell)?;
             }
         }
@@ -143,7 +144,9 @@ impl<'a> Work<'a> {
             // One pass: vertices, then flips, which need no new positions, then moves.
             let changes = self.changes();
             if let Some(level) = level {
-                self.contract_all(level, watch)?;
+                if self.removes {
+                    self.contract_all(level, watch)?;
+                }
                 self.insert_all(level, watch)?;
             }
             if self.task.flips {
