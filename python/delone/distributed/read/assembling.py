@@ -1,10 +1,11 @@
 """One surface of simplified tiles, which are joined along their borders.
 
 Only points and edges at borders are compared, so memory is that of the pieces and of the result.
-Tiles have the same edges along a cut, and nothing is visible across them: together, their
-constrained Delaunay triangulations are that of all points with these edges. Where a cut ends at a
-slanted side of the hull, its rounded end may be inside. The triangles between such ends and the
-hull are added, but they are not part of the surface.
+The tiles on both sides of a cut have the same edges along it, and these edges block visibility
+across the cut. So the constrained Delaunay triangulations of all tiles together are that of all
+points with these edges. Where a cut ends at a slanted side of the hull, its rounded end may be
+inside the hull. The triangles between such ends and the hull are added, but they are not part of
+the surface.
 """
 
 from __future__ import annotations

@@ -1,11 +1,12 @@
-"""The error with which simplified tiles have at most a number of triangles.
+"""The error for which simplified tiles have at most a given number of triangles.
 
-Errors are taken from a scale with eight steps for each factor of two, ``2 ** (k / 8)``, and 0 below
-the resolution of heights. The result is an error with at most that many triangles whose next finer
-step has more. Numbers of triangles are counted with exactly the lines that the result will have.
+Errors are taken from a scale with eight steps for each factor of two, ``2 ** (k / 8)``; below the
+resolution of heights, the error is 0. The result is the step with at most the given number of
+triangles whose next finer step has more. Triangles are counted with exactly the lines of the
+result.
 
-Each count of tiles with an error also gives the numbers for larger errors, though with finer lines
-than these would have, and so the next step to try.
+Counting the triangles for one error also gives the numbers for larger errors, though with finer
+lines than those errors would have. These numbers determine the next step to try.
 """
 
 from __future__ import annotations
@@ -27,13 +28,13 @@ __all__ = ["STEPS", "fitting"]
 
 # Steps of the scale for each factor of two: about 9 %.
 STEPS = 8
-# A larger error than that many units in the last place leaves room for rounding along lines.
+# Errors larger than this many units in the last place leave room for rounding along lines.
 _UNITS = 64
-# At first, the error is that many steps below the range of heights: a sixteenth.
+# The first error is this many steps below the range of heights: a sixteenth of it.
 _FIRST = 4 * STEPS
-# Steps that the first guesses go to finer errors at most: a factor of eight.
+# The most steps by which a guess is finer than the error before it: a factor of eight.
 _FARTHEST = 3 * STEPS
-# After so many guesses, the rest is halved.
+# After this many guesses, the search is a bisection.
 _GUESSES = 4
 
 
@@ -45,18 +46,18 @@ def fitting(
 ) -> float:
     """Return the smallest error of the scale with at most `most` triangles.
 
-    `count` returns how many triangles there are with an error, and with larger ones, if its lines
-    are taken; the first of these numbers is exact.
+    `count` returns the numbers of triangles for an error and for larger ones, all with the lines
+    simplified for the first error; so only the first number is exact.
     """
     low, high = heights
     resolution = math.ulp(max(abs(low), abs(high)))
-    # Of halves, which do not overflow. Below some units in the last place, lines keep all points.
+    # Halves do not overflow. Below a few units in the last place, lines keep all points.
     extent = max(high / 2 - low / 2, _UNITS * resolution)
     coarsest = math.ceil(STEPS * (math.log2(extent) + 1))
     zero = math.floor(STEPS * math.log2(resolution)) - 1
     # `fits` has few enough triangles and `exceeds` too many. Each round moves one of them.
     fits, exceeds = coarsest + 1, zero - 1
-    # A surface of n points has less than 2n triangles.
+    # A surface of n points has fewer than 2n triangles.
     k = zero if most >= 2 * points else max(zero, coarsest - _FIRST)
     rounds = 0
     while fits - exceeds > 1:
@@ -92,7 +93,7 @@ def _error(k: int, zero: int) -> float:
 
 
 def _finer(counts: Rows, most: int) -> int:
-    """Return how many steps finer the number of triangles may be reached, at least one."""
+    """Return how many steps finer to try next, at least one, to reach the number of triangles."""
     j = min(STEPS, len(counts) - 1)
     growth = math.log(max(int(counts[0]), 2) / max(int(counts[j]), 1)) / j if j else 0.0
     if growth <= 0:

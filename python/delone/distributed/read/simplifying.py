@@ -70,7 +70,7 @@ class _Task(NamedTuple):
     sides: list[list[int]]
 
     def at(self, error: float) -> list[tuple[Any, ...]]:
-        """Return the arguments for each tile: with lines that are simplified for an error."""
+        """Return the arguments for each tile, with lines simplified for an error."""
         simple = _simplified_lines(self.cuts, self.lines, error)
         return [
             (*tile, [_within(simple[k], cell) for k in some], error)
@@ -238,7 +238,7 @@ def _heights(path: str, value: str, number: int) -> tuple[float, float]:
 def _counts(  # noqa: PLR0917
     path: str, value: str, number: int, lines: list[Floats], error: float, coarser: list[float]
 ) -> Rows:
-    """Return how many triangles a tile has with an error, and with larger ones."""
+    """Return how many triangles a tile has for an error and for larger ones."""
     levels = _levels(path, value, number, lines, error)
     if levels is None:
         return np.zeros(len(coarser), dtype=np.int64)
@@ -257,7 +257,7 @@ def _simplified_tile(
         none = np.empty((0, 3), dtype=np.int32)
         return Piece(np.empty((0, 3)), none, none)
     made: Built = levels.surface(max_error=error)
-    # Points that coincide with one of a line have no triangle.
+    # Points that coincide with a point of a line are not in any triangle.
     used = np.zeros(len(made.points), dtype=bool)
     used[made.simplices] = True
     row = (np.cumsum(used) - 1).astype(np.int32)

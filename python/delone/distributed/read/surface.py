@@ -244,9 +244,9 @@ class TiledSurface(TileFolder):
         max_error : float, optional
             The largest vertical distance of a point from the new surface.
         max_triangles : int, optional
-            Instead, the number of triangles that the surface may have. Its error is from a scale
-            with eight steps for each factor of two, ``2 ** (k / 8)``: with the next smaller error
-            of this scale, the surface would have more triangles.
+            The maximum number of triangles of the surface, instead of an error. The error is then
+            chosen from a scale with eight steps for each factor of two, ``2 ** (k / 8)``, so that
+            the surface would have more triangles with the next smaller error of the scale.
         keep : {"breaklines", "hard", "boundary"}, optional
             As for `delone.terrain.TIN.simplify`. Tiles have no breaklines, so all choices give the
             same surface.
@@ -265,8 +265,8 @@ class TiledSurface(TileFolder):
         ------
         InputError
             Not exactly one of `max_error` and `max_triangles` is given, `max_error` is negative or
-            not finite, `max_triangles` is below the number of triangles that lines and hull need
-            with any error, there is no such attribute, one of its values is NaN or infinite, or
+            not finite, `max_triangles` is below the number of triangles that lines and hull require
+            whatever the error, there is no such attribute, one of its values is NaN or infinite, or
             `keep` or `executor` is not one of its choices.
 
         See Also
@@ -282,8 +282,8 @@ class TiledSurface(TileFolder):
         coincide, at the first of them. Where a cut crosses an edge of the surface, its line may
         have a point that is not a point of the survey; the height of such a point is rounded.
 
-        For `max_triangles`, tiles are simplified several times, often four to eight times, until
-        the error is known. Memory is that of one tile and of the result. Because of the lines, the
+        For `max_triangles`, tiles are simplified several times to find the error, often four to
+        eight times. Memory is that of one tile and of the result. Because of the lines, the
         result has more triangles than a surface that is simplified in one piece. It depends on the
         tiles, but not on the executor.
 

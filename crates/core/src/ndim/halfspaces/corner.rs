@@ -1,10 +1,10 @@
-//! The corner of a facet and the plane of its dual points: rounded once, but for rare roundings twice.
+//! The corner of a facet and the plane of its dual points: rounded once, or in rare cases twice.
 //!
-//! With the proof of `ndim::fine`: x is refined with residuals in pairs of doubles, which err by
-//! (12 D + 32) u^2 times the sum of their magnitudes (tails of products are sums: twice as long). If B is an approximate inverse of the normals A,
-//! with |I - A B| <= defect, and r the residual of x, then that of x + B r is at most 2 defect |r|,
-//! roundings of B r included. Where a coordinate is not known to much more than 53 bits, as if it is
-//! zero, integers compute it.
+//! As in the proof of `ndim::fine`, x is refined with residuals in pairs of doubles, which err by
+//! (12 D + 32) u^2 times the sum of their magnitudes (tails of products are sums: twice as long). If B
+//! is an approximate inverse of the normals A, with |I - A B| <= defect, and r is the residual of x, then
+//! the residual of x + B r is at most 2 defect |r|, including the rounding errors of B r. A coordinate
+//! that is not known to much more than 53 bits, for example because it is zero, is computed in integers.
 
 use delone_predicates::arithmetic::Pair;
 use num_bigint::BigInt;
@@ -14,7 +14,7 @@ use super::wrap::{Facet, Hull};
 use crate::base::wide::ratio;
 use crate::ndim::filter::{Inverse, LEAST_RESIDUAL, Matrix, ROUNDED, U, dot, invert_small};
 
-/// The relative error of a coordinate below which it is rounded.
+/// A coordinate is rounded if its relative error is below this.
 const CLOSE: f64 = 1e-19;
 
 /// A point, infinite if there is none, and the plane of a facet: unit normal and offset.
@@ -65,7 +65,7 @@ fn equation<const D: usize, const V: usize>(step: [f64; D], end: f64) -> [f64; V
     })
 }
 
-/// The point on D boundaries, if rounding finds it well.
+/// The point on D boundaries, if floating point finds it accurately enough.
 fn refined<const D: usize, const V: usize, const P: usize>(
     sites: &Sites<'_, D, V, P>,
     vertices: &[u32; D],

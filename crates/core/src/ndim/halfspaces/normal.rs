@@ -1,7 +1,7 @@
 //! The normals of facets in integers, and what they decide.
 //!
 //! Cofactors of the D vectors of a facet come from the fraction-free elimination of E. H. Bareiss
-//! (1968), whose entries are minors: with entries below 2^bits at most D^(D / 2) 2^(D bits).
+//! (1968), whose entries are minors. If the input is below 2^bits, they are at most D^(D / 2) 2^(D bits).
 
 use std::ops::{Div, Mul, Sub};
 
@@ -13,11 +13,11 @@ use super::sites::Sites;
 pub enum Normal<const V: usize> {
     /// Below 2^126 with room for a scalar product.
     Small([i128; V]),
-    /// However large.
+    /// Of any size.
     Wide([BigInt; V]),
 }
 
-/// Numbers that elimination takes.
+/// Numbers that elimination can use.
 pub trait Number: Clone + From<i64> + PartialOrd
 where
     for<'a> &'a Self:
@@ -79,9 +79,9 @@ impl<const V: usize> Normal<V> {
         }
     }
 
-    /// The sign of coefficient `i` of a vector in the span of the vectors of the facet: that of the
-    /// determinant with the vector in its place, over the determinant, of all coordinates but one for
-    /// which the normal, whose components are such determinants, is not zero.
+    /// The sign of coefficient `i` of a vector in the span of the vectors of the facet, by Cramer's rule:
+    /// the determinant with the vector in place `i`, divided by the determinant. Both leave out one
+    /// coordinate, for which the normal, whose components are such determinants, is not zero.
     pub fn share<const D: usize, const P: usize>(
         &self,
         sites: &Sites<'_, D, V, P>,
@@ -112,7 +112,7 @@ impl<const V: usize> Normal<V> {
     }
 }
 
-/// The rows as machine integers, if all that elimination computes fits integers of so many bits.
+/// The rows as machine integers, if all that elimination computes fits into integers of this width.
 fn machine<'a, const D: usize, const V: usize, const P: usize>(
     sites: &'a Sites<'_, D, V, P>,
     width: u32,
@@ -146,7 +146,7 @@ where
     if previous < zero { -sign } else { sign }
 }
 
-/// One row of a fraction-free step: what is divided has no remainder, as the result is a minor.
+/// One row of a fraction-free step: divisions leave no remainder, because the result is a minor.
 fn reduce<T: Number, const N: usize>(row: &mut [T; N], of_pivot: &[T; N], k: usize, previous: &T)
 where
     for<'a> &'a T: Mul<&'a T, Output = T> + Sub<&'a T, Output = T> + Div<&'a T, Output = T>,
@@ -198,8 +198,8 @@ where
     if k < D {
         return None;
     }
-    // The minor without the free column is `previous`, but for exchanges of rows, and its cofactor has
-    // the sign of its place in the last of V rows.
+    // Up to exchanges of rows, the minor without the free column is `previous`; its cofactor has the
+    // sign of its place in the last of V rows.
     negative ^= (D + free) % 2 == 1;
     let signed = |x: &T, minus: bool| if minus { &zero - x } else { x.clone() };
     Some(std::array::from_fn(|column| match column.cmp(&free) {

@@ -23,7 +23,7 @@ pub struct Corners<const D: usize, const V: usize> {
     pub corner: Vec<u32>,
     /// The half-spaces that meet in each corner, in the same orders, corner by corner.
     pub facets: Vec<u32>,
-    /// Where those of each corner begin, and the end.
+    /// Where the half-spaces of each corner begin, and the end.
     pub starts: Vec<u32>,
     /// The corners; infinite where the intersection is unbounded.
     pub points: Vec<[f64; D]>,
@@ -38,14 +38,14 @@ pub enum Trouble {
     NotInside(u32),
     /// The point is so close to the boundary of this half-space that its dual point is not a double.
     TooClose(u32),
-    /// The dual points span no volume: half-spaces whose vectors span those of all.
+    /// The dual points span no volume; the vectors of these half-spaces span those of all.
     Flat(Vec<u32>),
 }
 
-/// What half-spaces have in common.
+/// The corners of an intersection, or why there are none.
 pub type Found<const D: usize, const V: usize> = std::result::Result<Corners<D, V>, Trouble>;
 
-/// The intersection of half-spaces around a point, which are finite numbers.
+/// The intersection of half-spaces around a point; all numbers must be finite.
 pub fn intersect<const D: usize, const V: usize, const P: usize>(
     rows: &[[f64; V]],
     point: [f64; D],
@@ -81,7 +81,7 @@ struct Planes {
     of: Vec<u32>,
     /// The facets, plane by plane.
     members: Vec<u32>,
-    /// Where those of each plane begin, and the end.
+    /// Where the facets of each plane begin, and the end.
     starts: Vec<u32>,
 }
 
@@ -158,7 +158,7 @@ fn in_order<const D: usize, const V: usize, const P: usize>(
     let count = planes.starts.len() - 1;
     let mut order = with_room(count)?;
     if count == simplices.len() {
-        // Each simplex has a plane of its own.
+        // Each simplex has its own plane.
         for (_, facet, plane) in simplices {
             facets.extend_from_slice(facet);
             starts.push(facets.len() as u32);
@@ -230,7 +230,7 @@ fn around<const D: usize, const V: usize, const P: usize>(
         all.dedup();
         return Ok(all);
     }
-    // Edges that have no counterpart are around the polygon.
+    // The edges without a counterpart form the outline of the polygon.
     let mut edges = with_room(all.len())?;
     for t in all.chunks_exact(3) {
         edges.extend((0..3).map(|k| (t[k], t[(k + 1) % 3])));
@@ -238,7 +238,7 @@ fn around<const D: usize, const V: usize, const P: usize>(
     edges.sort_unstable();
     let is_outer = |(u, v): &(u32, u32)| edges.binary_search(&(*v, *u)).is_err();
     let outer: Vec<(u32, u32)> = edges.iter().copied().filter(is_outer).collect();
-    // Sorted by their beginnings, each of which is there once.
+    // They are sorted by their first vertices, which are distinct.
     let mut ring = Vec::new();
     let mut at = outer.first().map_or(0, |edge| edge.0);
     for _ in 0..outer.len() {
@@ -249,7 +249,7 @@ fn around<const D: usize, const V: usize, const P: usize>(
     Ok(ring)
 }
 
-/// The planes of facets: neighbors share one if the vertex that the other one does not have is on it.
+/// The planes of facets: neighbors share one if the vertex that only one of them has is on it.
 fn planes<const D: usize, const V: usize, const P: usize>(
     hull: &mut Hull<'_, D, V, P>,
     pace: &mut Pace,
@@ -279,7 +279,7 @@ fn planes<const D: usize, const V: usize, const P: usize>(
                 }
                 let theirs = hull.facets[t as usize].vertices;
                 let apex = theirs.iter().find(|v| !facet.vertices.contains(v));
-                // From the first one, of which a normal is kept.
+                // From the first facet, whose normal is kept.
                 if apex.is_some_and(|&v| hull.side(seed as u32, v) == 0) {
                     found.of[t as usize] = number;
                     found.members.push(t);

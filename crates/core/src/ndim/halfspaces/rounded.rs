@@ -1,37 +1,38 @@
 //! Facets by rounded dual points, with proven bounds.
 //!
-//! Let c be inside of the hull, g*_i = q_i - c the true vectors of the vertices, G* the matrix with these
-//! rows, and g_i the rounded ones: |g_i - g*_i| <= 6 u |g_i| + s, as `sites` describes. The plane of the
-//! facet is y* g* = 1, where G* y* = (1, ..., 1), and w is outside if y* g*_w > 1, for c is inside.
+//! Let c be a point inside the hull, g*_i = q_i - c the true vectors of the vertices, G* the matrix with
+//! these rows, and g_i the rounded vectors: |g_i - g*_i| <= 6 u |g_i| + s, as `sites` describes. The plane
+//! of the facet is y* g* = 1, where G* y* = (1, ..., 1), and w is outside if y* g*_w > 1, because c is
+//! inside.
 //!
-//! By the proof of `ndim::filter`: let B be an approximate inverse, |I - G B| <= defect, where the bound
-//! also covers its roundings, and n >= |B|. Then |I - G* B| <= e = defect + |G - G*| n, and if e < 1/2,
+//! As in the proof of `ndim::filter`, let B be an approximate inverse, |I - G B| <= defect, where the
+//! bound also covers its rounding errors, and n >= |B|. Then |I - G* B| <= e = defect + |G - G*| n, and if e < 1/2,
 //! |G*^-1| <= n / (1 - e). For any vector y, |y - y*| is at most |G*^-1| times the length of
 //! 1 - G* y; a component of that, computed with g_i, errs by at most (D + 3) u (sum |g_ik y_k| + 1)
 //! and (6 u |g_i| + s) |y|.
 //!
 //! Coefficients of w with G* are l* = g*_w G*^-1, and l = g_w B differs from them by at most
-//! |G*^-1| (6 u |g_w| + s) for g_w, by |g_w| |G*^-1| e for B, and by (D + 2) u |B| |g_w| for roundings, where
-//! |B| < 2 |G*^-1|.
+//! |G*^-1| (6 u |g_w| + s) for g_w, by |g_w| |G*^-1| e for B, and by (D + 2) u |B| |g_w| for rounding,
+//! where |B| < 2 |G*^-1|.
 //!
-//! The value y g_w - 1 errs by |y - y*| |g*_w| + |y| (6 u |g_w| + s) for what it is made of, and by
-//! (D + 2) u |y| |g_w| + u for roundings: at most q0 + q1 |g_w| with
+//! The value y g_w - 1 errs by |y - y*| |g*_w| + |y| (6 u |g_w| + s) because y and g_w are not exact, and
+//! by (D + 2) u |y| |g_w| + u because of rounding: at most q0 + q1 |g_w| with
 //! q1 = |y - y*| + (D + 10) u |y| and q0 = s (|y| + |y - y*|) + 2 u.
 
 use super::sites::Sites;
 use crate::ndim::filter::{LEAST_RESIDUAL, LEAST_VALUE, Matrix, ROUNDED, U, dot, invert_small};
 
-/// What is seen of the vertices of a facet, and an approximate inverse.
+/// The vertices of a facet as seen from c, and an approximate inverse.
 struct Seen<const D: usize, const P: usize> {
     g: Matrix<D, P>,
     b: Matrix<D, P>,
-    /// Bounds of |I - G* B| and of |G*^-1|.
+    /// Bounds on |I - G* B| and |G*^-1|.
     defect: f64,
     norm: f64,
 }
 
 impl<const D: usize, const P: usize> Seen<D, P> {
-    /// `None` if nothing is proven.
+    /// `None` if no bound can be proven.
     #[inline(always)]
     fn new<const V: usize>(sites: &Sites<'_, D, V, P>, vertices: &[u32; D]) -> Option<Self> {
         let g: Matrix<D, P> = vertices.map(|v| sites.seen[v as usize]);
@@ -49,7 +50,7 @@ impl<const D: usize, const P: usize> Seen<D, P> {
     }
 }
 
-/// Coefficients of points with the vertices of a facet.
+/// Coefficients of points with respect to the vertices of a facet.
 pub struct Shares<const D: usize, const P: usize> {
     b: Matrix<D, P>,
     q0: f64,
@@ -66,7 +67,7 @@ impl<const D: usize, const P: usize> Shares<D, P> {
         Some(Self { b, q0, q1 })
     }
 
-    /// A coefficient, and the bound of its error.
+    /// A coefficient, and the bound on its error.
     pub fn value<const V: usize>(
         &self,
         sites: &Sites<'_, D, V, P>,
@@ -79,7 +80,7 @@ impl<const D: usize, const P: usize> Shares<D, P> {
     }
 }
 
-/// What points are tested with: they are outside if y g > 1, certainly if that differs by more than
+/// The rounded test of points: outside if y g > 1, with certainty if the difference is greater than
 /// q0 + q1 |g|.
 #[derive(Clone, Copy)]
 pub struct Plane<const D: usize> {
@@ -110,7 +111,7 @@ impl<const D: usize> Plane<D> {
         for k in 0..D {
             y[k] = b[k][..D].iter().sum();
         }
-        // A step of refinement, for inverses by cofactors.
+        // One step of refinement, because inverses by cofactors are less accurate.
         let r: [f64; D] = std::array::from_fn(|i| 1.0 - dot(&g[i], &y));
         for k in 0..D {
             y[k] += (0..D).map(|i| b[k][i] * r[i]).sum::<f64>();
@@ -143,7 +144,7 @@ impl<const D: usize> Plane<D> {
         }
     }
 
-    /// The value of a site, positive outside, and the bound of its error.
+    /// The value of a site, positive outside, and the bound on its error.
     #[inline(always)]
     pub fn value<const V: usize, const P: usize>(
         &self,

@@ -10,10 +10,10 @@ use crate::base::memory::with_room;
 use crate::base::wide::{lowest, ratio, scaled};
 use crate::ndim::filter::{LEAST_VALUE, ROUNDED, U};
 
-/// Magnitudes whose products are taken in pairs of doubles, without overflow and underflow.
+/// Magnitudes whose products, as pairs of doubles, do not overflow or underflow.
 pub const SAFE: std::ops::Range<f64> = 1e-100..1e100;
 
-/// The exponent of the largest dual point from which on filters hold.
+/// Filters are valid if the exponent of the largest dual point is at least this.
 const LEAST_EXPONENT: i32 = -50;
 
 /// Rows of at most this many bits are kept as machine integers.
@@ -29,15 +29,15 @@ pub struct Sites<'a, const D: usize, const V: usize, const P: usize> {
     pub dual: Vec<[f64; D]>,
     /// Dual points, scaled, as seen from a point inside of their hull; the last one is the origin.
     pub seen: Vec<[f64; P]>,
-    /// Bounds of the lengths of these.
+    /// Bounds on their lengths.
     pub reach: Vec<f64>,
-    /// An error of these that does not depend on their length.
+    /// The part of their error that does not depend on their length.
     pub slack: f64,
     /// The exponent of the scale of `seen`.
     pub exponent: i32,
     /// The first row that is the same half-space, for rows that are vertices.
     pub first: Vec<u32>,
-    /// The rows in units of their own, if they have few bits, and the width of the widest.
+    /// The rows, each in its own unit, if they have few bits, and the width of the widest.
     pub small: Option<Vec<[i64; V]>>,
     pub bits: u32,
     /// The interior point in units of 2^low.
@@ -46,7 +46,7 @@ pub struct Sites<'a, const D: usize, const V: usize, const P: usize> {
 }
 
 impl<'a, const D: usize, const V: usize, const P: usize> Sites<'a, D, V, P> {
-    /// From finite numbers. `Err` has the first row that does not have the point strictly inside.
+    /// Creates them from finite numbers. `Err` is the first row that does not contain the point strictly.
     pub fn new(given: &'a [[f64; V]], point: [f64; D]) -> Result<std::result::Result<Self, u32>> {
         let low = lowest(&[point], &[]).min(0);
         let mut sites = Self {
@@ -98,26 +98,26 @@ impl<'a, const D: usize, const V: usize, const P: usize> Sites<'a, D, V, P> {
         Ok(())
     }
 
-    /// The number of half-spaces, which is the number of the one that contains everything.
+    /// The number of half-spaces, which is also the row of the half-space that contains everything.
     pub fn len(&self) -> u32 {
         self.given.len() as u32
     }
 
-    /// The vector of a half-space; after the last one that of 0 x - 1 <= 0, whose boundary is at
+    /// The vector of a half-space; the row after the last one is 0 x - 1 <= 0, whose boundary is at
     /// infinity.
     pub fn row(&self, w: u32) -> [f64; V] {
         let last = std::array::from_fn(|k| if k == D { -1.0 } else { 0.0 });
         self.given.get(w as usize).copied().unwrap_or(last)
     }
 
-    /// The vector as integers of a unit of its own.
+    /// The vector as integers, in its own unit.
     pub fn integers(&self, w: u32) -> [BigInt; V] {
         let v = self.row(w);
         let low = lowest(&[v], &[]);
         v.map(|x| scaled(x, low))
     }
 
-    /// -(a p + b) for a scaled row, correctly rounded but for u, if it is positive.
+    /// -(a p + b) for a scaled row, with a relative error of at most u, if it is positive.
     fn depth(&self, row: u32, v: &[f64; V], scale: i32) -> Option<f64> {
         let is_safe = |x: &f64| *x == 0.0 || SAFE.contains(&x.abs());
         if v.iter().chain(&self.point).all(is_safe) {
@@ -197,10 +197,10 @@ impl<'a, const D: usize, const V: usize, const P: usize> Sites<'a, D, V, P> {
         Ok(found)
     }
 
-    /// Looks at scaled dual points from a point c.
+    /// Makes scaled dual points relative to a point c.
     ///
-    /// The true vector g* = q* - c and the rounded one g differ by at most u |g| for the difference and
-    /// 3 u |q*| <= 3 u (|g*| + |c|): less than 6 u |g| and the slack, which also covers underflow.
+    /// The true vector g* = q* - c and the rounded one g differ by at most u |g| from the subtraction and
+    /// 3 u |q*| <= 3 u (|g*| + |c|): less than 6 u |g| plus the slack, which also covers underflow.
     pub fn look(&mut self, scaled: &[[f64; D]], c: &[f64; D]) -> Result<()> {
         let far = c.iter().map(|x| x * x).sum::<f64>().sqrt();
         self.slack = 4.0 * U * ROUNDED * far + LEAST_VALUE;

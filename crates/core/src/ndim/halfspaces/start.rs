@@ -12,7 +12,7 @@ use crate::base::watch::Pace;
 /// span the vectors of all.
 pub type First<const V: usize> = std::result::Result<([u32; V], i32), Vec<u32>>;
 
-/// Chooses the first simplex of dual points that are given in a scale.
+/// Chooses the first simplex of scaled dual points.
 pub fn first<const D: usize, const V: usize, const P: usize>(
     sites: &Sites<'_, D, V, P>,
     scaled: &[[f64; D]],
@@ -30,7 +30,7 @@ pub fn first<const D: usize, const V: usize, const P: usize>(
     })
 }
 
-/// The middle of the first simplex, rounded.
+/// The center of the first simplex, rounded.
 pub fn middle<const D: usize, const V: usize>(scaled: &[[f64; D]], corners: &[u32; V]) -> [f64; D] {
     std::array::from_fn(|k| {
         corners
@@ -40,7 +40,7 @@ pub fn middle<const D: usize, const V: usize>(scaled: &[[f64; D]], corners: &[u3
     })
 }
 
-/// Points far from the flat of those before; some are equal if all are in a flat.
+/// Points, each far from the flat that the previous ones span; some are equal if all are in a flat.
 fn spread<const D: usize, const V: usize>(
     scaled: &[[f64; D]],
     pace: &mut Pace,
@@ -59,7 +59,7 @@ fn spread<const D: usize, const V: usize>(
         }
         chosen[i] = far;
         let pivot = rest[far as usize];
-        // The first one becomes the origin; of the others, directions are removed.
+        // The first point becomes the origin; from then on, directions are projected out.
         let unit = if i == 0 { 0.0 } else { 1.0 / most };
         for p in &mut rest {
             let along = if i == 0 {

@@ -1,4 +1,4 @@
-//! Intersections against hulls of points, which another kernel finds, and against themselves.
+//! Intersections compared with hulls of points from another kernel, and with themselves.
 
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -64,8 +64,8 @@ fn sets<const D: usize, const V: usize>(found: &Corners<D, V>) -> Sets {
     all
 }
 
-/// What a triangulation of the boundary of a hull has: each ridge twice, each simplex in its facet, with
-/// the smallest vertex of that.
+/// Checks a triangulation of the boundary of a hull: each ridge occurs twice, and each simplex is in its
+/// facet and has the smallest vertex of that facet.
 fn check_simplices<const D: usize, const V: usize>(found: &Corners<D, V>, name: &str) {
     let mut ridges = std::collections::BTreeMap::new();
     for (simplex, corner) in found.simplices.iter().zip(&found.corner) {
@@ -109,7 +109,7 @@ fn check<const D: usize, const V: usize, const P: usize>(seeds: u64) -> [usize; 
             check_simplices(&found, &name);
             counts[1] += found.points.iter().filter(|p| p[0].is_infinite()).count();
             counts[2] += usize::from(found.simplices.len() > found.points.len());
-            // The same with dual points that are subnormal, and so rounded.
+            // The same with subnormal dual points, which are rounded.
             let far = |x: f64, k: usize| x * 2f64.powi(if k == D { 1000 } else { -65 });
             let huge: Vec<[f64; V]> = rows
                 .iter()
@@ -125,7 +125,7 @@ fn check<const D: usize, const V: usize, const P: usize>(seeds: u64) -> [usize; 
             let point = [(); D].map(|()| (random.unit() - 0.5) / most / D as f64);
             let other = intersect::<D, V, P>(&rows, point, &IDLE).unwrap().unwrap();
             assert_eq!(sets(&other), expected, "{name} from {point:?}");
-            // Nor does anything depend on the order of rows.
+            // The order of rows does not matter either.
             let mut order: Vec<u32> = (0..rows.len() as u32).collect();
             random.shuffle(&mut order);
             let mixed: Vec<[f64; V]> = order.iter().map(|&i| rows[i as usize]).collect();
@@ -165,7 +165,7 @@ fn facets_are_those_of_hulls_of_points() {
     assert!(all.iter().all(|&count| count > 20), "{all:?}");
 }
 
-/// A hull of rows, by rounding or by integers alone.
+/// A hull of rows, with rounded tests or with integers alone.
 fn wrapped<const D: usize, const V: usize, const P: usize>(
     rows: &[[f64; V]],
     point: [f64; D],
@@ -209,7 +209,7 @@ fn pencils<const D: usize, const V: usize>(
         let b = -(0..D).map(|k| a[k] * center[k]).sum::<f64>();
         let b = b + r.integer(-2, 2) * b.abs() * f64::EPSILON;
         let row: [f64; V] = std::array::from_fn(|k| a.get(k).copied().unwrap_or(b));
-        // The middle of the centers is inside, well.
+        // The mean of the centers is well inside.
         let middle = far + 0.5;
         if a.iter().sum::<f64>() * middle + b < -0.05 {
             rows.push(row);
@@ -274,7 +274,7 @@ fn what_is_certain_is_right() {
         check_bounds::<4, 5, 4>(3),
         check_bounds::<5, 6, 8>(1),
     ];
-    // Of many values, some are not certain beside those of the vertices.
+    // Among many values, some besides those of the vertices are uncertain.
     assert!(
         all.iter()
             .all(|[certain, other]| *certain > 500 && *other > 100),

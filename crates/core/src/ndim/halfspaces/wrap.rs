@@ -1,4 +1,4 @@
-//! The hull of dual points: facets, what is outside of them, and the insertion of points.
+//! The hull of dual points: facets, the points outside each of them, and the insertion of points.
 
 use std::cmp::Ordering;
 
@@ -33,21 +33,21 @@ pub struct Facet<const D: usize> {
     farthest: (f64, u32),
 }
 
-/// What decides where rounding does not.
+/// The exact data that decides where rounded values do not.
 struct Exact<const D: usize, const V: usize, const P: usize> {
     normal: Normal<V>,
     /// For ties.
     shares: Option<Shares<D, P>>,
 }
 
-/// A ridge that one new facet has: its hash, `16 c + k`, and the insertion.
+/// A ridge that only one new facet has so far: its hash, `16 c + k`, and the insertion.
 type Ridge = (u64, u32, u32);
 
-/// A hull in the making.
+/// A hull under construction.
 pub struct Hull<'a, const D: usize, const V: usize, const P: usize> {
     pub sites: Sites<'a, D, V, P>,
     pub facets: Vec<Facet<D>>,
-    /// What is needed for facets that rounding did not decide.
+    /// Exact data of facets for which rounded values did not decide.
     normals: Vec<Option<Box<Exact<D, V, P>>>>,
     free: Vec<u32>,
     /// The point after each in the list of its facet.
@@ -59,8 +59,7 @@ pub struct Hull<'a, const D: usize, const V: usize, const P: usize> {
     ridges: Vec<Ridge>,
 }
 
-/// A word for a vertex; ridges have the sum of those of their vertices (the finalizer of
-/// splitmix64).
+/// The hash of a vertex (the finalizer of splitmix64); that of a ridge is the sum over its vertices.
 #[inline(always)]
 fn word(v: u32) -> u64 {
     let x = (u64::from(v) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -92,8 +91,8 @@ impl<'a, const D: usize, const V: usize, const P: usize> Hull<'a, D, V, P> {
             let neighbors = std::array::from_fn(|j| others(j) as u32);
             hull.make(vertices, neighbors, odd)?;
         }
-        // The point from which dual points are seen is inside if the corner opposite each facet is on
-        // its side for certain. Otherwise no rounded value is trusted.
+        // The point from which dual points are seen is inside if the corner opposite each facet is
+        // certainly on the same side. Otherwise, no rounded value is trusted.
         let is_inside = (0..V as u32).zip(corners).all(|(c, corner)| {
             let (value, bound) = hull.value(c, corner);
             value < -bound
@@ -136,7 +135,7 @@ impl<'a, const D: usize, const V: usize, const P: usize> Hull<'a, D, V, P> {
         self.facets[c as usize].plane.value(&self.sites, w)
     }
 
-    /// Whether a point is outside of a facet.
+    /// Whether a point is outside a facet.
     #[inline(always)]
     fn is_outside(&mut self, c: u32, w: u32) -> bool {
         let (value, bound) = self.value(c, w);
@@ -160,7 +159,7 @@ impl<'a, const D: usize, const V: usize, const P: usize> Hull<'a, D, V, P> {
         }
     }
 
-    /// The exact side of a facet on which a point is, positive outside.
+    /// The side of a facet that a point is on, exactly: positive outside.
     pub fn side(&mut self, c: u32, w: u32) -> i32 {
         let (value, bound) = self.value(c, w);
         if value.abs() > bound {
@@ -194,7 +193,7 @@ impl<'a, const D: usize, const V: usize, const P: usize> Hull<'a, D, V, P> {
         }
     }
 
-    /// The rule of ties: the smallest of the point and the vertices that span it decides.
+    /// The rule for ties: the smallest of the point and the vertices that span it decides.
     fn tie(&mut self, c: u32, w: u32) -> bool {
         let Facet { vertices, .. } = self.facets[c as usize];
         let mut order: [usize; D] = std::array::from_fn(|i| i);
@@ -202,7 +201,7 @@ impl<'a, const D: usize, const V: usize, const P: usize> Hull<'a, D, V, P> {
         for i in order {
             let v = vertices[i];
             match self.sites.compare(v, w) {
-                // The same half-space, times a number: its first row counts.
+                // A multiple of the same half-space: the first row counts.
                 Ordering::Equal => {
                     let row = self.sites.first[w as usize];
                     let first = &mut self.sites.first[v as usize];
@@ -235,7 +234,7 @@ impl<'a, const D: usize, const V: usize, const P: usize> Hull<'a, D, V, P> {
         normal.share(&self.sites, vertices, *odd, i, w)
     }
 
-    /// Keeps a point with the first of some facets that it is outside of, if there is one.
+    /// Assigns a point to the first of some facets that it is outside, if there is one.
     #[inline(always)]
     fn place(&mut self, w: u32, among: &[u32], pace: &mut Pace) -> Result<()> {
         for &c in among {
@@ -255,7 +254,7 @@ impl<'a, const D: usize, const V: usize, const P: usize> Hull<'a, D, V, P> {
         Ok(())
     }
 
-    /// Inserts all points. Ends because each insertion has one that is never outside again.
+    /// Inserts all points. Terminates because an inserted point is never outside again.
     pub fn wrap(&mut self, pace: &mut Pace) -> Result<()> {
         let mut work: Vec<u32> = (0..V as u32).collect();
         for w in 0..self.sites.len() {
@@ -263,7 +262,7 @@ impl<'a, const D: usize, const V: usize, const P: usize> Hull<'a, D, V, P> {
         }
         let mut list = Vec::new();
         while let Some(c) = work.pop() {
-            // A facet may have been removed, or have returned with other points.
+            // The facet may have been removed, or its number reused for another facet.
             if !self.facets[c as usize].alive || self.facets[c as usize].head == NONE {
                 continue;
             }
@@ -294,7 +293,7 @@ impl<'a, const D: usize, const V: usize, const P: usize> Hull<'a, D, V, P> {
         Ok(())
     }
 
-    /// Finds the facets that a point is outside of, which are connected, and the ridges around them.
+    /// Finds the facets that a point is outside, which are connected, and the ridges around them.
     fn open(&mut self, p: u32, start: u32, pace: &mut Pace) -> Result<()> {
         self.stamp += 2;
         let (seen, other) = (self.stamp, self.stamp + 1);
@@ -339,8 +338,8 @@ impl<'a, const D: usize, const V: usize, const P: usize> Hull<'a, D, V, P> {
             let Facet {
                 mut vertices, odd, ..
             } = self.facets[old as usize];
-            // The point is outside of the old facet, and the vertex that it replaces is inside of the new
-            // one: the determinants with the other as the last vector have opposite signs, as they should.
+            // The point is outside the old facet, and the vertex that it replaces is inside the new one. So
+            // exchanging the two, which changes the sign of the determinant, leaves `odd` as it is.
             vertices[i] = p;
             let mut neighbors = [NONE; D];
             neighbors[i] = outside;
@@ -390,7 +389,7 @@ impl<'a, const D: usize, const V: usize, const P: usize> Hull<'a, D, V, P> {
         }
     }
 
-    /// Whether the vertices but `k` are those of another facet but `opposite`.
+    /// Whether the vertices except `k` are those of another facet except `opposite`.
     #[inline(always)]
     fn shares(&self, v: &[u32; D], k: usize, other: u32, opposite: usize) -> bool {
         let w = &self.facets[other as usize].vertices;

@@ -10,18 +10,18 @@
 //!        d-----e                d---e---
 //! ```
 //!
-//! The tetrahedra of v fill a ball, since no wall is at v. The new ones join u, which is on the boundary
-//! of the ball, to the faces of the ball without u, so as chains both have the same boundary; if all new
-//! ones are positive they cover the ball once (the argument is that of `insert`). No condition on the
-//! links of u and v is required: an edge or face that would occur twice would lie both inside and
-//! outside of the ball.
+//! The tetrahedra at v fill a ball, since v is not on a wall. The new ones join u, which is on the
+//! boundary of the ball, to the faces of the ball that do not contain u. So as chains, old and new
+//! tetrahedra have the same boundary; if all new ones are positive, they cover the ball once (the argument
+//! is that of `insert`). No condition on the links of u and v is required: an edge or face that occurred
+//! twice would lie both inside and outside the ball.
 
 use super::edge::Plan;
 use super::measure::quality;
 use super::store::{Corners, Store};
 
 /// The best contraction of a vertex with the tetrahedra `star`, if its worst new tetrahedron is better
-/// than `above`. Of equally good ones, that onto the smallest vertex.
+/// than `above`. Among equally good ones, the contraction to the smallest vertex.
 pub fn remove(store: &Store, v: u32, star: &[u32], above: f64) -> Option<Plan> {
     let corners = star.iter().flat_map(|&t| store.corners[t as usize]);
     let mut neighbors: Vec<u32> = corners.filter(|&u| u != v).collect();
@@ -36,7 +36,7 @@ pub fn remove(store: &Store, v: u32, star: &[u32], above: f64) -> Option<Plan> {
                 break;
             }
         }
-        // Without tetrahedra there is nothing to fill the ball with: u is not on its boundary.
+        // If there are no new tetrahedra, u is not on the boundary of the ball.
         if least > value && least < f64::INFINITY {
             (value, onto) = (least, Some(u));
         }
@@ -50,7 +50,7 @@ pub fn remove(store: &Store, v: u32, star: &[u32], above: f64) -> Option<Plan> {
     })
 }
 
-/// The tetrahedra of a star with its vertex at another one; those that contain both vanish.
+/// The tetrahedra of a star with its vertex replaced by another one; those that contain both vanish.
 fn moved(store: &Store, v: u32, u: u32, star: &[u32]) -> impl Iterator<Item = Corners> {
     star.iter()
         .map(|&t| store.corners[t as usize])

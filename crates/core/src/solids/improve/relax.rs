@@ -1,5 +1,5 @@
 //! Coarsening and smoothing: changes that need not improve the worst tetrahedron, as long as it stays
-//! above the bound.
+//! above a bound.
 //!
 //! The *optimal Delaunay* position of a vertex, the mean of the circumcenters of its tetrahedra weighted by
 //! their volumes, is from L. Chen and J. Xu, "Optimal Delaunay triangulations", Journal of Computational Mathematics 22 (2004);
@@ -9,8 +9,8 @@
 //! # Why angles stay
 //!
 //! A change is made only if the bounds of `measure` prove that the worst quality and the smallest acute
-//! angle of the tetrahedra concerned are at least the smaller of the bound and what they were. So an
-//! angle above the bound stays above it, and one below it does not become smaller.
+//! angle of the tetrahedra concerned are at least the bound, or what they were before if that is
+//! less. So an angle above the bound stays above it, and the smallest one below it does not decrease.
 
 use delone_predicates::Point3;
 
@@ -26,7 +26,7 @@ use crate::base::watch::{Pace, Watch};
 const LOT: usize = 1 << 12;
 /// How often a move is halved before it is given up.
 const HALVINGS: usize = 4;
-/// What a computed quality may fall short of a bound to be tried; whether it is kept is proven later.
+/// A change is tried if its computed quality is at least this times the bound; the proof comes later.
 const SLACK: f64 = 1.0 - 1e-9;
 
 /// Where smoothing moves a vertex.
@@ -58,7 +58,7 @@ impl Target {
 }
 
 impl Bounds {
-    /// Whether these are certainly at least the smaller of `bound` and what they were.
+    /// Whether these are certainly at least `bound`, or what they were before if that is less.
     fn keep(self, before: Self, bound: f64) -> bool {
         let kept = |now: [f64; 2], then: [f64; 2]| now[0] >= bound.min(then[1]);
         kept(self.least, before.least) && kept(self.acute, before.acute)
@@ -82,7 +82,7 @@ impl Work<'_> {
             let Some(plan) = plan else {
                 continue;
             };
-            // Its neighbors stay in this round.
+            // Its neighbors are not removed in this round.
             for &t in &self.around {
                 for w in self.store.corners[t as usize] {
                     held[w as usize] = true;
@@ -175,8 +175,8 @@ fn centered([b, c, d]: [Vector; 3]) -> (f64, Vector) {
 /// The part of a tetrahedron in the Voronoi cell of its corner at the origin: six times its volume, and
 /// its centroid multiplied by it.
 ///
-/// It is the sum of six tetrahedra with signs, each of the corner, the middle of an edge, the circumcenter
-/// of a face at it and that of the tetrahedron.
+/// It is the sum of six signed tetrahedra. The corners of each are this corner, the midpoint of an edge,
+/// the circumcenter of a face at the edge, and that of the tetrahedron.
 fn covered([b, c, d]: [Vector; 3]) -> (f64, Vector) {
     let (volume, moment) = centered([b, c, d]);
     let center = moment.map(|x| x / volume);
@@ -222,7 +222,7 @@ mod tests {
         ] {
             assert_eq!(bounds(least, acute).keep(before, 0.4), kept);
         }
-        // Above the bound anything goes.
+        // Above the bound, anything is allowed.
         assert!(bounds(0.1, 0.1).keep(before, 0.1));
     }
 
