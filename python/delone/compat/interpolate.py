@@ -4,13 +4,14 @@
 Differences:
 
 * At a site, the value is reproduced bit for bit, and on the hull it is never the fill value; a
-query that is outside by a rounding error is outside, because there is no tolerance. * From 3-D on
-`tri` is a `delone.Delaunay`. With more than eight coordinates, or where the simplices would not fit
-into memory, there is no triangulation: `tri` is None, and linear interpolation finds the simplex of
-each query separately. More than 64 coordinates raise a `DimensionError`. * Of equally near sites,
-the one with the smallest row is used. * Norms other than the Euclidean one (`p`) are left to
-SciPy's tree; `eps` and `tree_options` have no effect. * A triangulation of
-``scipy.spatial.Delaunay`` is replaced by its points.
+  query that is outside by a rounding error is outside, because there is no tolerance.
+* From 3-D on, `tri` is a `delone.Delaunay`. With more than eight coordinates, or if the simplices
+  would not fit into memory, there is no triangulation: `tri` is None, and linear interpolation
+  finds the simplex of each query separately. More than 64 coordinates raise a `DimensionError`.
+* Of equally near sites, the one with the smallest row is used.
+* Norms other than the Euclidean one (`p`) are left to SciPy's tree; `eps` and `tree_options` have
+  no effect.
+* A ``scipy.spatial.Delaunay`` is replaced by its points.
 """
 
 from __future__ import annotations

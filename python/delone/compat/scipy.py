@@ -11,14 +11,14 @@ Signatures, attributes, dtypes, errors and the mutability of arrays are those of
 
 * Every distinct point is a vertex, so `coplanar` lists only duplicates.
 * Among the triangulations of cocircular points, the result is delone's canonical one, with
-triangles in delone's order.
+  triangles in delone's order.
 * `find_simplex` is exact by default: a point outside by a rounding error is outside. In 2-D and
-3-D, `tol` is compared exactly; in more dimensions it has no effect.
+  3-D, `tol` is compared exactly; in more dimensions it has no effect.
 * `vertex_to_simplex` of a duplicate is a triangle of its first occurrence.
 * Triangles are counter-clockwise and tetrahedra positively oriented, including furthest-site ones.
 * Furthest-site triangulations are only available in 2-D.
 * Complex numbers, masked points, and integers that float64 cannot represent are rejected rather
-than rounded or unmasked. A masked query is treated as NaN, and is therefore in no simplex.
+  than rounded or unmasked. A masked query is treated as NaN, and is therefore in no simplex.
 * Option ``Qu`` sets `furthest_site`; SciPy leaves it False.
 * `add_points` of 2-D and 3-D triangulations inserts the points; the simplices are the same, but
   may be in a different order.

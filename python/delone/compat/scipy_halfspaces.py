@@ -7,20 +7,22 @@
 >>> sorted(found.intersections.tolist())
 [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]
 
-A half-space ``a x + b <= 0`` that contains the interior point p corresponds to the dual point ``-a
-/ (a p + b)``, and corners of the intersection to facets of the convex hull of the dual points. The
-core decides with the given numbers, not with dual points, which would have to be rounded.
-Differences from SciPy:
+A half-space ``a x + b <= 0`` that contains the interior point p corresponds to the dual point
+``-a / (a p + b)``, and corners of the intersection correspond to facets of the convex hull of the
+dual points. All decisions are exact for the given half-spaces, although most dual points must be
+rounded. Differences from SciPy:
 
-* Facets and corners ascend by their half-spaces. In 2-D and 3-D the vertices of a dual facet are in
-order around it, counter-clockwise as seen from outside; in more dimensions they ascend.
+* Facets and corners ascend by their half-spaces. In 2-D and 3-D, the vertices of a dual facet are
+  in order around it, counterclockwise as seen from outside; in more dimensions they ascend.
 * Half-spaces whose boundaries meet exactly at one point have one corner there. If they miss it by
-rounding errors, there are several corners, which SciPy merges within a tolerance. * If the
-intersection is unbounded, the dual facet that represents this has an infinite intersection. SciPy
-returns a point outside the intersection there. * Corners are computed from the half-spaces, not
-from the dual hull, and are correctly rounded, but for rare cases near the middle of two doubles. *
-Points with more than eight coordinates are rejected. * `add_halfspaces` computes the intersection
-of the new half-spaces and of those that are not redundant.
+  rounding errors, there are several corners, which SciPy merges within a tolerance.
+* If the intersection is unbounded, the dual facet that represents this has an infinite row in
+  `intersections`. SciPy returns a point outside the intersection there.
+* Corners are computed from the half-spaces, not from the dual hull, and are correctly rounded,
+  except in rare cases near the midpoint between two doubles.
+* Points with more than eight coordinates are rejected.
+* `add_halfspaces` computes the intersection of the new half-spaces with those that are not
+  redundant.
 """
 
 from __future__ import annotations
@@ -107,10 +109,10 @@ class HalfspaceIntersection:
     measures are rounded. The time is that of a convex hull of the dual points: expected O(n log n)
     in 2-D and 3-D, and O(n^(ndim // 2)) in more dimensions.
 
-    Dual points are quotients, and most of them are not doubles. A point is outside of a dual facet
-    if the determinant of the rows of its half-spaces has a certain sign, and these rows are given.
-    Rounded dual points decide most signs, with a bound that covers their errors; integers decide
-    the others.
+    Dual points are quotients, and most of them are not doubles. But whether one is outside a dual
+    facet depends on the sign of a determinant of rows of `halfspaces`, which are given exactly.
+    Rounded dual points decide most signs, with a bound that covers their errors; integer arithmetic
+    decides the others.
 
     Examples
     --------
@@ -148,7 +150,8 @@ class HalfspaceIntersection:
     def _set(self, rows: Floats, kept: Rows | None = None) -> None:
         """Compute the results for the half-spaces; nothing changes if that fails.
 
-        All but those that are `kept`, ascending, are redundant, and their dual points are known.
+        `kept` are the rows, ascending, that may not be redundant. The dual points of all other rows
+        are already known.
         """
         point = self.interior_point
         if not (np.isfinite(rows).all() and np.isfinite(point).all()):
@@ -199,7 +202,7 @@ class HalfspaceIntersection:
 
     @cached_property
     def _dual_measures(self) -> tuple[float, float]:
-        """Area and volume of the dual hull: sums over the pyramids from its middle to simplices."""
+        """Area and volume of the dual hull: sums over pyramids from its center to its simplices."""
         middle = self.dual_points[self.dual_vertices].mean(axis=0)
         volumes = np.abs(np.linalg.det(self.dual_points[self._simplices] - middle))
         volumes /= factorial(self.ndim)
@@ -240,7 +243,7 @@ class HalfspaceIntersection:
         if more.shape[1] != self.ndim + 1:
             raise ShapeError(f"halfspaces must have shape (k, {self.ndim + 1}), got {more.shape}")
         rows = np.concatenate((self.halfspaces, more))
-        # What is redundant stays so.
+        # Redundant half-spaces remain redundant.
         self._set(rows, np.concatenate((self.dual_vertices, np.arange(self.nineq, len(rows)))))
 
     def close(self) -> None:
@@ -292,7 +295,7 @@ def _reason(why: str, rows: Floats, named: Indices | Rows) -> str:
 
 
 def _common_point(rows: Floats) -> list[float] | None:
-    """The point in which the boundaries of independent half-spaces meet, if it is the only one."""
+    """The point at which the boundaries of independent half-spaces meet, if it is the only one."""
     count, width = rows.shape
     if count != width - 1:
         return None

@@ -8,11 +8,12 @@
 Signatures, attributes, dtypes, errors and the mutability of arrays are those of SciPy. Differences:
 
 * Simplices are in delone's order, and each facet is triangulated by delone's rule.
-* Normals are those of whole facets, so coplanar triangles have the same equation. * `coplanar`,
-with option ``Qc``, lists the rows that repeat a vertex. * ``QGn`` is exact: a facet is visible from
-point n if the point is strictly beyond its plane. * In 3-D, triangles are counter-clockwise as seen
-from outside. * Points in more than eight dimensions are rejected. * `add_points` recomputes the
-hull.
+* Normals are those of whole facets, so coplanar triangles have the same equation.
+* `coplanar`, with option ``Qc``, lists the rows that repeat a vertex.
+* ``QGn`` is exact: a facet is visible from point n if the point is strictly beyond its plane.
+* In 3-D, triangles are counterclockwise as seen from outside.
+* Points in more than eight dimensions are rejected.
+* `add_points` recomputes the hull.
 """
 
 from __future__ import annotations

@@ -9,8 +9,9 @@
 `delone.compat.scipy` exports it. Differences from SciPy:
 
 * Facets are those of the exact convex hull of the directions from the center, in delone's order, so
-vertices have a different order; regions are sorted from the start. * Areas of tiny cells are
-accurate. * Points in two dimensions or more than three are rejected.
+  vertices have a different order; regions are sorted from the start.
+* Areas of tiny cells are accurate.
+* Points in two dimensions or more than three are rejected.
 """
 
 from __future__ import annotations

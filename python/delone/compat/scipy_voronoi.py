@@ -3,7 +3,7 @@
 `delone.compat.scipy` exports both. Differences from SciPy:
 
 * Sites on one circle or sphere share one vertex whatever their coordinates, so every ridge has a
-positive length or area, and vertices, ridges and regions are in delone's order.
+  positive length or area, and vertices, ridges and regions are in delone's order.
 * From 3-D on every ridge is listed; Qhull omits unbounded ones with fewer than d - 1 vertices.
 * Furthest-site diagrams are only available in 2-D.
 * Every distinct point has a region; duplicates share that of their first row, as in SciPy.

@@ -236,9 +236,10 @@ class TetGen:
             rejected.
         bgmesh : pyvista.UnstructuredGrid or tuple of three arrays, optional
             A background mesh: tetrahedra with the point data ``"target_size"``, or ``(points,
-            simplices, lengths)`` with shapes (k, 3), (j, 4) and (k,). They are the sizes of
-            `delone.tetrahedralize`: linear in a tetrahedron, and that of the nearest position of
-            the mesh outside. Without `nobisect`, points are added on the surface for them.
+            simplices, lengths)`` with shapes (k, 3), (j, 4) and (k,). The lengths are used like
+            `size` of `delone.tetrahedralize`: they are interpolated linearly inside each
+            tetrahedron, and outside the mesh, the length at its nearest position applies. Unless
+            `nobisect` is True, points are also added on the surface to reach these lengths.
         nomergefacet : bool, optional
             The same as `nobisect`: coplanar triangles are not merged.
         **others

@@ -1,6 +1,6 @@
 """Background meshes of the package ``tetgen``: tetrahedra with a target size at each point.
 
-They are given as a PyVista grid, or as TetGen's files .node, .ele and .mtr.
+The input is a PyVista grid, three arrays, or TetGen's files .node, .ele and .mtr.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ _TETRAHEDRON = 10
 
 
 def background(bgmesh: Any, filename: str | os.PathLike[str]) -> tuple[TetMesh, Floats] | None:
-    """Return a background mesh and the length at each of its points; None without one.
+    """Return the background mesh, if there is one, and the length at each of its points.
 
-    `bgmesh` is a grid, or ``(points, simplices, lengths)``; `filename` is without suffix.
+    `bgmesh` is a grid, or ``(points, simplices, lengths)``; `filename` has no suffix.
     """
     if bgmesh is not None and filename:
         raise InputError("give bgmesh or bgmeshfilename, not both")
@@ -51,7 +51,7 @@ def background(bgmesh: Any, filename: str | os.PathLike[str]) -> tuple[TetMesh, 
 
 
 def _of_grid(grid: Any) -> tuple[ArrayLike, ArrayLike, ArrayLike]:
-    """Return the points, tetrahedra and lengths of a grid of PyVista."""
+    """Return the points, tetrahedra and lengths of a PyVista grid."""
     if not (hasattr(grid, "cells_dict") and hasattr(grid, "point_data")):
         raise DtypeError(
             "bgmesh must be a pyvista.UnstructuredGrid of tetrahedra, or (points, simplices, "
@@ -86,12 +86,12 @@ def _of_files(stem: Path) -> tuple[TetMesh, Floats]:
 def _checked(
     points: ArrayLike, simplices: ArrayLike, lengths: ArrayLike, name: str
 ) -> tuple[TetMesh, Floats]:
-    """Return a mesh with positive tetrahedra; flat ones contain no position, and are left out."""
+    """Return a mesh of positively oriented tetrahedra; flat ones are left out."""
     places = as_points(points, ndim=3)
     require_finite(places)
     rows = np.array(as_simplices(simplices, len(places), 3))
     signs = _signs(places, rows)
-    # The order of corners is not prescribed.
+    # The input may have either orientation.
     rows[signs < 0] = rows[signs < 0][:, [1, 0, 2, 3]]
     rows = np.ascontiguousarray(rows[signs != 0])
     if not len(rows):

@@ -33,7 +33,7 @@ _REFUSED = {
     "w": "use delone.RegularTriangulation",
     "v": "use delone.Voronoi",
     "d": "use delone.check_surface",
-    "R": "vertices are not removed",
+    "R": "use tet.tetmesh.coarsen",
     "L": "flips have no levels",
     "K": "the format is written by delone.io.write_mesh",
     "P": "boundary facets are always returned",
