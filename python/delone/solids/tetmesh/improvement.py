@@ -121,9 +121,9 @@ def improve(
     cases; the inverse, removing the faces between two vertices, as in the 2-3 flip; moving a vertex
     to the position where the worst tetrahedron around it is best (L. A. Freitag and C.
     Ollivier-Gooch 1997); contracting an edge, which removes a point; and, with `max_points`,
-    replacing the tetrahedra of a cavity by those that
-    join a new vertex to its boundary (B. M. Klingner and J. R. Shewchuk 2007). Vertices are
-    inserted near the worst tetrahedra first. Exudation (S.-W. Cheng et al. 2000) lets the star of a
+    replacing the tetrahedra of a cavity by those that join a new vertex to its boundary (B. M.
+    Klingner and J. R. Shewchuk 2007). Vertices are inserted near the worst tetrahedra first.
+    Exudation (S.-W. Cheng et al. 2000) lets the star of a
     vertex grow with its weight, up to a fifth of the squared distance to the nearest vertex; on a
     Delaunay triangulation, and without the other kinds of changes, the result is the regular
     triangulation with the weights of the report. The quality is the smallest sine of the dihedral

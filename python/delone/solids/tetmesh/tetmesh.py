@@ -174,7 +174,7 @@ class TetMesh(Triangulation):
 
     @property
     def report(self) -> Report:
-        """What `tetrahedralize` added, or what later changes did."""
+        """What `tetrahedralize` added, or what the last operation changed."""
         return self._report
 
     def validate(self) -> TetMeshReport:
@@ -343,16 +343,16 @@ class TetMesh(Triangulation):
         marked : array_like of bool, shape (m,), or of int, optional
             Tetrahedra whose points may be removed: a mask, or their numbers; by default all.
         min_angle : float, optional
-            The bound on dihedral angles in degrees: by default the goal that this mesh was improved
+            The bound on dihedral angles in degrees; by default the goal that this mesh was improved
             for, or 20. Angles below it do not become smaller.
 
         Returns
         -------
         TetMesh
-            A mesh without some of the points that were added inside. Input points, points on faces
-            of the surface or between regions, and points that the bound requires remain. If no
-            point can be removed, this mesh is returned. Its ``report`` is an `ImproveReport` with
-            the number of removed points.
+            A mesh without some of the added interior points; its ``report`` is an `ImproveReport`
+            with the number of removed points. Input points, points on the surface or between
+            regions, and points that the bound requires remain. If no point can be removed, the
+            result is this mesh itself.
 
         Raises
         ------
@@ -362,11 +362,12 @@ class TetMesh(Triangulation):
 
         Notes
         -----
-        A point is removed by contracting the edge to the neighbor with which the worst tetrahedron
-        is best. The new tetrahedra are positively oriented, exactly, and bounds on rounding errors
-        prove that their angles are not below the bound. One call never removes two neighboring
-        points; call it again to remove more. The result does not depend on the order of rows. One
-        thread is used; the time is about 10 microseconds for each point and linear, as is memory.
+        A point is removed by contracting the edge to the neighbor for which the worst new
+        tetrahedron is best. An exact predicate decides that new tetrahedra are positively oriented,
+        and bounds on rounding errors prove what is said about angles. A single call never removes
+        two neighboring points; call it again to remove more. The result does not depend on the
+        order of rows. One thread is used. Time and memory are linear, with about 10 microseconds
+        per point.
 
         Examples
         --------
@@ -389,7 +390,7 @@ class TetMesh(Triangulation):
         fixed: ArrayLike | None = None,
         min_angle: float | None = None,
     ) -> TetMesh:
-        """Return a mesh whose inner points are at better positions.
+        """Return a mesh with interior points moved to better positions.
 
         Parameters
         ----------
@@ -402,28 +403,28 @@ class TetMesh(Triangulation):
         fixed : array_like of bool, shape (n,), or of int, optional
             Points that must not move: a mask, or rows.
         min_angle : float, optional
-            The bound on dihedral angles in degrees: by default the goal that this mesh was improved
+            The bound on dihedral angles in degrees; by default the goal that this mesh was improved
             for, or 20. Angles below it do not become smaller.
 
         Returns
         -------
         TetMesh
-            The mesh with moved points. Points on the boundary, on faces of the surface and between
-            regions do not move. Its ``report`` is an `ImproveReport`.
+            The mesh with moved points; its ``report`` is an `ImproveReport`. Points on the
+            boundary, on input faces and between regions do not move.
 
         Raises
         ------
         InputError, ShapeError, DtypeError
-            `max_iter` is negative, `method` is not one of its choices, or `fixed` does not fit the
-            points.
+            `max_iter` is negative, `method` is not one of its choices, `fixed` is not a mask or
+            array of rows of the points, or `min_angle` is out of range.
 
         Notes
         -----
-        Points move one after the other, in the order of their coordinates, to the target or, where
-        an angle would fall below the bound, up to 1/16 of the way. Tetrahedra stay positively
-        oriented, exactly, and no edge is flipped: `delone.improve` does that. The result does not
-        depend on the order of rows. One thread is used; the time is about 10 microseconds for each
-        point and iteration, and memory is linear.
+        Points move one after another, in the order of their coordinates. Each moves to its target
+        or, if an angle would fall below the bound, half of the way, and so on down to 1/16. An
+        exact predicate ensures that tetrahedra stay positively oriented. No edge is flipped;
+        `delone.improve` does that. The result does not depend on the order of rows. One thread is
+        used. The time is about 10 microseconds per point and iteration, and memory is linear.
 
         References
         ----------
