@@ -1,10 +1,10 @@
 """Lidar points in a folder: Entwine Point Tiles, version 1, an octree with a file for each node.
 
-The named file is ``ept.json``. Beside it, pages in ``ept-hierarchy`` have the number of points of
-each node, and ``ept-data`` has the points: LAZ (laspy and lazrs, extra ``las``), or records of the
-schema. Names of files are made of the numbers of nodes only, and links are not followed. The page
-of a node lists that node and nodes below it, each with its parent; where it says -1, the page of
-that node goes on. So each page is read once, and no node is listed twice.
+The named file is ``ept.json``. Next to it, pages in ``ept-hierarchy`` contain the number of points
+of each node, and ``ept-data`` contains the points: LAZ files (laspy and lazrs, extra ``las``), or
+records of the schema. File names are built only from node numbers, and links are not followed. The
+page of a node lists that node and nodes below it, each with its parent; a count of -1 means that
+the node has its own page. So each page is read once, and no node is listed twice.
 
 The number of points of a node is compared with its file before memory is allocated for them.
 """
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 __all__ = ["describe", "read_points"]
 
 _KEY = re.compile("-".join(["(0|[1-9][0-9]{0,15})"] * 4))
-# Levels of an octree whose cubes doubles can distinguish.
+# The deepest level at which doubles can still distinguish the cubes.
 _DEEPEST = 50
 _KINDS = {"signed": "i", "unsigned": "u", "float": "f"}
 _SIZES = {"signed": (1, 2, 4, 8), "unsigned": (1, 2, 4, 8), "float": (4, 8)}
@@ -65,7 +65,7 @@ _NAMES = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Tree:
-    """What ``ept.json`` says; scales and offsets are those of x, y and z."""
+    """The contents of ``ept.json``; scales and offsets are those of x, y and z."""
 
     path: Path
     data: str
@@ -78,7 +78,7 @@ class _Tree:
     crs: str | None
 
     def beside(self, folder: str, name: str) -> Path:
-        """Return a file of the octree; links are rejected, except that to ``ept.json``."""
+        """Return a file of the octree; a link is rejected, unless it is ``ept.json`` itself."""
         found = self.path.resolve().parent / folder / name
         if found.resolve() != found:
             raise FileFormatError(f"{found} is a link to another file, which is not followed")
@@ -87,7 +87,7 @@ class _Tree:
         return found
 
     def meets(self, key: Key, box: Box | None) -> bool:
-        """Return whether a node may have points inside of a box."""
+        """Return whether a node may have points inside a box."""
         if box is None:
             return True
         for axis in range(2):
@@ -135,7 +135,7 @@ def read_points(
 
 
 def describe(path: Path) -> dict[str, Any]:
-    """Return the type and number of nodes, the size of all files of points, and dimensions."""
+    """Return the type and number of nodes, the size of all point files, and the dimensions."""
     tree = _tree(path)
     nodes = [key for key, count in _nodes(tree, None).items() if count]
     files = (tree.beside("ept-data", _name(key) + _ENDINGS[tree.data]) for key in nodes)
@@ -190,7 +190,7 @@ def _read_records(  # noqa: PLR0917
     *,
     everything: bool,
 ) -> PointSet:
-    """Read a node that has the records of the schema."""
+    """Read a node whose file contains records of the schema."""
     file = tree.beside("ept-data", _name(key) + _ENDINGS[tree.data])
     size = file.stat().st_size
     if size != count * tree.record.itemsize:
@@ -221,7 +221,7 @@ def _read_records(  # noqa: PLR0917
 
 
 def _scaled(file: Path, values: NDArray[Any], scale: float, offset: float) -> Floats:
-    """Return coordinates; those that are not finite because of bad scales are rejected later."""
+    """Return coordinates; if bad scales make some infinite, these are rejected later."""
     found = values.astype(np.float64)
     if values.dtype.kind in "iu" and (found.astype(values.dtype) != values).any():
         raise FileFormatError(f"{file} has coordinates beyond 2**53, which doubles would round")
@@ -230,10 +230,10 @@ def _scaled(file: Path, values: NDArray[Any], scale: float, offset: float) -> Fl
 
 
 def _nodes(tree: _Tree, box: Box | None) -> dict[Key, int]:
-    """Return the number of points of each node that may have points inside of a box."""
+    """Return the number of points of each node that may have points inside a box."""
     found: dict[Key, int] = {}
     pages: list[Key] = [(0, 0, 0, 0)]
-    # Pages that follow are of nodes below their own, so each is read once.
+    # A page only refers to pages of nodes below it, so each is read once.
     while pages:
         for key, count in _page(tree, pages.pop()).items():
             if not tree.meets(key, box):
@@ -246,7 +246,7 @@ def _nodes(tree: _Tree, box: Box | None) -> dict[Key, int]:
 
 
 def _page(tree: _Tree, root: Key) -> dict[Key, int]:
-    """Return the nodes of a page, and -1 for those that have a page of their own."""
+    """Return the counts of a page by node: -1 for a node that has its own page."""
     file = tree.beside("ept-hierarchy", f"{_name(root)}.json")
     content = _loaded(file)
     if not isinstance(content, dict):
@@ -282,7 +282,7 @@ def _key(name: str) -> Key | None:
 
 
 def _ancestor(key: Key, level: int) -> Key | None:
-    """Return the node of a level above, or the same, that a node is in."""
+    """Return the node at a level that contains a node; None if the level is below it."""
     up = key[0] - level
     return None if up < 0 else (level, key[1] >> up, key[2] >> up, key[3] >> up)
 
@@ -386,7 +386,7 @@ def _is_finite(value: Any) -> bool:
 
 
 def _loaded(path: Path) -> Any:
-    """Return the contents of a JSON file in which no name is given twice."""
+    """Return the contents of a JSON file; names that occur twice are an error."""
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         found = dict(pairs)
